@@ -34,6 +34,7 @@ def prediction_text(document: PredictionRecord) -> str:
         _state_table(document["states"]),
         "",
         *_off_axis(document["states"]),
+        *_sheared(document["states"]),
         f"error in sensitivity {far}: {error['sensitivity_basis']}",
         *_uncertainty(document["states"]),
         *_anywhere(document.get("contact_anywhere")),
@@ -113,6 +114,25 @@ def _off_axis(states: list[UncertainStateRecord]) -> list[str]:
         for event in state["events"]
         if event["kind"] in (SWAY, LOBES)
     ]
+
+
+def _sheared(states: list[UncertainStateRecord]) -> list[str]:
+    """What an object that moves sideways after pressing meets, one line a driving pressure."""
+    lines = []
+    for state in states:
+        sheared = state.get("off_axis", {}).get("shear")
+        if sheared is None:
+            continue
+        at, peak, slips = (
+            state["driving_pressure_kPa"],
+            sheared["peak_sideways_force_N"],
+            sheared["slips_throughout_mm"],
+        )
+        parts = [] if peak is None else [f"greatest sideways force {peak:.3f} N"]
+        parts += [f"slips throughout from {slips:.2f} mm"] if slips is not None else []
+        parts += [f"ended: {sheared['ended']}"] if sheared["ended"] is not None else []
+        lines.append(f"moved sideways at {at:g} kPa: {', '.join(parts)}")
+    return lines
 
 
 def _interval(uncertainty: UncertaintyRecord | SampleRecord | None) -> str:

@@ -82,11 +82,11 @@ def contact_document(scene: ResolvedDesign) -> dict[str, Any]:
     if contact.is_atlas_plate:
         return {}
     plate = {"plate_diameter_mm": scene.design.indentation.plate_diameter_mm, "plate_rim_mm": contact.plate_rim_mm}
-    places = {"offset_mm": contact.offset_mm, "tilt_deg": contact.tilt_deg}
-    off_axis = {key: value for key, value in places.items() if value}
     friction = contact.model_dump(mode="json")["friction"]
     sizes = {key: size for key, size in plate.items() if size is not None} if contact.is_plate else contact.sizes()
-    return {"contact": {"object": contact.object, "label": contact.label, **sizes, "friction": friction, **off_axis}}
+    return {
+        "contact": {"object": contact.object, "label": contact.label, **sizes, "friction": friction, **contact.off_axis}
+    }
 
 
 def _check_cells(scene: ResolvedDesign, sensor: Sensor) -> None:

@@ -225,6 +225,7 @@ def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
         friction=design.contact.friction,
         offset=design.contact.offset_mm,
         tilt=math.radians(design.contact.tilt_deg),
+        shear=design.contact.shear_mm,
         base=rigid_base(assembly),
         flange=(layout.flange_width, layout.flange_thickness) if clamp == "flange" else None,
     )

@@ -17,9 +17,7 @@ def check_fitted(scene: ResolvedDesign, sensor: Sensor) -> None:
     if why is None:
         return
     contact = scene.design.contact
-    keys = {"offset_mm": contact.offset_mm != 0.0, "tilt_deg": contact.tilt_deg != 0.0, "object": contact.is_lying}
-    keys |= {"base": not contact.base}
-    key = next((key for key, other in keys.items() if other), None)
+    key = next(iter(contact.off_axis), None if contact.base else "base")
     raise InputError(
         f"the atlas does not cover this sensor, {why}, and the fit is made with the atlas",
         file=scene.where,

@@ -11,9 +11,11 @@ from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError, InputError
 from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
+from pneutouch.mechanics.harmonic.shear import ShearPath
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject
 from pneutouch.mechanics.models import HARMONICS_SETTLED
-from pneutouch.mechanics.prediction import ModelResult, OffAxisCurve, SensorState
+from pneutouch.mechanics.off_axis_curve import OffAxisCurve, ShearCurve
+from pneutouch.mechanics.prediction import ModelResult, SensorState
 from pneutouch.mechanics.response import Figures, figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.first_touch import first_touch
@@ -58,8 +60,8 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
     steps = ", ".join(f"{c:.1%} from {a} to {b}" for c, (a, b) in zip(changes, pairwise(ORDERS), strict=True))
     raise ComputationError(
         f"at {pressure / KPA:g} kPa the figures do not settle with {ORDERS[-1]} harmonics around the axis: "
-        f"sensitivity, force or pressure change by {steps}",
-        remedy="try a smaller depth, offset or tilt",
+        f"sensitivity, force, pressure or the sideways force of a shear change by {steps}",
+        remedy="try a smaller depth, offset, tilt or shear",
     )
 
 
@@ -94,11 +96,13 @@ def _free_travel(sensor: Sensor, probe: StrainProbe, free: FreeState) -> float:
 
 
 class _Curve(NamedTuple):
-    """Force (N) and pressure rise (MPa) at indentations (mm) on equal steps of a range."""
+    """Force (N) and pressure rise (MPa) at indentations (mm) on equal steps of a range, and the greatest sideways force
+    (N) of the shear that follows, or None."""
 
     indentation: Array
     force: Array
     rise: Array
+    peak: float | None = None
 
     @property
     def sensitivity_kPa_per_N(self) -> float | None:
@@ -110,11 +114,12 @@ class _Curve(NamedTuple):
 def _curve(sensor: Sensor, pressed: OffAxisPath) -> _Curve:
     """The curve of a press to the end of its range."""
     grid = np.linspace(0.0, _range_end(sensor, pressed), sensor.protocol.steps + 1)
-    return _Curve(grid, *curve_between(pressed.path, grid))
+    return _Curve(grid, *curve_between(pressed.path, grid), None if pressed.shear is None else pressed.shear.peak)
 
 
 def change(before: _Curve, after: _Curve) -> float:
-    """Greatest relative change of sensitivity, and of force and pressure rise at the end of the common range."""
+    """Greatest relative change of sensitivity, of force and pressure rise at the end of the common range, and of the
+    greatest sideways force of a shear."""
     end = min(before.indentation[-1], after.indentation[-1])
     pairs = [
         (float(np.interp(end, before.indentation, old)), float(np.interp(end, after.indentation, new)))
@@ -122,6 +127,8 @@ def change(before: _Curve, after: _Curve) -> float:
     ]
     if before.sensitivity_kPa_per_N is not None and after.sensitivity_kPa_per_N is not None:
         pairs.append((before.sensitivity_kPa_per_N, after.sensitivity_kPa_per_N))
+    if before.peak is not None and after.peak is not None:
+        pairs.append((before.peak, after.peak))
     return max((abs(old / new - 1.0) for old, new in pairs if new), default=0.0)
 
 
@@ -147,7 +154,7 @@ def _press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAxisPress:
     offset = test.offset / solid.length
     lying = test.body is not None and test.body.lying
     placed = LyingObject(body, offset) if lying else PlacedObject(body, offset, test.tilt)
-    return OffAxisPress(solid, free, press, placed, probe)
+    return OffAxisPress(solid, free, press, placed, probe, test.shear)
 
 
 def _range_end(sensor: Sensor, pressed: OffAxisPath) -> float:
@@ -171,7 +178,28 @@ def _record(sensor: Sensor, pressure: float, free: FreeState, pressed: OffAxisPa
         contact_radius=pressed.column("contact_radius"),
         max_stretch=pressed.column("stretch"),
         events=tuple(happened),
-        beyond_axis=OffAxisCurve(pressed.order, last_change, pressed.column("sideways"), pressed.column("moment")),
+        beyond_axis=OffAxisCurve(
+            pressed.order,
+            last_change,
+            pressed.column("sideways"),
+            pressed.column("moment"),
+            None if pressed.shear is None else _shear_curve(pressed.shear),
+        ),
+    )
+
+
+def _shear_curve(path: ShearPath) -> ShearCurve:
+    return ShearCurve(
+        travel=path.column("travel"),
+        force=path.column("force"),
+        sideways=path.column("sideways"),
+        moment=path.column("moment"),
+        rise=path.column("rise"),
+        sliding=path.column("sliding"),
+        stiffness=path.stiffness,
+        peak=path.peak,
+        slips_from=path.slips_from,
+        ended=path.ended,
     )
 
 

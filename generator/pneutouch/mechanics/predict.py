@@ -159,7 +159,8 @@ def _contact(protocol: IndentationProtocol) -> str:
     places = [f"its axis {protocol.offset:g} mm off the dome's"] if protocol.offset else []
     places += ["endless across its plane of symmetry"] if protocol.body is not None and protocol.body.lying else []
     places += [f"leaning by {np.degrees(protocol.tilt):.4g}°"] if protocol.tilt else []
-    return f"rigid {body}, {hold}, {' and '.join(places)}, straight down"
+    moved = f", then {protocol.shear:g} mm sideways" if protocol.shear else ""
+    return f"rigid {body}, {hold}, {' and '.join(places) or 'central'}, straight down{moved}"
 
 
 def _edge(protocol: IndentationProtocol) -> str:

@@ -8,6 +8,7 @@ from typing import NotRequired, TypedDict
 from pneutouch.arrays import Array
 from pneutouch.mechanics.events import LOBES, SWAY, Event, EventRecord
 from pneutouch.mechanics.limits import LimitPoint, Limits
+from pneutouch.mechanics.off_axis_curve import OffAxisCurve, OffAxisRecord
 from pneutouch.mechanics.response import Figures, tangent_stiffness
 from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.rounding import rounded
@@ -50,16 +51,6 @@ class CurveRecord(StressRecord):
     contact_radius_mm: list[float]
     max_stretch: list[float]
     tangent_stiffness_N_per_mm: list[float]
-
-
-class OffAxisRecord(TypedDict):
-    """What contact off the axis adds to a curve: the harmonics it took, what the last raise of their order changed
-    (greatest of sensitivity, force and pressure rise), and lists as long as the curve's."""
-
-    harmonics: int
-    last_change_percent: float
-    sideways_force_N: list[float]
-    moment_N_mm: list[float]
 
 
 class StateRecord(TypedDict):
@@ -123,30 +114,6 @@ class DeformedShape:
 
 
 @dataclass(frozen=True, slots=True)
-class OffAxisCurve:
-    """What contact off the axis adds to a loading curve (N, N mm; see `harmonic.press.OffAxisState`), the order of its
-    harmonics, and the share by which the last raise of the order changed sensitivity, force or pressure rise."""
-
-    order: int
-    last_change: float
-    sideways: Array
-    moment: Array
-
-    def scaled(self, force: float) -> OffAxisCurve:
-        """With all forces times a factor."""
-        return replace(self, sideways=force * self.sideways, moment=force * self.moment)
-
-    def document(self) -> OffAxisRecord:
-        """The curve in boundary units."""
-        return {
-            "harmonics": self.order,
-            "last_change_percent": 100 * self.last_change,
-            "sideways_force_N": self.sideways.tolist(),
-            "moment_N_mm": self.moment.tolist(),
-        }
-
-
-@dataclass(frozen=True, slots=True)
 class SensorState:
     """One driving pressure: the inflated dome and its loading curve (arrays of one length, mm, N, MPa).
 
@@ -187,7 +154,7 @@ class SensorState:
             force=by_force * self.force,
             pressure_rise=by_rise * self.pressure_rise,
             figures=None if self.figures is None else self.figures.scaled(by_force, by_rise),
-            beyond_axis=None if self.beyond_axis is None else self.beyond_axis.scaled(by_force),
+            beyond_axis=None if self.beyond_axis is None else self.beyond_axis.scaled(by_force, by_rise),
         )
 
     def document(self) -> StateRecord:

@@ -66,7 +66,7 @@ class IndentationProtocol:
     The solid checks the stability of the press for 1 to ``waves`` waves around the axis; 0: no check. ``body`` in place
     of the flat plate; ``plate_rim`` of a plate whose rim is stated; ``friction`` is Coulomb's coefficient, inf for a
     surface that grips. The axis of the object stands ``offset`` off the dome's, and a plate leans by ``tilt`` (rad),
-    upwards on that side.
+    upwards on that side. After the press the object moves sideways by ``shear``, towards that side.
     """
 
     plate_radius: float
@@ -78,6 +78,7 @@ class IndentationProtocol:
     friction: float = 0.0
     offset: float = 0.0
     tilt: float = 0.0
+    shear: float = 0.0
 
     @property
     def off_axis(self) -> str | None:
@@ -86,7 +87,9 @@ class IndentationProtocol:
             return f"the object stands {self.offset:g} mm off the axis"
         if self.body is not None and self.body.lying:
             return f"the object is no body of revolution: {self.body.label}"
-        return f"the plate leans by {np.degrees(self.tilt):.4g}°" if self.tilt else None
+        if self.tilt:
+            return f"the plate leans by {np.degrees(self.tilt):.4g}°"
+        return f"the object moves {self.shear:g} mm sideways after pressing" if self.shear else None
 
     @property
     def other_contact(self) -> str | None:

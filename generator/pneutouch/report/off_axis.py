@@ -23,6 +23,24 @@ CAPTION = (
     "later than these."
 )
 
+SHEAR = (
+    "Driving\nkPa",
+    "Moved to\nmm",
+    "Force\nN",
+    "Sideways force\nN",
+    "Moment\nN mm",
+    "Pressure rise\nkPa",
+    "Greatest sideways force\nN",
+    "Slips throughout from\nmm",
+)
+"""Columns of the table of an object that moves sideways after pressing."""
+
+SHEAR_CAPTION = (
+    "The object moves sideways at the depth that it was pressed to. At the end of that travel, of the dome on the "
+    "object: force, sideways force and moment as above, and the pressure rise; the sideways force where it is greatest "
+    "against the travel; the first computed travel at which every point of the contact slides."
+)
+
 
 def off_axis_rows(states: tuple[SensorState, ...]) -> list[list[str]]:
     """One row a driving pressure that was pressed off the axis."""
@@ -45,4 +63,25 @@ def off_axis_rows(states: tuple[SensorState, ...]) -> list[list[str]]:
                 f"{100.0 * beyond.last_change:.2g}",
             ]
         )
+    return rows
+
+
+def shear_rows(states: tuple[SensorState, ...]) -> list[list[str]]:
+    """One row a driving pressure at which the object moved sideways; a dash for what was not reached."""
+    rows = []
+    for state in states:
+        sheared = None if state.beyond_axis is None else state.beyond_axis.shear
+        if sheared is None:
+            continue
+        columns = (
+            (sheared.travel, ".2f"),
+            (sheared.force, ".3f"),
+            (sheared.sideways, ".3f"),
+            (sheared.moment, ".2f"),
+            (sheared.rise / KPA, ".2f"),
+        )
+        ends = [f"{column[-1]:{digits}}" if column.size else "-" for column, digits in columns]
+        peak = "-" if sheared.peak is None else f"{sheared.peak:.3f}"
+        slips = "-" if sheared.slips_from is None else f"{sheared.slips_from:.2f}"
+        rows.append([f"{state.driving_pressure / KPA:g}", *ends, peak, slips])
     return rows

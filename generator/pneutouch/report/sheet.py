@@ -9,7 +9,7 @@ from pneutouch.report import ordering, prose
 from pneutouch.report.anywhere import contact_section
 from pneutouch.report.certainty import interval, uncertainty_section
 from pneutouch.report.environment import NOT_TESTED, environment
-from pneutouch.report.off_axis import CAPTION, OFF_AXIS, off_axis_rows
+from pneutouch.report.off_axis import CAPTION, OFF_AXIS, SHEAR, SHEAR_CAPTION, off_axis_rows, shear_rows
 from pneutouch.units import KPA, ML
 from pneutouch.wording import SIMULATED, counted
 
@@ -55,6 +55,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "performance": _performance(sheet),
         "off_axis": {"head": OFF_AXIS, "rows": off_axis_rows(sheet.prediction.states), "caption": CAPTION},
         "contact": contact_section(sheet.contact),
+        "shear": {"head": SHEAR, "rows": shear_rows(sheet.prediction.states), "caption": SHEAR_CAPTION},
         "model_error": _model_error(sheet),
         "uncertainty": uncertainty_section(sheet),
         "captions": _captions(sheet),

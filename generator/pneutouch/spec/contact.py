@@ -32,6 +32,7 @@ LARGEST = 250.0
 
 _MOST_FRICTION = 10.0
 _MOST_CORNERS = 40
+_MOST_SHEAR = 50.0
 
 
 def _coefficient(value: float) -> float:
@@ -64,7 +65,8 @@ Friction = Annotated[
 
 
 class ContactTable(Table):
-    """[contact]: the object that presses the sensor, straight down; centrally where it has no offset and no tilt."""
+    """[contact]: the object that presses the sensor, straight down, and may then move sideways; centrally where it has
+    no offset and no tilt."""
 
     object: ContactKind = Field(
         default="plate", description="What presses the sensor: plate, ball, cone, ring, profile, edge or cylinder."
@@ -117,6 +119,14 @@ class ContactTable(Table):
         description="Whether object and place of contact are unknown in use: their effect on the force read is counted "
         "in the interval.",
     )
+    shear_mm: float = number(
+        0.0,
+        unit="mm",
+        low=-_MOST_SHEAR,
+        high=_MOST_SHEAR,
+        help="How far a plate or ball moves sideways after pressing, at the same height, towards its offset; needs "
+        "friction.",
+    )
     base: bool = Field(
         default=True,
         description="Whether the wall lies down on the connector next to its clamp and inside, without friction; "
@@ -151,12 +161,22 @@ class ContactTable(Table):
             )
         if self.tilt_deg and not self.is_plate:
             raise ValueError(f"tilt_deg = {self.tilt_deg:g}: only a plate can lean, not a {self.object}")
+        if self.shear_mm and self.object not in ("plate", "ball"):
+            raise ValueError(
+                f"shear_mm = {self.shear_mm:g}: only a plate or a ball moves sideways, not a {self.object}"
+            )
+        if self.shear_mm and not self.friction:
+            raise ValueError(
+                f"shear_mm = {self.shear_mm:g} without friction: the object would slide; give friction above 0, "
+                "such as 0.6, or inf"
+            )
         return self
 
     @property
-    def off_axis(self) -> bool:
-        """Whether the object stands off the dome's axis, leans or lies across it."""
-        return bool(self.offset_mm or self.tilt_deg or self.is_lying)
+    def off_axis(self) -> dict[str, float | str]:
+        """The keys that keep the scene from being axisymmetric, and their values; empty where it is."""
+        keys = ("offset_mm", "tilt_deg", "shear_mm", *(("object",) if self.is_lying else ()))
+        return {key: getattr(self, key) for key in keys if getattr(self, key)}
 
     @property
     def is_lying(self) -> bool:
@@ -165,6 +185,13 @@ class ContactTable(Table):
 
     @property
     def place(self) -> str:
+        """Where the object presses, how it leans and how it moves then, in words; empty where it is central, level and
+        comes straight down."""
+        moved = [f"then moved {self.shear_mm:g} mm sideways"] if self.shear_mm else []
+        return ", ".join([*([self._stand] if self._stand else []), *moved])
+
+    @property
+    def _stand(self) -> str:
         """Where the object presses and how it leans, in words; empty where it is central and level."""
         parts = [f"{self.offset_mm:g} mm off the axis"] if self.offset_mm else []
         parts += [f"leaning by {self.tilt_deg:g}°"] if self.tilt_deg else []
@@ -174,12 +201,12 @@ class ContactTable(Table):
     @property
     def kind_of_place(self) -> str:
         """Whether contact is central, in words before the noun."""
-        return "off-axis" if self.off_axis else "central"
+        return "off-axis" if self._stand else "central"
 
     @property
     def where(self) -> str:
         """Where to press, in words after the object."""
-        return self.place if self.off_axis else "centrally"
+        return self._stand or "centrally"
 
     @property
     def is_plate(self) -> bool:

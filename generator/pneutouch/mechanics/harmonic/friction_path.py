@@ -62,6 +62,11 @@ class SurfaceFrictionFollower(FrictionFollower):
     _plate: Surface
 
     @property
+    def plate(self) -> Surface:
+        """The object at the beginning of the path."""
+        return self._plate
+
+    @property
     def _contact(self) -> HarmonicContact:
         contact = self._solid.contact
         assert isinstance(contact, HarmonicContact)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from pneutouch.mechanics.harmonic.friction_path import SurfaceFrictionFollower, 
 from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.placement import first_height
 from pneutouch.mechanics.harmonic.settling import ContactNewton, Foreseen
+from pneutouch.mechanics.harmonic.shear import ShearPath, not_sheared, shear
 from pneutouch.mechanics.harmonic.strain import HarmonicProbe
 from pneutouch.mechanics.harmonic.surface import Surface
 from pneutouch.mechanics.solid.continuation import PathFollower, PlateState
@@ -65,13 +66,14 @@ class OffAxisState:
 @dataclass(frozen=True)
 class OffAxisPath:
     """States at the steps of the protocol, all solved states, and events, as `indent.IndentationPath` has them, with
-    harmonics to ``order``."""
+    harmonics to ``order``; ``shear``: what follows the press where the object then moves sideways."""
 
     order: int
     states: list[OffAxisState]
     path: list[OffAxisState]
     events: list[SolidEvent]
     complete: bool
+    shear: ShearPath | None = None
 
     def column(self, name: str) -> Array:
         """One field of every state, (n_states,)."""
@@ -104,11 +106,21 @@ class OffAxisPress:
     """Presses of one dome from one free state by one object, with any number of harmonics.
 
     ``surface`` is the object in R0 at any height; ``press`` as for the axisymmetric solid, its object left aside.
+    ``travel``: how far the object moves sideways after it, mm; only with friction.
     """
 
     def __init__(
-        self, solid: SolidModel, free: FreeState, press: PressSettings, surface: Surface, probe: StrainProbe
+        self,
+        solid: SolidModel,
+        free: FreeState,
+        press: PressSettings,
+        surface: Surface,
+        probe: StrainProbe,
+        travel: float = 0.0,
     ) -> None:
+        if travel and not press.friction:
+            raise ValueError("without friction an object that moves sideways slides off")
+        self._travel = travel
         self._solid, self._free, self._press, self._probe = solid, free, press, probe
         self._gas = shut_in(solid, free, press)
         outline = solid.contact.outline(free.positions / solid.length, _ALONG)
@@ -133,7 +145,13 @@ class OffAxisPress:
                     events += self._events(states[-2], states[-1])
             if jump is not None or self._ended(events):
                 break
-        return self._finish(order, states, events, jump)
+        pressed = self._finish(order, states, events, jump)
+        return replace(pressed, shear=self._shear(follower, pressed)) if self._travel else pressed
+
+    def _shear(self, follower: PathFollower, pressed: OffAxisPath) -> ShearPath:
+        """What follows a press where the object moves sideways."""
+        assert isinstance(follower, SurfaceFrictionFollower)
+        return shear(follower, self._travel, self._free.pressure) if pressed.complete else not_sheared()
 
     def coarser(self, order: int, states: list[OffAxisState]) -> list[tuple[float, float]] | None:
         """Force (N) and pressure rise (MPa) near solved states with fewer harmonics; None where one has no equilibrium.

@@ -140,7 +140,7 @@ def load_both(
     return (
         context,
         scene,
-        sensor_of(assemble(scene)).replace(body=None, plate_rim=None, friction=0.0, offset=0.0, tilt=0.0),
+        sensor_of(assemble(scene)).replace(body=None, plate_rim=None, friction=0.0, offset=0.0, tilt=0.0, shear=0.0),
     )
 
 

@@ -77,8 +77,7 @@ def check_central(scene: ResolvedDesign) -> None:
     contact = scene.design.contact
     if not contact.off_axis:
         return
-    key = "offset_mm" if contact.offset_mm else "object" if contact.is_lying else "tilt_deg"
-    value = getattr(contact, key)
+    key, value = next(iter(contact.off_axis.items()))
     raise InputError(
         "the search is made with central and level contact",
         file=scene.where,

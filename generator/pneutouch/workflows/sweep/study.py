@@ -92,7 +92,7 @@ def _model(plan: SweepPlan, base: DesignFile) -> str:
     if plan.model != USUAL:
         return plan.model
     contact = base.contact
-    keys: dict[str, Any] = {"contact.offset_mm": contact.offset_mm, "contact.tilt_deg": contact.tilt_deg}
+    keys: dict[str, Any] = {f"contact.{key}": getattr(contact, key) for key in ("offset_mm", "tilt_deg", "shear_mm")}
     keys |= {"contact.object": contact.object}
     if not any(_off_axis(v) for key, usual in keys.items() for v in _chosen(plan, key, plan.settings.get(key, usual))):
         return "solid"
