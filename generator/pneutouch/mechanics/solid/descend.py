@@ -82,12 +82,13 @@ def _close_in(follower: PathFollower, end: float) -> PathJump | None:
             return None
         bad, tried_from_here = end if closed or again else bad, False
     if isinstance(beyond, NewtonFailure):
-        return _past_a_stall(follower, beyond)
+        return _past_a_stall(follower, end, beyond)
     return _jump(follower.path, beyond)
 
 
-def _past_a_stall(follower: PathFollower, stalled: NewtonFailure) -> PathJump:
-    """A solver that failed is no evidence of another branch: search a little further before naming the end.
+def _past_a_stall(follower: PathFollower, end: float, stalled: NewtonFailure) -> PathJump | None:
+    """A solver that failed is no evidence of another branch: search a little further before naming the end; None where
+    the path goes on soundly there, as it may behind a height where friction lets go of a point.
 
     With friction the search is by no energy and often finds nothing: there the end is read from the path itself.
     """
@@ -96,12 +97,14 @@ def _past_a_stall(follower: PathFollower, stalled: NewtonFailure) -> PathJump:
         why = f"the wall moves {_speed(here):.0f} times as far as the object, and the path turns back"
         return PathJump(_kind(here, here.by_height), here.height, f"{why}; {_place(here, here.by_height)}")
     for further in (1, 2, 4, 8):
-        other = follower.solve(follower.here.height - follower.down * further * _BEYOND_STALL)
-        if (
-            not isinstance(other, NewtonFailure)
-            and not _sound(follower.path, other)
-            and _stays_away(follower.here, other)
-        ):
+        other = follower.solve(here.height - follower.down * further * _BEYOND_STALL)
+        if isinstance(other, NewtonFailure):
+            continue
+        if _sound(follower.path, other):
+            if further * _BEYOND_STALL < follower.left(end):
+                follower.path.append(other)
+                return None
+        elif _stays_away(here, other):
             return _jump(follower.path, other)
     return PathJump("lost", here.height, stalled.why)
 
