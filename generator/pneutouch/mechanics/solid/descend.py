@@ -42,7 +42,10 @@ def descend(follower: PathFollower, height: float) -> PathJump | None:
         except NoConvergenceError as failure:
             if before.friction is None:
                 return PathJump("lost", before.height, failure.why)
-            return _past_a_stall(follower, NewtonFailure(failure.why))
+            jump = _past_a_stall(follower, height, NewtonFailure(failure.why))
+            if jump is not None:
+                return jump
+            continue
         if _sound(follower.path[:-1], after):
             continue
         jump = _close_in(follower, after.height)
