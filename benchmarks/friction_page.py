@@ -191,7 +191,7 @@ TEXT = {
         "status of the points is followed only as far as the work of the residual falls, and where the model is not "
         "definite or does not settle, the largest tractions are held. The wall before the contact is eliminated once a "
         "step. The first step of a solve keeps the slip of the state before, a full step that halves the residual is "
-        "taken without a search, and the end of a step that is not sound is tried again from half way.",
+        "taken without a search, and a step that fails or is not sound is bisected, its end tried again from half way.",
         "",
     ],
     "reference": [

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.solid.continuation import DISSIPATION, PathFollower, PlateState, lost_work
+from pneutouch.mechanics.solid.continuation import DISSIPATION, LONGEST, PathFollower, PlateState, lost_work
 from pneutouch.mechanics.solid.errors import NoConvergenceError
 from pneutouch.mechanics.solid.newton import NewtonFailure, minimise
 
@@ -37,18 +37,23 @@ def descend(follower: PathFollower, height: float) -> PathJump | None:
         return PathJump("unstable", follower.here.height, "the state itself is unstable with its gas shut in")
     while follower.left(height) > 1.0e-12:
         before = follower.here
-        try:
-            after = follower.step(height)
-        except NoConvergenceError as failure:
-            if before.friction is None:
+        if before.friction is not None:
+            # Cut steps that try the rest of the travel again and again cost far more than bisection.
+            end = before.height - follower.down * min(follower.left(height), LONGEST)
+            ahead = follower.solve(end)
+            if not isinstance(ahead, NewtonFailure) and _sound(follower.path, ahead):
+                follower.path.append(ahead)
+                continue
+        else:
+            try:
+                end = follower.step(height).height
+            except NoConvergenceError as failure:
                 return PathJump("lost", before.height, failure.why)
-            jump = _past_a_stall(follower, height, NewtonFailure(failure.why))
-            if jump is not None:
-                return jump
-            continue
-        if _sound(follower.path[:-1], after):
-            continue
-        jump = _close_in(follower, after.height)
+            after = follower.path.pop()
+            if _sound(follower.path, after):
+                follower.path.append(after)
+                continue
+        jump = _close_in(follower, end)
         if jump is not None:
             return jump
     return None
@@ -59,11 +64,11 @@ def _sound(path: list[PlateState], after: PlateState) -> bool:
 
 
 def _close_in(follower: PathFollower, end: float) -> PathJump | None:
-    """Bisect between the last sound state and a suspect one; None if the end is reached on one branch after all.
+    """Bisect between the last sound state and a height where the next one is not sound, or is not found; None if that
+    height is reached on one branch after all.
 
     A suspect height may prove sound when approached in shorter steps, so the last bracket is repeated in short steps.
     """
-    follower.path.pop()
     begun = follower.here
     beyond: PlateState | NewtonFailure = NewtonFailure("no equilibrium follows without a jump")
     bad, tried_from_here = end, False

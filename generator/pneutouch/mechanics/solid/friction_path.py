@@ -81,8 +81,10 @@ class FrictionFollower(PathFollower):
         assert self.here.friction is not None
         solver = self._solver(height, _known(self.here.friction.rest, self._ahead(height)))
         kept = self._signs() if len(self.path) > 1 else None
-        solved = solver.minimise(self._extrapolate(height), kept)
-        if isinstance(solved, NewtonFailure):
+        guess = self._extrapolate(height)
+        solved = solver.minimise(guess, kept)
+        # From the newest state a step that failed otherwise fails too, in twice the time.
+        if isinstance(solved, NewtonFailure) and evaluate(solver.scene, guess) is None:
             solved = solver.minimise(self.here.state.x, kept)
         if isinstance(solved, NewtonFailure):
             return solved
