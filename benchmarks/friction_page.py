@@ -129,6 +129,7 @@ def page(library: Library) -> str:
             *_loops(moduli, measured),
             *TEXT["steps"],
             *_steps(),
+            *TEXT["ends"],
             *TEXT["time"],
             *_times(),
             *TEXT["reference"],
@@ -176,6 +177,19 @@ TEXT = {
         "",
         f"S in kPa/N over {BEFORE_EVENTS:.2f} mm, from the same 15 depths each. The springs have a tenth of the contact's "
         "stiffness.",
+        "",
+    ],
+    "ends": [
+        "## Ends",
+        "",
+        "A point that friction holds until it is let go releases the wall around it at once, as a crack that opens by "
+        "that point: the wall gives up half the traction times its path. The balance of energy counts this as "
+        "dissipated. A jump loses far more than that. A path also ends where it turns back: the speed of the wall over "
+        "that of the object grows with the inverse root of the distance that is left. Such an end is a `snap` or "
+        "`clamp_fold`, too. Where no equilibrium is found at one height and a sound one a little further, the path goes "
+        "on. `lost` remains where the solver goes no further and the path does not turn back; then there is no statement "
+        "on a jump. [contact.md](contact.md#random-presses) compares the ends of random presses with those on a finer "
+        "mesh.",
         "",
     ],
     "time": [
