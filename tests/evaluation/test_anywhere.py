@@ -15,7 +15,7 @@ from pneutouch.cli.app import app
 from pneutouch.evaluation.anywhere import contact_anywhere_document, contact_chart
 from pneutouch.evaluation.document import prediction_document
 from pneutouch.mechanics.uncertainty.source import FIGURES
-from pneutouch.report.anywhere import contact_figure, contact_section
+from pneutouch.report.anywhere import contact_figures, contact_section
 
 S, SOURCE = "sensitivity_kPa_per_N", "place of contact"
 
@@ -146,7 +146,13 @@ def test_the_section_has_a_row_a_contact_and_a_column_a_reading(plain):
 
 
 def test_the_chart_has_a_curve_a_driving_pressure_and_axes_with_units(plain):
-    text = contact_figure(contact_chart(plain.prediction, plain.sensor))
-    assert text == contact_figure(contact_chart(plain.prediction, plain.sensor))
-    for words in ("error of the force read", "(mm)", "(degrees)", "driven at 0 kPa", "driven at 22 kPa"):
+    chart = contact_chart(plain.prediction, plain.sensor)
+    charts = contact_figures(chart)
+    assert charts == contact_figures(chart)
+    for text, words in zip(
+        charts.values(),
+        ("radius of a central ball  (mm)", "offset of a ball from the axis  (mm)", "(degrees)"),
+        strict=True,
+    ):
         assert words in text
+        assert all(f"driven at {pressure} kPa" in text for pressure in (0, 22)) and "error of the force read" in text

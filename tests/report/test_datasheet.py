@@ -52,7 +52,7 @@ def test_page_and_pdf_have_every_section(section, html, pdf_text):
 
 
 def test_the_page_holds_its_figures(html):
-    assert html.count("<svg") == 14
+    assert html.count("<svg") == 16
 
 
 def test_sheet_states_the_predicted_figures(built, html, pdf_text):
@@ -177,7 +177,7 @@ def test_without_the_solid_the_sheet_says_where_shapes_come_from(evaluated, page
     page = page(evaluated("fingertip-dome", model="atlas"))
     assert "build with model solid" in page
     assert "greatest principal stretch; thin" not in page
-    assert page.count("<svg") == 10
+    assert page.count("<svg") == 12
 
 
 @pytest.mark.slow

@@ -94,7 +94,12 @@ def contact_anywhere_document(prediction: SensorPrediction, sensor: Sensor) -> d
         for k, pressure_kPa in enumerate(chart.driving_pressures_kPa)
     ]
     contacts = [
-        {"object": row.kind, "radius_mm": row.radius, "offset_mm": row.offset, "tilt_deg": row.tilt_deg}
+        {
+            "object": "plate" if row.radius is None else "ball",
+            "radius_mm": row.radius,
+            "offset_mm": row.offset,
+            "tilt_deg": row.tilt_deg,
+        }
         for row in chart.rows
     ]
     document = {
@@ -116,10 +121,10 @@ def _rows(domes: DomeConditions, levels: Array, size: float) -> tuple[ContactRow
     balls = _percent(domes, ball_places(domes.wall_ratio, radii, offsets), levels)
     plates = _percent(domes, plate_places(domes.wall_ratio, np.radians(_TILTS_DEG)), levels)
     rows = [
-        ContactRow("ball", size * radius, size * offset, 0.0, _numbers(balls[:, i]))
+        ContactRow(size * radius, size * offset, 0.0, _numbers(balls[:, i]))
         for i, (radius, offset) in enumerate(_BALLS)
     ]
-    return (*rows, *(ContactRow("plate", None, 0.0, tilt, _numbers(plates[:, i])) for i, tilt in enumerate(_TILTS_DEG)))
+    return (*rows, *(ContactRow(None, 0.0, tilt, _numbers(plates[:, i])) for i, tilt in enumerate(_TILTS_DEG)))
 
 
 def _numbers(errors: Array) -> tuple[tuple[float | None, ...], ...]:

@@ -103,10 +103,9 @@ class ErrorCurves(NamedTuple):
 
 
 class ContactRow(NamedTuple):
-    """A contact: its object, radius of a ball and offset in mm, tilt in degrees; errors of the force read in percent by
-    driving pressure and reading, None where the reading is not reached."""
+    """A contact: radius of a ball (None: a plate) and offset in mm, tilt in degrees; errors of the force read in
+    percent by driving pressure and reading, None where the reading is not reached."""
 
-    kind: str
     radius: float | None
     offset: float
     tilt_deg: float

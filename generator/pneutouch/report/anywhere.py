@@ -1,34 +1,52 @@
-"""The datasheet's section on contact that is not central: chart, table and captions."""
+"""The datasheet's section on contact that is not central: charts, table and captions."""
 
 from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from pneutouch.evaluation.chart_data import ContactChart, ContactRow, ErrorCurves
 from pneutouch.report.style import ACCENT, INK, LINES, figure, legend_above, plain_ticks, svg
 
-SIZE = (178.0, 60.0)
-"""Width and height of the chart in mm: the width of the text on A4."""
+SIZE = (57.0, 58.0)
+"""Width and height of a chart in mm: a third of the width of the text on A4."""
 
 DASH = "–"
 
+_LOGARITHMIC = "contact-radius"
 
-def contact_figure(chart: ContactChart) -> str:
-    """Error of the force read over the radius of a ball, its offset, and the tilt of a plate, as SVG."""
-    panels = (
-        (chart.by_radius, "radius of a central ball  (mm)"),
-        (chart.by_offset, f"offset of a ball of {chart.ball_radius:.3g} mm radius  (mm)"),
-        (chart.by_tilt, "tilt of a plate  (degrees)"),
-    )
+
+def contact_figures(chart: ContactChart) -> dict[str, str]:
+    """Error of the force read over the radius of a ball, its offset, and the tilt of a plate, as SVG by name; their
+    vertical axes are the same."""
+    charts = {
+        "contact-radius": (chart.by_radius, "radius of a central ball  (mm)"),
+        "contact-offset": (chart.by_offset, "offset of a ball from the axis  (mm)"),
+        "contact-tilt": (chart.by_tilt, "tilt of a plate  (degrees)"),
+    }
+    errors = np.concatenate([np.ravel(curves.errors_percent) for curves, _ in charts.values()])
+    low, high = (float(f(errors, initial=0.0, where=np.isfinite(errors))) for f in (np.min, np.max))
+    margin = 0.05 * (high - low)
+    return {
+        name: _chart(curves, chart, xlabel=across, ylim=(low - margin, high + margin), logarithmic=name == _LOGARITHMIC)
+        for name, (curves, across) in charts.items()
+    }
+
+
+def _chart(
+    curves: ErrorCurves, chart: ContactChart, *, xlabel: str, ylim: tuple[float, float], logarithmic: bool
+) -> str:
     with figure(*SIZE) as drawn:
-        axes = drawn.subplots(1, 3, sharey=True)
-        for ax, (curves, across) in zip(axes, panels, strict=True):
-            _curves(ax, curves, chart)
-            ax.set(xlabel=across, xlim=(curves.along[0], curves.along[-1]))
-        axes[0].set_xscale("log")
-        plain_ticks(axes[0].xaxis)
-        axes[0].set_ylabel("error of the force read  (%)")
-        legend_above(axes[0])
+        ax = drawn.subplots()
+        _curves(ax, curves, chart)
+        ax.set(
+            xlabel=xlabel, ylabel="error of the force read  (%)", xlim=(curves.along[0], curves.along[-1]), ylim=ylim
+        )
+        if logarithmic:
+            ax.set_xscale("log")
+            plain_ticks(ax.xaxis)
+        legend_above(ax, columns=1)
         return svg(drawn)
 
 
@@ -50,7 +68,7 @@ def contact_section(chart: ContactChart | str | None) -> dict[str, Any]:
     for pressure_kPa, rises_kPa in zip(chart.driving_pressures_kPa, chart.rises_kPa, strict=True):
         head += [f"{pressure_kPa:g} kPa,\nrise {rise_kPa:.3g} kPa" for rise_kPa in rises_kPa]
     rows = [[_label(row), *(_cell(error) for state in row.errors_percent for error in state)] for row in chart.rows]
-    return {"known": True, "head": head, "rows": rows, "caption": _caption(), "notes": _notes(chart)}
+    return {"known": True, "head": head, "rows": rows, "caption": _caption(chart), "notes": _notes(chart)}
 
 
 def _label(row: ContactRow) -> str:
@@ -64,11 +82,12 @@ def _cell(error_percent: float | None) -> str:
     return DASH if error_percent is None else f"{error_percent:+.0f} %"
 
 
-def _caption() -> str:
+def _caption(chart: ContactChart) -> str:
     return (
         "Error of the force that is read from the pressure rise by the curve of the central plate, without friction: "
-        "positive where the reading states more than the true force. The chart is at the first pressure rise of the "
-        f"table. {DASH}: within 0.75 R0 of travel, or before an event, the object does not reach that reading."
+        "positive where the reading states more than the true force. The charts are at the first pressure rise of the "
+        f"table, the middle one for a ball of {chart.ball_radius:.3g} mm radius. {DASH}: within 0.75 R0 of travel, or "
+        "before an event, the object does not reach that reading."
     )
 
 

@@ -6,7 +6,7 @@ from pneutouch.evaluation.chart_data import ContactChart
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.export.view import view_data
 from pneutouch.report import curves, pages, relaxation
-from pneutouch.report.anywhere import contact_figure
+from pneutouch.report.anywhere import contact_figures
 from pneutouch.report.certainty import ends, shares
 from pneutouch.report.drawing import section_drawing
 from pneutouch.report.graded_sheet import CAPTIONS, graded_figures
@@ -62,7 +62,7 @@ def _figures(sheet: SheetData) -> dict[str, str]:
     if prediction.states[0].shapes:
         figures |= {f"shape-{k + 1}": text for k, text in enumerate(curves.shapes(prediction))}
     if isinstance(sheet.contact, ContactChart):
-        figures["contact"] = contact_figure(sheet.contact)
+        figures |= contact_figures(sheet.contact)
     if not isinstance(sheet.viscous, str):
         figures["held"] = relaxation.held_chart(sheet.viscous, curves.SIZE)
         figures["loop"] = relaxation.loop_chart(sheet.viscous, curves.SIZE)
