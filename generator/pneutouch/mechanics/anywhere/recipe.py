@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, dataclass
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.mechanics.stored_recipe import StoredRecipe
 
 
 @dataclass(frozen=True)
-class PlaceTableRecipe:
+class PlaceTableRecipe(StoredRecipe):
     """Nodes of the table, in units of R0 and mu.
 
     An object of curvature ``R0/a`` (a: its radius; 0: a plate) first touches the unloaded dome where the normal leans
@@ -41,17 +41,6 @@ class PlaceTableRecipe:
     cells: int = 16
     depth: float = 0.75
     steps: int = 15
-
-    def text(self) -> str:
-        """The recipe as JSON, as the table carries it."""
-        return json.dumps(asdict(self), sort_keys=True)
-
-    @classmethod
-    def from_text(cls, text: str) -> PlaceTableRecipe:
-        """A recipe read back."""
-        content: dict[str, Any] = json.loads(text)
-        fields: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in content.items()}
-        return cls(**fields)
 
 
 class NodeAxis(NamedTuple):

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, dataclass
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.spline import SplineAxis
+from pneutouch.mechanics.stored_recipe import StoredRecipe
 
 
 @dataclass(frozen=True)
-class AtlasRecipe:
+class AtlasRecipe(StoredRecipe):
     """The box and the resolution of the atlas, in units of R0 and mu.
 
     Coordinates: t0/R0; ``nu``, the cavity volume above the unloaded one as a share of that at the limit point; ``w``,
@@ -56,17 +56,6 @@ class AtlasRecipe:
     def fold_depths(self) -> Array:
         """Depths below the unloaded apex at which the buckling edge is kept, (folds,)."""
         return np.linspace(0.35, self.beyond, self.folds)
-
-    def text(self) -> str:
-        """The recipe as JSON, as the atlas carries it."""
-        return json.dumps(asdict(self), sort_keys=True)
-
-    @classmethod
-    def from_text(cls, text: str) -> AtlasRecipe:
-        """A recipe read back."""
-        content: dict[str, Any] = json.loads(text)
-        fields: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in content.items()}
-        return cls(**fields)
 
 
 class AtlasAxes(NamedTuple):

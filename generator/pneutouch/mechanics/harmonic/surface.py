@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -68,16 +68,15 @@ def revolved(profile: Callable[[Array], tuple[Array, Array, Array]], x: Array, y
 
 
 @dataclass(frozen=True)
-class LyingObject(Surface):
-    """A straight body across the plane of symmetry, endless along y. Its section is that of ``body`` over the distance
-    from its middle at x = ``offset``."""
+class ProfiledObject(Surface):
+    """An object whose section is that of ``body``, its middle at x = ``offset``."""
 
     body: Indenter
     offset: float = 0.0
 
     @property
     def height(self) -> float:
-        """Height of its lowest line."""
+        """Height of its lowest line or point, or of the middle of a plate, which it leans about."""
         return self.body.height
 
     @property
@@ -85,9 +84,15 @@ class LyingObject(Surface):
         """That of the section."""
         return self.body.span
 
-    def at(self, height: float) -> LyingObject:
-        """The same body at another height."""
+    def at(self, height: float) -> Self:
+        """The same object at another height."""
         return replace(self, body=self.body.at(height))
+
+
+@dataclass(frozen=True)
+class LyingObject(ProfiledObject):
+    """A straight body across the plane of symmetry, endless along y. Its section is that of ``body`` over the distance
+    from its middle at x = ``offset``."""
 
     def distance(self, x: Array, y: Array) -> Array:
         """Distance from its plane of symmetry."""
@@ -103,28 +108,12 @@ class LyingObject(Surface):
 
 
 @dataclass(frozen=True)
-class PlacedObject(Surface):
+class PlacedObject(ProfiledObject):
     """A body of revolution whose axis stands at x = ``offset`` and leans by ``tilt`` (rad) about the y axis through its
     lowest point, or through the middle of a plate: with a positive tilt it is lower at negative x. Only a body whose
     underside is flat but for its rim leans exactly."""
 
-    body: Indenter
-    offset: float = 0.0
     tilt: float = 0.0
-
-    @property
-    def height(self) -> float:
-        """Height of the point that it leans about."""
-        return self.body.height
-
-    @property
-    def span(self) -> tuple[float, float]:
-        """That of the body."""
-        return self.body.span
-
-    def at(self, height: float) -> PlacedObject:
-        """The same body at another height."""
-        return replace(self, body=self.body.at(height))
 
     def distance(self, x: Array, y: Array) -> Array:
         """Distance from its own axis."""
