@@ -1,4 +1,4 @@
-"""Write docs/friction.md, every number computed: ``make friction-page`` (a minute)."""
+"""Write docs/friction.md, every number computed: ``make friction-page`` (a few minutes)."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from unittest import mock
 
 import numpy as np
 
+from benchmarks.friction_cost import costs, summary
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.paper_sensor import material_sensor
@@ -107,7 +108,7 @@ def _times() -> list[str]:
         ratios += [other / without for other in others]
         rows.append([f"{modulus:g} MPa, {pressure / KPA:g} kPa", *(f"{other / without:.1f}" for other in others)])
     mean = f"The mean of all {len(ratios)} is {np.mean(ratios):.2f}, the largest {max(ratios):.1f}."
-    return [*_table(["press", *map(label, FRICTIONS[1:])], rows), mean, ""]
+    return [*_table(["press", *map(label, FRICTIONS[1:])], rows), mean, "", summary(list(costs())), ""]
 
 
 def _seconds(one: Scene, friction: float) -> float:
@@ -195,11 +196,8 @@ TEXT = {
     "time": [
         "## Time",
         "",
-        "Processor time of a press with friction over the same press without, least of two each, in one run. In 120 "
-        "random presses (the paper's radius, walls of 0.05 to 0.4 of it, moduli of 0.17 to 4 MPa, driving pressures to 0.9 "
-        "of the limit, coefficients of 0.05 to 1.5 and grip, depth 0.6 R0), counted on a busy machine, the mean is 1.9, "
-        "and a quarter takes more than twice as long: nearly all have walls below 0.1 R0, whose points between the centre "
-        "and the edge of the contact bear next to nothing and come and go. The greatest of these is 7.6.",
+        "Processor time of a press with friction over the same press without, least of two each, in one run "
+        "(`python -m benchmarks.friction_cost` has the random ones alone).",
         "",
         "Each Newton step settles in a linear model which points touch, stick and slide. A round that leads to another "
         "status of the points is followed only as far as the work of the residual falls, and where the model is not "

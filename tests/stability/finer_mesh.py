@@ -1,7 +1,7 @@
 """A sample of the random presses on a mesh twice as fine: does it end the same, and as deep?
 
-``python -m tests.stability.finer_mesh [DOME.PRESS ...]`` prints these presses, or a sample of 50, as rows of a table, and
-then how many of them are confirmed.
+``python -m tests.stability.finer_mesh [DOME.PRESS ...]`` prints a sample of 50 of these presses, or of all, as rows of a
+table, and then how many of them are confirmed. `tests.stability.random_scenes` prints which end before their depth.
 """
 
 from __future__ import annotations
@@ -71,10 +71,11 @@ def _reached(end: PressEnd) -> tuple[float, float] | None:
     return float(events[-1] if events else travel[-1]), float(force[-1])
 
 
-def sample(count: int = SAMPLE) -> list[tuple[int, int]]:
-    """Domes and their presses, drawn from all without repetition."""
-    drawn = np.random.default_rng(0).permutation(DOMES * PRESSES)[:count]
-    return [(int(one) // PRESSES, int(one) % PRESSES) for one in drawn]
+def sample(names: list[str] | None = None) -> list[tuple[int, int]]:
+    """Domes and their presses, at most 50, drawn without repetition from all or from those named ``DOME.PRESS``."""
+    names = names or [f"{seed}.{one}" for seed in range(DOMES) for one in range(PRESSES)]
+    drawn = np.random.default_rng(0).permutation(len(names))[:SAMPLE]
+    return [(int(seed), int(one)) for seed, one in (names[k].split(".") for k in sorted(drawn))]
 
 
 def compared(seed: int, press: int) -> ComparedEnd:
@@ -87,9 +88,8 @@ def compared(seed: int, press: int) -> ComparedEnd:
 
 def main(words: list[str]) -> None:
     """Print the rows as they are made, and the count."""
-    presses = [(int(seed), int(one)) for seed, one in (word.split(".") for word in words)] or sample()
     confirmed = []
-    for seed, press in presses:
+    for seed, press in sample(words):
         ends = compared(seed, press)
         confirmed.append(ends.confirmed)
         sys.stdout.write(f"{ends.row}\n")
