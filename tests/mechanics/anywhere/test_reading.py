@@ -63,20 +63,40 @@ def test_the_reason_states_value_and_bounds(paper_sensor):
     assert outside(paper_sensor, PAPER) is None
 
 
-def test_states_and_batches_give_the_same_variables(paper_sensor):
-    batch = batch_of(paper_sensor, [0.0, 0.012])
-    response = respond(batch)
-    by_batch = batch_conditions(batch, response.limit_pressure, response.cavity_volume)
+class State:
+    """A predicted state, as far as the variables need one."""
 
-    class State:
-        def __init__(self, k):
-            self.driving_pressure, self.cavity_volume = batch.driving_pressure[k], response.cavity_volume[k]
+    def __init__(self, driving_pressure, cavity_volume):
+        self.driving_pressure, self.cavity_volume = driving_pressure, cavity_volume
 
-    by_state = state_conditions(paper_sensor, [State(0), State(1)], float(response.limit_pressure[0]))
-    for one, other in zip(by_batch, by_state, strict=True):
-        np.testing.assert_allclose(one, other, rtol=1e-12)
-    # No dead volume, 101 kPa, 0.27 MPa: the gas over 2/3 pi R0^3 and little more.
-    assert by_batch.gas[0] == pytest.approx(0.101325 / paper_sensor.wall.shear_modulus / (2 * np.pi / 3), rel=1e-3)
+
+def test_the_variables_are_wall_share_of_the_limit_and_bulk_modulus_of_the_gas_over_its_volume(paper_sensor):
+    radius, modulus = paper_sensor.dome.inner_radius, paper_sensor.wall.shear_modulus
+    sensor, cavity = paper_sensor.replace(dead_volume=500.0), 2 * np.pi / 3 * radius**3
+    domes = state_conditions(sensor, [State(0.0, cavity), State(0.012, 1.3 * cavity)], 0.04)
+    volume = (np.array([1.0, 1.3]) * cavity + 500.0) / radius**3
+    np.testing.assert_allclose(domes.wall_ratio, paper_sensor.dome.wall_thickness / radius)
+    np.testing.assert_allclose(domes.share, [0.0, 0.3])
+    np.testing.assert_allclose(domes.gas, (np.array([0.0, 0.012]) + 0.101325) / modulus / volume)
+
+
+@pytest.mark.parametrize(("radius", "offset"), [(0.3, 0.5), (1.0, 0.6), (4.0, 0.6)])
+def test_a_ball_next_to_the_axis_first_touches_where_the_wall_leans_as_stated(radius, offset):
+    """The least vertical gap between the ball's underside and the outer hemisphere, point by point."""
+    outer = 1.0 + PAPER.wall_ratio[0]
+    x = np.linspace(max(0.0, offset - radius), min(outer, offset + radius), 2_000_001)[1:-1]
+    gap = -np.sqrt(radius**2 - (x - offset) ** 2) - np.sqrt(outer**2 - x**2)
+    places = ball_places(PAPER.wall_ratio, np.array([radius]), np.array([offset]))
+    assert places.lean[0, 0] == pytest.approx(x[gap.argmin()] / outer, abs=1e-5)
+    assert places.curvature[0, 0] == pytest.approx(1.0 / radius)
+
+
+def test_with_balls_as_flat_as_plates_the_uncertainty_is_that_of_the_tilt(monkeypatch):
+    monkeypatch.setattr("pneutouch.mechanics.anywhere.reading.SMALLEST_BALL", 1e9)
+    tilts, levels = np.radians((np.arange(200) + 0.5) / 10.0), np.tile(np.linspace(0.05, 0.75, 8), (2, 1))
+    of_tilts = np.sqrt(np.nanmean(force_logs(PAPER, plate_places(PAPER.wall_ratio, tilts), levels) ** 2, axis=(1, 2)))
+    assert (of_tilts > 0.005).all()
+    np.testing.assert_allclose(place_uncertainty(PAPER, np.array([0.75, 0.75])), of_tilts, rtol=0.02)
 
 
 @pytest.mark.slow

@@ -9,6 +9,7 @@ import numpy as np
 from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.anywhere.recipe import RECIPE
 from pneutouch.mechanics.anywhere.table import DomeConditions
+from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.sensor import Sensor
@@ -26,11 +27,7 @@ def batch_conditions(batch: SensorBatch, limit_pressure: Array, cavity_volume: A
 def state_conditions(sensor: Sensor, states: Sequence[SensorState], limit_pressure: float) -> DomeConditions:
     """Of one sensor in n predicted states; its limit pressure in MPa."""
     driving, cavity = (np.array([getattr(s, name) for s in states]) for name in ("driving_pressure", "cavity_volume"))
-    dome, gas = sensor.dome, sensor.gas
-    volume = (cavity + gas.dead_volume) / dome.inner_radius**3
-    stiffness = (driving + gas.ambient_pressure) / sensor.wall.shear_modulus / volume
-    wall = np.full(driving.size, dome.wall_thickness / dome.inner_radius)
-    return DomeConditions(wall, driving / limit_pressure, stiffness)
+    return batch_conditions(batch_of(sensor, driving), np.full(driving.size, limit_pressure), cavity)
 
 
 def covered(domes: DomeConditions) -> Flags:
