@@ -8,6 +8,7 @@ from benchmarks.contact_table_build.build import central
 from benchmarks.contact_table_build.fingerprint import model_answers
 from benchmarks.contact_table_build.held_out import compared, drawn
 from benchmarks.contact_table_build.press import DomeState
+from scipy.interpolate import CubicHermiteSpline
 
 from pneutouch.mechanics.anywhere.reading import TABLE_ERROR
 from pneutouch.mechanics.anywhere.recipe import RECIPE, NodeAxis, PlaceTableRecipe
@@ -99,6 +100,15 @@ def test_driving_pressure_makes_the_reading_depend_less_on_the_object():
 
 def ball_of_r0(count):
     return ContactPlaces(np.ones((count, 1)), np.zeros((count, 1)))
+
+
+@pytest.mark.parametrize("count", [2, 3, 6])
+def test_weights_are_those_of_a_hermite_spline_with_the_slopes_of_parabolas(count):
+    nodes = np.cumsum(np.linspace(0.2, 0.7, count) ** 2)
+    slopes = np.gradient(np.eye(count), nodes, axis=0, edge_order=min(count - 1, 2))
+    at = np.linspace(nodes[0], nodes[-1], 23)
+    expected = CubicHermiteSpline(nodes, np.eye(count), slopes)(at)
+    np.testing.assert_allclose(NodeAxis(nodes).weights(at), expected, atol=1e-12)
 
 
 def test_weights_give_back_parabolas_and_sum_to_one():
