@@ -66,7 +66,7 @@ def compared(friction: float, cells: tuple[int, int, int]) -> list[dict[str, flo
             "solid_rise_kPa": float(pressure) / KPA,
             "calculix_rise_kPa": stop.pressure / KPA,
         }
-        for stop, force, pressure in zip(half.run(pressures), forces[1:], pressures[1:], strict=False)
+        for stop, force, pressure in zip(half.run(pressures)[0], forces[1:], pressures[1:], strict=False)
     ]
 
 

@@ -6,12 +6,13 @@ of an increment (its manual, "Face-to-face penalty contact"). On a round object 
 behind: a ball's sideways force is 10 % off after 0.5 mm in one increment. Increments without any motion before every
 figure remove that. CalculiX has no trapped gas. At each depth the press therefore has two pressures, a given one and one
 a little higher. From the volumes that CalculiX finds, its own initial or inflated one included, Boyle's law gives the
-pressure that its dome has, and with it the forces.
+pressure that its dome has, and with it the forces. After the press the object may move sideways at the last depth.
 """
 
 from __future__ import annotations
 
 import os
+import resource
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -36,19 +37,29 @@ _ALONG = 0.1
 
 class Stop(NamedTuple):
     """CalculiX's dome at one depth (mm): force on the object and its part along x (N), gauge pressure (MPa), and how far
-    that lies above the pressure that was given (MPa)."""
+    that lies above the pressure that was given (MPa); ``travel`` of the object along x (mm)."""
 
     depth: float
     force: float
     sideways: float
     pressure: float
     added: float
+    travel: float = 0.0
+
+
+class Cost(NamedTuple):
+    """Processor time of CalculiX (s), whole process, and the share of its Newton iterations that went to the raised
+    pressures."""
+
+    seconds: float
+    raised: float
 
 
 @dataclass(frozen=True)
 class HalfPress:
     """A press of the paper's sensor from a driving pressure (MPa) to depths (mm, rising, the first 0).
 
+    travels: where the object then goes along x from where it stood, mm, in the order in which it goes there.
     surface: the object in R0 at first contact.  edges: of the object's cells, along x and y, mm.
     cells: along the arc, through the wall, around half the axis; those in the upper half of the arc are ``closer`` times
     shorter than below.  increment: greatest one, as a share of the way from depth to depth.
@@ -65,6 +76,13 @@ class HalfPress:
     increment: float = 0.5
     ambient: float = 0.101325
     wall: tuple[float, float] = (PAPER.wall.shear_modulus, PAPER.wall.poisson_ratio)
+    travels: tuple[float, ...] = ()
+
+    @property
+    def places(self) -> list[tuple[float, float]]:
+        """Depth and travel along x (mm) at each place where the object stops after first contact."""
+        pressed = [(float(depth), 0.0) for depth in self.depths[1:]]
+        return pressed + [(pressed[-1][0], travel) for travel in self.travels]
 
     @property
     def grid(self) -> Grid:
@@ -75,15 +93,16 @@ class HalfPress:
         ends[-1] -= HOLE
         return Grid(*self.cells, angles=with_middles(ends))
 
-    def run(self, pressures: Array) -> list[Stop]:
-        """CalculiX's answers near gauge pressures (MPa) at the depths; those that it does not reach are left out."""
+    def run(self, pressures: Array) -> tuple[list[Stop], Cost]:
+        """CalculiX's answers near gauge pressures (MPa) at first contact and where the object stops, and what they cost;
+        those that it does not reach are left out."""
         grid = self.grid
-        found = calculix_stops(deck(self, grid, pressures), grid)
+        found, cost = calculix_stops(deck(self, grid, pressures), grid)
         begin = 1 if self.driving else 0
         first = found[1.0][1] if begin else np.array(grid.points)
         amount = (self.ambient + self.driving) * inside_volume(grid, first)
         out = []
-        for k, given in enumerate(pressures[1:].tolist()):
+        for k, (given, (depth, travel)) in enumerate(zip(pressures[1:].tolist(), self.places, strict=True)):
             if begin + 2.0 * k + 2.0 not in found:
                 break
             (low, inside), (high, swelling) = (found[begin + 2.0 * k + up] for up in (1.5, 2.0))
@@ -91,8 +110,15 @@ class HalfPress:
             lacks = amount / volume - self.ambient - given
             share = lacks / (_RAISED + amount / volume - amount / swollen)
             force = low + share * (high - low)
-            out.append(Stop(self.depths[k + 1], force[2], force[0], given + share * _RAISED, share * _RAISED))
-        return out
+            out.append(Stop(depth, force[2], force[0], given + share * _RAISED, share * _RAISED, travel))
+        return out, Cost(cost.seconds, self._raised(cost.iterations))
+
+    def _raised(self, iterations: list[tuple[float, int]]) -> float:
+        """Share of the iterations, given by the time at which their increments end, at the raised pressures."""
+        begin = 1.0 if self.driving else 0.0
+        total = sum(count for _, count in iterations)
+        raised = sum(count for time, count in iterations if time > begin and (time - begin - 1e-9) % 2.0 > 1.5)
+        return raised / total
 
 
 def deck(press: HalfPress, grid: Grid, pressures: Array) -> str:
@@ -111,26 +137,34 @@ def deck(press: HalfPress, grid: Grid, pressures: Array) -> str:
 
 
 def _step(press: HalfPress, pressures: Array) -> list[str]:
-    """In one unit of time the dome is inflated, if at all. Then for each depth the object comes down in one unit and rests
-    for half of one, and the pressure is raised and rests in a quarter each."""
-    begin = [(0.0, 0.0, 0.0), (1.0, 0.0, press.driving)] if press.driving else [(0.0, 0.0, 0.0)]
-    course = list(begin)
-    for depth, pressure in zip(press.depths[1:], pressures[1:], strict=True):
+    """In one unit of time the dome is inflated, if at all. Then to each place the object goes in one unit and rests for
+    half of one, and the pressure is raised and rests in a quarter each."""
+    begin = [(0.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, press.driving)]
+    course = begin if press.driving else begin[:1]
+    for (depth, travel), pressure in zip(press.places, pressures[1:], strict=True):
         at = course[-1][0]
-        course += [(at + 1.0, depth, pressure), (at + 1.5, depth, pressure)]
-        course += [(at + 1.75, depth, pressure + _RAISED), (at + 2.0, depth, pressure + _RAISED)]
+        course += [(at + later, depth, travel, pressure) for later in (1.0, 1.5)]
+        course += [(at + later, depth, travel, pressure + _RAISED) for later in (1.75, 2.0)]
     last = course[-1][0]
+    fixed = "OBJECT,2,2" if press.travels else "OBJECT,1,2"
     return [
-        *("*AMPLITUDE,NAME=DOWN,TIME=TOTAL TIME", *(f"{t:.12g},{d:.12g}" for t, d, _ in course)),
-        *("*AMPLITUDE,NAME=GAS,TIME=TOTAL TIME", *(f"{t:.12g},{p:.12g}" for t, _, p in course)),
+        *_amplitude("DOWN", [(row[0], row[1]) for row in course]),
+        *(_amplitude("ASIDE", [(row[0], row[2]) for row in course]) if press.travels else []),
+        *_amplitude("GAS", [(row[0], row[3]) for row in course]),
         *("*TIME POINTS,NAME=STOPS,GENERATE", f"0.5,{last:.12g},0.5"),
-        *("*BOUNDARY", "HELD,1,3", "FLAT,2,2", "OBJECT,1,2"),
+        *("*BOUNDARY", "HELD,1,3", "FLAT,2,2", fixed),
         *("*STEP,NLGEOM,INC=2000", "*STATIC", f"0.1,{last:.12g},1e-5,{press.increment:.12g}"),
         *("*CONTROLS,PARAMETERS=FIELD", "1e-3,1e-2"),
         *("*BOUNDARY,AMPLITUDE=DOWN", "OBJECT,3,3,-1", "*DLOAD,AMPLITUDE=GAS", "INNER,P3,1"),
+        *(("*BOUNDARY,AMPLITUDE=ASIDE", "OBJECT,1,1,1") if press.travels else ()),
         *("*NODE PRINT,NSET=INSIDE,TIME POINTS=STOPS", "U"),
         *("*NODE PRINT,NSET=OBJECT,TOTALS=ONLY,TIME POINTS=STOPS", "RF", "*END STEP"),
     ]
+
+
+def _amplitude(name: str, course: list[tuple[float, float]]) -> list[str]:
+    """An amplitude over the total time."""
+    return [f"*AMPLITUDE,NAME={name},TIME=TOTAL TIME", *(f"{time:.12g},{value:.12g}" for time, value in course)]
 
 
 def _dome(grid: Grid) -> list[str]:
@@ -184,16 +218,28 @@ def _listed(head: str, numbers: list[int]) -> list[str]:
     return [head, *(f"{n}," for n in sorted(numbers))]
 
 
-def calculix_stops(text: str, grid: Grid) -> dict[float, tuple[Array, Array]]:
+class Work(NamedTuple):
+    """Processor time of CalculiX (s), and the Newton iterations of every increment by the time at its end."""
+
+    seconds: float
+    iterations: list[tuple[float, int]]
+
+
+def calculix_stops(text: str, grid: Grid) -> tuple[dict[float, tuple[Array, Array]], Work]:
     """Force on the object of the whole dome (3,) and positions of the nodes of the inner wall (the others at rest,
-    (n, 3)) by the time, at every half unit that CalculiX reaches."""
+    (n, 3)) by the time, at every half unit that CalculiX reaches; and the work for all of them."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "press.inp").write_text(text, encoding="ascii")
-        alone = {**os.environ, "OMP_NUM_THREADS": "1"}
+        alone, before = {**os.environ, "OMP_NUM_THREADS": "1"}, resource.getrusage(resource.RUSAGE_CHILDREN)
         with (folder / "out").open("w") as out:
             subprocess.run(["ccx", "press"], cwd=folder, stdout=out, check=False, env=alone)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
         lines = (folder / "press.dat").read_text(encoding="ascii").splitlines()
+        status = (folder / "press.sta").read_text(encoding="ascii").splitlines()
+    # Columns: step, increment, attempt, iterations, total time, step time, increment.
+    counts = [(float(w[4]), int(w[3])) for w in map(str.split, status) if len(w) == 7 and w[0].isdigit()]
+    work = Work(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, counts)
     stops, place, time = dict[float, tuple[Array, Array]](), np.array(grid.points), 0.0
     for line in lines:
         words = line.split()
@@ -203,7 +249,7 @@ def calculix_stops(text: str, grid: Grid) -> dict[float, tuple[Array, Array]]:
             place[int(words[0]) - 1] = grid.points[int(words[0]) - 1] + np.array(words[1:], dtype=np.float64)
         elif len(words) == 3:
             stops[time] = (-2.0 * np.array(words, dtype=np.float64), place.copy())
-    return stops
+    return stops, work
 
 
 def inside_volume(grid: Grid, places: Array) -> float:

@@ -1,108 +1,70 @@
 """Contact off the axis with CalculiX in three dimensions (an optional peer, found on PATH).
 
 ``python -m benchmarks.off_axis_calculix [SCENE ...]`` presses the paper's sensor in the scenes of these numbers, or in all
-of them, with the harmonic solid and with half a dome of C3D20R cells, without friction and without the base. Compared are
-the force, the sideways force and the pressure rise of both, each with its own gas. Stores docs/off-axis-calculix.json, and
-writes its section into docs/validation.md.
+of them, with the harmonic solid and with half a dome of C3D20R cells, without the base. Compared are the force, the
+sideways force and the pressure rise of both, each with its own gas, and their processor times. Stores
+docs/off-axis-calculix.json, and writes its section into docs/validation.md.
 """
 
 from __future__ import annotations
 
 import json
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from benchmarks.calculix_half import INNER, WALL, HalfPress
+from benchmarks.off_axis_scenes import SCENES, OffAxisScene
 from benchmarks.page_section import replace_section
-from benchmarks.scenes import PAPER
-from pneutouch.arrays import Array
-from pneutouch.mechanics.harmonic.press import OffAxisPress, OffAxisState
-from pneutouch.mechanics.harmonic.surface import PlacedObject, Surface
-from pneutouch.mechanics.solid.contact import Plate
-from pneutouch.mechanics.solid.indent import PressSettings
-from pneutouch.mechanics.solid.indenter import ball
-from pneutouch.mechanics.solid.inflate import state_at
-from pneutouch.mechanics.solid.mesh import dome
-from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.units import KPA
 
 ROOT = Path(__file__).resolve().parents[1]
 STORED, PAGE = ROOT / "docs" / "off-axis-calculix.json", ROOT / "docs" / "validation.md"
 HEADING = "## CalculiX: contact off the axis"
-ORDER = 6
 FIGURES = ("force_N", "sideways_N", "rise_kPa")
-
-
-@dataclass(frozen=True)
-class OffAxisScene:
-    """An object at any height, R0, the driving pressure (MPa), the edges of the object's cells (mm), and the cells of
-    CalculiX's dome, along the arc, through the wall and around half the axis, on a mesh or on a coarser and a finer one;
-    those in the upper half of the arc are ``closer`` times shorter than below. Compared at half of ``depth`` and at it.
-    ``increment``: see `HalfPress`."""
-
-    name: str
-    surface: Surface
-    driving: float
-    edges: tuple[Array, Array]
-    meshes: tuple[tuple[int, int, int], ...]
-    closer: float = 1.0
-    depth: float = 4.0
-    increment: float = 0.5
-
-
-def _plate(tilt: float, driving: float, *meshes: tuple[int, int, int]) -> OffAxisScene:
-    leaning = PlacedObject(Plate(0.0, np.inf, 1.0), 0.0, float(np.radians(tilt)))
-    edges = (np.array([-16.0, 16.0]), np.array([-2.0, 16.0]))
-    name = f"plate tilted by {tilt:g} degrees, {driving / KPA:g} kPa"
-    return OffAxisScene(name, leaning, driving, edges, meshes or ((28, 2, 6),))
-
-
-def _ball(radius: float, offset: float, driving: float, *meshes: tuple[int, int, int]) -> OffAxisScene:
-    placed = PlacedObject(ball(radius).scaled(1.0 / INNER), offset / INNER)
-    across = 0.9 * radius * np.linspace(-1.0, 1.0, 13)
-    edges = (offset + across, np.append(across[5], across[6:]))
-    name = f"ball of {radius:g} mm radius, {offset:g} mm off the axis, {driving / KPA:g} kPa"
-    return OffAxisScene(name, placed, driving, edges, meshes or ((26, 2, 10),), closer=1.5, increment=0.25)
-
-
-SCENES = (
-    _plate(10.0, 0.0, (28, 2, 6), (40, 2, 6)),
-    _plate(10.0, 22.0 * KPA),
-    _ball(6.0, 3.0, 0.0, (24, 2, 10), (32, 2, 12)),
-    _ball(6.0, 3.0, 22.0 * KPA),
-    _plate(20.0, 0.0),
-    _ball(12.0, 4.0, 0.0),
-)
-
-
-def harmonic_states(scene: OffAxisScene) -> tuple[Surface, list[OffAxisState]]:
-    """The object at first contact, and the states of the harmonic solid there, at half of the depth and at it."""
-    solid = SolidModel(dome(INNER, WALL), PAPER.wall.hyperelastic)
-    settings = PressSettings(scene.depth, steps=2)
-    press = OffAxisPress(solid, state_at(solid, scene.driving), settings, scene.surface, StrainProbe(solid))
-    states = press.run(ORDER).states
-    return press.surface, states[:: (len(states) - 1) // 2]
+_STRAIGHT = 1e-4
+"""A sideways force below this share of the force is that of a scene with a second plane of symmetry: it is not compared."""
 
 
 def compared(scene: OffAxisScene) -> dict[str, Any]:
     """One scene by both programs, CalculiX on every mesh."""
-    surface, states = harmonic_states(scene)
-    depths, pressures = (np.array([getattr(s, name) for s in states]) for name in ("indentation", "pressure"))
+    ours = scene.pressed()
+    others = [settled(scene, order, cells) for order, cells in scene.others]
+    pressures = np.array([place.pressure for place in ours.places])
     rows: list[dict[str, Any]] = [
-        {"depth_mm": s.indentation, "harmonic": figures(s.force, s.sideways, s.rise), "calculix": []}
-        for s in states[1:]
+        {
+            "depth_mm": place.depth,
+            **({"travel_mm": place.travel} if place.travel else {}),
+            "harmonic": figures(place.force, place.sideways, place.pressure - scene.driving),
+            "calculix": [],
+        }
+        for place in ours.places[1:]
     ]
+    costs = []
     for cells in scene.meshes:
-        half = HalfPress(surface, scene.edges, scene.driving, depths, cells, scene.closer, increment=scene.increment)
-        for row, stop in zip(rows, half.run(pressures), strict=False):
+        stops, cost = scene.half(ours, cells).run(pressures)
+        costs.append({"processor_s": cost.seconds, "raised_share": cost.raised})
+        for row, stop in zip(rows, stops, strict=False):
             row["calculix"].append(figures(stop.force, stop.sideways, stop.pressure - scene.driving))
-            print(scene.name, cells, row["depth_mm"], row["harmonic"], row["calculix"][-1], flush=True)
-    return {"scene": scene.name, "cells": [list(m) for m in scene.meshes], "harmonics": ORDER, "rows": rows}
+            print(scene.name, cells, cost.seconds, row, flush=True)
+    return {
+        "scene": scene.name,
+        "cells": [list(mesh) for mesh in scene.meshes],
+        "harmonics": scene.order,
+        "harmonic_processor_s": ours.seconds,
+        "calculix_cost": costs,
+        "rows": rows,
+        **({"settling": others} if others else {}),
+    }
+
+
+def settled(scene: OffAxisScene, order: int, cells: tuple[int, int]) -> dict[str, Any]:
+    """One scene by the harmonic solid with other harmonics and cells: figures at every place, and the processor time."""
+    ours = scene.pressed(order, cells)
+    found = [figures(place.force, place.sideways, place.pressure - scene.driving) for place in ours.places[1:]]
+    print(scene.name, order, cells, ours.seconds, found, flush=True)
+    return {"harmonics": order, "cells": list(cells), "processor_s": ours.seconds, "rows": found}
 
 
 def figures(force: float, sideways: float, rise: float) -> dict[str, float]:
@@ -113,23 +75,47 @@ def figures(force: float, sideways: float, rise: float) -> dict[str, float]:
 def section(data: list[dict[str, Any]]) -> list[str]:
     """The lines of the comparison for a page."""
     worst = {figure: max(map(abs, differences(data, figure))) for figure in FIGURES}
-    refined = " and ".join(f"{_times(a)} to {_times(b)}" for a, b in (s["cells"] for s in data if len(s["cells"]) > 1))
+    orders = ", ".join(map(str, sorted({scene["harmonics"] for scene in data})))
+    refined = " and ".join(f"{_times(s['cells'][-2])} to {_times(s['cells'][-1])}" for s in data if len(s["cells"]) > 1)
     return [
         HEADING,
         "",
-        f"The paper's sensor without its base, without friction, by the harmonic solid (M = {ORDER}, 24 x 2 cells) and by "
+        f"The paper's sensor without its base by the harmonic solid (M = {orders}, 24 x 2 cells) and by "
         "half a dome of C3D20R cells in three dimensions, each with its own gas shut in: CalculiX's pressure is that which "
         "Boyle's law gives in the volume that CalculiX finds. Next to each figure of the harmonic solid is the difference "
-        "of CalculiX from it; where CalculiX was run on a coarser mesh too, the last column is the greatest change of its three "
-        f"figures by the refinement: {refined}. "
+        "of CalculiX on its finest mesh from it; where CalculiX was run on a coarser mesh too, the last column is the greatest "
+        f"change of its three figures by the refinement: {refined}. "
         "`python -m benchmarks.off_axis_calculix` computes it. See [off-axis.md](off-axis.md).",
         "",
         "| scene | mm | force N | CalculiX | sideways N | CalculiX | pressure rise kPa | CalculiX | refinement |",
         "|---|---|---|---|---|---|---|---|---|",
-        *(_line(scene["scene"], row) for scene in data for row in scene["rows"]),
+        *(_line(scene, row) for scene in data for row in scene["rows"]),
         "",
         f"Greatest differences: force {worst['force_N']:.1%}, sideways force {worst['sideways_N']:.1%}, pressure rise "
         f"{worst['rise_kPa']:.1%}.",
+        "",
+        *_cost_lines(data),
+    ]
+
+
+def _cost_lines(data: list[dict[str, Any]]) -> list[str]:
+    """M, the finest mesh of CalculiX and the processor times, of scenes that have them."""
+    timed = [scene for scene in data if "calculix_cost" in scene]
+    if not timed:
+        return []
+    lines = [
+        f"| {scene['scene']} | {scene['harmonics']} | {_times(scene['cells'][-1])} | "
+        f"{scene['calculix_cost'][-1]['processor_s'] / scene['harmonic_processor_s']:.0f} | "
+        f"{scene['calculix_cost'][-1]['raised_share']:.0%} |"
+        for scene in timed
+    ]
+    return [
+        "Processor times of both programs in one run, of one thread, CalculiX's of its whole process. The last column is the "
+        "share of its Newton iterations that went to the second pressure, from which Boyle's law follows.",
+        "",
+        "| scene | M | CalculiX's cells | CalculiX's time over that of the harmonic solid | second pressure |",
+        "|---|---|---|---|---|",
+        *lines,
         "",
     ]
 
@@ -138,17 +124,29 @@ def _times(cells: list[int]) -> str:
     return " x ".join(map(str, cells))
 
 
-def _line(scene: str, row: dict[str, Any]) -> str:
+def _line(scene: dict[str, Any], row: dict[str, Any]) -> str:
     ours, fine = row["harmonic"], row["calculix"][-1]
-    pairs = [f"{ours[figure]:.4g} | {fine[figure] / ours[figure] - 1.0:+.1%}" for figure in FIGURES]
-    changes = [abs(fine[figure] / coarse[figure] - 1.0) for coarse in row["calculix"][:-1] for figure in FIGURES]
+    known = [figure for figure in FIGURES if compares(row, figure)]
+    pairs = [
+        f"{ours[figure]:.4g} | {fine[figure] / ours[figure] - 1.0:+.1%}" if figure in known else "0 |"
+        for figure in FIGURES
+    ]
+    changes = [abs(fine[figure] / coarse[figure] - 1.0) for coarse in row["calculix"][-2:-1] for figure in known]
     settled = f"{max(changes):.1%}" if changes else ""
-    return f"| {scene} | {row['depth_mm']:g} | {' | '.join(pairs)} | {settled} |"
+    where = f"{row['depth_mm']:g}" + (f", {row['travel_mm']:g} sideways" if "travel_mm" in row else "")
+    return f"| {scene['scene']} | {where} | {' | '.join(pairs)} | {settled} |"
+
+
+def compares(row: dict[str, Any], figure: str) -> bool:
+    """Whether a figure of a row is compared: a sideways force that symmetry forbids is not."""
+    ours = row["harmonic"]
+    return figure != "sideways_N" or abs(ours[figure]) > _STRAIGHT * abs(ours["force_N"])
 
 
 def differences(data: list[dict[str, Any]], figure: str) -> list[float]:
-    """CalculiX's finer mesh over the harmonic solid, less 1, in every row."""
-    return [row["calculix"][-1][figure] / row["harmonic"][figure] - 1.0 for scene in data for row in scene["rows"]]
+    """CalculiX's finest mesh over the harmonic solid, less 1, in every row."""
+    rows = [row for scene in data for row in scene["rows"] if compares(row, figure)]
+    return [row["calculix"][-1][figure] / row["harmonic"][figure] - 1.0 for row in rows]
 
 
 def main(*numbers: int) -> None:
@@ -157,9 +155,9 @@ def main(*numbers: int) -> None:
     for number in numbers or range(1, len(SCENES) + 1):
         scene = SCENES[number - 1]
         stored[scene.name] = compared(scene)
-    data = [stored[scene.name] for scene in SCENES if scene.name in stored]
-    STORED.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
-    replace_section(PAGE, section(data))
+        data = [stored[scene.name] for scene in SCENES if scene.name in stored]
+        STORED.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    replace_section(PAGE, section(json.loads(STORED.read_text("utf-8"))))
 
 
 if __name__ == "__main__":
