@@ -69,7 +69,7 @@ def test_a_central_scene_is_left_to_the_cheaper_models():
             {"contact.object": "cone", "contact.cone_half_angle_deg": 60.0, "contact.cone_tip_radius_mm": 2.0}
             | {"contact.shear_mm": 1.0, "contact.friction": 0.6},
             "contact",
-            "only a plate or a ball moves sideways",
+            "an edge or a cylinder moves sideways",
         ),
         ({"contact.offset_mm": -1.0}, "contact.offset_mm", "0"),
     ],

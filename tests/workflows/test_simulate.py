@@ -12,13 +12,14 @@ import pandas
 import pytest
 
 from pneutouch.bench.protocol import protocol
-from pneutouch.bench.simulate import SimulationTruth
+from pneutouch.bench.simulate import SimulationTruth, press_curves
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.campaign_file import campaign_of, design_of
 from pneutouch.spec.read import validate
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.plan.run import make_plan, write_plan
+from pneutouch.workflows.simulate import run as simulation
 from pneutouch.workflows.simulate.options import KINDS, SimulationOptions
 from pneutouch.workflows.simulate.run import simulate
 
@@ -181,6 +182,22 @@ def planned(tmp_path_factory):
 
 
 QUICK = SimulationOptions(rate=20.0, model="atlas", truth=SimulationTruth(rest=0.2, specimens=100))
+
+
+def test_without_a_model_a_sensor_off_the_axis_is_pressed_by_the_harmonic_one(tmp_path, monkeypatch):
+    models = []
+
+    def answered(who, sensor, driving, depth, model):
+        models.append((sensor.protocol.offset, model))
+        return press_curves(sensor.replace(offset=0.0), driving, depth, "atlas")
+
+    monkeypatch.setattr(simulation, "pressed", answered)
+    options = replace(QUICK, model=SimulationOptions().model, specimens=1, runs=1, kinds=("steps",))
+    for offset, model in ((0.0, "solid"), (3.0, "harmonic")):
+        folder = simulate("paper-dome", tmp_path, {"contact.offset_mm": offset}, options)
+        assert models and {*models} == {(offset, model)}
+        models.clear()
+        assert json.loads((folder / "truth.json").read_text())["model"] == model
 
 
 def test_a_plan_is_simulated_run_by_run(planned, library, tmp_path):

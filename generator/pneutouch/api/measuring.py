@@ -77,11 +77,15 @@ def simulate(
     rest_s: float | None = None,
     seed: int = 0,
     ages_days: Sequence[float] = (0.0,),
-    model: str = "solid",
+    model: str | None = None,
     parquet: bool = False,
 ) -> Path:
-    """Simulate a campaign with known truth; returns its folder, which `characterize` and `calibrate` read."""
+    """Simulate a campaign with known truth; returns its folder, which `characterize` and `calibrate` read.
+
+    ``model`` None: the solid, and harmonic for contact off the axis.
+    """
     from pneutouch.bench.simulate import SimulationTruth
+    from pneutouch.mechanics.models import USUAL
     from pneutouch.workflows.simulate.options import SimulationOptions
     from pneutouch.workflows.simulate.run import simulate as run
 
@@ -94,7 +98,7 @@ def simulate(
         tuple(kinds),
         rate_Hz,
         seed,
-        model,
+        model or USUAL,
         _floats(ages_days),
         parquet,
         SimulationTruth(rest=rest_s),

@@ -57,7 +57,14 @@ def simulate(
     ages: Annotated[
         str, typer.Option(metavar="DAYS,DAYS", help="Ages at which every specimen is measured, days.")
     ] = "0",
-    model: Annotated[str, typer.Option("--model", help="What presses the specimens: solid, atlas or auto.")] = "solid",
+    model: Annotated[
+        str | None,
+        typer.Option(
+            "--model",
+            help="What presses the specimens: solid, harmonic, atlas or auto.",
+            show_default="solid; harmonic for contact off the axis",
+        ),
+    ] = None,
     parquet: Annotated[bool, typer.Option("--parquet", help="Parquet files instead of CSV.")] = False,
     set_: SetOption = None,
     calibration: CalibrationOption = None,
@@ -67,6 +74,7 @@ def simulate(
     """Simulate a measurement campaign: records with known truth, always labelled as simulated."""
     with reporting():
         from pneutouch.bench.simulate import SimulationTruth
+        from pneutouch.mechanics.models import USUAL
         from pneutouch.workflows.simulate.options import SimulationOptions
         from pneutouch.workflows.simulate.run import simulate
 
@@ -77,7 +85,7 @@ def simulate(
             kinds=words(kinds),
             rate=rate,
             seed=seed,
-            model=model,
+            model=model or USUAL,
             driving_pressures_kPa=None if pressures is None else numbers("--pressures", pressures),
             ages_days=numbers("--ages", ages),
             parquet=parquet,

@@ -27,6 +27,9 @@ from pneutouch.units import KPA
 ORDERS = (4, 6, 8, 12)
 """Orders of the harmonics, raised until the figures settle."""
 
+EVEN_ORDERS = (*ORDERS, 16, 24)
+"""The same where only even harmonics are not zero: they are half as many."""
+
 _COMPARED = 3
 """States at which an answer is compared with fewer harmonics."""
 
@@ -41,13 +44,13 @@ def harmonic_result(sensor: Sensor, driving_pressures: Array) -> ModelResult:
 
 def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) -> SensorState:
     free = state_at(probe.solid, pressure, run)
-    _check_clearance(sensor, probe, free)
-    press = _press(sensor, probe, free)
+    press = off_axis_press(sensor, probe, free)
     if sensor.protocol.off_axis is None:
         return _record(sensor, pressure, free, press.run(0), 0.0)
     changes: list[float] = []
     before: OffAxisPath | None = None
-    for coarse, order in pairwise(ORDERS):
+    orders = EVEN_ORDERS if _symmetric(sensor) else ORDERS
+    for coarse, order in pairwise(orders):
         pressed = press.run(order)
         if sensor.protocol.friction:
             before = press.run(coarse) if before is None else before
@@ -57,12 +60,21 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
             changes.append(_change_from(press, coarse, pressed, sensor))
         if changes[-1] <= HARMONICS_SETTLED:
             return _record(sensor, pressure, free, pressed, changes[-1])
-    steps = ", ".join(f"{c:.1%} from {a} to {b}" for c, (a, b) in zip(changes, pairwise(ORDERS), strict=True))
+    steps = ", ".join(f"{c:.1%} from {a} to {b}" for c, (a, b) in zip(changes, pairwise(orders), strict=True))
     raise ComputationError(
-        f"at {pressure / KPA:g} kPa the figures do not settle with {ORDERS[-1]} harmonics around the axis: "
+        f"at {pressure / KPA:g} kPa the figures do not settle with harmonics to order {orders[-1]} around the axis: "
         f"sensitivity, force, pressure or the sideways force of a shear change by {steps}",
         remedy="try a smaller depth, offset, tilt or shear",
     )
+
+
+def off_axis_press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAxisPress:
+    """The sensor's test on one free state, with its object in place.
+
+    Raises InputError for an object that would come down to the connector within the depth.
+    """
+    _check_clearance(sensor, probe, free)
+    return _press(sensor, probe, free)
 
 
 def _check_clearance(sensor: Sensor, probe: StrainProbe, free: FreeState) -> None:
@@ -154,7 +166,13 @@ def _press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAxisPress:
     offset = test.offset / solid.length
     lying = test.body is not None and test.body.lying
     placed = LyingObject(body, offset) if lying else PlacedObject(body, offset, test.tilt)
-    return OffAxisPress(solid, free, press, placed, probe, test.shear)
+    return OffAxisPress(solid, free, press, placed, probe, test.shear, _symmetric(sensor))
+
+
+def _symmetric(sensor: Sensor) -> bool:
+    """Whether a bar lies across the middle of the dome and stays there: two planes of symmetry."""
+    test = sensor.protocol
+    return test.body is not None and test.body.lying and not test.offset and not test.shear
 
 
 def _range_end(sensor: Sensor, pressed: OffAxisPath) -> float:

@@ -237,7 +237,7 @@ def _stated(model: str, sensor: Sensor, pressures: Array) -> tuple[ErrorEstimate
         return errors, (law, f"{_BODY}; {_NOT_CHECKED}", *_solid_assumptions(sensor))
     waves = sensor.protocol.waves
     if model == "harmonic":
-        text = f"{_HARMONIC_BODY}; what is not symmetric about the plane of the offset or tilt is left out"
+        text = f"{_HARMONIC_BODY}; what is not symmetric about the planes of symmetry of the scene is left out"
         errors = {**DISCRETISATION, "sensitivity_discretisation_relative": stated_error(model, sensor)}
         return {**errors, "summary": [_HARMONIC_SUMMARY]}, (law, text, *_solid_assumptions(sensor))
     checked = f"sway and lobes are looked for with up to {waves} waves around the axis" if waves else _NOT_CHECKED

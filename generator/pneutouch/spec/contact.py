@@ -25,7 +25,7 @@ LYING: tuple[ContactKind, ...] = ("edge", "cylinder")
 """Objects that are straight across the plane of symmetry, in place of bodies of revolution."""
 
 _MOVABLE: tuple[ContactKind, ...] = ("plate", "ball", *LYING)
-"""Objects that can stand off the axis."""
+"""Objects that can stand off the axis and move sideways."""
 
 LARGEST = 250.0
 """Greatest radius of an object, mm: that of the greatest plate."""
@@ -124,8 +124,8 @@ class ContactTable(Table):
         unit="mm",
         low=-_MOST_SHEAR,
         high=_MOST_SHEAR,
-        help="How far a plate or ball moves sideways after pressing, at the same height, towards its offset; needs "
-        "friction.",
+        help="How far a plate, ball, edge or cylinder moves sideways after pressing, at the same height, towards its "
+        "offset; needs friction.",
     )
     base: bool = Field(
         default=True,
@@ -161,9 +161,10 @@ class ContactTable(Table):
             )
         if self.tilt_deg and not self.is_plate:
             raise ValueError(f"tilt_deg = {self.tilt_deg:g}: only a plate can lean, not a {self.object}")
-        if self.shear_mm and self.object not in ("plate", "ball"):
+        if self.shear_mm and self.object not in _MOVABLE:
             raise ValueError(
-                f"shear_mm = {self.shear_mm:g}: only a plate or a ball moves sideways, not a {self.object}"
+                f"shear_mm = {self.shear_mm:g}: only a plate or a ball, an edge or a cylinder moves sideways, not a "
+                f"{self.object}"
             )
         if self.shear_mm and not self.friction:
             raise ValueError(

@@ -10,11 +10,12 @@ from pneutouch.mechanics.harmonic.friction_path import SurfaceFrictionFollower
 from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.shear import ENDED_BEFORE, STEPS, ShearPath
-from pneutouch.mechanics.harmonic.surface import PlacedObject
+from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.descend import descend
 from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.indent import PressSettings, shut_in
+from pneutouch.mechanics.solid.indenter import cylinder
 from pneutouch.mechanics.solid.inflate import FreeState, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
@@ -29,6 +30,14 @@ RADIUS, DEPTH, ORDER = 9.25, 2.0, 2
 def _dome() -> tuple[SolidModel, FreeState]:
     solid = SolidModel(dome(RADIUS, 1.5, arc=8, through=1), neo_hookean(0.27), base=RigidBase())
     return solid, state_at(solid, 0.005)
+
+
+def _press_by_bar(radius: float, offset: float, friction: float, travel: float) -> OffAxisPath:
+    solid, free = _dome()
+    body = cylinder(radius)
+    settings = PressSettings(depth=DEPTH, steps=4, body=body, friction=friction)
+    surface = LyingObject(first_touch(solid, free, body, None).body, offset / RADIUS)
+    return OffAxisPress(solid, free, settings, surface, StrainProbe(solid), travel).run(ORDER)
 
 
 def _press(friction: float, travel: float, tilt: float = 0.0, plate: float = 30.0) -> OffAxisPress:
@@ -111,6 +120,21 @@ def test_the_mirrored_travel_has_the_mirrored_force(tilt: float) -> None:
     for name, sign in (("travel", -1), ("sideways", -1), ("moment", -1), ("force", 1), ("rise", 1), ("sliding", 1)):
         np.testing.assert_allclose(one.column(name), sign * other.column(name), rtol=1e-5, atol=1e-7, err_msg=name)
     assert one.peak == pytest.approx(-float(other.peak or 0.0), rel=1e-5)
+
+
+def test_a_great_cylinder_shears_as_the_plate_does() -> None:
+    bar, plate = _press_by_bar(1e5, 0.0, 0.3, 2.0).shear, _sheared(0.3, 2.0)
+    assert bar is not None and bar.ended is None and bar.slips_from == pytest.approx(plate.slips_from, abs=0.05)
+    for name in ("force", "sideways", "moment", "rise"):
+        np.testing.assert_allclose(bar.column(name), plate.column(name), rtol=1e-3, atol=2e-3, err_msg=name)
+
+
+def test_a_bar_beside_the_axis_has_the_mirrored_force_under_the_mirrored_travel() -> None:
+    one, other = _press_by_bar(6.0, 2.0, 0.3, 1.0).shear, _press_by_bar(6.0, -2.0, 0.3, -1.0).shear
+    assert one is not None and other is not None and one.ended is None and one.states[-1].travel == pytest.approx(1.0)
+    for name, sign in (("travel", -1), ("sideways", -1), ("moment", -1), ("force", 1), ("rise", 1)):
+        np.testing.assert_allclose(one.column(name), sign * other.column(name), rtol=1e-5, atol=1e-7, err_msg=name)
+    assert one.states[-1].sideways < one.states[0].sideways
 
 
 def test_the_work_of_the_travel_is_stored_or_dissipated() -> None:

@@ -13,6 +13,7 @@ from pneutouch.errors import ComputationError
 from pneutouch.evaluation.document import prediction_document
 from pneutouch.workflows.sweep import plan_of_file, sweep, work
 from pneutouch.workflows.sweep.run import ComputeResources
+from pneutouch.workflows.sweep.variables import state_values
 from tests.workflows.sweep.conftest import load, small
 
 ALONE = ComputeResources(workers=1)
@@ -86,6 +87,23 @@ def test_every_figure_is_that_of_predict(model, resins, walls, evaluated, librar
         agrees(data.sel(membrane_material=resin, membrane_wall_thickness_mm=wall), document)
 
 
+def test_a_state_off_the_axis_has_its_forces_at_the_end_of_the_range_and_those_of_a_shear():
+    sheared = {"stiffness_N_per_mm": 2.5, "peak_sideways_force_N": -1.5, "slips_throughout_mm": None}
+    state = {
+        "force_range_N": [0.0, 3.0],
+        "events": [],
+        "range_end_mm": 3.0,
+        "curve": {"indentation_mm": [0.0, 2.0, 4.0]},
+        "off_axis": {"sideways_force_N": [0.0, 0.5, 0.75], "moment_N_mm": [0.0, -4.0, -8.0], "shear": sheared},
+    }
+    values = state_values(state)
+    assert (values["sideways_force_N"], values["moment_N_mm"]) == (0.625, -6.0)
+    assert (values["shear_stiffness_N_per_mm"], values["shear_peak_sideways_force_N"]) == (2.5, -1.5)
+    assert values["shear_slips_throughout_mm"] is None
+    central = state_values({key: value for key, value in state.items() if key != "off_axis"})
+    assert all(value is None for name, value in central.items() if "sideways" in name or "moment" in name)
+
+
 def test_a_list_has_its_own_pressures_and_values(evaluated, library, tmp_path):
     (tmp_path / "list.toml").write_text(
         'design = "paper-dome"\nmodel = "membrane"\n[set]\nindentation.steps = 10\n[[point]]\n"membrane.material" = "FLX9940"\n'
@@ -112,7 +130,7 @@ def test_every_variable_says_its_unit_and_the_file_its_origin(library, tmp_path)
         assert ("units" in variable.attrs) == (variable.dtype.kind == "f"), name
         unit = variable.attrs.get("units", "")
         if "_kPa" in name or "_mm" in name:
-            assert unit in name.replace("_per_", "/"), name
+            assert unit in name.replace("_per_", "/").replace("N_mm", "N mm"), name
     assert data.attrs["pneutouch_version"] == __version__
     assert data.attrs["input_hash"] == outcome.input_hash
     assert json.loads(data.attrs["base_design_content"])["membrane"]["inner_radius_mm"] == 9.25

@@ -69,11 +69,12 @@ class PressCurves:
 def press_curves(
     sensor: Sensor, pressures: Sequence[float], depth: float, model: str = "solid", steps: int = STEPS
 ) -> PressCurves:
-    """Press a sensor to ``depth`` mm at ascending driving pressures (MPa). The gauge ends no range: the rig clips.
+    """Press a sensor to ``depth`` mm at ascending driving pressures (MPa). The gauge ends no range: the rig clips. A
+    shear after the press is left out.
 
     Raises what `predict` raises, and InputError where the range ends before the plate has moved.
     """
-    free = sensor.replace(depth=depth, steps=steps, gauge_limit=np.inf)
+    free = sensor.replace(depth=depth, steps=steps, gauge_limit=np.inf, shear=0.0)
     prediction = predict("", free, list(pressures), model=model)
     curves = tuple(_curve(free, state, prediction.model) for state in prediction.states)
     limits = replace(prediction.limits, gauge=sensor.gas.gauge_limit)

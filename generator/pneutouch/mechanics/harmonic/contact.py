@@ -29,7 +29,7 @@ class HarmonicContact(Contact):
     def __init__(self, axisymmetric: Contact, harmonics: Harmonics, signs: Array) -> None:
         vars(self).update(vars(axisymmetric))
         self._operator = face_operator(self.edges, self.shape.shape[0], harmonics, signs)
-        angles = harmonics.contact_angles.size
+        angles, self._symmetric = harmonics.contact_angles.size, harmonics.stride > 1
         self.weight = np.repeat(axisymmetric.weight[..., None], angles, axis=2) / angles
         self.noise = float(np.finfo(np.float64).eps * self.stiffness * np.linalg.norm(self.weight))
 
@@ -81,12 +81,21 @@ class HarmonicContact(Contact):
 
         held: tractions of friction in space, (n_edges, n_points, n_angles, 3).
 
-        Each angle stands for its mirror image too, so the force in y and the moments about x and z are zero.
+        Each angle stands for its mirror images too, so the force in y and the moments about x and z are zero; with two
+        planes of symmetry the force is upright and has no moment.
         """
         place = self.points(nodes)
         load = self.weight[..., None] * (touch.traction[..., None] * upward(touch.slope) + held)
         out = np.stack([load.sum(axis=(0, 1, 2)), np.cross(place, load).sum(axis=(0, 1, 2))])
-        return np.asarray(out * [[1.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
+        along = 0.0 if self._symmetric else 1.0
+        return np.asarray(out * [[along, 0.0, 1.0], [0.0, along, 0.0]])
+
+    def middle(self, nodes: Array, touch: ContactEvaluation) -> float:
+        """Middle of the normal tractions along x; 0 without any."""
+        load = self.weight * touch.traction
+        if self._symmetric or not load.any():
+            return 0.0
+        return float(np.vdot(load, self.points(nodes)[..., X])) / float(load.sum())
 
 
 def upward(slope: Array) -> Array:

@@ -22,37 +22,43 @@ class Harmonics:
     """Fourier sums to the order ``order`` for positions symmetric about the plane of angle 0.
 
     The coefficients of a node stand in one row, ``columns`` long: r_0, z_0, then r_m, z_m, s_m for m = 1 to M. With
-    order 0 it is the position (r, z) of the axisymmetric solid.
+    order 0 it is the position (r, z) of the axisymmetric solid. With ``stride`` 2 positions are symmetric about the
+    plane of angle 90 degrees too: m is even, and a quarter of the circle has all angles. M is a multiple of it.
     """
 
     order: int
+    stride: int = 1
+
+    @property
+    def waves(self) -> int:
+        """Harmonics above m = 0."""
+        return self.order // self.stride
 
     @property
     def columns(self) -> int:
         """Coefficients of a node."""
-        return 3 * self.order + 2
+        return 3 * self.waves + 2
 
     @property
     def around(self) -> Index:
-        """Columns of s_m, m = 1 to M."""
-        return 4 + 3 * np.arange(self.order)
+        """Columns of s_m, m above 0."""
+        return 4 + 3 * np.arange(self.waves)
 
     @cached_property
     def angles(self) -> Array:
-        """Angles of integration on the half circle, (n_angles,): 2 M + 1 midpoints.
+        """Angles of integration on the half circle, or on the quarter, (n_angles,): 2 n + 1 midpoints for n harmonics.
 
         Sums over them with equal weights integrate harmonics up to 4 M + 1 exactly.
         """
-        count = 2 * self.order + 1
-        return np.asarray((np.arange(count) + 0.5) * np.pi / count)
+        return self._midpoints(2 * self.waves + 1)
 
     @cached_property
     def contact_angles(self) -> Array:
-        """Angles at which contact is evaluated, (M + 1,) midpoints: as many as a component has harmonics.
+        """Angles at which contact is evaluated, (n + 1,) midpoints: as many as a component has coefficients.
 
         At more points than that a contact with a stiff penalty cannot close at all of them.
         """
-        return np.asarray((np.arange(self.order + 1) + 0.5) * np.pi / (self.order + 1))
+        return self._midpoints(self.waves + 1)
 
     def values(self, angles: Array) -> Array:
         """Rows by which coefficients give the components at angles, (n_angles, 3, columns)."""
@@ -82,9 +88,9 @@ class Harmonics:
         return np.stack([x, y, values[:, AXIAL]], axis=1)
 
     def cosines(self, angles: Array) -> Array:
-        """Cosines to the order M, orthonormal under the mean over equally spaced angles, times its weights; (M + 1,
+        """Cosines to the order M, orthonormal under the mean over equally spaced angles, times its weights; (n + 1,
         n_angles)."""
-        m = np.arange(self.order + 1)[:, None]
+        m = self._numbers[:, None]
         return np.asarray(np.where(m > 0, np.sqrt(2.0), 1.0) * np.cos(m * angles) / angles.size)
 
     def lifted(self, positions: Array) -> Array:
@@ -93,10 +99,17 @@ class Harmonics:
         out[:, : positions.shape[1]] = positions
         return out
 
+    @property
+    def _numbers(self) -> Index:
+        return self.stride * np.arange(self.waves + 1)
+
+    def _midpoints(self, count: int) -> Array:
+        return np.asarray((np.arange(count) + 0.5) * np.pi / (count * self.stride))
+
     def _rows(self, angles: Array, even: AngleFunction, odd: AngleFunction, by_order: bool = False) -> Array:
         out = np.zeros((angles.size, 3, self.columns))
-        for m in range(self.order + 1):
-            factor, first = (m if by_order else 1), 0 if m == 0 else 3 * m - 1
+        for k, m in enumerate(self._numbers):
+            factor, first = (m if by_order else 1), 0 if m == 0 else 3 * k - 1
             out[:, RADIAL, first] = out[:, AXIAL, first + 1] = factor * even(m * angles)
             if m:
                 out[:, AROUND, first + 2] = factor * odd(m * angles)

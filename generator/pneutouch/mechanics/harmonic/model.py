@@ -35,16 +35,17 @@ class HarmonicFields(PointFields):
 
 class HarmonicModel(SolidModel):
     """A solid whose nodes carry harmonics around the axis to an order. Positions are coefficients (n_nodes, columns) in
-    units of the inner radius, see `fields.Harmonics`; with order 0 they and all results are the solid's.
+    units of the inner radius, see `fields.Harmonics`; with order 0 they and all results are the solid's. ``stride`` 2
+    is for scenes that are symmetric about two planes.
 
     The volume is averaged in the meridian as in the solid, and around the axis over the harmonics to the same order.
     """
 
-    def __init__(self, solid: SolidModel, order: int) -> None:
+    def __init__(self, solid: SolidModel, order: int, stride: int = 1) -> None:
         if solid.fold is not None:
             raise ValueError("a wall that can lie down on its own flange has no harmonics yet")
         vars(self).update(vars(solid))
-        self.harmonics = harmonics = Harmonics(order)
+        self.harmonics = harmonics = Harmonics(order, stride)
         mesh = self.mesh
         self.rest = harmonics.lifted(solid.rest)
         self.dofs, signs = _number(solid, harmonics)
@@ -131,12 +132,12 @@ class HarmonicModel(SolidModel):
         return blocks
 
     def _swelling(self, local: PointFields) -> Array:
-        """Derivative of the averaged volume's modes and harmonics, (n_cells, n_modes (M + 1), n)."""
+        """Derivative of the averaged volume's modes and harmonics, (n_cells, n_modes (waves + 1), n)."""
         n_cells, n_points = self._weight.shape
         cofactor = local.basis.reshape(n_cells * n_points, -1, 3, 3)
         along = [cofactor[:, :, k].reshape(n_cells * n_points, -1) @ waves for k, waves in enumerate(self._waves)]
         stacked = np.stack(along, axis=1).reshape(n_cells, 3 * n_points, -1)
-        modes, waves = self._tested.shape[1], self.harmonics.order + 1
+        modes, waves = self._tested.shape[1], self.harmonics.waves + 1
         out = np.matmul(self._tested_shape, stacked).reshape(n_cells, modes, -1, waves, self.harmonics.columns)
         swelling = np.swapaxes(out, 2, 3).reshape(n_cells, modes * waves, -1)
         sign = self._sign[self.mesh.cells].reshape(n_cells, 1, -1)
@@ -152,14 +153,15 @@ def _number(solid: SolidModel, harmonics: Harmonics) -> tuple[Index, Array]:
     """Unknown of each node and coefficient (n_nodes, columns), -1 where fixed, node by node in the solid's order; and
     its sign.
 
-    On the axis only z_0 moves, and across it r_1 = -s_1: one unknown.
+    On the axis only z_0 moves, and across it r_1 = -s_1: one unknown, which scenes symmetric about two planes lack.
     """
     mesh, columns = solid.mesh, harmonics.columns
     free = np.ones((mesh.nodes.shape[0], columns), dtype=bool)
-    axial = [1, *(3 * m for m in range(1, harmonics.order + 1))]
+    axial = [1, *(3 * k for k in range(1, harmonics.waves + 1))]
     free[mesh.axis] = False
     free[mesh.axis, 1] = True
-    free[mesh.axis, 2:3] = True
+    across = harmonics.order > 0 and harmonics.stride == 1
+    free[mesh.axis, 2:3] = across
     for column in axial:
         free[mesh.sliding, column] = False
     free[mesh.clamped] = False
@@ -168,6 +170,6 @@ def _number(solid: SolidModel, harmonics: Harmonics) -> tuple[Index, Array]:
     ranked = free[order]
     numbers[order] = np.where(ranked, np.cumsum(ranked).reshape(ranked.shape) - 1, -1)
     signs = np.ones(free.shape)
-    if harmonics.order:
+    if across:
         numbers[mesh.axis, 4], signs[mesh.axis, 4] = numbers[mesh.axis, 2], -1.0
     return numbers, signs

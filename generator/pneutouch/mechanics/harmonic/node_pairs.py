@@ -76,7 +76,7 @@ class NodePairOperator(FieldOperator):
 
 def _columns(harmonics: Harmonics) -> list[Index]:
     """Columns of the coefficients of each component."""
-    later = 3 * np.arange(1, harmonics.order + 1) - 1
+    later = 3 * np.arange(1, harmonics.waves + 1) - 1
     parts: list[Index] = [np.empty(0, np.intp)] * _FIELDS
     parts[RADIAL], parts[AXIAL] = np.append(0, later), np.append(1, later + 1)
     parts[AROUND] = harmonics.around

@@ -106,7 +106,8 @@ class OffAxisPress:
     """Presses of one dome from one free state by one object, with any number of harmonics.
 
     ``surface`` is the object in R0 at any height; ``press`` as for the axisymmetric solid, its object left aside.
-    ``travel``: how far the object moves sideways after it, mm; only with friction.
+    ``travel``: how far the object moves sideways after it, mm; only with friction. ``symmetric``: whether the scene is
+    symmetric about the plane across that of the offset too, so that harmonics of even order hold it.
     """
 
     def __init__(
@@ -117,10 +118,11 @@ class OffAxisPress:
         surface: Surface,
         probe: StrainProbe,
         travel: float = 0.0,
+        symmetric: bool = False,
     ) -> None:
         if travel and not press.friction:
             raise ValueError("without friction an object that moves sideways slides off")
-        self._travel = travel
+        self._travel, self._stride = travel, 2 if symmetric else 1
         self._solid, self._free, self._press, self._probe = solid, free, press, probe
         self._gas = shut_in(solid, free, press)
         outline = solid.contact.outline(free.positions / solid.length, _ALONG)
@@ -131,7 +133,7 @@ class OffAxisPress:
 
         Raises NoConvergenceError where first contact has no equilibrium.
         """
-        model, press, start = HarmonicModel(self._solid, order), self._press, self.surface.height
+        model, press, start = self._model(order), self._press, self.surface.height
         probe = HarmonicProbe(model, self._probe)
         follower = self._follower(model)
         states = [self._state(model, probe, follower.here)]
@@ -158,7 +160,7 @@ class OffAxisPress:
 
         Without friction, with which a state follows from those before it.
         """
-        model, out = HarmonicModel(self._solid, order), []
+        model, out = self._model(order), []
         for state in states:
             plate = self.surface.at(self.surface.height - state.indentation / model.length)
             start = state.positions[:, : model.harmonics.columns] / model.length
@@ -170,6 +172,9 @@ class OffAxisPress:
             force = float(np.vdot(model.contact.weight, touch.traction)) * model.mu * model.length**2
             out.append((force, filling.pressure * model.mu - self._free.pressure))
         return out
+
+    def _model(self, order: int) -> HarmonicModel:
+        return HarmonicModel(self._solid, order, self._stride)
 
     def _follower(self, model: HarmonicModel) -> PathFollower:
         """The follower of the press, at first contact."""
@@ -201,8 +206,7 @@ class OffAxisPress:
         (sideways, _, force), moment = contact.resultant(x, touch, held_back(plate_state))
         touching = touch.traction > 0.0
         place = contact.points(x)[touching]
-        load = (contact.weight * touch.traction)[touching]
-        middle = float(load @ place[:, X]) / float(load.sum()) if load.size else 0.0
+        middle = contact.middle(x, touch)
         slope = plate_state.pressure_rate / plate_state.stiffness / length**2 if plate_state.stiffness else np.nan
         here = self.surface.at(plate_state.height)
         return OffAxisState(

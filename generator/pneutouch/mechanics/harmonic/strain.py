@@ -12,11 +12,13 @@ from pneutouch.mechanics.solid.stress import StrainProbe
 
 
 class HarmonicProbe:
-    """Stretches at the stations of a `StrainProbe` and at both sides of the plane of symmetry and between."""
+    """Stretches at the stations of a `StrainProbe` and at both sides of the plane of symmetry and between; where there
+    are two planes, from one to the other."""
 
     def __init__(self, model: HarmonicModel, probe: StrainProbe) -> None:
         cells = model.mesh.cells
-        angles = np.linspace(0.0, np.pi, 2 * model.harmonics.order + 1) if model.harmonics.order else np.zeros(1)
+        waves, span = model.harmonics.waves, np.pi / model.harmonics.stride
+        angles = np.linspace(0.0, span, 2 * waves + 1) if waves else np.zeros(1)
         self._values, self._turned = model.harmonics.values(angles), model.harmonics.turned(angles)
         self._stations = self._gradients(probe.operator.reshape(len(cells), -1, 5, probe.operator.shape[-1]), cells)
         self._edges = self._gradients(probe.edge_operator[:, None], cells[probe.edge_cells])

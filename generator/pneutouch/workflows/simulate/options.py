@@ -5,6 +5,7 @@ from typing import get_args
 
 from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.errors import InputError, nearest
+from pneutouch.mechanics.models import USUAL
 from pneutouch.spec.campaign import CampaignRun, RunKind
 
 KINDS: tuple[str, ...] = get_args(RunKind)
@@ -17,7 +18,8 @@ REPEATED = ("steps", "saturation")
 
 @dataclass(frozen=True)
 class SimulationOptions:
-    """What shall be simulated. Pressures in kPa (None: the design's), rate in Hz, ages in days.
+    """What shall be simulated. Pressures in kPa (None: the design's), rate in Hz, ages in days; ``model`` USUAL for the
+    solid, or harmonic off the axis.
 
     ``planned`` are the runs of a plan; specimens, pressures, runs and kinds then follow from them.
     """
@@ -29,7 +31,7 @@ class SimulationOptions:
     kinds: tuple[str, ...] = ("steps", "loop", "relaxation")
     rate: float = 100.0
     seed: int = 0
-    model: str = "solid"
+    model: str = USUAL
     ages_days: tuple[float, ...] = (0.0,)
     parquet: bool = False
     truth: SimulationTruth = field(default_factory=SimulationTruth)

@@ -2,6 +2,7 @@
 
 import zlib
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,7 @@ from pneutouch.bench.simulate.truth import aged
 from pneutouch.catalogue import DesignSource, Library
 from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
 from pneutouch.mechanics import Sensor
+from pneutouch.mechanics.models import USUAL, usual_model
 from pneutouch.output.files import MANIFEST, json_bytes, replacing
 from pneutouch.output.manifest import entry, input_hash, manifest
 from pneutouch.spec.campaign import Campaign, CampaignRun, Rig
@@ -66,6 +68,8 @@ def simulate(
     check_options(options)
     library = library or Library.default()
     subjects = resins_of(design, changes, options.resins, options.truth, library)
+    if options.model == USUAL:
+        options = replace(options, model=usual_model(subjects[0].sensor))
     named, copied = named_design(design, library)
     name = f"{subjects[0].scene.name}-campaign"
     folder = out / name

@@ -4,6 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 Document = Mapping[str, Any]
 """A state or a prediction, as `evaluation.document` gives them."""
 
@@ -39,6 +41,21 @@ def _force(end: int) -> Callable[[Document], Any]:
     return lambda state: None if state["force_range_N"] is None else state["force_range_N"][end]
 
 
+def _off_axis(name: str, units: str, long_name: str) -> SweepVariable:
+    """A curve of contact off the axis at the end of the range."""
+
+    def read(state: Document) -> Any:
+        values, travel = _at("off_axis", name)(state), state["curve"]["indentation_mm"]
+        return None if values is None else float(np.interp(state["range_end_mm"], travel, values))
+
+    return SweepVariable(name, units, f"{long_name}, at the end of the range; central contact: NaN", read)
+
+
+def _shear(name: str, units: str, long_name: str) -> SweepVariable:
+    read = _at("off_axis", "shear", name)
+    return SweepVariable(f"shear_{name}", units, f"{long_name}, where the object moves sideways; else NaN", read)
+
+
 def _range_event(state: Document) -> str:
     return next((event["kind"] for event in state["events"] if event["ends_range"]), "depth")
 
@@ -70,6 +87,11 @@ STATE: tuple[SweepVariable, ...] = (
     _number("apex_height_inner_mm", "mm", "apex height of the inner surface, inflated, before contact"),
     _number("apex_height_outer_mm", "mm", "apex height of the outer surface, inflated, before contact"),
     _number("cavity_volume_mL", "mL", "gas under the inflated dome, before contact"),
+    _off_axis("sideways_force_N", "N", "force of the dome on the object towards the offset"),
+    _off_axis("moment_N_mm", "N mm", "moment of the dome on the object about the centre of the base plane"),
+    _shear("stiffness_N_per_mm", "N/mm", "initial slope of the sideways force against the travel"),
+    _shear("peak_sideways_force_N", "N", "sideways force where it is greatest against the travel"),
+    _shear("slips_throughout_mm", "mm", "first travel at which every point of the contact slides"),
 )
 """Variables of every point and driving pressure."""
 
