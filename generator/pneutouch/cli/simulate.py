@@ -29,6 +29,15 @@ ResinsOption = Annotated[
 SpecimensOption = Annotated[int, typer.Option("--specimens", help="Specimens of each resin.")]
 SPECIMENS = 3
 
+_ModelOption = Annotated[
+    str | None,
+    typer.Option(
+        "--model",
+        help="What presses the specimens: solid, harmonic, atlas or auto.",
+        show_default="solid; harmonic for contact off the axis",
+    ),
+]
+
 
 @app.command()
 def simulate(
@@ -57,14 +66,7 @@ def simulate(
     ages: Annotated[
         str, typer.Option(metavar="DAYS,DAYS", help="Ages at which every specimen is measured, days.")
     ] = "0",
-    model: Annotated[
-        str | None,
-        typer.Option(
-            "--model",
-            help="What presses the specimens: solid, harmonic, atlas or auto.",
-            show_default="solid; harmonic for contact off the axis",
-        ),
-    ] = None,
+    model: _ModelOption = None,
     parquet: Annotated[bool, typer.Option("--parquet", help="Parquet files instead of CSV.")] = False,
     set_: SetOption = None,
     calibration: CalibrationOption = None,

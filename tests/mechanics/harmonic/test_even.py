@@ -51,7 +51,7 @@ def _pressed(radius: float, order: int, symmetric: bool, friction: float = 0.0) 
     return OffAxisPress(solid, free, settings, surface, probe, symmetric=symmetric).run(order)
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("friction", [0.0, pytest.param(0.3, marks=pytest.mark.slow)])
 def test_even_harmonics_alone_are_the_full_sums(monkeypatch: pytest.MonkeyPatch, friction: float) -> None:
     even = _pressed(3.0, 4, True, friction)
     monkeypatch.setattr(model, "Harmonics", lambda order, stride: _MirroredAngles(order, stride))

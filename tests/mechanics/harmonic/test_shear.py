@@ -129,6 +129,7 @@ def test_a_great_cylinder_shears_as_the_plate_does() -> None:
         np.testing.assert_allclose(bar.column(name), plate.column(name), rtol=1e-3, atol=2e-3, err_msg=name)
 
 
+@pytest.mark.slow
 def test_a_bar_beside_the_axis_has_the_mirrored_force_under_the_mirrored_travel() -> None:
     one, other = _press_by_bar(6.0, 2.0, 0.3, 1.0).shear, _press_by_bar(6.0, -2.0, 0.3, -1.0).shear
     assert one is not None and other is not None and one.ended is None and one.states[-1].travel == pytest.approx(1.0)

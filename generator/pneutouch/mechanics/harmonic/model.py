@@ -153,7 +153,8 @@ def _number(solid: SolidModel, harmonics: Harmonics) -> tuple[Index, Array]:
     """Unknown of each node and coefficient (n_nodes, columns), -1 where fixed, node by node in the solid's order; and
     its sign.
 
-    On the axis only z_0 moves, and across it r_1 = -s_1: one unknown, which scenes symmetric about two planes lack.
+    On the axis only z_0 moves, and across it r_1 = -s_1: one unknown; zero where there are two planes of
+    symmetry.
     """
     mesh, columns = solid.mesh, harmonics.columns
     free = np.ones((mesh.nodes.shape[0], columns), dtype=bool)
