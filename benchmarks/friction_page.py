@@ -170,7 +170,7 @@ TEXT = {
         "difference of the pressure rise between loading and unloading, over full scale; the area of the loop of pressure "
         "rise over force, over the area below its loading; the work that the plate does not get back, over the work that it "
         "put in. Measured is the normalised hysteresis of the paper's Table S1, for which the paper gives no formula. The "
-        "resin's relaxation is not in the loop ([viscous.md](viscous.md)).",
+        "resin's relaxation is not in this loop; [viscous.md](viscous.md#friction-and-other-objects) has both together.",
         "",
     ],
     "steps": [

@@ -31,44 +31,54 @@ def under_ball() -> SelectionRun:
     return answer(NARROW, **FIXED, setting={"base": "paper-dome", "assignments": BALL + QUICK})
 
 
-def predicted(selection: SelectionRun, folder) -> tuple[float, float]:
-    """Sensitivity, kPa/N, and reach in force, N, of the best design as saved, read again and predicted."""
+def predicted(selection: SelectionRun, folder) -> tuple[float, float, float]:
+    """Sensitivity (kPa/N), reach in force (N) and relative expanded uncertainty of the sensitivity of the best design as
+    saved, read again and predicted."""
     choice = selection.answer.designs[0]
     found = evaluate(str(write_choice(selection, choice, "found", folder, overwrite=True)))
     assert found.prediction.model == "solid"
     pressure = float(choice.pool.pressure[0])
-    state = min(found.prediction.states, key=lambda state: abs(state.driving_pressure - pressure))
-    assert state.driving_pressure == pytest.approx(pressure, abs=1e-9)
-    return state.figures.sensitivity_kPa_per_N, state.figures.force_range[1]
+    states = found.prediction.states
+    row = min(range(len(states)), key=lambda k: abs(states[k].driving_pressure - pressure))
+    assert states[row].driving_pressure == pytest.approx(pressure, abs=1e-9)
+    stated = found.uncertainty[row]["figures"]["sensitivity_kPa_per_N"]
+    figures = states[row].figures
+    return figures.sensitivity_kPa_per_N, figures.force_range[1], 2 * stated["standard_uncertainty_relative"]
 
 
 def test_a_design_for_a_ball_meets_the_target_under_that_ball(tmp_path):
     """Under a plate the same design would have about half of the sensitivity."""
     selection = under_ball()
     choice = selection.answer.designs[0]
-    sensitivity_kPa_per_N, force = predicted(selection, tmp_path)
+    sensitivity_kPa_per_N, force, expanded = predicted(selection, tmp_path)
     assert sensitivity_kPa_per_N == pytest.approx(3.0, rel=0.02)
     stated = choice.pool.response.lines
     assert sensitivity_kPa_per_N == pytest.approx(stated.sensitivity_kPa_per_N[0], rel=1e-3)
     assert force == pytest.approx(stated.force_high[0], rel=1e-3)
+    # The list's interval is that of the design's own prediction, not the plate's.
+    assert choice.expanded == pytest.approx(expanded, rel=1e-3)
     assert choice.contact.plate_kPa_per_N < 0.75 * sensitivity_kPa_per_N
     assert choice.contact.rounds <= selection.by_solid.rounds <= ROUNDS
     assert float(choice.pool.radius[0]) == 9.25
 
 
-def test_what_is_said_names_the_contact_and_no_uncertainty():
+def test_what_is_said_names_the_contact_and_the_uncertainty_under_it():
     selection = under_ball()
     said, text = document(selection), selection_text(selection)
     assert "contact: ball of 10 mm radius, frictionless" in text
     assert said["contact"]["object"] == "ball" and said["contact"]["rounds"] == selection.by_solid.rounds
     best = said["designs"][0]
     assert best["model"] == "solid" and best["passes_check"] is True
-    assert best["expanded_uncertainty_kPa_per_N"] is None and best["solid"] is None
+    assert best["expanded_uncertainty_kPa_per_N"] == pytest.approx(
+        best["expanded_uncertainty_relative"] * best["sensitivity_kPa_per_N"]
+    )
+    assert f"{100 * best['expanded_uncertainty_relative']:.0f} %" in text and best["solid"] is None
     assert set(BALL) <= set(best["set"])
     # More driving pressure softens the dome's answer under a ball too.
     none, rated = best["sensitivity_at_0kPa_and_rated_kPa_per_N"]
     assert none > best["sensitivity_kPa_per_N"] > rated
-    assert "points: ball of 10 mm radius" in tradeoff(selection).caption
+    chart = tradeoff(selection)
+    assert chart.caption.startswith("ball of 10 mm radius") and "atlas corrected by the solid" in chart.caption
 
 
 @pytest.mark.slow
@@ -197,11 +207,13 @@ def fate(seed: int, folder) -> tuple[str, int]:
     selection = select(target(wanted, given=given, setting={"assignments": contact}), "target")
     if not selection.answer.designs:
         return "; ".join(selection.left_out.values()) or "not met", selection.by_solid.rounds
-    sensitivity_kPa_per_N, force = predicted(selection, folder)
+    sensitivity_kPa_per_N, force, expanded = predicted(selection, folder)
     off = abs(sensitivity_kPa_per_N / wanted["sensitivity_kPa_per_N"] - 1.0)
     case = f"seed {seed}: {wanted}, {given}, {contact}"
     assert off <= wanted["tolerance_percent"] / 100 + 1e-4, f"{case}: off by {100 * off:.2f} %"
     assert force >= wanted.get("force_range_N", 0.0) * (1 - 1e-3), f"{case}: {force:.3f} N"
+    stated = selection.answer.designs[0].expanded
+    assert stated == pytest.approx(expanded, rel=0.01), f"{case}: U {stated:.4f} instead of {expanded:.4f}"
     return "met", selection.answer.designs[0].contact.rounds
 
 

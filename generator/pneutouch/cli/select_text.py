@@ -106,7 +106,7 @@ def _row(selection: SelectionRun, choice: Candidate) -> list[str]:
         f"{selection.footprint(choice):.1f}",
         f"{pool.pressure[0] / KPA:.2f}",
         f"{pool.response.lines.sensitivity_kPa_per_N[0]:.3f}",
-        "-" if choice.contact is not None else f"{100 * choice.expanded:.0f} %",
+        f"{100 * choice.expanded:.0f} %" if np.isfinite(choice.expanded) else "-",
         *([_place(choice)] if selection.problem.anywhere else []),
         f"0-{pool.force[0]:.2f}",
         choice.ends_with,

@@ -78,6 +78,7 @@ class TradeOff:
         force: Least required force range, N; None where free.
         spots: Designs, the first picked out.
         caption: What the fronts leave out, below the chart; none where it is empty.
+        errors: Median and greatest relative difference of the fronts where the solid was solved to correct them.
     """
 
     fronts: tuple[TradeOffFront, ...]
@@ -87,6 +88,7 @@ class TradeOff:
     window_kPa_per_N: tuple[float, float] | None = None
     force: float | None = None
     caption: str = ""
+    errors: tuple[float, float] | None = None
 
     @property
     def known(self) -> tuple[TradeOffFront, ...]:

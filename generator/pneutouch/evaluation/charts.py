@@ -7,16 +7,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pneutouch.errors import ComputationError
 from pneutouch.evaluation.chart_data import ChartPoint, TradeOff, TuningChart
 from pneutouch.evaluation.tuning import curve, interval, under_contact
 from pneutouch.evaluation.variants import in_resin
+from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.contact_correction import plate_alone
+from pneutouch.mechanics.object_mesh import MOST_CELLS, object_cells
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.uncertainty import GasNotes, batch_of, gas_notes
 from pneutouch.selection import CandidateResin, SelectionProblem
+from pneutouch.selection.contact_front import contact_front
+from pneutouch.selection.contact_trial import SolveCandidate, SolvedStates
 from pneutouch.selection.front import front
+from pneutouch.selection.pool import CandidatePool
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
@@ -59,29 +66,57 @@ def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
 def tradeoff(evaluation: Evaluation) -> TradeOff | None:
     """Fronts at the design's highest driving pressure in every resin that its printer runs and the atlas covers.
 
-    None where the prediction has no figures there, and under another contact than that of the fronts, a plate without
-    friction.
+    Under another central contact than a plate without friction the atlas is corrected by the solid. None where the
+    prediction has no figures there, and for contact off the axis.
     """
-    if evaluation.sensor.protocol.other_contact is not None:
+    sensor, state = evaluation.sensor, evaluation.prediction.states[-1]
+    if state.figures is None or sensor.protocol.off_axis is not None:
         return None
-    state = evaluation.prediction.states[-1]
-    if state.figures is None:
-        return None
-    problem = _problem(evaluation, state.driving_pressure)
+    problem = tradeoff_problem(evaluation, state.driving_pressure)
+    if sensor.protocol.other_contact is None:
+        fronts, errors = front(problem), None
+    else:
+        fronts, *off = contact_front(problem, resized(sensor, problem))
+        errors = off[0], off[1]
     saturation, end = state.figures.saturation_force, state.figures.force_range[1]
     force = end if saturation is None else min(end, saturation)
     title = evaluation.scene.membrane_material.title
     return TradeOff(
-        tuple(front(problem)),
+        tuple(fronts),
         state.driving_pressure / KPA,
         (problem.gauge_limit - state.driving_pressure) / KPA,
         (ChartPoint(title, f"this design, {force:.3g} N", state.figures.sensitivity_kPa_per_N, force),),
+        errors=errors,
     )
 
 
-def _problem(evaluation: Evaluation, pressure: float) -> SelectionProblem:
+def resized(sensor: Sensor, problem: SelectionProblem) -> SolveCandidate:
+    """The solid's answers of candidates: the sensor with their resins and sizes, in everything else as it is."""
+
+    def solve(resin: CandidateResin, pool: CandidatePool, pressures: list[float]) -> SolvedStates:
+        from pneutouch.mechanics.solid_states import solid_states
+
+        radius = float(pool.radius[0])
+        sized = in_resin(sensor, resin.material).replace(
+            inner_radius=radius,
+            wall_thickness=float(pool.wall[0]),
+            depth=problem.depth_share * radius,
+            flange=None,
+            base=None if sensor.dome.base is None else RigidBase(),
+        )
+        if (object_cells(sized) or 0) > MOST_CELLS:
+            return SolvedStates((), "the object is too small for the mesh")
+        try:
+            return SolvedStates(solid_states(sized, np.array(pressures)))
+        except ComputationError as error:
+            return SolvedStates((), error.problem)
+
+    return solve
+
+
+def tradeoff_problem(evaluation: Evaluation, pressure: float) -> SelectionProblem:
     """Everything of the design but its resin, radius and wall."""
-    sensor, printer, recipe = evaluation.sensor, evaluation.scene.printer, shipped().recipe
+    sensor, printer, recipe = plate_alone(evaluation.sensor), evaluation.scene.printer, shipped().recipe
     wall = printer.smallest.wall("elastomer")
     return SelectionProblem(
         resins=_resins(evaluation),
@@ -96,7 +131,7 @@ def _problem(evaluation: Evaluation, pressure: float) -> SelectionProblem:
         least_wall=wall.least or wall.recommended,
         ambient_pressure=sensor.gas.ambient_pressure,
         dead_volume=lambda radius: np.full_like(radius, sensor.gas.dead_volume),
-        plate_radius=sensor.protocol.plate_radius,
+        plate_radius=np.inf if evaluation.sensor.protocol.body is not None else sensor.protocol.plate_radius,
         gauge_limit=sensor.gas.gauge_limit,
         depth_share=min(sensor.protocol.depth / sensor.dome.inner_radius, recipe.deepest),
         steps=sensor.protocol.steps,
@@ -108,7 +143,7 @@ def _resins(evaluation: Evaluation) -> tuple[CandidateResin, ...]:
     candidates = []
     for name, material in evaluation.resins.items():
         runs = evaluation.scene.printer.mode_for(material) is not None
-        if runs and outside_atlas(in_resin(evaluation.sensor, material)) is None:
+        if runs and outside_atlas(in_resin(plate_alone(evaluation.sensor), material)) is None:
             paper = material_sensor(material)
             candidates.append(
                 CandidateResin(name, material, paper.wall.shear_modulus, paper.wall.break_stretch or np.inf)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.viscous.describe import ViscousRuns
     from pneutouch.mechanics.viscous.runs import LoopRun, RelaxationRun
 
-# The runs are followed on the atlas, which a prediction by the membrane model must not load.
+# The runs are followed on the atlas or by the solid, which a prediction by the membrane model must not load.
 
 
 def viscous_runs(prediction: SensorPrediction, material: Material, sensor: Sensor) -> ViscousRuns | str:
@@ -35,7 +35,7 @@ def viscous_data(runs: ViscousRuns | str) -> ViscousData | str:
     """The figures and curves of all runs, or why there are none."""
     if isinstance(runs, str):
         return runs
-    from pneutouch.mechanics.viscous.describe import BASIS, RAMP_SPEED
+    from pneutouch.mechanics.viscous.describe import RAMP_SPEED
 
     rows = tuple(
         _row(pressure, j, runs.held[i][j], {speed: of[i][j] for speed, of in runs.loops.items()})
@@ -44,7 +44,7 @@ def viscous_data(runs: ViscousRuns | str) -> ViscousData | str:
     )
     quick = list(runs.loops.values())[-1]
     held, loops = tuple(map(_curve, runs.held[-1])), tuple(map(_loop, quick[-1]))
-    return ViscousData(runs.depth, RAMP_SPEED, runs.sources, BASIS, rows, held, loops)
+    return ViscousData(runs.depth, RAMP_SPEED, runs.sources, runs.basis, rows, held, loops)
 
 
 def _row(pressure: float, j: int, held: RelaxationRun, loops: dict[float, LoopRun]) -> ViscousRow:

@@ -87,7 +87,7 @@ def solid_result(
     ``pressed_state`` presses at a driving pressure in place of the axisymmetric solid.
     Raises BeyondLimitError beyond the limit point, ComputationError where no equilibrium is found.
     """
-    probe = _probe(sensor, cells)
+    probe = solid_probe(sensor, cells)
     run = inflate(probe.solid, past_limit=past_limit)
     press = pressed_state or _state
     states = tuple(press(sensor, probe, run, float(p)) for p in driving_pressures)
@@ -100,12 +100,12 @@ def solid_states(sensor: Sensor, driving_pressures: Array) -> tuple[SensorState,
     The stability around the axis, which changes no figure, is not checked.
     """
     sensor = sensor.replace(waves=0)
-    probe = _probe(sensor)
+    probe = solid_probe(sensor)
     run = inflate(probe.solid, to_pressure=float(np.max(driving_pressures)))
     return tuple(_state(sensor, probe, run, float(p)) for p in driving_pressures)
 
 
-def _probe(sensor: Sensor, cells: int | None = None) -> StrainProbe:
+def solid_probe(sensor: Sensor, cells: int | None = None) -> StrainProbe:
     """The sensor's wall as the solid takes it, and the probe of its strains."""
     size = (sensor.dome.inner_radius, sensor.dome.wall_thickness)
     cells = cells or object_cells(sensor)

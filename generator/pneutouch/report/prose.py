@@ -1,5 +1,7 @@
 """The sentences of a datasheet that do not depend on a calculation."""
 
+from math import isfinite
+
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.report.port_note import port_steps
 from pneutouch.spec.contact import ContactTable
@@ -82,13 +84,30 @@ def drawing(has_object: bool) -> str:
     return f"{text}; dashed above the dome: the object that presses it, at first contact." if has_object else f"{text}."
 
 
-def tradeoff(driving_pressure_kPa: float, dead_volume_mL: float, note: str = "") -> str:
-    """Caption of the trade-off chart; kPa and mL; ``note`` belongs next to the dead volume."""
+def front_error(errors: tuple[float, float]) -> str:
+    """Median and greatest relative differences of fronts from the solid, in words."""
+    if not all(map(isfinite, errors)):
+        return "not checked by it"
+    median, greatest = errors
+    return f"half of the places checked within {100 * median:.1f} % of it, all within {100 * greatest:.1f} %"
+
+
+def tradeoff(
+    driving_pressure_kPa: float, dead_volume_mL: float, note: str = "", errors: tuple[float, float] | None = None
+) -> str:
+    """Caption of the trade-off chart; kPa and mL; ``note`` belongs next to the dead volume. ``errors``: those
+    of `front_error` where the solid corrects the lines."""
     idealised = f" ({note})" if note else ""
+    model = "by the atlas; no line crosses a limit"
+    if errors is not None:
+        model = (
+            "under this design's contact, by the atlas corrected by the solid at five to nine places of each line, "
+            f"{front_error(errors)}; limits as under a plate without friction"
+        )
     return (
         f"Trade-off at {driving_pressure_kPa:g} kPa: the greatest force range that goes with each sensitivity, one "
         "line for each resin of this printer with the sensitivities it reaches, wall and radius free to 60 mm, "
-        f"{dead_volume_mL:.3g} mL dead volume{idealised}, by the atlas; no line crosses a limit."
+        f"{dead_volume_mL:.3g} mL dead volume{idealised}, {model}."
     )
 
 

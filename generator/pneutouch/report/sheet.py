@@ -127,14 +127,12 @@ def _captions(sheet: SheetData) -> dict[str, str]:
     unknown = (document["unknown"] for document in sheet.uncertainty if "unknown" in document)
     why = graded or next(unknown, "the prediction has no figures at the highest driving pressure")
     absent = f"Trade-off and tuning charts are not drawn: {why}."
-    if sheet.tuning is not None and sheet.other_contact:
-        absent = "The trade-off chart is not drawn: its fronts are those of a plate without friction."
     chart = sheet.tradeoff
     return {
         "tradeoff": absent
         if chart is None
         else prose.tradeoff(
-            chart.driving_pressure_kPa, sheet.prediction.dead_volume / ML, sheet.assembly.dead_volume_note
+            chart.driving_pressure_kPa, sheet.prediction.dead_volume / ML, sheet.assembly.dead_volume_note, chart.errors
         ),
         "tuning": "" if sheet.tuning is None else prose.tuning(sheet.other_contact),
         "shapes": _shapes(sheet.prediction.states[0]),

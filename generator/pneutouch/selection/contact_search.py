@@ -16,7 +16,6 @@ from pneutouch.selection.choose import (
     DroppedRequirement,
     Refine,
     SelectionResult,
-    Uncertainty,
     differ,
     ranked,
     refinable,
@@ -25,7 +24,7 @@ from pneutouch.selection.choose import (
     shortlist,
 )
 from pneutouch.selection.contact_factors import ContactFactors, places
-from pneutouch.selection.contact_trial import UNSOLVED, ContactTrial, SolveCandidate, tried
+from pneutouch.selection.contact_trial import UNSOLVED, ContactTrial, ContactUncertainty, SolveCandidate, tried
 from pneutouch.selection.pool import REQUIREMENTS, CandidatePool, joined, margins
 from pneutouch.selection.problem import SelectionProblem
 
@@ -69,7 +68,7 @@ class ContactSelection:
 def choose_by_solid(
     problem: SelectionProblem,
     weights: tuple[float, float],
-    uncertainty: Uncertainty,
+    uncertainty: ContactUncertainty,
     solve: SolveCandidate,
     refine: Refine | None = None,
 ) -> ContactSelection:
@@ -226,7 +225,7 @@ def _quality(trial: ContactTrial) -> float:
     return min(1.0, *rest) + 0.5 * trial.margins.get("sensitivity", 0.0)
 
 
-def _impossible(run: _Run, weights: tuple[float, float], uncertainty: Uncertainty) -> SelectionResult:
+def _impossible(run: _Run, weights: tuple[float, float], uncertainty: ContactUncertainty) -> SelectionResult:
     """The solved candidate that breaks the least, and each requirement without which a solved one is a design."""
 
     def choice(trial: ContactTrial) -> Candidate:

@@ -12,7 +12,7 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import AtlasResponse
 from pneutouch.mechanics.prediction import SensorState
-from pneutouch.selection.choose import Candidate, Uncertainty, costs, least_margin
+from pneutouch.selection.choose import Candidate, costs, least_margin
 from pneutouch.selection.contact_factors import ContactFactors, places
 from pneutouch.selection.contact_figures import ContactFigures, ending, solid_response
 from pneutouch.selection.pool import CandidatePool, evaluated, margins
@@ -36,14 +36,18 @@ class SolvedStates(NamedTuple):
 SolveCandidate = Callable[[CandidateResin, CandidatePool, list[float]], SolvedStates]
 """The design of a candidate (one row) as the solid answers it with its contact, at driving pressures in MPa, rising."""
 
+ContactUncertainty = Callable[[CandidateResin, CandidatePool, SensorState], float]
+"""Relative expanded uncertainty of the sensitivity of a candidate (one row) under its contact, from its solved state;
+NaN where it is not known."""
+
 
 @dataclass(frozen=True, eq=False)
 class ContactTrial:
     """A candidate with the solid's figures.
 
     problem: of its resin alone, without factors. pool: one row, with the solid's response; the atlas's where ``why``
-    is why there is none. atlas: the atlas's response. margins: by the solid; empty without its figures. ends_with:
-    what ends its range.
+    is why there is none. atlas: the atlas's response. margins: by the solid; empty without its figures. state: the
+    solid's, where it has figures.
     """
 
     resin: CandidateResin
@@ -51,7 +55,7 @@ class ContactTrial:
     pool: CandidatePool
     atlas: AtlasResponse
     margins: dict[str, float]
-    ends_with: str = ""
+    state: SensorState | None = None
     why: str = ""
 
     @property
@@ -80,17 +84,17 @@ class ContactTrial:
         return factors if self.why else factors.with_sample(self.place, self.atlas, self.pool.response)
 
     def candidate(
-        self, solve: SolveCandidate, weights: tuple[float, float], uncertainty: Uncertainty, rounds: int
+        self, solve: SolveCandidate, weights: tuple[float, float], uncertainty: ContactUncertainty, rounds: int
     ) -> Candidate:
-        """As a choice: ranked by the uncertainty under the plate, which is not stated; the span by the solid."""
+        """As a choice, with the uncertainty and the span under its contact, by the solid."""
         highest = float(rated(self.problem, self.pool.resin, self.pool.radius, self.pool.wall)[0])
         span = self._span(solve, highest)
-        known = uncertainty([(self.resin, self._batch())])[0]
+        known = np.nan if self.state is None else uncertainty(self.resin, self.pool, self.state)
         least = least_margin({name: np.array([margin]) for name, margin in self.margins.items()})
-        cost = costs(weights, known, (np.array([span[0]]), np.array([span[1]])), least)
+        cost = costs(weights, np.array([known]), (np.array([span[0]]), np.array([span[1]])), least)
         plate_kPa_per_N = float(self.atlas.lines.sensitivity_kPa_per_N[0])
-        how = ContactFigures(self.ends_with, plate_kPa_per_N, rounds)
-        return Candidate(self.resin, self.pool, self.margins, np.nan, span, highest, float(cost[0]), how)
+        how = ContactFigures("" if self.state is None else ending(self.state), plate_kPa_per_N, rounds)
+        return Candidate(self.resin, self.pool, self.margins, known, span, highest, float(cost[0]), how)
 
     def _batch(self) -> SensorBatch:
         return self.problem.batch(self.pool.resin, self.pool.radius, self.pool.wall, self.pool.pressure)
@@ -125,4 +129,4 @@ def tried(problem: SelectionProblem, pool: CandidatePool, solve: SolveCandidate)
         return ContactTrial(resin, alone, plain, plain.response, {}, why=why)
     solved = plain._replace(response=response)
     margin_of = {name: float(margin[0]) for name, margin in margins(alone, solved).items()}
-    return ContactTrial(resin, alone, solved, plain.response, margin_of, ending(state))
+    return ContactTrial(resin, alone, solved, plain.response, margin_of, state)

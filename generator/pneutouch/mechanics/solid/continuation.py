@@ -118,6 +118,10 @@ class PathFollower:
         """The newest state."""
         return self.path[-1]
 
+    def feed(self, supply: Supply) -> None:
+        """Fill the cavity by another supply from here on: the next state is solved with it."""
+        self.path[-1] = replace(self.here, scene=replace(self.here.scene, supply=supply))
+
     def left(self, height: float) -> float:
         """Travel from the newest state to a height on the path ahead; negative beyond it."""
         return self.down * (self.here.height - height)
@@ -169,7 +173,7 @@ class PathFollower:
         With friction it does not: points stick or slide on as they last did.
         """
         guess = self._extrapolate(height)
-        if len(self.path) < 3:
+        if len(self.path) < 3 or height == self.here.height:
             return guess
         before, ahead = self.path[-2], height - self.here.height
         past = self.here.height - before.height

@@ -46,6 +46,11 @@ class FrictionFollower(PathFollower):
             raise NoConvergenceError("first contact", solved.why, "a finer mesh")
         return friction_plate_state(solver, solved, None)
 
+    def feed(self, supply: Supply) -> None:
+        """As that of `PathFollower`; the points stay where they stick."""
+        super().feed(supply)
+        self._bare = replace(self._bare, supply=supply)
+
     def _solver(self, height: float, rest: Array) -> FrictionSolver:
         plate = self._plate.at(height)
         step = FrictionStep(self._solid.contact, plate, self._coefficient, rest, self._stiffness)

@@ -11,6 +11,7 @@ from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.viscous.by_solid import loop_by_solid, relaxation_by_solid
 from pneutouch.mechanics.viscous.known import ageing_ratio
 from pneutouch.mechanics.viscous.prony import prony_series, relaxed
 from pneutouch.mechanics.viscous.runs import LoopRun, RelaxationRun, loop, relaxation
@@ -26,22 +27,35 @@ LOOP_SPEEDS = (0.5, 5.0)
 DEPTH_SHARE = 0.5
 """Depth over R0: our choice, the paper's relaxation test gives none. Deeper, stiff resins pressed fast buckle."""
 
+_KERNEL = "one relaxation for all stresses of the resin, that of small strain; no temperature dependence"
+
 BASIS = (
     "quasi-linear viscoelasticity on the atlas, gas isothermal and sealed; the inflated dome has relaxed before "
     "contact",
-    "one relaxation for all stresses of the resin, that of small strain; no temperature dependence",
+    _KERNEL,
 )
+
+SOLID_BASIS = (
+    "quasi-linear viscoelasticity on the solid with its contact along the whole run, friction with its history; gas "
+    "isothermal and sealed; the inflated dome has relaxed before contact",
+    _KERNEL,
+)
+"""Under a contact that the atlas does not cover."""
 
 
 @dataclass(frozen=True)
 class ViscousRuns:
-    """Runs of one sensor: ``held[i][j]``, ``loops[speed][i][j]`` of state i in series j; MPa, depth in mm."""
+    """Runs of one sensor: ``held[i][j]``, ``loops[speed][i][j]`` of state i in series j; MPa, depth in mm.
+
+    ``basis`` states the model, `BASIS` or `SOLID_BASIS`.
+    """
 
     sources: tuple[str, ...]
     driving_pressures: tuple[float, ...]
     depth: float
     held: list[list[RelaxationRun]]
     loops: dict[float, list[list[LoopRun]]]
+    basis: tuple[str, ...] = BASIS
 
     def document(self) -> dict[str, Any]:
         """The figures as data: one entry a state, one a source in it."""
@@ -49,7 +63,7 @@ class ViscousRuns:
             "depth_mm": self.depth,
             "ramp_speed_mm_per_s": RAMP_SPEED,
             "sources": list(self.sources),
-            "basis": list(BASIS),
+            "basis": list(self.basis),
             "states": [
                 {
                     "driving_pressure_kPa": pressure / KPA,
@@ -68,16 +82,18 @@ def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[flo
     """Press a sensor at driving pressures (MPa) to a depth (mm) in every series of its resin.
 
     The sensor and its resin must be such that `known.unknown` returns None. A series whose relaxed modulus leaves the
-    atlas, where the file gives the instantaneous one, is left out.
+    atlas, where the file gives the instantaneous one, is left out. The solid follows a contact that is not the atlas's.
     """
     kept, held, loops = [], [], []
+    by_solid = sensor.protocol.other_contact is not None
+    hold, cycle = (relaxation_by_solid, loop_by_solid) if by_solid else (relaxation, loop)
     for series in prony_series(material):
         relaxed_sensor = relaxed(sensor, material, series)
-        if outside_atlas(relaxed_sensor) is not None:
+        if not by_solid and outside_atlas(relaxed_sensor) is not None:
             continue
         kept.append(series.source)
-        held.append(relaxation(relaxed_sensor, [series], driving_pressures, depth, RAMP_SPEED))
-        loops.append({v: loop(relaxed_sensor, [series], driving_pressures, depth, v) for v in LOOP_SPEEDS})
+        held.append(hold(relaxed_sensor, [series], driving_pressures, depth, RAMP_SPEED))
+        loops.append({v: cycle(relaxed_sensor, [series], driving_pressures, depth, v) for v in LOOP_SPEEDS})
     states = range(len(driving_pressures))
     return ViscousRuns(
         tuple(kept),
@@ -85,6 +101,7 @@ def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[flo
         depth,
         [[one[i][0] for one in held] for i in states],
         {v: [[one[v][i][0] for one in loops] for i in states] for v in LOOP_SPEEDS},
+        SOLID_BASIS if by_solid else BASIS,
     )
 
 

@@ -41,7 +41,7 @@ class ViscousPath(NamedTuple):
     folded: Flags
 
 
-class _Memory:
+class Memory:
     """The convolution of a quantity with k(t) less 1, its history even within each step; (n, terms)."""
 
     def __init__(self, excess: Array, times: Array) -> None:
@@ -70,7 +70,7 @@ def follow(press: AtlasPress, excess: Array, times: Array, clock: Array, travel:
 
     excess, times: Prony terms over the relaxed modulus and their times in s, (n, terms); a term of excess 0 is none.
     """
-    memory = _Memory(excess, times)
+    memory = Memory(excess, times)
     nu, known = press.free, np.ones(press.free.size, dtype=bool)
     start = press.slices.point(press.k, nu, press.apex)
     before = np.stack([start.pressure, np.zeros_like(nu)])

@@ -17,11 +17,18 @@ AGED = (
 
 
 def unknown(sensor: Sensor, material: Material, model: str) -> str | None:
-    """Why relaxation and hysteresis cannot be predicted, or None where they can."""
+    """Why relaxation and hysteresis cannot be predicted, or None where they can.
+
+    The solid follows a contact that the atlas does not cover, unless it is off the axis or the wall has a law of its
+    own, whose constants are not scaled.
+    """
     if not material.relaxation:
         return f"no relaxation data for {material.title}; no other resin's are put in their place"
     if model == "membrane":
         return _MEMBRANE
+    test = sensor.protocol
+    if test.other_contact is not None and test.off_axis is None and sensor.wall.law is None:
+        return None
     from pneutouch.mechanics.atlas_states import outside_atlas
 
     reasons = [outside_atlas(relaxed(sensor, material, series)) for series in prony_series(material)]

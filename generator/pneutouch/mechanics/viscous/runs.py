@@ -125,11 +125,11 @@ def loop(
     clock = np.linspace(0.0, 2.0 * depth / speed, 2 * steps + 1)
     press, path = _followed(sensor, series, driving_pressures, clock, travel, atlas)
     force, rise = _with_units(press, path)
-    runs = [_loop(travel, force[i], rise[i], *_sound(press, path, i)) for i in range(force.shape[0])]
+    runs = [loop_run(travel, force[i], rise[i], *_sound(press, path, i)) for i in range(force.shape[0])]
     return _by_state(runs, len(series))
 
 
-def _loop(travel: Array, force: Array, rise: Array, known: int, ended: str | None) -> LoopRun:
+def loop_run(travel: Array, force: Array, rise: Array, known: int, ended: str | None) -> LoopRun:
     """One run of 2 n + 1 points, the first ``known`` of them known; cut where the plate would pull the dome."""
     turn, last = travel.size // 2, travel.size - 1
     where = None if ended is None else f"{ended} at {travel[known]:.2f} mm"

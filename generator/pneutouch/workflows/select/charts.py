@@ -9,10 +9,13 @@ from pneutouch.catalogue import Library
 from pneutouch.evaluation.chart_data import ChartPoint, TradeOff, TuningChart, TuningCurve
 from pneutouch.evaluation.tuning import curve, interval
 from pneutouch.output.files import replace_files
+from pneutouch.report.prose import front_error
 from pneutouch.report.tradeoff import tradeoff_chart
 from pneutouch.report.tuning import tuning_chart
 from pneutouch.selection import Candidate
-from pneutouch.selection.front import front
+from pneutouch.selection.contact_front import contact_front
+from pneutouch.selection.front import TradeOffFront, front
+from pneutouch.selection.problem import SelectionProblem
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 from pneutouch.workflows.select.contact import CandidateSolver, contact_text
@@ -37,8 +40,9 @@ def write_charts(
 
     Raises InputError where the folder cannot be written.
     """
-    charts = {"trade-off.svg": tradeoff_chart(tradeoff(selection), _SIZE)}
-    chart = tuning(selection, library or Library.default(), chosen)
+    library = library or Library.default()
+    charts = {"trade-off.svg": tradeoff_chart(tradeoff(selection, library), _SIZE)}
+    chart = tuning(selection, library, chosen)
     if chart is not None:
         charts["tuning.svg"] = tuning_chart(chart, _SIZE)
     files = {folder / name: text.encode() for name, text in charts.items()}
@@ -46,8 +50,11 @@ def write_charts(
     return list(files)
 
 
-def tradeoff(selection: SelectionRun) -> TradeOff:
-    """Fronts at the target's driving pressure, else the best design's; the target's window and the designs in it."""
+def tradeoff(selection: SelectionRun, library: Library | None = None) -> TradeOff:
+    """Fronts at the target's driving pressure, else the best design's; the target's window and the designs in it.
+
+    Under a contact that the atlas does not cover the fronts are the atlas's, corrected by the solid along them.
+    """
     problem, designs = selection.problem, _best(selection)
     pressure = problem.driving_pressure
     if pressure is None:
@@ -56,8 +63,10 @@ def tradeoff(selection: SelectionRun) -> TradeOff:
     # Of a mix the fronts of the designs' own fractions: those of all that were tried lie side by side.
     mixed = any(resin.grade is not None for resin in problem.resins)
     resins = tuple(choice.resin for choice in designs) if mixed and designs else problem.resins
+    problem = replace(problem, driving_pressure=pressure, resins=resins)
+    fronts, errors, caption = _fronts(selection, problem, library or Library.default())
     return TradeOff(
-        tuple(front(replace(problem, driving_pressure=pressure, resins=resins))),
+        tuple(fronts),
         pressure / KPA,
         (problem.gauge_limit - pressure) / KPA,
         tuple(_spot(rank, choice) for rank, choice in enumerate(designs, start=1)),
@@ -65,10 +74,21 @@ def tradeoff(selection: SelectionRun) -> TradeOff:
         if target_kPa_per_N is None
         else (target_kPa_per_N * (1 - problem.tolerance), target_kPa_per_N * (1 + problem.tolerance)),
         problem.force_range,
-        ""
-        if selection.by_solid is None
-        else f"curves: a plate without friction, atlas\npoints: {contact_text(selection.base)}, solid",
+        caption,
+        errors,
     )
+
+
+def _fronts(
+    selection: SelectionRun, problem: SelectionProblem, library: Library
+) -> tuple[list[TradeOffFront], tuple[float, float] | None, str]:
+    """Fronts, their errors and what is stated of them: under the base's contact where the solid answers it."""
+    if selection.by_solid is None:
+        return front(problem), None, ""
+    solver = CandidateSolver(selection.base, selection.assignments, library)
+    fronts, *off = contact_front(problem, solver)
+    stated = f"curves: atlas corrected by the solid, {front_error((off[0], off[1]))}"
+    return fronts, (off[0], off[1]), f"{contact_text(selection.base)}; points: solid\n{stated}"
 
 
 def tuning(selection: SelectionRun, library: Library, chosen: Candidate | None = None) -> TuningChart | None:
@@ -100,7 +120,7 @@ def tuning(selection: SelectionRun, library: Library, chosen: Candidate | None =
 
 
 def _tuned_by_solid(selection: SelectionRun, library: Library, chosen: Candidate) -> TuningChart | None:
-    """The curve of a design under a contact that the atlas does not cover; its interval is not known."""
+    """The curve of a design under a contact that the atlas does not cover, with its interval where that is known."""
     solve = CandidateSolver(selection.base, selection.assignments, library)
     pressures = np.unique([*np.linspace(0.0, chosen.rated, _SOLVED), float(chosen.pool.pressure[0])])
     states = [state for state in solve(chosen.resin, chosen.pool, pressures.tolist()).states if state.figures]
@@ -110,7 +130,8 @@ def _tuned_by_solid(selection: SelectionRun, library: Library, chosen: Candidate
     solved_kPa_per_N = np.array([state.figures.sensitivity_kPa_per_N for state in states if state.figures])
     drawn = TuningCurve(chosen.resin.material.title, at_kPa, solved_kPa_per_N)
     caption = f"{contact_text(selection.base)}: by the solid"
-    return TuningChart(drawn, None, None, _working(chosen), caption=caption)
+    low, high = solve.interval(chosen.resin, chosen.pool, drawn, states) or (None, None)
+    return TuningChart(drawn, low, high, _working(chosen), caption=caption)
 
 
 def _working(chosen: Candidate) -> dict[float, float]:

@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.catalogue import Library, ResolvedDesign, load_scene
 from pneutouch.errors import ComputationError, InputError
+from pneutouch.evaluation.chart_data import TuningCurve
 from pneutouch.evaluation.contact_object import check_object
-from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.evaluation.evaluate import elastomers, sensor_of
+from pneutouch.evaluation.graded_uncertainty import even_wall
+from pneutouch.evaluation.tuning import interval
+from pneutouch.evaluation.uncertainty import known, unknown
+from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.uncertainty.source import SENSITIVITY
 from pneutouch.parts import assemble
 from pneutouch.selection import Candidate, CandidateResin, SelectionProblem
 from pneutouch.selection.contact_search import ContactSelection
 from pneutouch.selection.contact_trial import SolvedStates
 from pneutouch.selection.pool import CandidatePool
+from pneutouch.spec.material import Material
 from pneutouch.spec.read import Changes
 from pneutouch.workflows.select.passing import source_of
 
@@ -49,7 +58,7 @@ def contact_notes(selection: ContactSelection, scene: ResolvedDesign) -> list[st
     settled = f"{selection.rounds} rounds, {selection.solves} candidates solved"
     return [
         f"contact: {contact_text(scene)}",
-        f"every figure is the solid's with this contact ({settled}); `predict` of the saved design states U",
+        f"every figure is the solid's with this contact ({settled}), U as `predict` has it",
     ]
 
 
@@ -66,12 +75,43 @@ class CandidateSolver:
         """States at driving pressures, MPa, rising; or why there are none."""
         from pneutouch.mechanics.solid_states import solid_states
 
-        choice = Candidate(resin, pool, {}, np.nan, (np.nan, np.nan), np.nan, np.nan)
-        unchecked: Changes = {"indentation.checked_waves": 0}
         try:
-            scene = load_scene(source_of(self._base, self._assignments(choice)), unchecked, self._library)
-            sensor = sensor_of(assemble(scene))
+            scene, sensor = self.drawn(resin, pool)
             check_object(scene, sensor)
             return SolvedStates(solid_states(sensor, np.array(pressures)))
         except (InputError, ComputationError) as error:
             return SolvedStates((), "; ".join(part for part in (error.problem, error.remedy) if part))
+
+    def drawn(self, resin: CandidateResin, pool: CandidatePool) -> tuple[ResolvedDesign, Sensor]:
+        """The design of a candidate and its sensor. Raises InputError where it cannot be drawn."""
+        choice = Candidate(resin, pool, {}, np.nan, (np.nan, np.nan), np.nan, np.nan)
+        unchecked: Changes = {"indentation.checked_waves": 0}
+        scene = load_scene(source_of(self._base, self._assignments(choice)), unchecked, self._library)
+        return scene, sensor_of(assemble(scene))
+
+    def expanded(self, resin: CandidateResin, pool: CandidatePool, state: SensorState) -> float:
+        """Relative expanded uncertainty of the sensitivity under the contact, from the candidate's solved state: the
+        budget of `predict` at that driving pressure. NaN where it is not known."""
+        scene, sensor = self.drawn(resin, pool)
+        sensor = even_wall(sensor)
+        if unknown(sensor, "solid") is not None:
+            return np.nan
+        material, printer = scene.membrane_material, scene.printer
+        at = [state.driving_pressure]
+        estimate = known(sensor, at, material, self._materials, printer, "solid", states=[state])
+        return float(estimate.budget.expanded[SENSITIVITY, 0])
+
+    def interval(
+        self, resin: CandidateResin, pool: CandidatePool, drawn: TuningCurve, states: Sequence[SensorState]
+    ) -> tuple[Array, Array] | None:
+        """Both ends of the k = 2 interval of a candidate's tuning curve through its states; None where not known."""
+        scene, sensor = self.drawn(resin, pool)
+        sensor = even_wall(sensor)
+        if unknown(sensor, "solid") is not None:
+            return None
+        material, printer = scene.membrane_material, scene.printer
+        return interval(sensor, drawn, material, self._materials, printer, "solid", states=states)
+
+    @cached_property
+    def _materials(self) -> list[Material]:
+        return list(elastomers(self._library).values())

@@ -169,7 +169,7 @@ def _answered(run: SelectionRun, refine: Refine | None, library: Library) -> Sel
         return replace(run, answer=choose(problem, weights, uncertainty, refine))
     run = replace(run, problem=without_plate(problem, run.sensor))
     solver = CandidateSolver(run.base, run.assignments, library)
-    selection = choose_by_solid(run.problem, weights, uncertainty, solver, refine)
+    selection = choose_by_solid(run.problem, weights, solver.expanded, solver, refine)
     return replace(run, answer=selection.result, by_solid=selection, left_out=run.left_out | selection.unsettled)
 
 
