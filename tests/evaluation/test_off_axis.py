@@ -11,6 +11,7 @@ from pneutouch.evaluation.contact_object import object_section
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
 from pneutouch.evaluation.fitted import check_fitted
 from pneutouch.mechanics.atlas_states import outside_atlas
+from pneutouch.mechanics.harmonic.press import OffAxisPress
 from pneutouch.mechanics.models import USUAL, models_for
 from pneutouch.parts import assemble
 from pneutouch.report.off_axis import SHEAR as SHEAR_HEAD
@@ -80,12 +81,28 @@ def test_what_cannot_stand_off_the_axis_is_refused(changes, key, text):
     assert str(caught.value.key).startswith(key)
 
 
-def test_an_offset_off_the_dome_is_refused_with_the_largest_that_works():
+class _ReachedError(Exception):
+    """The press was begun: all checks of the input are passed."""
+
+
+def _reached(*_):
+    raise _ReachedError
+
+
+def test_an_offset_off_the_dome_is_refused_with_the_largest_that_works(monkeypatch):
     with pytest.raises(InputError, match="60 degrees") as caught:
         evaluate("paper-dome", {**BALL, "contact.offset_mm": 17.0})
     assert caught.value.key == "contact.offset_mm"
-    # A sphere of 10.75 mm and one of 8 mm touch at 60 degrees where their centres are 18.75 sin 60 apart.
-    assert f"{np.floor(100 * 18.75 * np.sin(np.pi / 3)) / 100:g} mm" in str(caught.value.remedy)
+    # A sphere of 10.75 mm and one of 8 mm touch at 60 degrees where their centres are 18.75 sin 60 apart; one that is
+    # then pressed down by the depth without meeting the connector stands nearer.
+    largest = np.floor(100 * np.sqrt(18.75**2 - (0.75 * 9.25 + 8.0) ** 2)) / 100
+    assert largest < 18.75 * np.sin(np.pi / 3) and f"at most {largest:g} mm" in str(caught.value.remedy)
+    with monkeypatch.context() as patch:
+        patch.setattr(OffAxisPress, "run", _reached)
+        for offset, works in ((largest, True), (largest + 0.01, False)):
+            with pytest.raises(_ReachedError if works else InputError):
+                changes = {**BALL, "contact.offset_mm": offset, "pneumatics.driving_pressures_kPa": [0.0]}
+                evaluate("paper-dome", changes, model=USUAL)
 
 
 def test_a_tilt_that_touches_the_connector_is_refused_with_the_largest_that_works():
@@ -173,7 +190,7 @@ def test_friction_holds_a_ball_that_would_slide_off():
     ("changes", "key", "text"),
     [
         ({**EDGE, "contact.edge_radius_mm": 0.2}, "contact.edge_radius_mm", "at least 0.36 mm"),
-        ({**EDGE, "contact.offset_mm": 12.0}, "contact.offset_mm", "at most 11.9 mm"),
+        ({**EDGE, "contact.offset_mm": 12.0}, "contact.offset_mm", "at most 9.5 mm"),
     ],
 )
 def test_an_edge_that_the_mesh_or_the_dome_does_not_take_is_refused_with_what_works(changes, key, text):

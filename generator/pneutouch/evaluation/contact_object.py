@@ -104,12 +104,17 @@ def _check_cells(scene: ResolvedDesign, sensor: Sensor) -> None:
 
 
 def check_object(scene: ResolvedDesign, sensor: Sensor) -> None:
-    """Raise InputError for an object that the mesh cannot follow or that meets the unloaded dome with its edge."""
+    """Raise InputError for an object that the mesh cannot follow or that meets the unloaded dome with its edge.
+
+    Off the axis objects are round, and the greatest offset says where they do.
+    """
     _check_offset(scene, sensor)
     body = sensor.protocol.body
     if body is None:
         return
     _check_cells(scene, sensor)
+    if sensor.protocol.offset:
+        return
     _, at = _at_rest(body, sensor)
     if not body.span[0] <= at <= body.span[1]:
         raise _edge_first(scene)
@@ -123,15 +128,16 @@ def _check_offset(scene: ResolvedDesign, sensor: Sensor) -> None:
     reach = dome.inner_radius + dome.wall_thickness
     if test.body is None:
         flat = float(flat_radius(np.array(test.plate_radius), RIM * np.array(test.plate_radius)))
-        largest, problem = (
-            flat * math.cos(test.tilt) - reach * math.sin(test.tilt),
-            "the plate's edge would touch the dome first",
-        )
+        steepest = largest = flat * math.cos(test.tilt) - reach * math.sin(test.tilt)
+        problem = "the plate's edge would touch the dome first"
     else:
-        largest = (reach + test.body.smallest) * _FARTHEST
+        apart = reach + test.body.smallest
+        # A driven dome is higher than the unloaded one, and keeps the object farther from the connector.
+        clear = math.sqrt(max(0.0, apart**2 - (test.depth + test.body.smallest) ** 2))
+        steepest, largest = apart * _FARTHEST, min(apart * _FARTHEST, clear)
         name = scene.design.contact.object
         problem = f"the {name} would touch the dome on a flank steeper than 60 degrees, or beyond it"
-    if test.offset > largest:
+    if test.offset > steepest:
         raise InputError(
             problem,
             file=scene.where,

@@ -160,11 +160,11 @@ class ContactTable(Table):
                 "or a cylinder can stand off the axis"
             )
         if self.tilt_deg and not self.is_plate:
-            raise ValueError(f"tilt_deg = {self.tilt_deg:g}: only a plate can lean, not a {self.object}")
+            raise ValueError(f"tilt_deg = {self.tilt_deg:g}: only a plate can lean, not {self._article}")
         if self.shear_mm and self.object not in _MOVABLE:
             raise ValueError(
-                f"shear_mm = {self.shear_mm:g}: only a plate or a ball, an edge or a cylinder moves sideways, not a "
-                f"{self.object}"
+                f"shear_mm = {self.shear_mm:g}: only a plate or a ball, an edge or a cylinder moves sideways, not "
+                f"{self._article}"
             )
         if self.shear_mm and not self.friction:
             raise ValueError(
@@ -178,6 +178,11 @@ class ContactTable(Table):
         """The keys that keep the scene from being axisymmetric, and their values; empty where it is."""
         keys = ("offset_mm", "tilt_deg", "shear_mm", *(("object",) if self.is_lying else ()))
         return {key: getattr(self, key) for key in keys if getattr(self, key)}
+
+    @property
+    def _article(self) -> str:
+        """The object with its article."""
+        return f"{'an' if self.object == 'edge' else 'a'} {self.object}"
 
     @property
     def is_lying(self) -> bool:
