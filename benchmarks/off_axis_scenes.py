@@ -140,12 +140,12 @@ def _sheared(friction: float, modulus: float, *meshes: tuple[int, int, int]) -> 
     return replace(scene, depth=2.4, steps=4, travel=0.3, stops=(10,))
 
 
-OTHERS = ((4, (12, 1)), (4, (24, 2)), (6, (24, 2)), (8, (24, 2)))
+OTHERS = ((4, (12, 1)), (4, (24, 2)), (ORDER, (24, 2)))
 """Orders, and cells along the arc and through the wall, by which the harmonic solid is timed."""
 
 SCENES = (
     _plate(10.0, 0.0, (28, 2, 6), (40, 2, 6)),
-    _plate(10.0, 22.0 * KPA, (28, 2, 6)),
+    replace(_plate(10.0, 22.0 * KPA, (28, 2, 6)), others=OTHERS),
     _ball(6.0, 3.0, 0.0, (24, 2, 10), (32, 2, 12)),
     _ball(6.0, 3.0, 22.0 * KPA, (26, 2, 10)),
     _plate(20.0, 0.0, (28, 2, 6)),
