@@ -106,7 +106,7 @@ def _check_cells(scene: ResolvedDesign, sensor: Sensor) -> None:
 def check_object(scene: ResolvedDesign, sensor: Sensor) -> None:
     """Raise InputError for an object that the mesh cannot follow or that meets the unloaded dome with its edge.
 
-    Off the axis objects are round, and the greatest offset says where they do.
+    Off the axis objects are round, and the greatest offset states where they do.
     """
     _check_offset(scene, sensor)
     body = sensor.protocol.body
