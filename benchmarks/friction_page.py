@@ -200,8 +200,9 @@ TEXT = {
         "(`python -m benchmarks.friction_cost` has the random ones alone).",
         "",
         "Each Newton step settles in a linear model which points touch, stick and slide. A round that leads to another "
-        "status of the points is followed only as far as the work of the residual falls, and where the model is not "
-        "definite or does not settle, the largest tractions are held. The wall before the contact is eliminated once a "
+        "status of the points is followed only as far as the work of the residual falls. What four rounds do not settle "
+        "is settled one point after another, and where the model is not definite or does not settle, the largest "
+        "tractions are held. The wall before the contact is eliminated once a "
         "step. The first step of a solve keeps the slip of the state before, a full step that halves the residual is "
         "taken without a search, and a step that fails or is not sound is bisected, its end tried again from half way.",
         "",

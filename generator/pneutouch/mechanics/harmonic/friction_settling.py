@@ -7,6 +7,7 @@ directions turn from one Newton step to the next.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -67,6 +68,8 @@ class SurfaceLinearContact(LinearContact):
 
     step: SurfaceFriction
     points: SurfacePoints
+    #: A point in space that slides may turn.
+    IN_PIECES: ClassVar[bool] = False
 
     def at(self, move: Array) -> PointTractions:
         """Tractions after a displacement of the coefficients (n_nodes, columns)."""

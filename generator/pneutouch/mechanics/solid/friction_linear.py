@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.contact import ContactEvaluation
 from pneutouch.mechanics.solid.friction import FrictionPoints, FrictionStep
+from pneutouch.mechanics.solid.friction_pivots import PiecewiseLine
 from pneutouch.mechanics.solid.friction_status import PointStatus, PointTractions
+from pneutouch.mechanics.solid.kinematics import AXIAL, RADIAL
 from pneutouch.mechanics.solid.model import SolidModel
 
 
@@ -28,6 +31,8 @@ class LinearContact:
     points: FrictionPoints
     held: bool = False
     kept: Array | None = None
+    #: Whether the tractions are linear in pieces of the displacement.
+    IN_PIECES: ClassVar[bool] = True
 
     @cached_property
     def _grip(self) -> Array:
@@ -42,6 +47,34 @@ class LinearContact:
             -self.solid.contact.stiffness * (self.touch.gap + slope * r - z),
             self.step.stiffness * (points.slip + (r + slope * z) / points.secant),
         )
+
+    def rows(self, begin: int) -> Array:
+        """Rates of the tractions of the points of edges from one on, normal first, by the unknowns of these edges:
+        (2 n, n_edges, 2 n_nodes), each point with rates by its own edge alone."""
+        contact, slope, secant = self.solid.contact, self.touch.slope[begin:], self.points.secant[begin:]
+        n_edges, n_points = slope.shape
+        out = np.zeros((2, n_edges, n_points, n_edges, 2 * contact.shape.shape[1]))
+        edge = np.arange(n_edges)
+        for k, (by_r, by_z) in enumerate(
+            [
+                (-contact.stiffness * slope, np.full(slope.shape, contact.stiffness)),
+                (self.step.stiffness / secant, self.step.stiffness * slope / secant),
+            ]
+        ):
+            out[k, edge, :, edge, RADIAL] = by_r[..., None] * contact.shape
+            out[k, edge, :, edge, AXIAL] = by_z[..., None] * contact.shape
+        return out.reshape(2 * slope.size, n_edges, -1)
+
+    def line(
+        self, status: PointStatus, begun: PointTractions, ended: PointTractions, response: Array, edge: int
+    ) -> PiecewiseLine:
+        """The line from tractions ``begun`` towards those ``ended`` that a status leads to, of the points of the edges
+        from one on; response: (2 n, 2 n) of their tractions to loads of `rows`, with that status."""
+        local = PointStatus(status.touching[edge:].ravel(), status.bearing[edge:].ravel(), status.sign[edge:].ravel())
+        first, last = (PointTractions(at.normal[edge:].ravel(), at.trial[edge:].ravel()) for at in (begun, ended))
+        areas = self._weight[edge:].ravel() / np.array([[self.solid.contact.stiffness], [self.step.stiffness]])
+        grip = (self.points.cap if self.held else self._grip)[edge:].ravel()
+        return PiecewiseLine(local, first, last, response, areas, grip, self.held)
 
     def _cap(self, normal: Array) -> Array:
         return self.points.cap if self.held else self._grip * np.maximum(normal, 0.0)

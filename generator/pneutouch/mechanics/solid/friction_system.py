@@ -46,6 +46,14 @@ class ContactSystem:
         solved = self.sides.solve_definite(self.fore.rest, blocks, self._load(push), self.first)
         return None if solved is None else self._filled(solved)
 
+    def response(self, blocks: Array, rows: Array) -> Array:
+        """R M^-1 R' (n, n) with M the system and blocks; rows: R as `OneSidedBlocks.spread` takes them."""
+        g = self._rest[:, 1]
+        both = np.concatenate([self.sides.spread(rows, self.first, g.size), g[None]])
+        out = self.sides.response(self._wide, blocks, both, self.first)
+        gas = self._share / (1.0 + self._share * float(out[-1, -1]))
+        return np.asarray(out[:-1, :-1] - gas * np.multiply.outer(out[:-1, -1], out[-1, :-1]))
+
     def definite(self, blocks: Array) -> bool:
         """Whether K with symmetric blocks is positive definite; False also where that is not known."""
         # Leading unknowns were eliminated only where their own part is definite.
