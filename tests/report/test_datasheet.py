@@ -52,7 +52,7 @@ def test_page_and_pdf_have_every_section(section, html, pdf_text):
 
 
 def test_the_page_holds_its_figures(html):
-    assert html.count("<svg") == 16
+    assert html.count("<svg") == 17
 
 
 def test_sheet_states_the_predicted_figures(built, html, pdf_text):

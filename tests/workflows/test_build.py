@@ -21,6 +21,8 @@ FILES = {
     "stl/connector.stl",
     "paper-dome.step",
     "paper-dome.glb",
+    "paper-dome-pressed.glb",
+    "paper-dome-pressed.png",
     "datasheet.html",
     "datasheet.pdf",
     "prediction.json",

@@ -142,3 +142,28 @@ class ContactChart:
     rows: tuple[ContactRow, ...]
     standard_uncertainties: tuple[float, ...]
     free_offset: float
+
+
+@dataclass(frozen=True)
+class PressedView:
+    """The pressed dome in three dimensions at one driving pressure.
+
+    Attributes:
+        driving_pressure_kPa: Driving pressure, kPa.
+        indentation: Of the object, mm.
+        travel: How far it then moved sideways, mm.
+        force: Contact force, N.
+        points: Outer surface, mm, (n, m, 3): rows from the base to the pole, columns once around.
+        normals: Outward unit normals there, (n, m, 3).
+        pressure_kPa: Contact pressure there, kPa, (n, m); 0 where nothing touches.
+        lines: Lines that outline the object, mm, (k, 3) each.
+    """
+
+    driving_pressure_kPa: float
+    indentation: float
+    travel: float
+    force: float
+    points: Array
+    normals: Array
+    pressure_kPa: Array
+    lines: tuple[Array, ...]

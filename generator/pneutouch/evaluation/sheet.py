@@ -11,6 +11,7 @@ from pneutouch.evaluation.chart_data import ComparedMembrane
 from pneutouch.evaluation.charts import air, tradeoff, tuning
 from pneutouch.evaluation.contact_object import object_section
 from pneutouch.evaluation.evaluate import Evaluation
+from pneutouch.evaluation.pressed import pressed_view
 from pneutouch.evaluation.relaxation import ageing_data, viscous_data
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.evaluation.table_s1 import published_sensitivities
@@ -50,6 +51,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         contact=contact_chart(prediction, sensor),
         other_contact=sensor.protocol.other_contact is not None,
         object_section=object_section(sensor),
+        pressed=pressed_view(prediction),
     )
     if unknown(sensor, prediction.model) is not None:
         return sheet

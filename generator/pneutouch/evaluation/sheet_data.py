@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from pneutouch.arrays import Array
     from pneutouch.catalogue import ResolvedDesign
-    from pneutouch.evaluation.chart_data import ComparedMembrane, ContactChart, ResinCurve, TradeOff, TuningChart
+    from pneutouch.evaluation.chart_data import (
+        ComparedMembrane,
+        ContactChart,
+        PressedView,
+        ResinCurve,
+        TradeOff,
+        TuningChart,
+    )
     from pneutouch.mechanics.prediction import SensorPrediction
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.uncertainty import GasNotes
@@ -114,6 +121,7 @@ class SheetData:
         other_contact: Whether something else than a plate without friction presses it.
         object_section: Section (n, 2) in mm, r and z, of the object that presses it, at first contact with the unloaded
             dome; None for a plate.
+        pressed: The pressed dome in three dimensions; None by a model without its surface.
     """
 
     scene: ResolvedDesign
@@ -137,3 +145,4 @@ class SheetData:
     contact: ContactChart | str | None = None
     other_contact: bool = False
     object_section: Array | None = None
+    pressed: PressedView | None = None

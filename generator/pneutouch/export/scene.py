@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pneutouch.body import Body
+from pneutouch.export.view import ShadedBody
 
 if TYPE_CHECKING:
     import trimesh
@@ -24,6 +26,28 @@ def stl(body: Body) -> bytes:
 def glb(bodies: tuple[Body, ...]) -> bytes:
     """GLB with one named, coloured mesh a body; vertex data in mm, placed by a node matrix in metres."""
     return bytes(_scene(bodies).export(file_type="glb"))
+
+
+def shaded_glb(bodies: Sequence[ShadedBody]) -> bytes:
+    """GLB of bodies with a normal and a colour at every vertex, placed as in `glb`.
+
+    glTF takes the colours of vertices as linear in light: those of a picture (sRGB) are converted (IEC 61966-2-1).
+    """
+    import trimesh
+
+    scene = trimesh.Scene()
+    for body in bodies:
+        rows = np.concatenate([body.corners, body.normals, body.colours], axis=2).reshape(-1, 9)
+        vertices, triangles = np.unique(np.round(rows, 6), axis=0, return_inverse=True)
+        colours = vertices[:, 6:]
+        linear = np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+        mesh = trimesh.Trimesh(
+            vertices[:, :3], triangles.reshape(-1, 3), vertex_normals=vertices[:, 3:6], process=False
+        )
+        opaque = np.append(np.rint(255 * linear), np.full((len(linear), 1), 255), axis=1).astype(np.uint8)
+        mesh.visual = trimesh.visual.ColorVisuals(vertex_colors=opaque)
+        scene.add_geometry(mesh, node_name=body.name, geom_name=body.name, transform=_GLTF_FROM_PRINT)
+    return bytes(scene.export(file_type="glb", include_normals=True))
 
 
 def _mesh(body: Body) -> trimesh.Trimesh:

@@ -46,7 +46,7 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
     free = state_at(probe.solid, pressure, run)
     press = off_axis_press(sensor, probe, free)
     if sensor.protocol.off_axis is None:
-        return _record(sensor, pressure, free, press.run(0), 0.0)
+        return _record(sensor, pressure, free, press, press.run(0), 0.0)
     changes: list[float] = []
     before: OffAxisPath | None = None
     orders = EVEN_ORDERS if _symmetric(sensor) else ORDERS
@@ -59,7 +59,7 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
         else:
             changes.append(_change_from(press, coarse, pressed, sensor))
         if changes[-1] <= HARMONICS_SETTLED:
-            return _record(sensor, pressure, free, pressed, changes[-1])
+            return _record(sensor, pressure, free, press, pressed, changes[-1])
     steps = ", ".join(f"{c:.1%} from {a} to {b}" for c, (a, b) in zip(changes, pairwise(orders), strict=True))
     raise ComputationError(
         f"at {pressure / KPA:g} kPa the figures do not settle with harmonics to order {orders[-1]} around the axis: "
@@ -180,7 +180,9 @@ def _range_end(sensor: Sensor, pressed: OffAxisPath) -> float:
     return min(range_end(reported_events(pressed.events), sensor.protocol.depth), pressed.path[-1].indentation)
 
 
-def _record(sensor: Sensor, pressure: float, free: FreeState, pressed: OffAxisPath, last_change: float) -> SensorState:
+def _record(
+    sensor: Sensor, pressure: float, free: FreeState, press: OffAxisPress, pressed: OffAxisPath, last_change: float
+) -> SensorState:
     """The state of a sensor as a prediction has it."""
     happened, end = reported_events(pressed.events), _range_end(sensor, pressed)
     return SensorState(
@@ -203,6 +205,7 @@ def _record(sensor: Sensor, pressure: float, free: FreeState, pressed: OffAxisPa
             pressed.column("moment"),
             None if pressed.shear is None else _shear_curve(pressed.shear),
         ),
+        face=press.face(pressed, end),
     )
 
 

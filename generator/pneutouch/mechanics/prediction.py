@@ -9,6 +9,7 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.events import LOBES, SWAY, Event, EventRecord
 from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.off_axis_curve import OffAxisCurve, OffAxisRecord
+from pneutouch.mechanics.pressed_face import PressedFace
 from pneutouch.mechanics.response import Figures, tangent_stiffness
 from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.rounding import rounded
@@ -135,6 +136,7 @@ class SensorState:
     max_von_mises: Array | None = None
     shapes: tuple[DeformedShape, ...] = ()
     beyond_axis: OffAxisCurve | None = None
+    face: PressedFace | None = None
 
     def __repr__(self) -> str:
         return f"SensorState({self.driving_pressure / KPA:g} kPa, {len(self.indentation)} points)"
@@ -155,6 +157,7 @@ class SensorState:
             pressure_rise=by_rise * self.pressure_rise,
             figures=None if self.figures is None else self.figures.scaled(by_force, by_rise),
             beyond_axis=None if self.beyond_axis is None else self.beyond_axis.scaled(by_force, by_rise),
+            face=None if self.face is None else self.face.scaled(by_force),
         )
 
     def document(self) -> StateRecord:

@@ -8,15 +8,19 @@ import numpy as np
 
 from pneutouch.arrays import Array, distinct
 from pneutouch.mechanics.events import LOBES, SWAY, Event, range_end
+from pneutouch.mechanics.harmonic.face import pressed_face
+from pneutouch.mechanics.harmonic.fields import Harmonics
+from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.object_mesh import object_cells
 from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState
+from pneutouch.mechanics.pressed_face import PressedFace
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.events import SolidEvent
 from pneutouch.mechanics.solid.first_touch import first_touch
-from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent
+from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
 from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
@@ -207,6 +211,7 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
         max_von_mises=pressed.column("von_mises"),
         events=tuple(happened),
         shapes=_shapes(probe, free, press, pressed, end),
+        face=_face(probe.solid, free, press, pressed, end),
     )
 
 
@@ -227,12 +232,26 @@ def curve_between(path: Sequence[_CurvePoint], grid: Array) -> tuple[Array, Arra
     return hermite(grid, x, force, stiffness), hermite(grid, x, rise, rate)
 
 
+def _last(pressed: IndentationPath, end: float) -> PressState:
+    """The last solved state up to an indentation, mm."""
+    return max((s for s in pressed.path if s.indentation <= end * (1 + 1e-9)), key=lambda s: s.indentation)
+
+
+def _face(
+    solid: SolidModel, free: FreeState, press: PressSettings, pressed: IndentationPath, end: float
+) -> PressedFace:
+    """The outer wall pressed to the end of the range."""
+    body, last = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim).body, _last(pressed, end)
+    placed = PlacedObject(body.at(body.height - last.indentation / solid.length))
+    return pressed_face(solid, Harmonics(0), last.positions, placed, last.indentation)
+
+
 def _shapes(
     probe: StrainProbe, free: FreeState, press: PressSettings, pressed: IndentationPath, end: float
 ) -> tuple[DeformedShape, ...]:
     """The wall at rest, inflated, and pressed to the end of the range."""
     solid = probe.solid
-    last = max((s for s in pressed.path if s.indentation <= end * (1 + 1e-9)), key=lambda s: s.indentation)
+    last = _last(pressed, end)
     positions = [(None, solid.rest * solid.length), (0.0, free.positions), (last.indentation, last.positions)]
     body = None if press.body is None else first_touch(solid, free, press.body, press.plate_diameter).body
     return tuple(

@@ -11,6 +11,7 @@ from pneutouch.report.certainty import ends, shares
 from pneutouch.report.drawing import section_drawing
 from pneutouch.report.graded_sheet import CAPTIONS, graded_figures
 from pneutouch.report.picture import picture
+from pneutouch.report.pressed import caption, pressed_figure
 from pneutouch.report.shares import share_bars
 from pneutouch.report.sheet import content_of
 from pneutouch.report.shown import shown
@@ -25,21 +26,30 @@ def datasheet(sheet: SheetData) -> dict[str, bytes]:
     """``datasheet.html``, with the 3D view and, where that cannot be drawn, a picture; and ``datasheet.pdf``."""
     figures = _figures(sheet)
     viscous = relaxation.section(sheet.viscous, relaxation.ageing_line(sheet))
-    content = {**content_of(sheet), "viscous": viscous, "figures": sorted(figures)}
+    content = {**content_of(sheet), "viscous": viscous}
     content["captions"] |= CAPTIONS
     content["captions"]["sensitivity"] = (
         "Sensitivity over driving pressure for each resin in this geometry, this design picked out; "
         f"{curves.drawn_by(sheet.resin_curves)}."
     )
     bodies = shown(sheet.assembly, _PIXELS[0])
-    image = picture(bodies, *_PIXELS)
-    more = {"view": view_data(bodies), "picture": base64.b64encode(image).decode()}
+    images = {"picture.png": picture(bodies, *_PIXELS)}
+    more = {"view": view_data(bodies), "picture": _base64(images["picture.png"]), "pressed_view": ""}
+    if sheet.pressed is not None:
+        drawn = pressed_figure(sheet.pressed)
+        figures["pressure-scale"] = drawn.scale
+        images["pressed.png"] = drawn.image
+        more |= {"pressed_view": drawn.data, "pressed_picture": _base64(drawn.image)}
+        content["captions"]["pressed"] = caption(sheet.pressed)
+    content["figures"] = sorted(figures)
     return {
         "datasheet.html": pages.html("datasheet.html.j2", content, figures, **more).encode(),
-        "datasheet.pdf": pages.pdf(
-            "datasheet.typ", content, figures, sheet.scene.design.document.date, {"picture.png": image}
-        ),
+        "datasheet.pdf": pages.pdf("datasheet.typ", content, figures, sheet.scene.design.document.date, images),
     }
+
+
+def _base64(image: bytes) -> str:
+    return base64.b64encode(image).decode()
 
 
 def _figures(sheet: SheetData) -> dict[str, str]:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pneutouch.arrays import Array, Index
-from pneutouch.export.view import ShadedBody
+from pneutouch.export.view import TILT_DEG, ShadedBody
 
 _LIGHT = np.array([-0.35, -0.55, 0.76])
 _OVERSAMPLING = 2
@@ -22,9 +22,27 @@ _LEVEL_EDGE = 1e-6
 
 def picture(bodies: Sequence[ShadedBody], width: int = 900, height: int = 640) -> bytes:
     """PNG of the bodies (z up) from above and in front, on white."""
-    from matplotlib.image import imsave
+    return png(pixels(bodies, width, height))
 
-    view = _view(math.radians(-62), math.radians(26))
+
+def png(image: Array, colours: int | None = None) -> bytes:
+    """PNG of an image (height, width, 3) from 0 to 1, the uppermost line first; a small one in so many colours."""
+    from matplotlib.image import imsave
+    from PIL import Image
+
+    buffer = io.BytesIO()
+    if colours is None:
+        imsave(buffer, image, format="png", metadata={"Software": "pneutouch"})
+        return buffer.getvalue()
+    whole = Image.fromarray(np.rint(255 * image).astype(np.uint8))
+    few = whole.quantize(colours, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    few.save(buffer, format="png", optimize=True)
+    return buffer.getvalue()
+
+
+def pixels(bodies: Sequence[ShadedBody], width: int, height: int, tilt_deg: float = TILT_DEG) -> Array:
+    """The bodies (z up) from above, by ``tilt_deg``, and in front, on white: (height, width, 3), 0 to 1."""
+    view = _view(math.radians(-62), math.radians(tilt_deg))
     size = (height * _OVERSAMPLING, width * _OVERSAMPLING)
     image, depth = np.ones((*size, 3)), np.full(size, -np.inf)
     corners = np.concatenate([body.corners for body in bodies]) @ view.T
@@ -34,9 +52,7 @@ def picture(bodies: Sequence[ShadedBody], width: int = 900, height: int = 640) -
     corners[..., :2] = corners[..., :2] * scale + shift
     _paint(image, depth, corners, np.concatenate([_shades(body) for body in bodies]))
     small = image.reshape(height, _OVERSAMPLING, width, _OVERSAMPLING, 3).mean(axis=(1, 3))
-    buffer = io.BytesIO()
-    imsave(buffer, np.clip(small[::-1], 0, 1), format="png", metadata={"Software": "pneutouch"})
-    return buffer.getvalue()
+    return np.asarray(np.clip(small[::-1], 0, 1))
 
 
 def _view(turn: float, tilt: float) -> Array:
@@ -49,7 +65,7 @@ def _view(turn: float, tilt: float) -> Array:
 def _shades(body: ShadedBody) -> Array:
     """Colours at the corners, (n, 3, 3): ambient, diffuse from the upper left, a little from below."""
     diffuse = np.clip(body.normals @ (_LIGHT / np.linalg.norm(_LIGHT)), 0, 1)
-    shade = 0.42 + 0.62 * diffuse + 0.05 * body.normals[..., 2]
+    shade = body.relief * (0.42 + 0.62 * diffuse + 0.05 * body.normals[..., 2]) + (1.0 - body.relief)
     lit: Array = np.clip(shade[..., None] * body.colours, 0, 1)
     return lit
 

@@ -65,8 +65,8 @@ CAPTIONS = {
 GRADE = "The darker the membrane, the more of the stiff resin."
 
 SHAPES = "Half sections of the deformed wall, shaded by the greatest principal stretch; thin outlines at rest."
-NO_SHAPES = "Half sections of the deformed wall are drawn by the solid alone: build with model solid."
-NO_SHAPES_OFF_AXIS = "No deformed wall is drawn: off the axis a half section does not show it."
+NO_SHAPES = "The deformed wall and the contact pressure on it are drawn by the solid alone: build with model solid."
+NO_SHAPES_OFF_AXIS = "No half sections are drawn: off the axis they do not show the deformed wall."
 
 
 def tuning(other_contact: bool) -> str:

@@ -8,13 +8,16 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.harmonic.contact import HarmonicContact, X, Y
+from pneutouch.mechanics.harmonic.face import pressed_face
+from pneutouch.mechanics.harmonic.fields import Harmonics
 from pneutouch.mechanics.harmonic.friction_path import SurfaceFrictionFollower, held_back
 from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.placement import first_height
 from pneutouch.mechanics.harmonic.settling import ContactNewton, Foreseen
 from pneutouch.mechanics.harmonic.shear import ShearPath, not_sheared, shear
 from pneutouch.mechanics.harmonic.strain import HarmonicProbe
-from pneutouch.mechanics.harmonic.surface import Surface
+from pneutouch.mechanics.harmonic.surface import ProfiledObject, Surface
+from pneutouch.mechanics.pressed_face import PressedFace
 from pneutouch.mechanics.solid.continuation import PathFollower, PlateState
 from pneutouch.mechanics.solid.descend import PathJump, descend
 from pneutouch.mechanics.solid.events import BASE_SHARE, DETAIL, OBJECT_EDGE, OVERHANG, PathPoint, SolidEvent, crossing
@@ -175,6 +178,18 @@ class OffAxisPress:
 
     def _model(self, order: int) -> HarmonicModel:
         return HarmonicModel(self._solid, order, self._stride)
+
+    def face(self, pressed: OffAxisPath, end: float) -> PressedFace:
+        """The outer wall at the end of a shear, or else at the last solved state up to an indentation (mm)."""
+        solid, length, sums = self._solid, self._solid.length, Harmonics(pressed.order, self._stride)
+        last = max((s for s in pressed.path if s.indentation <= end * (1.0 + 1e-9)), key=lambda s: s.indentation)
+        placed = self.surface.at(self.surface.height - last.indentation / length)
+        assert isinstance(placed, ProfiledObject)
+        if pressed.shear is None or not pressed.shear.states:
+            return pressed_face(solid, sums, last.positions, placed, last.indentation)
+        slid = pressed.shear.states[-1]
+        placed = replace(placed, offset=placed.offset + slid.travel / length)
+        return pressed_face(solid, sums, slid.positions, placed, last.indentation, slid.travel)
 
     def _follower(self, model: HarmonicModel) -> PathFollower:
         """The follower of the press, at first contact."""

@@ -27,7 +27,7 @@ class ShearState:
 
     travel: of the object along x.  force, sideways, moment: as of `press.OffAxisState`.  rise: of the pressure over the
     driving one.  sliding: share of the vertical tractions at points that slid in the step to here; of the first state
-    in the last step of the press.
+    in the last step of the press.  positions: coefficients, see `fields.Harmonics`.
     """
 
     travel: float
@@ -36,6 +36,7 @@ class ShearState:
     moment: float
     rise: float
     sliding: float
+    positions: Array
 
 
 @dataclass(frozen=True)
@@ -128,6 +129,7 @@ class _ShearRecorder:
             moment=moment[1] * mu * length**3,
             rise=state.state.filling.pressure * mu - self._driving,
             sliding=_share(load, friction.points),
+            positions=state.state.x * length,
         )
 
     def beyond_edge(self, state: PlateState) -> bool:

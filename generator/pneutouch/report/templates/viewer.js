@@ -1,18 +1,19 @@
-// The 3D view. The picture in the page stays where it is when WebGL is missing, fails or is lost.
-(function () {
+// The 3D views. The picture in the page stays where it is when WebGL is missing, fails or is lost.
+document.querySelectorAll(".view").forEach(function (box) {
   "use strict";
-  var box = document.getElementById("view"), source = document.getElementById("view-data");
-  if (!box || !source) return;
+  var source = document.getElementById(box.id + "-data");
+  if (!source) return;
 
   var VERTEX =
-    "attribute vec3 position, normal, colour; uniform mat3 turn; uniform vec2 scale, shift; uniform vec3 light;" +
+    "attribute vec3 position, normal, colour; uniform mat3 turn; uniform vec2 scale, shift; uniform vec3 light; uniform float relief;" +
     "varying vec3 shade;" +
     "void main() { vec3 seen = turn * position, n = normalize(normal);" +
     "float diffuse = max(dot(turn * n, light), 0.0);" +
-    "shade = colour * (0.42 + 0.62 * diffuse + 0.05 * n.z);" +
+    "shade = colour * (relief * (0.42 + 0.62 * diffuse + 0.05 * n.z) + 1.0 - relief);" +
     "gl_Position = vec4((seen.xy - shift) * scale, -0.4 * seen.z, 1.0); }";
   var FRAGMENT = "precision mediump float; varying vec3 shade; void main() { gl_FragColor = vec4(shade, 1.0); }";
-  var turned = -62 * Math.PI / 180, tilted = 26 * Math.PI / 180, zoom = 1;
+  var data = JSON.parse(source.textContent);
+  var turned = -62 * Math.PI / 180, tilted = data.tilt_deg * Math.PI / 180, zoom = 1;
   var start = rotation(turned, tilted), light = unit(times(start, [-0.35, -0.55, 0.76]));
 
   function unit(v) { var n = Math.hypot(v[0], v[1], v[2]); return [v[0] / n, v[1] / n, v[2] / n]; }
@@ -53,9 +54,10 @@
       for (var k = 0; k < values.length; k++) out[4 * Math.floor(k / 3) + k % 3] = values[k];
       return out;
     }
-    var triangles = new Uint16Array(bytes(body.triangles).buffer);
+    var triangles = body.columns ? grid(body) : new Uint16Array(bytes(body.triangles).buffer);
     return {
       count: triangles.length,
+      relief: body.relief,
       triangles: filled(gl.ELEMENT_ARRAY_BUFFER, triangles),
       arrays: [
         [gl.SHORT, 8, filled(gl.ARRAY_BUFFER, padded(new Int16Array(bytes(body.positions).buffer), Int16Array))],
@@ -63,6 +65,15 @@
         [gl.UNSIGNED_BYTE, 4, filled(gl.ARRAY_BUFFER, padded(bytes(body.colours), Uint8Array))]
       ]
     };
+  }
+  // Two triangles to a field of a grid that closes around its axis.
+  function grid(body) {
+    var n = body.columns, fields = bytes(body.positions).length / 6 - n, out = new Uint16Array(6 * fields);
+    for (var k = 0; k < fields; k++) {
+      var next = k - k % n + (k + 1) % n;
+      out.set([k, next, next + n, k, next + n, k + n], 6 * k);
+    }
+    return out;
   }
   // The least and the greatest of what is seen at the start, across and upwards.
   function extent(bodies) {
@@ -81,7 +92,7 @@
     var canvas = document.createElement("canvas");
     var gl = canvas.getContext("webgl", { antialias: true, alpha: false });
     if (!gl) return;
-    var data = JSON.parse(source.textContent), made = program(gl), most = extent(data.bodies);
+    var made = program(gl), most = extent(data.bodies);
     var parts = data.bodies.map(function (body) { return loaded(gl, body); });
     var waiting = false;
 
@@ -104,6 +115,7 @@
       gl.uniform2f(gl.getUniformLocation(made, "shift"), most.middle[0], most.middle[1]);
       gl.uniform3fv(gl.getUniformLocation(made, "light"), light);
       parts.forEach(function (part) {
+        gl.uniform1f(gl.getUniformLocation(made, "relief"), part.relief);
         part.arrays.forEach(function (array, k) {
           gl.bindBuffer(gl.ARRAY_BUFFER, array[2]);
           gl.enableVertexAttribArray(k);
@@ -154,11 +166,11 @@
     window.addEventListener("resize", again);
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "img");
-    canvas.setAttribute("aria-label", "3D view of the sensor, cut open; arrow keys turn it, + and - zoom");
+    canvas.setAttribute("aria-label", box.querySelector("img").alt + "; arrow keys turn it, + and - zoom");
     box.appendChild(canvas);
     box.classList.add("live");
     draw();
   }
 
   try { begin(); } catch (error) { box.classList.remove("live"); }
-})();
+});

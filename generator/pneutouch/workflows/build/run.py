@@ -21,6 +21,7 @@ from pneutouch.output.recipe import BuildRecipe
 from pneutouch.printability import refuse
 from pneutouch.report.datasheet import datasheet
 from pneutouch.report.picture import picture
+from pneutouch.report.pressed import pressed_files
 from pneutouch.report.print_sheet import print_sheet
 from pneutouch.report.shown import shown
 from pneutouch.units import ML
@@ -61,6 +62,8 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
     progress("datasheet")
     sheet = sheet_data(evaluation, input_hash(evaluation))
     files |= datasheet(sheet)
+    if sheet.pressed is not None:
+        files |= pressed_files(sheet.pressed, scene.name)
     files["print-sheet.md"] = print_sheet(sheet, left_out).encode()
     progress("files")
     about = {**_measured(evaluation, bodies), **({"left_out": left_out} if left_out else {})}
