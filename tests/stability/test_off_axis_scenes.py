@@ -7,6 +7,8 @@ from tests.stability.off_axis_scenes import ended, random_scene
 
 #: Scenes of the share that is tested.
 SHARE = 30
+#: A bar across a thin dome, sheared with little friction: most of its time goes into solves that fail.
+HARDEST = 34
 
 
 def test_a_scene_reaches_its_depth_and_one_that_touches_the_connector_says_what_works():
@@ -28,7 +30,7 @@ def test_scenes_are_of_all_kinds():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(SHARE))
+@pytest.mark.parametrize("seed", [*range(SHARE), HARDEST])
 def test_random_scenes_end(seed):
     end = ended(seed)
     assert isinstance(end.run, PneutouchError) or end.travelled > 0.0

@@ -6,7 +6,10 @@ from functools import cache
 import numpy as np
 import pytest
 
+from pneutouch.arrays import Array
+from pneutouch.mechanics.harmonic import friction_path
 from pneutouch.mechanics.harmonic.friction_path import SurfaceFrictionFollower
+from pneutouch.mechanics.harmonic.friction_settling import SurfaceFrictionSolver
 from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.shear import ENDED_BEFORE, STEPS, ShearPath
@@ -14,6 +17,7 @@ from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.descend import descend
 from pneutouch.mechanics.solid.first_touch import first_touch
+from pneutouch.mechanics.solid.friction_newton import SlidingResult
 from pneutouch.mechanics.solid.indent import PressSettings, shut_in
 from pneutouch.mechanics.solid.indenter import cylinder
 from pneutouch.mechanics.solid.inflate import FreeState, state_at
@@ -168,3 +172,23 @@ def test_it_ends_at_the_edge_of_the_object_and_is_not_begun_after_a_press_that_e
 def test_it_needs_friction() -> None:
     with pytest.raises(ValueError, match="slides off"):
         _press(0.0, 2.0)
+
+
+def test_a_path_whose_solves_fail_again_and_again_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    follower, real, longest, steps = _gripped().slid(1.0), SurfaceFrictionSolver.minimise, 6.0e-4, 24
+    failed: list[float] = []
+
+    def short_only(
+        self: SurfaceFrictionSolver, x: Array, kept: Array | None = None, max_iterations: int = steps
+    ) -> SlidingResult | NewtonFailure:
+        if self.step.along - follower.here.height <= longest:
+            return real(self, x, kept, max_iterations)
+        failed.append(self.step.along)
+        return NewtonFailure("no equilibrium near the guess", max_iterations)
+
+    monkeypatch.setattr(SurfaceFrictionSolver, "minimise", short_only)
+    monkeypatch.setattr(friction_path, "MOST_FAILED", 10 * steps)
+    end = descend(follower, 0.05)
+    assert end is not None and (end.kind, end.height) == ("lost", follower.here.height)
+    assert len(failed) == 10 and end.why == "solves failed again and again, in 240 Newton steps together"
+    assert follower.slid(1.0).given_up is None

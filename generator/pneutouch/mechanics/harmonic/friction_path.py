@@ -15,6 +15,11 @@ from pneutouch.mechanics.harmonic.friction_settling import SurfaceFrictionSolver
 from pneutouch.mechanics.harmonic.surface import Surface, SurfaceHeight
 from pneutouch.mechanics.solid.continuation import PlateState
 from pneutouch.mechanics.solid.friction_path import FrictionFollower, approach
+from pneutouch.mechanics.solid.newton import NewtonFailure
+
+MOST_FAILED = 600
+"""Newton steps of failed solves after which a path is not continued past another one: 25 solves without an end, each of
+which may cost more than the whole path; sound paths of random scenes needed up to 288."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +65,8 @@ class SurfaceFrictionFollower(FrictionFollower):
     """A `FrictionFollower` of a wall with harmonics."""
 
     _plate: Surface
+    #: Newton steps of the path's failed solves.
+    _failed = 0
 
     @property
     def plate(self) -> Surface:
@@ -81,10 +88,24 @@ class SurfaceFrictionFollower(FrictionFollower):
         """A follower of the object that moves sideways from the newest state on, towards x or, where ``sense`` is -1,
         away from it; the path is by the travel, and all points stick at first."""
         other, here = copy(self), self.here
-        other._plate, other.down = SlidObject(self._plate.at(here.height), sense), -1.0
+        other._plate, other.down, other._failed = SlidObject(self._plate.at(here.height), sense), -1.0, 0
         other.path = [replace(here, height=0.0)]
         other.path = [other._stuck()]
         return other
+
+    @property
+    def given_up(self) -> str | None:
+        """Why no further solves are tried where one fails, or None."""
+        if self._failed < MOST_FAILED:
+            return None
+        return f"solves failed again and again, in {self._failed} Newton steps together"
+
+    def solve(self, height: float) -> PlateState | NewtonFailure:
+        """State at a place of the path ahead; not kept."""
+        solved = super().solve(height)
+        if isinstance(solved, NewtonFailure):
+            self._failed += solved.iterations
+        return solved
 
     def _solver(self, height: float, rest: Array) -> SurfaceFrictionSolver:
         plate = self._plate.at(height)

@@ -118,6 +118,11 @@ class PathFollower:
         """The newest state."""
         return self.path[-1]
 
+    @property
+    def given_up(self) -> str | None:
+        """Why no further solves are tried where one fails, or None."""
+        return None
+
     def feed(self, supply: Supply) -> None:
         """Fill the cavity by another supply from here on: the next state is solved with it."""
         self.path[-1] = replace(self.here, scene=replace(self.here.scene, supply=supply))

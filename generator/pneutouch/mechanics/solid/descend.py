@@ -78,6 +78,8 @@ def _close_in(follower: PathFollower, end: float) -> PathJump | None:
         closed = follower.left(bad) <= JUMP_WITHIN
         if closed and tried_from_here:
             break
+        if follower.given_up is not None:
+            return _limit_point(follower.path) or PathJump("lost", here.height, follower.given_up)
         again = retries > 0 and not tried_from_here and here is not begun
         retries -= again
         height = bad if closed or again else 0.5 * (here.height + bad)
@@ -101,9 +103,8 @@ def _past_a_stall(follower: PathFollower, end: float, stalled: NewtonFailure) ->
     With friction the search is by no energy and often finds nothing: there the end is read from the path itself.
     """
     here = follower.here
-    if here.friction is not None and _turns_back(follower.path):
-        why = f"the wall moves {_speed(here):.0f} times as far as the object, and the path turns back"
-        return PathJump(_kind(here, here.by_height), here.height, f"{why}; {_place(here, here.by_height)}")
+    if here.friction is not None and (turn := _limit_point(follower.path)) is not None:
+        return turn
     for further in (1, 2, 4, 8):
         other = follower.solve(here.height - follower.down * further * _BEYOND_STALL)
         if isinstance(other, NewtonFailure):
@@ -115,6 +116,15 @@ def _past_a_stall(follower: PathFollower, end: float, stalled: NewtonFailure) ->
         elif _stays_away(here, other):
             return _jump(follower.path, other)
     return PathJump("lost", here.height, stalled.why)
+
+
+def _limit_point(path: list[PlateState]) -> PathJump | None:
+    """The jump of a path whose newest states run into a limit point; None where they do not."""
+    if not _turns_back(path):
+        return None
+    here = path[-1]
+    why = f"the wall moves {_speed(here):.0f} times as far as the object, and the path turns back"
+    return PathJump(_kind(here, here.by_height), here.height, f"{why}; {_place(here, here.by_height)}")
 
 
 def _turns_back(path: list[PlateState]) -> bool:

@@ -92,13 +92,13 @@ class FrictionSolver:
                 step = self._held_step(here)
                 slope = float(step @ here.residual)
             if not np.isfinite(slope) or slope >= 0.0:
-                return NewtonFailure(f"the Newton step does not go downhill (slope {slope:.2e})")
+                return NewtonFailure(f"the Newton step does not go downhill (slope {slope:.2e})", iteration)
             moved = self._search(here, step, slope)
             if moved is None:
-                return NewtonFailure("no step along the Newton direction lowers the energy")
+                return NewtonFailure("no step along the Newton direction lowers the energy", iteration)
             here, left = moved, -slope * (float(np.linalg.norm(moved.residual)) / max(size, 1.0e-300)) ** 2
         size = float(np.linalg.norm(here.residual)) / here.scale
-        return NewtonFailure(f"residual {size:.1e} after {max_iterations} iterations")
+        return NewtonFailure(f"residual {size:.1e} after {max_iterations} iterations", max_iterations)
 
     def hold(self, state: SolverState) -> HeldState:
         """Friction at an evaluated state."""

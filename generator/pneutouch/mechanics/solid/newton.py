@@ -85,9 +85,10 @@ class NewtonResult:
 
 @dataclass(frozen=True)
 class NewtonFailure:
-    """Newton did not converge: why, in words."""
+    """Newton did not converge: why, in words; iterations: steps that it took, where they are counted."""
 
     why: str
+    iterations: int = 0
 
 
 def evaluate(scene: SolidScene, x: Array) -> SolverState | None:
