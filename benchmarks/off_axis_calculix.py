@@ -75,7 +75,7 @@ def figures(force: float, sideways: float, rise: float) -> dict[str, float]:
 def section(data: list[dict[str, Any]]) -> list[str]:
     """The lines of the comparison for a page."""
     worst = {figure: max(map(abs, differences(data, figure))) for figure in FIGURES}
-    orders = ", ".join(map(str, sorted({scene["harmonics"] for scene in data})))
+    orders = " or ".join(map(str, sorted({scene["harmonics"] for scene in data})))
     refined = " and ".join(f"{_times(s['cells'][-2])} to {_times(s['cells'][-1])}" for s in data if len(s["cells"]) > 1)
     return [
         HEADING,
@@ -110,8 +110,8 @@ def _cost_lines(data: list[dict[str, Any]]) -> list[str]:
         for scene in timed
     ]
     return [
-        "Processor times of both programs in one run, of one thread, CalculiX's of its whole process. The last column is the "
-        "share of its Newton iterations that went to the second pressure, from which Boyle's law follows.",
+        "Processor times of both programs, one after the other on one machine, of one thread, CalculiX's of its whole "
+        "process. The last column is the share of its Newton iterations that went to the second pressure, from which Boyle's law follows.",
         "",
         "| scene | M | CalculiX's cells | CalculiX's time over that of the harmonic solid | second pressure |",
         "|---|---|---|---|---|",

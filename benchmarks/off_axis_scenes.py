@@ -55,8 +55,8 @@ class OffAxisScene:
     CalculiX's dome, along the arc, through the wall and around half the axis, on a mesh or on coarser and finer ones;
     those in the upper half of the arc are ``closer`` times shorter than below. Compared at half of ``depth`` and at it,
     and where a travel follows at ``stops`` of ten equal parts of it. ``increment``: see `HalfPress`. ``order``: of the
-    harmonics. ``steps``: to half of the depth. ``modulus``: shear modulus, MPa. ``others``: orders and cells by which
-    the harmonic solid is timed and compared, too."""
+    harmonics. ``steps``: to half of the depth. ``modulus``: shear modulus, MPa. ``symmetric``: about the plane x = 0 too.
+    ``others``: orders and cells by which the harmonic solid is timed and compared, too."""
 
     name: str
     surface: Surface
@@ -69,6 +69,7 @@ class OffAxisScene:
     order: int = ORDER
     friction: float = 0.0
     modulus: float = 0.17
+    symmetric: bool = False
     steps: int = 1
     travel: float = 0.0
     stops: tuple[int, ...] = (2, 5, 10)
@@ -80,7 +81,7 @@ class OffAxisScene:
         solid = SolidModel(dome(INNER, WALL, *cells), paper(self.modulus).wall.hyperelastic)
         settings = PressSettings(self.depth, 2 * self.steps, friction=self.friction, gauge_range=np.inf)
         free, probe = state_at(solid, self.driving), StrainProbe(solid)
-        press = OffAxisPress(solid, free, settings, self.surface, probe, self.travel)
+        press = OffAxisPress(solid, free, settings, self.surface, probe, self.travel, self.symmetric)
         path = press.run(order or self.order)
         states = path.states[:: self.steps]
         places = [Place(s.indentation, 0.0, s.force, s.sideways, s.pressure) for s in states]
@@ -142,6 +143,8 @@ def _sheared(friction: float, modulus: float, *meshes: tuple[int, int, int]) -> 
 
 OTHERS = ((4, (12, 1)), (4, (24, 2)), (ORDER, (24, 2)))
 """Orders, and cells along the arc and through the wall, by which the harmonic solid is timed."""
+EVEN_OTHERS = ((8, (48, 2)), (12, (24, 2)), (16, (24, 2)))
+"""The same in a scene that is symmetric about two planes."""
 
 SCENES = (
     _plate(10.0, 0.0, (28, 2, 6), (40, 2, 6)),
@@ -150,7 +153,7 @@ SCENES = (
     _ball(6.0, 3.0, 22.0 * KPA, (26, 2, 10)),
     _plate(20.0, 0.0, (28, 2, 6)),
     _ball(12.0, 4.0, 0.0, (26, 2, 10)),
-    replace(_lying("edge", 5.0, 0.0, 0.0, (28, 2, 6)), others=OTHERS),
+    replace(_lying("edge", 5.0, 0.0, 0.0, (36, 2, 8)), order=8, symmetric=True, increment=0.25, others=EVEN_OTHERS),
     replace(_lying("edge", 5.0, 2.5, 0.0, (24, 2, 10)), order=8, increment=0.25),
     _sheared(0.3, 0.91, (28, 2, 6)),
 )

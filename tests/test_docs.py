@@ -158,19 +158,28 @@ def test_presses_off_the_axis_agree_with_calculix_in_three_dimensions():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("driving_pressure_kPa", [0, 22])
-def test_the_press_under_a_leaning_plate_is_what_the_code_gives_today(driving_pressure_kPa):
+@pytest.mark.parametrize(
+    "name",
+    [
+        "plate tilted by 10 degrees, 0 kPa",
+        "plate tilted by 10 degrees, 22 kPa",
+        "edge of 5 mm radius, across the middle, 0 kPa",
+    ],
+)
+def test_a_press_compared_with_calculix_is_what_the_code_gives_today(name):
     """And what it gives today is within 2 % of CalculiX."""
-    from benchmarks.off_axis_calculix import figures
+    from benchmarks.off_axis_calculix import compares, figures
     from benchmarks.off_axis_scenes import SCENES as OFF_AXIS
 
-    name = f"plate tilted by 10 degrees, {driving_pressure_kPa} kPa"
     scene = next(scene for scene in OFF_AXIS if scene.name == name)
     rows = next(known["rows"] for known in stored("off-axis-calculix.json") if known["scene"] == name)
     for place, row in zip(scene.pressed().places[1:], rows, strict=True):
         today = figures(place.force, place.sideways, place.pressure - scene.driving)
-        assert today == pytest.approx(row["harmonic"], rel=1e-4)
-        assert today == pytest.approx(row["calculix"][-1], rel=0.02)
+        known = [figure for figure in today if compares(row, figure)]
+        assert len(known) == (2 if scene.symmetric else 3)
+        for figure in known:
+            assert today[figure] == pytest.approx(row["harmonic"][figure], rel=1e-4), figure
+            assert today[figure] == pytest.approx(row["calculix"][-1][figure], rel=0.02), figure
 
 
 def test_presses_with_friction_agree_with_calculix_in_three_dimensions():
