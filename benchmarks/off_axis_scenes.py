@@ -154,6 +154,6 @@ SCENES = (
     _plate(20.0, 0.0, (28, 2, 6)),
     _ball(12.0, 4.0, 0.0, (26, 2, 10)),
     replace(_lying("edge", 5.0, 0.0, 0.0, (36, 2, 8)), order=8, symmetric=True, increment=0.25, others=EVEN_OTHERS),
-    replace(_lying("edge", 5.0, 2.5, 0.0, (24, 2, 10)), order=8, increment=0.25),
+    replace(_lying("edge", 5.0, 2.5, 0.0, (24, 2, 10)), order=12, increment=0.25),
     _sheared(0.3, 0.91, (28, 2, 6)),
 )

@@ -164,6 +164,7 @@ def test_presses_off_the_axis_agree_with_calculix_in_three_dimensions():
         "plate tilted by 10 degrees, 0 kPa",
         "plate tilted by 10 degrees, 22 kPa",
         "edge of 5 mm radius, across the middle, 0 kPa",
+        "edge of 5 mm radius, 2.5 mm off the axis, 0 kPa",
     ],
 )
 def test_a_press_compared_with_calculix_is_what_the_code_gives_today(name):
