@@ -11,9 +11,11 @@ from matplotlib.figure import Figure
 
 from pneutouch.errors import InputError
 from pneutouch.evaluation.charts import tradeoff, tuning
+from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.uncertainty import batch_of
 from pneutouch.report.certainty import SENSITIVITY, ends, shares
+from pneutouch.report.curves import sensitivities
 from pneutouch.report.shares import OTHERS, ranked, share_bars
 from pneutouch.report.tradeoff import tradeoff_chart
 from pneutouch.report.tuning import tuning_chart
@@ -174,3 +176,9 @@ def test_share_bars_add_up_and_are_as_long_as_the_shares(evaluated, axes):
     share_bars(found)
     lengths = [bar.get_width() for bar in axes[0].patches]
     np.testing.assert_allclose(lengths, 100 * np.concatenate(list(rows.values())))
+
+
+def test_a_single_state_at_0_kPa_without_resin_curves_is_drawn(axes):
+    changes = {"pneumatics.driving_pressures_kPa": [0.0]}
+    sensitivities({}, evaluate("paper-dome", changes, model="atlas").prediction, "TangoPlus", {})
+    assert axes[0].get_xlim() == (0.0, 1.0)

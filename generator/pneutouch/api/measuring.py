@@ -112,7 +112,7 @@ def characterize(
     design: Design | str | Path | None = None,
     *,
     target: str | Path | None = None,
-    model: str = "solid",
+    model: str | None = None,
     evidence: str = "doubtful",
     columns: Mapping[str, Mapping[str, Any]] | None = None,
     file_format: Mapping[str, Any] | None = None,
@@ -123,15 +123,19 @@ def characterize(
     ``{"force": {"name": "Load", "unit": "N"}}`` and ``{"decimal": ","}``; what they leave out is as the campaign states
     it, else found from each file.
     ``target`` is a target file to compare with; ``evidence`` states of which runs `Result.save` plots the evidence:
-    "doubtful", "all" or "none". Files that cannot be read are listed under ``failures``.
+    "doubtful", "all" or "none".
+    ``model`` None: the solid, and harmonic for contact off the axis. Files that cannot be read are listed under
+    ``failures``.
     """
+    from pneutouch.mechanics.models import USUAL
     from pneutouch.workflows.characterize.run import characterize as run
     from pneutouch.workflows.characterize.run import write
 
     target_file = None if target is None else Path(target)
     with named_by_keyword():
         source = None if design is None else source_of(design)
-        outcome = run(Path(data), source, target=target_file, model=model, reading=_reading(columns, file_format))
+        reading = _reading(columns, file_format)
+        outcome = run(Path(data), source, target=target_file, model=model or USUAL, reading=reading)
     return Result(f"Measured {outcome.name}", outcome.document, lambda out: write(outcome, out, evidence))
 
 

@@ -2,7 +2,7 @@
 
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -10,10 +10,13 @@ from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOptio
 from pneutouch.cli.commands import option
 from pneutouch.cli.complete import names
 from pneutouch.cli.declared import with_fields
-from pneutouch.cli.next_step import report_next
+from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.reading import READING_FIELDS, ColumnsOption, reading_of, reading_text, reading_words
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.spec.campaign import Campaign
+
+if TYPE_CHECKING:
+    from pneutouch.workflows.characterize.run import CharacterizationResult
 
 DesignOption = Annotated[
     str | None,
@@ -33,8 +36,13 @@ def characterize(
         Path | None, typer.Option("--target", metavar="FILE", help="Target file (TOML) to pass or fail against.")
     ] = None,
     model: Annotated[
-        str, typer.Option("--model", help="Model of the prediction: membrane, atlas, solid or auto.")
-    ] = "solid",
+        str | None,
+        typer.Option(
+            "--model",
+            help="Model of the prediction: membrane, atlas, solid, harmonic or auto.",
+            show_default="solid; harmonic for contact off the axis",
+        ),
+    ] = None,
     evidence: Annotated[
         str, typer.Option("--evidence", help="Runs whose evidence is plotted: doubtful, all or none.")
     ] = "doubtful",
@@ -49,6 +57,7 @@ def characterize(
     with reporting():
         from pneutouch.cli.progress import bar
         from pneutouch.errors import InputError, nearest
+        from pneutouch.mechanics.models import USUAL
         from pneutouch.workflows.characterize.run import EVIDENCE, write
         from pneutouch.workflows.characterize.run import characterize as run
 
@@ -56,7 +65,7 @@ def characterize(
             raise InputError(f"--evidence {evidence}: unknown.{nearest(evidence, EVIDENCE)}")
         with bar("reading runs", unit="MB") as progress:
             given, reading = changes(set_, calibration), reading_of(columns, fields)
-            outcome = run(data, design, given, target=target, model=model, progress=progress, reading=reading)
+            outcome = run(data, design, given, target=target, model=model or USUAL, progress=progress, reading=reading)
         folder = write(outcome, out, evidence)
         if json:
             print_json({**outcome.document, "folder": str(folder)})
@@ -74,12 +83,27 @@ def characterize(
             raise typer.Exit(3)
         if outcome.missed:
             raise typer.Exit(1)
-        runs = outcome.measured.campaign.runs
-        fitted = sorted({run.sensor for run in runs if run.kind in ("steps", "injection")})
-        if not json and fitted and (data.is_dir() or data.suffix == ".toml"):
-            if outcome.fitted:
-                named = ["--sensor", fitted[0]] if len({run.sensor for run in runs}) > 1 else []
-                given_words = [*(["--design", design] if design else []), *reading_words(columns, fields)]
-                report_next("calibrate", data, *named, *given_words)
-            else:
-                report_next("compare", outcome.design_given, folder)
+        if not json and (data.is_dir() or data.suffix == ".toml"):
+            _report_next(outcome, data, folder, design, set_, reading_words(columns, fields))
+
+
+def _report_next(
+    outcome: "CharacterizationResult",
+    data: Path,
+    folder: Path,
+    design: str | None,
+    set_: list[str] | None,
+    read: list[str],
+) -> None:
+    """Report the next command: the fit of a sensor or, where the fit does not cover the design, the comparison."""
+    campaign = outcome.measured.campaign
+    fitted = sorted({run.sensor for run in campaign.runs if run.kind in ("steps", "injection")})
+    if not fitted:
+        return
+    if outcome.fitted:
+        named = ["--sensor", fitted[0]] if len({run.sensor for run in campaign.runs}) > 1 else []
+        report_next("calibrate", data, *named, *(["--design", design] if design else []), *read)
+    else:
+        # The campaign's own assignments belong to the design that it names.
+        given = [] if design else campaign.assignments
+        report_next("compare", outcome.design_given, folder, *set_words([*given, *(set_ or ())]))

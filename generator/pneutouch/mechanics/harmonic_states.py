@@ -14,7 +14,7 @@ from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.shear import ShearPath
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject
 from pneutouch.mechanics.models import HARMONICS_SETTLED
-from pneutouch.mechanics.off_axis_curve import OffAxisCurve, ShearCurve
+from pneutouch.mechanics.off_axis_curve import OffAxisCurve, RangeCurve, ShearCurve
 from pneutouch.mechanics.prediction import ModelResult, SensorState
 from pneutouch.mechanics.response import Figures, figures
 from pneutouch.mechanics.sensor import Sensor
@@ -29,6 +29,9 @@ ORDERS = (4, 6, 8, 12)
 
 EVEN_ORDERS = (*ORDERS, 16, 24)
 """The same where only even harmonics are not zero: they are half as many."""
+
+_READ = 56
+"""Equal steps of a range at which its curve is read between the solved states."""
 
 _COMPARED = 3
 """States at which an answer is compared with fewer harmonics."""
@@ -203,10 +206,17 @@ def _record(
             last_change,
             pressed.column("sideways"),
             pressed.column("moment"),
+            _to_end(pressed, end),
             None if pressed.shear is None else _shear_curve(pressed.shear),
         ),
         face=press.face(pressed, end),
     )
+
+
+def _to_end(pressed: OffAxisPath, end: float) -> RangeCurve:
+    """The curve between the solved states, to the end of the range."""
+    grid = np.linspace(0.0, end, _READ + 1)
+    return RangeCurve(grid, *curve_between(pressed.path, grid))
 
 
 def _shear_curve(path: ShearPath) -> ShearCurve:

@@ -80,20 +80,34 @@ class OffAxisRecord(TypedDict):
 
 
 @dataclass(frozen=True, slots=True)
+class RangeCurve:
+    """A loading curve from first contact to the end of its range at equal steps (arrays of one length, mm, N, MPa), by
+    Hermite cubics through the solved states and their slopes."""
+
+    indentation: Array
+    force: Array
+    rise: Array
+
+
+@dataclass(frozen=True, slots=True)
 class OffAxisCurve:
     """What contact off the axis adds to a loading curve (N, N mm; see `harmonic.press.OffAxisState`), the order of its
-    harmonics, and the share by which the last raise of the order changed sensitivity, force or pressure rise."""
+    harmonics, and the share by which the last raise of the order changed sensitivity, force or pressure rise.
+    ``to_end`` is the curve between its points, to the very end of its range."""
 
     order: int
     last_change: float
     sideways: Array
     moment: Array
+    to_end: RangeCurve
     shear: ShearCurve | None = None
 
     def scaled(self, force: float, rise: float) -> OffAxisCurve:
         """With all forces and the pressure rise times factors."""
         sheared = None if self.shear is None else self.shear.scaled(force, rise)
-        return replace(self, sideways=force * self.sideways, moment=force * self.moment, shear=sheared)
+        to_end = replace(self.to_end, force=force * self.to_end.force, rise=rise * self.to_end.rise)
+        sideways, moment = force * self.sideways, force * self.moment
+        return replace(self, sideways=sideways, moment=moment, to_end=to_end, shear=sheared)
 
     def document(self) -> OffAxisRecord:
         """The curve in boundary units."""

@@ -212,7 +212,8 @@ def sensitivities(
         highest = max([float(np.max(values)) for _, values, _ in every.values()] + predicted.tolist(), default=1.0)
         highest = max([highest, *published_kPa_per_N.values()])
         ax.set(xlabel="driving pressure  (kPa)", ylabel="sensitivity  (kPa/N)")
-        ax.set(xlim=(0, 1.02 * right), ylim=(0, 1.1 * highest))
+        # A design that is not driven, off the axis, where no resin has a curve: the only point is at 0 kPa.
+        ax.set(xlim=(0, 1.02 * right or 1.0), ylim=(0, 1.1 * highest))
         label_ends(ax, ends)
         return svg(drawn)
 

@@ -15,6 +15,7 @@ from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.read import parse_changes
 from pneutouch.spec.toml_text import toml_text
+from pneutouch.workflows.characterize import run as characterizing
 from pneutouch.workflows.characterize.run import characterize
 from pneutouch.workflows.simulate.options import SimulationOptions
 from pneutouch.workflows.simulate.run import simulate
@@ -201,3 +202,18 @@ def test_a_wrong_campaign_file_says_what_is_wrong(folder, library, change, said)
     rewritten(folder, change)
     with pytest.raises(InputError, match=said):
         run(folder, library)
+
+
+@pytest.mark.parametrize(("offset", "model"), [(0.0, "solid"), (3.0, "harmonic")])
+def test_without_a_model_the_prediction_off_the_axis_is_the_harmonic_ones(offset, model, folder, library, monkeypatch):
+    given = []
+    answers = characterizing.answers
+
+    def answered(name, changes, pairs, model, library):
+        given.append((changes["contact.offset_mm"], model))
+        return answers(name, {}, pairs, "atlas", library)
+
+    monkeypatch.setattr(characterizing, "answers", answered)
+    rewritten(folder, lambda content: content.update(assignments=[f"contact.offset_mm={offset:g}"]))
+    outcome = characterize(folder, library=library)
+    assert given == [(offset, model)] and outcome.measured.model == model

@@ -15,6 +15,7 @@ from pneutouch.catalogue import DesignSource, Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.fitted import check_fitted
+from pneutouch.mechanics.models import USUAL, usual_model
 from pneutouch.output.files import MANIFEST, check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import entry, input_hash, manifest
 from pneutouch.parts import assemble
@@ -78,7 +79,7 @@ def characterize(
     changes: Changes | None = None,
     *,
     target: Path | None = None,
-    model: str = "solid",
+    model: str = USUAL,
     library: Library | None = None,
     progress: Progress = lambda done, total: None,
     reading: Reading | None = None,
@@ -86,8 +87,8 @@ def characterize(
     """Read a campaign's folder or one file, and compare its figures with the prediction of its design.
 
     ``design`` comes before the one that the campaign names; ``changes`` are laid over either, and ``reading`` (tables
-    ``columns`` and ``format``) over what the campaign states of its files. Raises InputError where
-    nothing can be read; files that fail are listed in the outcome.
+    ``columns`` and ``format``) over what the campaign states of its files. ``model`` USUAL is the solid, or harmonic
+    off the axis. Raises InputError where nothing can be read; files that fail are listed in the outcome.
     """
     library = library or Library.default()
     name, named = (design, {}) if design is not None else _design_of(data)
@@ -98,10 +99,12 @@ def characterize(
         given.setdefault("pneumatics.ambient_pressure_kPa", loaded.campaign.ambient_pressure_kPa)
     _check_resins(data, loaded, library)
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
+    scene = load_scene(name, given, library)
+    if model == USUAL:
+        model = usual_model(sensor_of(assemble(scene)))
     answer_of = answers(name, given, pairs, model, library)
     curves, failures, questions = sound(loaded, answer_of)
     groups = summarize(curves)
-    scene = load_scene(name, given, library)
     pushed, unread = injections(loaded, scene)
     measured = CampaignReport(
         campaign=loaded.campaign,
