@@ -191,7 +191,7 @@ def test_a_sensor_outside_the_atlas_says_so_on_its_sheet(page):
     assert "No interval is given: the sensor is outside the atlas: the flange is held as printed" in page
     assert "Trade-off and tuning charts are not drawn: the sensor is outside the atlas" in page
     assert "drawn by the solid" in page
-    assert page.count("<svg") == 8
+    assert page.count("<svg") == 9
 
 
 def test_zero_drift_is_that_of_the_gas_in_a_dome_that_yields(evaluated):
