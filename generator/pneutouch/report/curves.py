@@ -206,9 +206,7 @@ def sensitivities(
             )
         legend_above(ax)
         # At the driving pressure 0 alone the axis would have no length.
-        right = (
-            max([float(pressures[-1]) for pressures, *_ in every.values()] + states_kPa.tolist(), default=0.0) or 1.0
-        )
+        right = max([float(pressures[-1]) for pressures, *_ in every.values()] + states_kPa.tolist(), default=0.0)
         highest = max([float(np.max(values)) for _, values, _ in every.values()] + predicted.tolist(), default=1.0)
         highest = max([highest, *published_kPa_per_N.values()])
         ax.set(xlabel="driving pressure  (kPa)", ylabel="sensitivity  (kPa/N)")
