@@ -8,24 +8,18 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
-from contextlib import ExitStack
 from dataclasses import dataclass, replace
-from functools import cache
 from typing import Any
-from unittest import mock
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.catalogue import Library
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.mechanics.harmonic import settling
 from pneutouch.mechanics.harmonic.press import OffAxisPath
 from pneutouch.mechanics.harmonic.shear import ENDED_BEFORE, STEPS
 from pneutouch.mechanics.harmonic_states import off_axis_press
-from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid import friction_newton, newton
 from pneutouch.mechanics.solid.events import DETAIL, OBJECT_EDGE
 from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, RigidObject, ball, cylinder, edge
 from pneutouch.mechanics.solid.inflate import inflate, state_at
@@ -33,14 +27,11 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.stress import StrainProbe
-from pneutouch.spec.material import Material
-from tests.stability.random_scenes import ENDS, RADIUS
+from tests.stability.random_scenes import ENDS, MOST_NEWTON_STEPS, RADIUS, newton_steps, sensors
 
 SCENES = 300
 #: Depth over the inner radius, steps, order of the harmonics, cells along the arc and through the wall.
 DEPTH, PRESS_STEPS, ORDER, CELLS, THROUGH = 0.75, 6, 2, 12, 1
-#: Newton steps of a scene, those of failed solves among them, beyond which it counts as one without an end.
-MOST_NEWTON_STEPS = 4000
 _THINNEST, _THICKEST = 0.05, 0.4
 #: Least radius of an object over the inner radius, which the cells bear; the greatest.
 _LEAST, _GREATEST = CELLS_PER_RADIUS * 0.5 * np.pi * (1.0 + _THICKEST) / CELLS, 5.0
@@ -65,17 +56,13 @@ class OffAxisScene:
         inflated = inflate(solid, past_limit=1.0)
         assert inflated.limit is not None
         run: OffAxisPath | PneutouchError
-        with ExitStack() as stack:
-            counters = [
-                stack.enter_context(mock.patch.object(module, "tangent", wraps=newton.tangent))
-                for module in (newton, settling, friction_newton)
-            ]
+        with newton_steps(settling) as steps:
             try:
                 free = state_at(solid, self.share * inflated.limit.pressure, inflated)
                 run = off_axis_press(sensor, StrainProbe(solid), free).run(order)
             except PneutouchError as error:
                 run = error
-        return SceneEnd(sensor, run, sum(counter.call_count for counter in counters))
+        return SceneEnd(sensor, run, steps())
 
 
 @dataclass(frozen=True)
@@ -150,19 +137,11 @@ class SceneEnd:
             assert path.stiffness is not None and path.stiffness > 0.0, path.stiffness
 
 
-@cache
-def _sensors() -> dict[str, Sensor]:
-    """The paper's sensor in each of the seven resins that the paper measured, by name."""
-    found = Library.default().all("materials", Material)
-    measured = sorted(k for k, m in found.items() if m.kind == "elastomer" and m.measured is not None)
-    return {name: material_sensor(found[name]) for name in measured}
-
-
 def random_scene(seed: int) -> OffAxisScene:
     """Any of the resins, walls of 0.05 to 0.4 R0, a driving pressure to 0.9 of the limit; dead volume 0 to 10,000
     cavities; friction 0, to 1.5 or grip; every other of the scenes with friction is sheared, by up to 0.4 R0."""
     random = np.random.default_rng([17, seed])
-    usual = _sensors()[str(random.choice(sorted(_sensors())))]
+    usual = sensors()[str(random.choice(sorted(sensors())))]
     wall = float(random.uniform(_THINNEST, _THICKEST)) * RADIUS
     friction = float(random.choice([0.0, random.uniform(0.0, 1.5), random.uniform(0.0, 1.5), np.inf]))
     cavity, part = 2.0 / 3.0 * np.pi * RADIUS**3, float(np.exp(random.uniform(np.log(0.01), np.log(10.0))))

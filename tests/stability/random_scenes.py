@@ -8,18 +8,19 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import cache
+from types import ModuleType
 from unittest import mock
 
 import numpy as np
 
 from pneutouch.catalogue import Library
 from pneutouch.errors import PneutouchError
-from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid import friction_newton, newton
 from pneutouch.mechanics.solid.events import BREAKS_CURVE, DETAIL, OBJECT_EDGE
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent
@@ -56,17 +57,17 @@ class RandomDome:
     def runs(self, finer: int = 1) -> Iterator[PressEnd]:
         """Every press in turn on a mesh refined by a factor."""
         mesh = dome(RADIUS, self.wall * RADIUS, arc=finer * _CELLS, through=finer)
-        solid = SolidModel(mesh, laws()[self.resin], base=RigidBase() if self.base else None)
+        solid = SolidModel(mesh, sensors()[self.resin].wall.hyperelastic, base=RigidBase() if self.base else None)
         inflated = inflate(solid, past_limit=1.0)
         assert inflated.limit is not None
         for share, press in self.presses:
-            with _newton_steps() as steps:
+            with newton_steps() as steps:
                 run: IndentationPath | PneutouchError
                 try:
                     run = indent(solid, state_at(solid, share * inflated.limit.pressure, inflated), press)
                 except PneutouchError as error:
                     run = error
-            yield PressEnd(press, run, sum(counter.call_count for counter in steps))
+            yield PressEnd(press, run, steps())
 
 
 @dataclass(frozen=True)
@@ -103,27 +104,29 @@ class PressEnd:
 
 
 @contextmanager
-def _newton_steps() -> Iterator[list[mock.Mock]]:
-    """Counters of the Newton steps taken inside, without friction and with it: each assembles one tangent."""
-    with (
-        mock.patch.object(newton, "tangent", wraps=newton.tangent) as without,
-        mock.patch.object(friction_newton, "tangent", wraps=friction_newton.tangent) as with_friction,
-    ):
-        yield [without, with_friction]
+def newton_steps(*others: ModuleType) -> Iterator[Callable[[], int]]:
+    """Number of the Newton steps taken inside, without friction, with it and in other modules: each assembles one
+    tangent."""
+    with ExitStack() as stack:
+        counters = [
+            stack.enter_context(mock.patch.object(module, "tangent", wraps=vars(module)["tangent"]))
+            for module in (newton, friction_newton, *others)
+        ]
+        yield lambda: sum(counter.call_count for counter in counters)
 
 
 @cache
-def laws() -> dict[str, Hyperelastic]:
-    """The laws of the seven resins that the paper measured, by name."""
+def sensors() -> dict[str, Sensor]:
+    """The paper's sensor in each of the seven resins that the paper measured, by name."""
     found = Library.default().all("materials", Material)
     measured = sorted(k for k, m in found.items() if m.kind == "elastomer" and m.measured is not None)
-    return {name: material_sensor(found[name]).wall.hyperelastic for name in measured}
+    return {name: material_sensor(found[name]) for name in measured}
 
 
 def random_dome(seed: int) -> RandomDome:
     """Any of the resins, walls of 0.05 to 0.4 R0, every other on a base."""
     random = np.random.default_rng(seed)
-    resin, wall = str(random.choice(sorted(laws()))), float(random.uniform(0.05, _THICKEST))
+    resin, wall = str(random.choice(sorted(sensors()))), float(random.uniform(0.05, _THICKEST))
     return RandomDome(resin, wall, bool(random.random() < 0.5), tuple(_press(random) for _ in range(PRESSES)))
 
 
