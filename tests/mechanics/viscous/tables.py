@@ -10,6 +10,7 @@ from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.neighbours import joined
+from pneutouch.mechanics.viscous.by_solid import loop_by_solid, relaxation_by_solid
 from pneutouch.mechanics.viscous.describe import LOOP_SPEEDS, RAMP_SPEED
 from pneutouch.mechanics.viscous.known import ageing_ratio
 from pneutouch.mechanics.viscous.prony import prony_series
@@ -35,8 +36,10 @@ def _row(cells: list[str]) -> str:
 def _runs(sensor: Sensor, material: Material, depth: float) -> list[list[str]]:
     """Cells of each pressure and source: losses, then both measures at each speed."""
     series, pressures = prony_series(material), [p * KPA for p in PRESSURES]
-    held = relaxation(sensor, series, pressures, depth, RAMP_SPEED)
-    loops = [loop(sensor, series, pressures, depth, v) for v in LOOP_SPEEDS]
+    by_solid = sensor.protocol.other_contact is not None
+    hold, cycle = (relaxation_by_solid, loop_by_solid) if by_solid else (relaxation, loop)
+    held = hold(sensor, series, pressures, depth, RAMP_SPEED)
+    loops = [cycle(sensor, series, pressures, depth, v) for v in LOOP_SPEEDS]
     found = []
     for i, pressure in enumerate(PRESSURES):
         for j in range(len(series)):
@@ -68,6 +71,27 @@ def agilus_table(library: Library) -> list[str]:
     rows = [_row(head), _row(["---"] * len(head))]
     for share in (0.25, 0.5, 0.75):
         rows += [_row([f"{share:g} R0", *cells]) for cells in _runs(sensor, material, share * sensor.dome.inner_radius)]
+    return rows
+
+
+def friction_table(library: Library) -> list[str]:
+    """The paper's dome in Agilus30, at half of R0, by pressure, source and friction, by the solid but without any."""
+    material = resin(library, "Agilus30")
+    sensor = material_sensor(material)
+    head = [
+        "state, data",
+        "friction",
+        "force lost, 1 to 600 s",
+        "pressure rise lost",
+        *(f"{'hysteresis ' if v == LOOP_SPEEDS[0] else ''}at {v:g} mm/s" for v in LOOP_SPEEDS),
+    ]
+    names = {0.0: "0", 0.3: "0.3", 0.6: "0.6", np.inf: "grip"}
+    depth = 0.5 * sensor.dome.inner_radius
+    runs = {name: _runs(sensor.replace(friction=value), material, depth) for value, name in names.items()}
+    rows = [_row(head), _row(["---", "---", *["---:"] * 4])]
+    for cells in zip(*runs.values(), strict=True):
+        for name, (pressure, data, force, rise, _, *loops) in zip(runs, cells, strict=True):
+            rows.append(_row([f"{pressure} kPa, {data}", name, force, rise, *loops]))
     return rows
 
 
