@@ -205,7 +205,6 @@ def sensitivities(
                 *points, "D", color=INK, mfc="white", ms=4.5, zorder=5, clip_on=False, label="published measurement"
             )
         legend_above(ax)
-        # At the driving pressure 0 alone the axis would have no length.
         right = max([float(pressures[-1]) for pressures, *_ in every.values()] + states_kPa.tolist(), default=0.0)
         highest = max([float(np.max(values)) for _, values, _ in every.values()] + predicted.tolist(), default=1.0)
         highest = max([highest, *published_kPa_per_N.values()])
