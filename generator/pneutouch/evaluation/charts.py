@@ -76,8 +76,8 @@ def tradeoff(evaluation: Evaluation) -> TradeOff | None:
     if sensor.protocol.other_contact is None:
         fronts, errors = front(problem), None
     else:
-        fronts, *off = contact_front(problem, resized(sensor, problem))
-        errors = off[0], off[1]
+        drawn = contact_front(problem, resized(sensor, problem))
+        fronts, errors = drawn.fronts, (drawn.median_error, drawn.greatest_error)
     saturation, end = state.figures.saturation_force, state.figures.force_range[1]
     force = end if saturation is None else min(end, saturation)
     title = evaluation.scene.membrane_material.title
@@ -94,6 +94,7 @@ def resized(sensor: Sensor, problem: SelectionProblem) -> SolveCandidate:
     """The solid's answers of candidates: the sensor with their resins and sizes, in everything else as it is."""
 
     def solve(resin: CandidateResin, pool: CandidatePool, pressures: list[float]) -> SolvedStates:
+        """States of a candidate at driving pressures (MPa), or why there are none."""
         from pneutouch.mechanics.solid_states import solid_states
 
         radius = float(pool.radius[0])

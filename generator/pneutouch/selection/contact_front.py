@@ -29,12 +29,13 @@ class ContactFronts(NamedTuple):
     """Fronts, and how far those drawn before were off the solid where it was solved next, from the second round on.
 
     Of each place the larger relative difference of sensitivity and force counts: the median and the greatest of all,
-    NaN where there is none.
+    NaN where there is none. ``presses`` is the number of places solved.
     """
 
     fronts: list[TradeOffFront]
     median_error: float
     greatest_error: float
+    presses: int
 
 
 def contact_front(problem: SelectionProblem, solve: SolveCandidate) -> ContactFronts:
@@ -43,7 +44,7 @@ def contact_front(problem: SelectionProblem, solve: SolveCandidate) -> ContactFr
     A place that the solid cannot answer corrects nothing.
     """
     factors, fronts = ContactFactors.none(), _fronts(problem, ContactFactors.none())
-    open_, errors = list(range(len(fronts))), []
+    open_, errors, presses = list(range(len(fronts))), [], 0
     for count, shares in enumerate(_SHARES):
         trials, far = [], []
         for number in open_:
@@ -54,11 +55,12 @@ def contact_front(problem: SelectionProblem, solve: SolveCandidate) -> ContactFr
             errors += off if count else []
             if count == 0 or max(off, default=0.0) > _NEAR:
                 far.append(number)
+        presses += len(trials)
         for trial in trials:
             factors = trial.added_to(factors)
         open_, fronts = far, _fronts(problem, factors)
     median, greatest = (float(np.median(errors)), max(errors)) if errors else (np.nan, np.nan)
-    return ContactFronts(fronts, median, greatest)
+    return ContactFronts(fronts, median, greatest, presses)
 
 
 def _off(one: TradeOffFront, row: int, trial: ContactTrial) -> float:

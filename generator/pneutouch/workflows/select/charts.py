@@ -86,9 +86,10 @@ def _fronts(
     if selection.by_solid is None:
         return front(problem), None, ""
     solver = CandidateSolver(selection.base, selection.assignments, library)
-    fronts, *off = contact_front(problem, solver)
-    stated = f"curves: atlas corrected by the solid, {front_error((off[0], off[1]))}"
-    return fronts, (off[0], off[1]), f"{contact_text(selection.base)}; points: solid\n{stated}"
+    drawn = contact_front(problem, solver)
+    errors = drawn.median_error, drawn.greatest_error
+    stated = f"curves: atlas corrected by the solid, {front_error(errors)}"
+    return drawn.fronts, errors, f"{contact_text(selection.base)}; points: solid\n{stated}"
 
 
 def tuning(selection: SelectionRun, library: Library, chosen: Candidate | None = None) -> TuningChart | None:
