@@ -148,3 +148,11 @@ def test_lines_of_an_object_lie_on_it() -> None:
     np.testing.assert_allclose(np.linalg.norm(points - centre, axis=1), 8.0, rtol=1e-3)
     # The lowest circle stands a sixth of the half circle from the lowest point.
     assert high - low == pytest.approx(8.0 * (1.0 + np.cos(np.pi / 6.0)), rel=1e-3)
+
+
+def test_a_factor_of_force_is_one_of_the_contact_pressure_and_moves_nothing() -> None:
+    face = _pressed("ball beside the axis")[1]
+    scaled, rows, angles = face.scaled(1.3), face.rows(), np.linspace(0.0, np.pi, 5)
+    np.testing.assert_allclose(scaled.forces, 1.3 * face.forces, rtol=1e-15)
+    np.testing.assert_allclose(scaled.pressure(rows, angles), 1.3 * face.pressure(rows, angles), rtol=1e-12)
+    np.testing.assert_array_equal(scaled.positions(rows, angles), face.positions(rows, angles))
