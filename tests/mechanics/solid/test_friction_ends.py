@@ -12,7 +12,7 @@ from pneutouch.mechanics.solid.indent import follower_of, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from tests.stability.random_scenes import RADIUS, laws, random_dome
+from tests.stability.random_scenes import RADIUS, random_dome, sensors
 
 #: Kinds of an end by a jump.
 JUMPS = {"snap", "clamp_fold"}
@@ -24,7 +24,7 @@ ENDED = [(13, 3), (17, 0), (27, 2)]
 def gripped():
     """A round object grips a thin wall; one of three points that hold it is let go within the first 1.8 mm."""
     scene = random_dome(17)
-    solid = SolidModel(dome(RADIUS, scene.wall * RADIUS, arc=24, through=1), laws()[scene.resin])
+    solid = SolidModel(dome(RADIUS, scene.wall * RADIUS, arc=24, through=1), sensors()[scene.resin].wall.hyperelastic)
     (share, press), inflated = scene.presses[0], inflate(solid, past_limit=1.0)
     return solid, state_at(solid, share * inflated.limit.pressure, inflated), press
 
