@@ -25,9 +25,10 @@ class Browser:
     def __init__(self, send: int, receive: int) -> None:
         self._send, self._receive, self._kept, self._number = send, receive, b"", 0
         self.errors: list[str] = []
+        self.requested: list[str] = []
         target = self._call("Target.createTarget", url="about:blank")["targetId"]
         self._session = self._call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
-        for domain in ("Page", "Runtime", "Log"):
+        for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
 
     def call(self, method: str, **words: Any) -> dict[str, Any]:
@@ -36,11 +37,16 @@ class Browser:
 
     def show(self, path: Path, width: int) -> None:
         """Open a file in a window of a width in pixels."""
+        self.visit(path.resolve().as_uri(), width)
+
+    def visit(self, address: str, width: int) -> None:
+        """Open an address in a window of a width in pixels; errors and requests are counted from there on."""
         self.errors.clear()
+        self.requested.clear()
         self.call(
             "Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=width < 600
         )
-        self.call("Page.navigate", url=path.resolve().as_uri())
+        self.call("Page.navigate", url=address)
         self.evaluate(
             "new Promise(done => { const wait = () => document.readyState === 'complete' "
             "? document.fonts.ready.then(() => done(1)) : setTimeout(wait, 20); wait(); })"
@@ -74,8 +80,13 @@ class Browser:
             if answer.get("id") == self._number:
                 assert "error" not in answer, answer
                 return answer["result"]
-            if answer.get("method") == "Runtime.exceptionThrown":
-                self.errors.append(json.dumps(answer["params"]))
+            self._note(answer.get("method"), answer.get("params", {}))
+
+    def _note(self, event: str | None, content: dict[str, Any]) -> None:
+        if event == "Network.requestWillBeSent":
+            self.requested.append(content["request"]["url"])
+        elif event == "Runtime.exceptionThrown":
+            self.errors.append(json.dumps(content))
 
     def _next(self) -> dict[str, Any]:
         while b"\0" not in self._kept:

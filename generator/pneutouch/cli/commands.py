@@ -33,6 +33,7 @@ COMMANDS: dict[str, dict[str, CommandEntry]] = {
         "check": CommandEntry("build", "Check printability and mechanical limits."),
         "compare": CommandEntry("compare", "Show designs next to one another, with what differs."),
         "sweep": CommandEntry("sweep", "Predict a grid or a list of designs into one dataset."),
+        "studio": CommandEntry("studio", "Open a page in the browser: change a design, see its curves."),
     },
     "Make": {
         "build": CommandEntry("build", "Build everything: print files, prediction, datasheet."),

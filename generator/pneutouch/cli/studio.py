@@ -1,0 +1,46 @@
+"""``pneutouch studio``: a page in the browser."""
+
+import webbrowser
+from typing import Annotated
+
+import typer
+
+from pneutouch.cli.app import app, reporting
+from pneutouch.cli.complete import names
+from pneutouch.cli.terminal import echo, notify
+from pneutouch.errors import InputError
+
+
+@app.command()
+def studio(
+    design: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="DESIGN",
+            help="Name of a design, or path of a TOML file.",
+            show_default="paper-dome",
+            autocompletion=names("designs"),
+        ),
+    ] = None,
+    port: Annotated[
+        int, typer.Option("--port", min=0, max=65535, help="Port of 127.0.0.1; 0: a free one.", show_default="free")
+    ] = 0,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address and open no browser.")] = False,
+) -> None:
+    """Open a page in the browser: change a design and see its drawing, curves and limits. Ctrl-C ends it."""
+    with reporting():
+        try:
+            import starlette  # noqa: F401
+            import uvicorn  # noqa: F401
+        except ImportError:
+            remedy = "install them: pip install 'pneutouch[studio]'"
+            raise InputError("the studio needs the packages starlette and uvicorn", remedy=remedy) from None
+        from pneutouch.studio.server import serve
+
+        def opened(address: str) -> None:
+            echo(address)
+            notify("note: the address opens the page once, on this machine; Ctrl-C ends the studio")
+            if not no_browser:
+                webbrowser.open(address)
+
+        serve(design, port, opened)

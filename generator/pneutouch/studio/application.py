@@ -1,0 +1,127 @@
+"""The requests of the page and what answers them."""
+
+import asyncio
+import contextlib
+import json
+from collections.abc import AsyncIterator, Callable, Mapping
+from functools import partial
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Route
+
+from pneutouch.catalogue import Library
+from pneutouch.catalogue.cached_library import CachedLibrary
+from pneutouch.errors import ComputationError, InputError, PneutouchError
+from pneutouch.studio.answer import quick_answer, view_answer
+from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
+from pneutouch.studio.form import designs_document, form_document
+from pneutouch.studio.guard import Application, Guard, TooLargeError
+from pneutouch.studio.pages import page_files, respond
+from pneutouch.studio.question import Question
+from pneutouch.studio.solver import Solver, SupersededError
+
+_WAITING = 8
+"""Questions that may wait for an answer at once; a page has two under way."""
+
+QuickAnswer = Callable[[Question, Mapping[str, str], Library], dict[str, Any]]
+
+
+class Studio:
+    """Answers the page. ``bases`` are the designs that it may open, by name or path; ``first`` the one it begins with.
+
+    Nothing is kept between requests but the catalogue and one process, which starts with the first question for it.
+    """
+
+    def __init__(self, bases: dict[str, str], first: str) -> None:
+        self._bases, self._first = bases, first
+        self._library = CachedLibrary(Library.default().folders)
+        self._solver = Solver(bases)
+        self._one, self._waiting = asyncio.Lock(), 0
+
+    async def form(self, request: Request) -> Response:
+        """What the page is built from."""
+        form = await run_in_threadpool(form_document, self._library)
+        return JSONResponse({**form, "designs": designs_document(self._bases), "first": self._first})
+
+    async def at_once(self, answer: QuickAnswer, request: Request) -> Response:
+        """An answer of ``answer``, which is computed in this process, one at a time."""
+        if self._waiting >= _WAITING:
+            return _fault(ComputationError("too many questions at once", remedy="wait for an answer"), 503)
+        self._waiting += 1
+        try:
+            question = await _question(request)
+            async with self._one:
+                content = await run_in_threadpool(answer, question, self._bases, self._library)
+            return JSONResponse(content)
+        except PneutouchError as error:
+            return _fault(error)
+        except MemoryError:
+            return _fault(too_little_memory())
+        finally:
+            self._waiting -= 1
+
+    async def solved(self, request: Request) -> Response:
+        """The answer of the process; 409 where a newer question took its place."""
+        try:
+            question = await _question(request)
+            answer = await self._solver.ask(question.document())
+        except PneutouchError as error:
+            return _fault(error)
+        except SupersededError:
+            return JSONResponse({"superseded": True}, 409)
+        return JSONResponse(answer["content"], answer["status"])
+
+    @contextlib.asynccontextmanager
+    async def running(self, application: Starlette) -> AsyncIterator[None]:
+        """Between start and stop of the server; the process ends with it."""
+        try:
+            yield
+        finally:
+            await self._solver.close()
+
+
+def application(bases: dict[str, str], first: str, port: int, token: str) -> Application:
+    """The whole studio as an ASGI application that listens on ``port`` and is opened by ``token``."""
+    studio, known = Studio(bases, first), page_files()
+
+    async def page(request: Request) -> Response:
+        return respond(known, request)
+
+    async def echo(request: Request) -> Response:
+        """What was sent, as it is: the measure of what the page and the way to it take."""
+        return Response(await request.body(), media_type="application/json")
+
+    routes = [
+        Route("/api/form", studio.form),
+        Route("/api/quick", partial(studio.at_once, quick_answer), methods=["POST"]),
+        Route("/api/view", partial(studio.at_once, view_answer), methods=["POST"]),
+        Route("/api/solved", studio.solved, methods=["POST"]),
+        Route("/api/echo", echo, methods=["POST"]),
+        Route("/{path:path}", page),
+    ]
+    return Guard(Starlette(routes=routes, lifespan=studio.running, exception_handlers={Exception: _failed}), port, token)
+
+
+async def _question(request: Request) -> Question:
+    """The question in a body. Raises InputError where it is none."""
+    try:
+        content = json.loads(await request.body())
+    except TooLargeError:
+        raise
+    except (ValueError, RecursionError):
+        raise InputError("the question is not JSON") from None
+    return Question.of(content)
+
+
+def _fault(error: PneutouchError, status: int | None = None) -> Response:
+    return JSONResponse(fault_document(error), status or fault_status(error))
+
+
+async def _failed(request: Request, error: Exception) -> Response:
+    """A fault of ours, without a traceback."""
+    fault = ComputationError(f"internal fault ({type(error).__name__}: {error})", remedy="please report it")
+    return _fault(fault)

@@ -1,0 +1,61 @@
+"""What the page draws of a design: the section through its bodies, its dimensions, and meshes for the view."""
+
+import base64
+from typing import Any
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.body import Body
+from pneutouch.body.normals import corner_normals
+from pneutouch.parts import Assembly
+from pneutouch.report.section import section
+
+_SECTION_TOLERANCE = 5e-3
+"""Greatest distance of the drawn section from the exact one, mm."""
+
+_VIEW_TOLERANCE = 0.02
+"""Greatest distance of a mesh that is looked at from the exact surface, mm."""
+
+_DIGITS = 3
+
+
+def drawing_document(assembly: Assembly) -> dict[str, Any]:
+    """Loops (x, z) in mm where the plane y = 0 cuts each body, and the lengths that the dimensions state, mm."""
+    bodies = []
+    for solid in assembly.solids:
+        body = solid.mesh(_SECTION_TOLERANCE)
+        loops = [_flat(loop, _DIGITS) for loop in section(body)]
+        bodies.append({"name": solid.name, "role": solid.role, "material": body.material.label, "loops": loops})
+    layout = assembly.layout
+    bounds = [body.bounds for body in assembly.bodies]
+    low, high = np.min([each[0] for each in bounds], axis=0), np.max([each[1] for each in bounds], axis=0)
+    return {
+        "bodies": bodies,
+        "inner_radius_mm": layout.inner_radius,
+        "wall_thickness_mm": layout.wall,
+        "flange_diameter_mm": 2 * layout.flange_radius,
+        "size_mm": [round(float(value), _DIGITS) for value in high - low],
+        "low_mm": round(float(low[2]), _DIGITS),
+        "high_mm": round(float(high[2]), _DIGITS),
+    }
+
+
+def view_document(assembly: Assembly) -> dict[str, Any]:
+    """Each body as triangle corners (float32, mm) with normals (int8, in 1/127), both little-endian in base 64."""
+    bodies = [_mesh(solid.mesh(_VIEW_TOLERANCE)) for solid in assembly.solids]
+    return {"bodies": bodies}
+
+
+def _mesh(body: Body) -> dict[str, Any]:
+    normals = np.rint(127 * corner_normals(body)).astype("<i1")
+    return {
+        "name": body.name,
+        "colour": body.material.colour,
+        "corners": base64.b64encode(body.corners.astype("<f4").tobytes()).decode(),
+        "normals": base64.b64encode(normals.tobytes()).decode(),
+    }
+
+
+def _flat(points: Array, digits: int) -> list[float]:
+    return [float(value) + 0.0 for value in np.round(points, digits).reshape(-1)]

@@ -1,0 +1,48 @@
+"""Errors of the library as the page takes them: a message for each field that caused one."""
+
+from typing import Any
+
+from pneutouch.errors import ComputationError, InputError, PneutouchError
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.fields import table_of
+
+BAD_INPUT = 422
+FAILED = 500
+
+
+def fault_document(error: PneutouchError) -> dict[str, Any]:
+    """Every problem with its words and the fields, ``table.key``, that it stands at; the words are the CLI's."""
+    return {"problems": [_problem(each) for each in (error, *error.others)]}
+
+
+def fault_status(error: PneutouchError) -> int:
+    """The status of an answer: the input is wrong, or a computation could not be completed."""
+    return BAD_INPUT if isinstance(error, InputError) else FAILED
+
+
+def too_little_memory() -> PneutouchError:
+    """The error where memory is short."""
+    return ComputationError("not enough memory", remedy="close other programs")
+
+
+def _problem(error: PneutouchError) -> dict[str, Any]:
+    words = error.problem if not error.remedy else f"{error.problem}; {error.remedy}"
+    alone = type(error)(words)
+    return {"message": alone.message(), "fields": _fields(error)}
+
+
+def _fields(error: PneutouchError) -> list[str]:
+    """Fields of an error: its key, or, for one on a table or on the file, those that its words name."""
+    key = (error.key or "").partition("[")[0]
+    table, _, field = key.partition(".")
+    if field or (key in DesignFile.model_fields and table_of(DesignFile, key) is None):
+        return [key]
+    named = []
+    for name in DesignFile.model_fields:
+        model = table_of(DesignFile, name)
+        if model is None or (table and name != table):
+            continue
+        named += [f"{name}.{each}" for each in model.model_fields if f"{name}.{each}" in error.problem]
+        if table == name:
+            named += [f"{name}.{each}" for each in model.model_fields if f"{each} " in f"{error.problem} "]
+    return list(dict.fromkeys(named))

@@ -1,0 +1,102 @@
+"""The form of the page, made from the declared fields of a design file."""
+
+import types
+import typing
+from typing import Any
+
+from pydantic import BaseModel
+
+from pneutouch.catalogue import Library
+from pneutouch.catalogue.listing import listing
+from pneutouch.errors import PneutouchError
+from pneutouch.spec.contact import SIZES
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.fields import Declaration, declarations, table_of
+from pneutouch.spec.material import Material
+
+_TWICE = ("contact.plate_diameter_mm",)
+"""Fields that stand in two tables, and in the form once."""
+
+_KIND_OF_MATERIAL = {"membrane.material": "elastomer", "connector.material": "rigid"}
+
+Option = dict[str, str]
+
+
+def form_document(library: Library) -> dict[str, Any]:
+    """Groups of fields with label, unit, bounds, default, help and the names to choose from; sizes by object."""
+    groups = [_group(name, library) for name in DesignFile.model_fields if table_of(DesignFile, name) is not None]
+    return {"groups": groups, "sizes": {kind: [f"contact.{key}" for key in keys] for kind, keys in SIZES.items()}}
+
+
+def designs_document(bases: dict[str, str]) -> list[Option]:
+    """The designs that can be opened, with their titles."""
+    titles = {entry["name"]: entry["title"] for entry in listing("designs")["designs"] if "error" not in entry}
+    return [{"name": name, "title": titles.get(name, "")} for name in bases]
+
+
+def _group(name: str, library: Library) -> dict[str, Any]:
+    model = table_of(DesignFile, name)
+    assert model is not None
+    fields = [_field(name, model, each, library) for each in declarations(model)]
+    return {"name": name, "fields": [field for field in fields if field["name"] not in _TWICE]}
+
+
+def _field(table: str, model: type[BaseModel], declared: Declaration, library: Library) -> dict[str, Any]:
+    name = f"{table}.{declared.key}"
+    kinds = _kinds(model.model_fields[declared.key].annotation)
+    return {
+        "name": name,
+        "label": declared.key.removesuffix(f"_{declared.unit}").replace("_", " ").capitalize(),
+        "unit": declared.unit,
+        "low": declared.low,
+        "high": declared.high,
+        "help": declared.help,
+        "kind": _kind(kinds, declared),
+        "optional": types.NoneType in kinds,
+        "options": _options(name, kinds, declared, library),
+    }
+
+
+def _kinds(annotation: Any) -> list[Any]:
+    """The types that an annotation is made of, outermost first."""
+    kinds = [annotation]
+    for kind in kinds:
+        kinds += [each for each in typing.get_args(kind) if isinstance(each, type) or typing.get_origin(each)]
+    return kinds
+
+
+def _kind(kinds: list[Any], declared: Declaration) -> str:
+    """number, whole, numbers, flag, choice or text: how the page shows a field."""
+    if declared.registry or any(typing.get_origin(kind) is typing.Literal for kind in kinds):
+        return "choice"
+    if bool in kinds:
+        return "flag"
+    if any(typing.get_origin(kind) is list for kind in kinds):
+        return "numbers"
+    if declared.low is None:
+        return "text"
+    return "whole" if int in kinds else "number"
+
+
+def _options(name: str, kinds: list[Any], declared: Declaration, library: Library) -> list[Option]:
+    for kind in kinds:
+        if typing.get_origin(kind) is typing.Literal:
+            return [{"name": str(each), "title": ""} for each in typing.get_args(kind)]
+    if declared.registry is None:
+        return []
+    if declared.registry == "materials":
+        return _materials(_KIND_OF_MATERIAL.get(name), library)
+    return [{"name": each, "title": _title(declared.registry, each, library)} for each in library.paths(declared.registry)]
+
+
+def _materials(kind: str | None, library: Library) -> list[Option]:
+    known = library.all("materials", Material)
+    return [{"name": name, "title": one.label} for name, one in known.items() if kind in (None, one.kind)]
+
+
+def _title(registry: str, name: str, library: Library) -> str:
+    """The title of a part; none where its file cannot be read, which the field then reports when it is chosen."""
+    try:
+        return str(getattr(library.load(registry, name), "title", ""))
+    except PneutouchError:
+        return ""

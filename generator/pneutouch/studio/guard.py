@@ -1,0 +1,129 @@
+"""Who may talk to the studio: this machine's browser that was given the address, and no page of another site."""
+
+import secrets
+from collections.abc import Awaitable, Callable, MutableMapping
+from http.cookies import CookieError, SimpleCookie
+from typing import Any
+from urllib.parse import parse_qs
+
+from starlette.responses import JSONResponse, PlainTextResponse, RedirectResponse, Response
+
+LARGEST_BODY = 64 * 1024
+"""Bytes of a question."""
+
+HEADERS = {
+    "Content-Security-Policy": "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cache-Control": "no-store",
+}
+
+_NAMES = ("127.0.0.1", "localhost")
+
+Scope = MutableMapping[str, Any]
+Message = MutableMapping[str, Any]
+Receive = Callable[[], Awaitable[Message]]
+Send = Callable[[Message], Awaitable[None]]
+Application = Callable[[Scope, Receive, Send], Awaitable[None]]
+
+
+class TooLargeError(Exception):
+    """The body of a request is longer than `LARGEST_BODY`."""
+
+
+class Guard:
+    """Stands before an application: Host, one-time token, cookie, Origin, kind and size of what is sent.
+
+    ``token`` opens the page once, at ``/?token=...``; what the browser is given then, a cookie that no script reads and
+    no other site sends, opens it from there on.
+    """
+
+    def __init__(self, application: Application, port: int, token: str) -> None:
+        self._application, self._token = application, token
+        self._cookie, self._key = f"pneutouch-studio-{port}", secrets.token_urlsafe(32)
+        self._hosts = {f"{name}:{port}" for name in _NAMES}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request, or hand it on; every answer has `HEADERS`."""
+        if scope["type"] != "http":
+            # Start and stop of the server; there are no web sockets.
+            if scope["type"] == "lifespan":
+                await self._application(scope, receive, send)
+            return
+        headers = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
+        refused = self._refused(scope, headers)
+
+        async def guarded(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                added = [(name.lower().encode(), value.encode()) for name, value in HEADERS.items()]
+                message["headers"] = [*message.get("headers", []), *added]
+            await send(message)
+
+        if refused is not None:
+            await refused(scope, receive, guarded)
+            return
+        try:
+            await self._application(scope, _limited(receive), guarded)
+        except TooLargeError:
+            await _too_large()(scope, receive, guarded)
+
+    def _refused(self, scope: Scope, headers: dict[str, str]) -> Response | None:
+        """The answer to a request that goes no further; None for one that may."""
+        if headers.get("host") not in self._hosts:
+            return PlainTextResponse("unknown host", 403)
+        known = self._knows(headers)
+        given = parse_qs(scope["query_string"].decode("latin-1")).get("token") if scope["path"] == "/" else None
+        if given is not None and (known or self._opens(given[0])):
+            answer = RedirectResponse("/", 303)
+            if not known:
+                answer.set_cookie(self._cookie, self._key, httponly=True, samesite="strict")
+            return answer
+        if not known:
+            return PlainTextResponse("Open the address that pneutouch studio printed; it opens the page once.", 403)
+        if scope["method"] == "POST":
+            return self._refused_question(headers)
+        return None if scope["method"] in ("GET", "HEAD") else PlainTextResponse("not allowed", 405)
+
+    def _refused_question(self, headers: dict[str, str]) -> Response | None:
+        if headers.get("origin") != f"http://{headers['host']}":
+            return PlainTextResponse("unknown origin", 403)
+        if headers.get("content-type", "").partition(";")[0].strip().lower() != "application/json":
+            return PlainTextResponse("a question is application/json", 415)
+        length = headers.get("content-length", "0")
+        return _too_large() if not length.isdigit() or int(length) > LARGEST_BODY else None
+
+    def _knows(self, headers: dict[str, str]) -> bool:
+        try:
+            cookie = SimpleCookie(headers.get("cookie", "")).get(self._cookie)
+        except CookieError:
+            return False
+        return cookie is not None and secrets.compare_digest(cookie.value.encode(), self._key.encode())
+
+    def _opens(self, given: str) -> bool:
+        """Whether this is the token; it is used up with that."""
+        if not self._token or not secrets.compare_digest(given.encode(), self._token.encode()):
+            return False
+        self._token = ""
+        return True
+
+
+def _too_large() -> Response:
+    problem = {"message": f"a question has at most {LARGEST_BODY} bytes", "fields": []}
+    return JSONResponse({"problems": [problem]}, 413)
+
+
+def _limited(receive: Receive) -> Receive:
+    """Receive a body up to `LARGEST_BODY`, whatever its head states."""
+    taken = 0
+
+    async def counted() -> Message:
+        nonlocal taken
+        message = await receive()
+        taken += len(message.get("body", b""))
+        if taken > LARGEST_BODY:
+            raise TooLargeError
+        return message
+
+    return counted

@@ -1,0 +1,72 @@
+"""What the page asks: a design by its name, and the values of fields that differ from its file, as texts."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from pneutouch.catalogue import DesignSource, Library
+from pneutouch.errors import InputError
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.read import override, parse_changes
+
+PAGE = "the page"
+"""Stands for the file where values come from the page."""
+
+_MOST_FIELDS = 200
+_LONGEST_TEXT = 4000
+
+
+@dataclass(frozen=True)
+class Question:
+    """A design of the catalogue, or the one the studio was started with, by ``base``; and changed fields.
+
+    ``values`` holds by ``table.key`` what is typed after ``--set table.key=``, or None where the key is left out.
+    """
+
+    base: str
+    values: Mapping[str, str | None]
+
+    @classmethod
+    def of(cls, content: Any) -> "Question":
+        """The question in a JSON document of the page. Raises InputError where it is none."""
+        if not isinstance(content, dict) or set(content) != {"base", "values"}:
+            raise InputError("a question is an object with the keys base and values")
+        base, values = content["base"], content["values"]
+        if not isinstance(base, str) or not isinstance(values, dict):
+            raise InputError("base is a text and values is an object")
+        if len(values) > _MOST_FIELDS:
+            raise InputError(f"values has {len(values)} fields; at most {_MOST_FIELDS} are taken")
+        for key, value in values.items():
+            if value is not None and not isinstance(value, str):
+                raise InputError("each value is a text, or null where the key is left out", key=key)
+            if value is not None and len(value) > _LONGEST_TEXT:
+                raise InputError(f"the text is longer than {_LONGEST_TEXT} characters", key=key)
+        return cls(base, values)
+
+    def document(self) -> dict[str, Any]:
+        """The question as the page asks it."""
+        return {"base": self.base, "values": dict(self.values)}
+
+    def source(self, bases: Mapping[str, str], library: Library) -> DesignSource:
+        """The design as a source; ``bases`` are designs by name or path, by the name that the page has for them.
+
+        Raises InputError naming key and value.
+        """
+        if self.base not in bases:
+            raise InputError("unknown design", key="base", value=self.base)
+        base = DesignSource.of(bases[self.base], library)
+        content = {key: dict(value) if isinstance(value, dict) else value for key, value in base.content.items()}
+        for name in (name for name, text in self.values.items() if text is None):
+            _leave_out(content, name)
+        given = [f"{name}={text}" for name, text in self.values.items() if text is not None]
+        return DesignSource(base.name, override(content, parse_changes(given), DesignFile), PAGE)
+
+
+def _leave_out(content: dict[str, Any], name: str) -> None:
+    """Take a key out of the tables, where it is there."""
+    table, _, key = name.partition(".")
+    tables = content.get(table)
+    if not key:
+        content.pop(table, None)
+    elif isinstance(tables, dict):
+        tables.pop(key, None)

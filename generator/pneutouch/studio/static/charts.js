@@ -1,0 +1,167 @@
+// Charts of what the studio answered; nothing is computed here.
+import uPlot from "/vendor/uPlot.esm.js";
+import { byId, colour, short } from "./dom.js";
+
+const drawn = new Map();
+
+const series = (label, stroke, more = {}) => ({
+  label,
+  stroke,
+  width: 2,
+  spanGaps: true,
+  points: { show: false },
+  value: (_, value) => short(value),
+  ...more,
+});
+
+const axis = (label, more = {}) => ({
+  label,
+  stroke: colour("muted"),
+  labelSize: 22,
+  labelFont: "13px system-ui, sans-serif",
+  font: "12px system-ui, sans-serif",
+  grid: { stroke: colour("fine"), width: 1 },
+  ticks: { stroke: colour("line"), width: 1 },
+  ...more,
+});
+
+/** Vertical lines with words: a limit, a rating. */
+function markers(host) {
+  return (chart) => {
+    const { ctx, bbox } = chart;
+    const scale = window.devicePixelRatio || 1;
+    ctx.save();
+    ctx.font = `${12 * scale}px system-ui, sans-serif`;
+    for (const [row, mark] of (drawn.get(host).marks || []).entries()) {
+      const x = chart.valToPos(mark.at, "x", true);
+      if (!(x >= bbox.left && x <= bbox.left + bbox.width)) continue;
+      ctx.strokeStyle = ctx.fillStyle = colour(mark.colour);
+      ctx.lineWidth = 1.5 * scale;
+      ctx.setLineDash([5 * scale, 4 * scale]);
+      ctx.beginPath();
+      ctx.moveTo(x, bbox.top);
+      ctx.lineTo(x, bbox.top + bbox.height);
+      ctx.stroke();
+      const right = x > bbox.left + 0.6 * bbox.width;
+      ctx.textAlign = right ? "right" : "left";
+      ctx.fillText(mark.words, x + (right ? -5 : 5) * scale, bbox.top + (14 + 16 * row) * scale);
+    }
+    ctx.restore();
+  };
+}
+
+function show(id, across, up, lines, data, { bands = [], marks = [], points = null } = {}) {
+  const host = byId(id);
+  const key = JSON.stringify([lines.map((one) => [one.label, one.stroke, one.dash]), bands.length]);
+  const known = drawn.get(host);
+  if (known && known.key === key) {
+    known.marks = marks;
+    known.chart.setData(data);
+    return;
+  }
+  if (known) known.chart.destroy();
+  const entry = { key, marks };
+  drawn.set(host, entry);
+  const options = {
+    width: host.clientWidth || 300,
+    height: 240,
+    series: [{ label: across, value: (_, value) => short(value) }, ...lines],
+    bands,
+    scales: { x: { time: false }, y: { range: (_, low, high) => [Math.min(0, low ?? 0), (high ?? 1) * 1.06 || 1] } },
+    axes: [axis(across), axis(up, { size: 56 })],
+    cursor: { drag: { x: false, y: false } },
+    hooks: { draw: [markers(host)] },
+    legend: { live: true },
+  };
+  if (points) options.series[points].points = { show: true, size: 8 };
+  entry.chart = new uPlot(options, data, host);
+}
+
+const tone = (number) => colour(`series-${1 + (number % 7)}`);
+
+/** Sensitivity over driving pressure: this design with its band, its states, every resin, and a pinned design. */
+export function drawSensitivity(answer, pinned) {
+  const states = answer.prediction.states.filter((state) => state.sensitivity_kPa_per_N !== null);
+  const tables = [];
+  const lines = [];
+  const add = (pressures, values, one) => {
+    tables.push([pressures, values]);
+    lines.push(one);
+  };
+  const own = answer.curves.design;
+  const bands = [];
+  if (own) {
+    add(own.driving_pressure_kPa, own.sensitivity_kPa_per_N, series("this design", colour("accent"), { width: 3 }));
+    if (own.low_kPa_per_N) {
+      const edge = { width: 1, dash: [2, 3] };
+      add(own.driving_pressure_kPa, own.high_kPa_per_N, series("interval, k = 2: to", colour("accent"), edge));
+      add(own.driving_pressure_kPa, own.low_kPa_per_N, series("from", colour("accent"), edge));
+      bands.push({ series: [2, 3], fill: colour("band") });
+    }
+  }
+  const marked = lines.length + 1;
+  add(
+    states.map((state) => state.driving_pressure_kPa),
+    states.map((state) => state.sensitivity_kPa_per_N),
+    series("at its driving pressures", colour("ink"), { width: 0 }),
+  );
+  answer.curves.resins.forEach((resin, k) => {
+    add(resin.driving_pressure_kPa, resin.sensitivity_kPa_per_N, series(resin.title, tone(k + 1), { width: 1.2 }));
+  });
+  if (pinned && pinned.curves && pinned.curves.design) {
+    const { driving_pressure_kPa: pressures, sensitivity_kPa_per_N: values } = pinned.curves.design;
+    add(pressures, values, series("pinned", colour("ink"), { dash: [6, 4] }));
+  }
+  const rated = { at: answer.prediction.rating.rated_pressure_kPa, words: "rated", colour: "warning" };
+  show("sensitivity", "driving pressure, kPa", "sensitivity, kPa/N", lines, uPlot.join(tables), {
+    bands,
+    marks: [rated],
+    points: marked,
+  });
+}
+
+/** A curve of every state over the indentation; those of a pinned design dashed. */
+export function drawStates(id, key, words, answer, pinned) {
+  const lines = [];
+  const tables = [];
+  const add = (states, dash, prefix) =>
+    states.forEach((state, k) => {
+      tables.push([state.curve.indentation_mm, state.curve[key]]);
+      lines.push(series(`${prefix}${short(state.driving_pressure_kPa)} kPa`, tone(k), { dash }));
+    });
+  add(answer.prediction.states, undefined, "");
+  if (pinned && pinned.prediction) add(pinned.prediction.states, [6, 4], "pinned ");
+  show(id, "indentation, mm", words, lines, uPlot.join(tables));
+}
+
+/** Apex height over driving pressure, with the limit and the rated pressure. */
+export function drawInflation(answer) {
+  const { inflation, limits, rating } = answer.prediction;
+  const rising = [];
+  let highest = -Infinity;
+  inflation.driving_pressure_kPa.forEach((pressure, k) => {
+    if (pressure > highest) rising.push(k);
+    highest = Math.max(highest, pressure);
+  });
+  const pick = (name) => rising.map((k) => inflation[name][k]);
+  const marks = [{ at: rating.rated_pressure_kPa, words: `rated ${short(rating.rated_pressure_kPa, 3)} kPa`, colour: "warning" }];
+  if (limits.limit_point_kPa !== null) {
+    marks.push({ at: limits.limit_point_kPa, words: `limit point ${short(limits.limit_point_kPa, 3)} kPa`, colour: "error" });
+  }
+  const lines = [series("apex, outer surface", tone(0)), series("apex, inner surface", tone(1))];
+  const data = [pick("driving_pressure_kPa"), pick("apex_height_outer_mm"), pick("apex_height_inner_mm")];
+  show("inflation", "driving pressure, kPa", "apex height, mm", lines, data, { marks });
+}
+
+export function resized() {
+  for (const [host, { chart }] of drawn) {
+    const width = host.clientWidth;
+    if (width && width !== chart.width) chart.setSize({ width, height: 240 });
+  }
+}
+
+/** Forget every chart: the colours of the page changed. */
+export function forget() {
+  for (const { chart } of drawn.values()) chart.destroy();
+  drawn.clear();
+}

@@ -1,0 +1,66 @@
+// The section with its dimensions, drawn from the loops that the studio sends. Lengths are mm; z points up.
+import { byId, element, short } from "./dom.js";
+
+const path = (loop) => {
+  let text = "";
+  for (let k = 0; k < loop.length; k += 2) text += `${k ? "L" : "M"}${loop[k]} ${-loop[k + 1]}`;
+  return `${text}Z`;
+};
+
+const outline = (bodies) => bodies.map((body) => body.loops.map(path).join("")).join("");
+
+function line(points, look = "thin") {
+  return element("svg:polyline", { points: points.map(([x, z]) => `${x},${-z}`).join(" "), class: look });
+}
+
+function label(x, z, words, size, anchor = "middle") {
+  const text = element("svg:text", { x, y: -z + 0.35 * size, "font-size": size, "text-anchor": anchor });
+  text.textContent = words;
+  return text;
+}
+
+/** A straight dimension between two points, with ticks across its ends. */
+function dimension([x0, z0], [x1, z1], tick) {
+  const flat = z0 === z1;
+  const across = (x, z) => line(flat ? [[x, z - tick], [x, z + tick]] : [[x - tick, z], [x + tick, z]]);
+  return [line([[x0, z0], [x1, z1]]), across(x0, z0), across(x1, z1)];
+}
+
+function dimensions(drawing, size, tick) {
+  const { inner_radius_mm: inner, wall_thickness_mm: wall, low_mm: low, high_mm: high } = drawing;
+  const half = drawing.size_mm[0] / 2;
+  const at = (radius, angle) => [radius * Math.cos(angle), radius * Math.sin(angle)];
+  const arm = 1.05;
+  const place = [half + 2.5 * size, high];
+  const below = low - 1.6 * size;
+  const side = -half - 1.6 * size;
+  return [
+    ...dimension([-half, below], [half, below], tick),
+    label(0, below - 1.1 * size, `⌀ ${short(2 * half)}`, size),
+    ...dimension([side, low], [side, high], tick),
+    label(side - 0.6 * size, 0.5 * (low + high), short(high - low), size, "end"),
+    line([[0, 0], at(inner, 2.2)]),
+    label(...at(0.5 * inner, 2.2).map((value, k) => value + (k ? -0.2 : 0.4) * size), `R0 ${short(inner)}`, size, "start"),
+    line([at(inner + 0.5 * wall, arm), [place[0] - 0.4 * size, place[1]]]),
+    label(place[0], place[1], `t0 ${short(wall)}`, size, "start"),
+    line([[0, low - size], [0, high + size]], "thin axis"),
+  ];
+}
+
+export function drawSection(drawing, pinned) {
+  const half = drawing.size_mm[0] / 2;
+  const size = 0.055 * Math.max(half, 0.6 * (drawing.high_mm - drawing.low_mm));
+  const low = drawing.low_mm - 4 * size;
+  const box = [-half - 7 * size, -drawing.high_mm - 2 * size, 2 * half + 16 * size, drawing.high_mm - low + 2 * size];
+  const words = drawing.bodies.map((body) => `${body.name} of ${body.material}`).join(", ");
+  const svg = element(
+    "svg:svg",
+    { viewBox: box.join(" "), role: "img", "aria-label": `Section through ${words}, ${drawing.size_mm.map((v) => short(v)).join(" by ")} mm` },
+    ...drawing.bodies.map((body) =>
+      element("svg:path", { d: outline([body]), class: `outline ${body.role === "membrane" ? "membrane" : "rigid"}` }),
+    ),
+    pinned ? element("svg:path", { d: outline(pinned.bodies), class: "pinned" }) : null,
+    ...dimensions(drawing, size, 0.35 * size),
+  );
+  byId("section").replaceChildren(svg);
+}

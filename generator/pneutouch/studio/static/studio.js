@@ -1,0 +1,217 @@
+// The page: a state, its history and its address; questions to the studio, and what shows the answers.
+import * as address from "./address.js";
+import { Line, Stopped } from "./ask.js";
+import * as charts from "./charts.js";
+import { byId, element } from "./dom.js";
+import { Form } from "./form.js";
+import { drawSection } from "./section.js";
+import * as tables from "./tables.js";
+import { View } from "./view.js";
+
+const SETTLED = 250;
+const KEPT = 500;
+const page = { state: null, past: [], future: [], quick: null, solved: null, pinned: null, from: null };
+const parts = {};
+
+const same = (one, other) => address.written(one) === address.written(other);
+
+function say(words, busy = false) {
+  byId("status").textContent = words;
+  byId("status").classList.toggle("busy", busy);
+}
+
+function buttons() {
+  byId("undo").disabled = !page.past.length;
+  byId("redo").disabled = !page.future.length;
+  byId("reset").disabled = !Object.keys(page.state.values).length;
+  byId("pin").textContent = page.pinned ? "Unpin" : "Pin";
+  byId("pin").disabled = !page.pinned && !page.quick;
+}
+
+/** Ask for the state as it is now: at once what is quick, the solid when the moves have ended. */
+function ask() {
+  parts.form.show(page.state, page.quick);
+  buttons();
+  byId("base").value = page.state.base;
+  history.replaceState(null, "", address.written(page.state));
+  parts.quick.ask(page.state);
+  clearTimeout(parts.later);
+  parts.later = setTimeout(() => parts.solved.ask(page.state), SETTLED);
+}
+
+/** Go to another state; `settled` states can be come back to. */
+function go(state, settled = true) {
+  page.from ??= page.state;
+  page.state = state;
+  if (settled) {
+    if (!same(page.from, state)) {
+      page.past = [...page.past.slice(1 - KEPT), page.from];
+      page.future = [];
+    }
+    page.from = null;
+  }
+  ask();
+}
+
+function step(from, to) {
+  if (!page[from].length) return;
+  page[to].push(page.state);
+  page.state = page[from].pop();
+  page.from = null;
+  ask();
+}
+
+function changed(name, text, settled) {
+  go({ base: page.state.base, values: { ...page.state.values, [name]: text, ...started(name, text) } }, settled);
+}
+
+/** Sizes to begin with for an object that needs some: it cannot be answered without. */
+function started(name, text) {
+  if (name !== "contact.object" || !page.quick) return {};
+  const radius = Number(page.quick.values.membrane.inner_radius_mm);
+  const begin = { "contact.ring_section_radius_mm": radius / 5, "contact.ring_radius_mm": radius / 2, "contact.cone_half_angle_deg": 60 };
+  const given = {};
+  for (const key of parts.form.sizes[text] ?? []) {
+    const [table, field] = key.split(".");
+    if (page.state.values[key] || page.quick.values[table][field] !== null) continue;
+    if (key === "contact.profile_mm") given[key] = `[[0, 0], [${radius}, ${radius / 4}]]`;
+    else given[key] = String(Number((begin[key] ?? radius / 2).toPrecision(3)));
+  }
+  return given;
+}
+
+function problems(list) {
+  const without = parts.form.wrong(list);
+  byId("problems").replaceChildren(...without.map((message) => element("li", {}, message)));
+  byId("results").classList.toggle("stale", list.length > 0);
+}
+
+/** Draw what predicts: the quick answer, or the solid's in its place. */
+function predicted(answer) {
+  charts.drawSensitivity(answer, page.pinned);
+  charts.drawStates("force", "contact_force_N", "contact force, N", answer, page.pinned);
+  charts.drawStates("rise", "pressure_rise_kPa", "pressure rise, kPa", answer, page.pinned);
+  charts.drawInflation(answer);
+  tables.showTiles(answer, page.solved);
+  tables.showFigures(answer.prediction);
+  tables.showComparison(page.pinned, answer);
+}
+
+function current() {
+  return page.solved ? { ...page.quick, ...page.solved } : page.quick;
+}
+
+function redraw() {
+  const answer = current();
+  if (!answer) return;
+  drawSection(answer.drawing, page.pinned?.drawing);
+  if (answer.prediction) predicted(answer);
+  else tables.showComparison(page.pinned, answer);
+}
+
+function quickly(question, status, content) {
+  if (status !== 200) {
+    if (same(question, page.state)) problems(content.problems);
+    say("The results below are those of the last design that can work.");
+    return;
+  }
+  problems([]);
+  page.quick = content;
+  page.solved = null;
+  parts.form.usual(content);
+  parts.form.show(page.state, content);
+  byId("results").classList.toggle("stale", !content.prediction);
+  redraw();
+  tables.showFindings(null);
+  tables.showPrint(null);
+  parts.view.mark([]);
+  const why = content.outside ? `Not in the atlas: ${content.outside}. ` : "Answered by the atlas. ";
+  say(`${why}The solid is computing.`, true);
+  buttons();
+  if (parts.view.renderer) parts.shapes.ask(question);
+  requestAnimationFrame(() => (document.body.dataset.painted = String(1 + Number(document.body.dataset.painted ?? 0))));
+}
+
+function solved(question, status, content) {
+  if (!same(question, page.state)) return;
+  if (status !== 200) {
+    problems(content.problems);
+    say("The solid has no answer to this design.");
+    return;
+  }
+  if (!page.quick) return;
+  page.solved = content;
+  byId("results").classList.remove("stale");
+  predicted(current());
+  tables.showFindings(content.check, parts.view.renderer);
+  tables.showPrint(content.jobs);
+  parts.view.mark(content.check.findings);
+  say(`Answered by the model ${content.prediction.model}.`);
+  document.body.dataset.solved = address.written(question);
+}
+
+function failed(question, error) {
+  say(error instanceof Stopped ? error.message : `The page has a fault: ${error.message}`);
+  byId("results").classList.add("stale");
+  if (!(error instanceof Stopped)) throw error;
+}
+
+function pin() {
+  page.pinned = page.pinned ? null : current();
+  buttons();
+  redraw();
+}
+
+async function copy() {
+  const words = address.options(page.state);
+  try {
+    await navigator.clipboard.writeText(words);
+    say(`Copied: ${words}`);
+  } catch {
+    say(words);
+  }
+}
+
+function listen() {
+  byId("undo").onclick = () => step("past", "future");
+  byId("redo").onclick = () => step("future", "past");
+  byId("reset").onclick = () => go({ base: page.state.base, values: {} });
+  byId("pin").onclick = pin;
+  byId("copy").onclick = copy;
+  byId("base").onchange = (event) => go({ base: event.target.value, values: {} });
+  byId("cut").onchange = (event) => parts.view.set({ open: event.target.checked });
+  byId("explode").oninput = (event) => parts.view.set({ apart: event.target.value / 100 });
+  document.addEventListener("keydown", (event) => {
+    if (!(event.ctrlKey || event.metaKey) || event.target.type === "text") return;
+    if (event.key.toLowerCase() === "z") step(...(event.shiftKey ? ["future", "past"] : ["past", "future"]));
+    else if (event.key.toLowerCase() === "y") step("future", "past");
+    else return;
+    event.preventDefault();
+  });
+  window.addEventListener("hashchange", () => {
+    const state = address.read(location.hash);
+    if (state && !same(state, page.state)) go(state);
+  });
+  new ResizeObserver(charts.resized).observe(byId("results"));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    charts.forget();
+    redraw();
+  });
+}
+
+async function start() {
+  const declared = await (await fetch("/api/form")).json();
+  byId("base").replaceChildren(...declared.designs.map((one) => element("option", { value: one.name, title: one.title }, one.name)));
+  parts.view = new View(byId("view"));
+  byId("view-tools").hidden = !parts.view.renderer;
+  parts.form = new Form(declared, changed);
+  parts.quick = new Line("/api/quick", quickly, failed);
+  parts.solved = new Line("/api/solved", solved, failed);
+  parts.shapes = new Line("/api/view", (_, status, content) => status === 200 && parts.view.show(content.bodies), failed);
+  page.state = address.read(location.hash) ?? { base: declared.first, values: {} };
+  byId("base").value = page.state.base;
+  listen();
+  ask();
+}
+
+start().catch((error) => say(`The page cannot start: ${error.message}`));

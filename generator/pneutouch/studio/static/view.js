@@ -1,0 +1,163 @@
+// The bodies in three dimensions: turned by pointer or keys, cut open, moved apart. Drawn when something changes alone.
+import * as three from "/vendor/three.module.min.js";
+import { element } from "./dom.js";
+
+const CUT = new three.Plane(new three.Vector3(0, 1, 0), 1e-3);
+const MARKS = { error: 0xd93025, warning: 0xe09b00, note: 0x2a7ab8 };
+
+function bytes(text) {
+  const raw = atob(text);
+  const made = new Uint8Array(raw.length);
+  for (let k = 0; k < raw.length; k += 1) made[k] = raw.charCodeAt(k);
+  return made.buffer;
+}
+
+/** A renderer, or null where the browser has no WebGL. */
+function renderer() {
+  try {
+    const made = new three.WebGLRenderer({ antialias: true, alpha: true });
+    made.localClippingEnabled = true;
+    return made;
+  } catch {
+    return null;
+  }
+}
+
+export class View {
+  constructor(host) {
+    this.host = host;
+    this.renderer = renderer();
+    if (!this.renderer) {
+      host.replaceChildren(element("p", { class: "muted" }, "This browser offers no WebGL: the section stands alone."));
+      host.classList.add("none");
+      return;
+    }
+    this.scene = new three.Scene();
+    this.camera = new three.PerspectiveCamera(30, 1, 1, 5000);
+    this.camera.up.set(0, 0, 1);
+    this.sun = new three.DirectionalLight(0xffffff, 2.1);
+    this.scene.add(new three.HemisphereLight(0xffffff, 0x8899aa, 1.5), this.sun);
+    Object.assign(this, { groups: new Map(), azimuth: -1.1, height: 0.42, zoom: 1, open: true, apart: 0, findings: [] });
+    this.canvas = this.renderer.domElement;
+    this.canvas.tabIndex = 0;
+    this.canvas.setAttribute("role", "img");
+    this.canvas.setAttribute("aria-label", "The sensor in three dimensions. Arrow keys turn it, plus and minus zoom.");
+    host.replaceChildren(this.canvas);
+    this.listen();
+  }
+
+  listen() {
+    const { canvas } = this;
+    canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
+    canvas.addEventListener("pointermove", (event) => {
+      if (event.buttons) this.turn(-0.01 * event.movementX, 0.01 * event.movementY);
+    });
+    canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.scale(Math.exp(0.001 * event.deltaY));
+    }, { passive: false });
+    const steps = { ArrowLeft: [-0.15, 0], ArrowRight: [0.15, 0], ArrowUp: [0, 0.15], ArrowDown: [0, -0.15] };
+    canvas.addEventListener("keydown", (event) => {
+      if (steps[event.key]) this.turn(...steps[event.key]);
+      else if (event.key === "+" || event.key === "=") this.scale(0.9);
+      else if (event.key === "-") this.scale(1.1);
+      else return;
+      event.preventDefault();
+    });
+    new ResizeObserver(() => this.draw()).observe(this.host);
+  }
+
+  turn(sideways, upwards) {
+    this.azimuth += sideways;
+    this.height = Math.max(-1.5, Math.min(1.5, this.height + upwards));
+    this.draw();
+  }
+
+  scale(factor) {
+    this.zoom = Math.max(0.3, Math.min(4, this.zoom * factor));
+    this.draw();
+  }
+
+  show(bodies) {
+    if (!this.renderer) return;
+    for (const group of this.groups.values()) {
+      this.scene.remove(group);
+      group.traverse((part) => {
+        if (part.geometry) part.geometry.dispose();
+        if (part.material) part.material.dispose();
+      });
+    }
+    this.groups = new Map(bodies.map((body) => [body.name, this.group(body)]));
+    this.bounds = new three.Box3();
+    for (const group of this.groups.values()) this.bounds.expandByObject(group);
+    this.mark(this.findings);
+  }
+
+  group(body) {
+    const shape = new three.BufferGeometry();
+    shape.setAttribute("position", new three.BufferAttribute(new Float32Array(bytes(body.corners)), 3));
+    shape.setAttribute("normal", new three.BufferAttribute(new Int8Array(bytes(body.normals)), 3, true));
+    const outside = new three.MeshStandardMaterial({ color: body.colour, roughness: 0.55, metalness: 0 });
+    // Where a body is cut open its far side is seen from within: in one flat colour that reads as the cut face.
+    const within = new three.MeshBasicMaterial({ color: new three.Color(body.colour).multiplyScalar(0.62), side: three.BackSide });
+    const group = new three.Group();
+    group.add(new three.Mesh(shape, outside), new three.Mesh(shape, within));
+    group.userData = { materials: [outside, within] };
+    this.scene.add(group);
+    return group;
+  }
+
+  /** Spheres where findings of the print rules lie; they move with their bodies. */
+  mark(findings) {
+    if (!this.renderer) return;
+    this.findings = findings;
+    if (!this.bounds) return;
+    const radius = 0.012 * this.bounds.getSize(new three.Vector3()).length();
+    for (const group of this.groups.values()) group.remove(...group.children.slice(2));
+    for (const finding of findings) {
+      const group = this.groups.get(finding.body);
+      if (!group || !finding.where_mm) continue;
+      const look = new three.MeshBasicMaterial({ color: MARKS[finding.severity], depthTest: false });
+      const sphere = new three.Mesh(new three.SphereGeometry(radius, 16, 12), look);
+      sphere.position.set(...finding.where_mm);
+      sphere.renderOrder = 1;
+      group.add(sphere);
+    }
+    this.draw();
+  }
+
+  set({ open = this.open, apart = this.apart }) {
+    Object.assign(this, { open, apart });
+    this.draw();
+  }
+
+  draw() {
+    if (!this.renderer || !this.bounds) return;
+    const width = this.host.clientWidth;
+    const height = this.host.clientHeight;
+    if (!width || !height) return;
+    const size = this.bounds.getSize(new three.Vector3());
+    const middle = this.bounds.getCenter(new three.Vector3());
+    [...this.groups.values()].forEach((group, k) => {
+      // The membrane comes first: it goes up, and each other body further down.
+      group.position.z = this.apart * size.z * (k ? 0.25 - 0.75 * k : 0.55);
+      for (const material of group.userData.materials) material.clippingPlanes = this.open ? [CUT] : [];
+    });
+    const far = (1.9 + 1.2 * this.apart) * size.length() * this.zoom * Math.max(1, height / width);
+    const flat = far * Math.cos(this.height);
+    this.camera.position.set(
+      middle.x + flat * Math.cos(this.azimuth),
+      middle.y + flat * Math.sin(this.azimuth),
+      middle.z + far * Math.sin(this.height),
+    );
+    this.camera.aspect = width / height;
+    this.camera.near = 0.05 * far;
+    this.camera.far = 5 * far;
+    this.camera.updateProjectionMatrix();
+    this.camera.lookAt(middle);
+    this.sun.position.copy(this.camera.position).add(new three.Vector3(0, 0, 0.6 * far));
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+    this.renderer.setSize(width, height, false);
+    this.renderer.render(this.scene, this.camera);
+  }
+}

@@ -1,0 +1,42 @@
+"""The process that computes what takes a second: one line of JSON in, one out, until its input ends."""
+
+import json
+import signal
+import sys
+from collections.abc import Iterable, Mapping
+from typing import Any, BinaryIO
+
+from pneutouch.catalogue import Library
+from pneutouch.catalogue.cached_library import CachedLibrary
+from pneutouch.errors import ComputationError, PneutouchError
+from pneutouch.studio.answer import full_answer
+from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
+from pneutouch.studio.question import Question
+
+
+def answered(request: Mapping[str, Any], library: Library) -> dict[str, Any]:
+    """Status and content of the answer to a request with ``question`` and ``bases``; an error is an answer too."""
+    try:
+        content = full_answer(Question.of(request["question"]), request["bases"], library)
+        return {"status": 200, "content": content}
+    except PneutouchError as error:
+        fault = error
+    except MemoryError:
+        fault = too_little_memory()
+    except Exception as error:
+        fault = ComputationError(f"internal fault ({type(error).__name__}: {error})", remedy="please report it")
+    return {"status": fault_status(fault), "content": fault_document(fault)}
+
+
+def work(requests: Iterable[bytes], answers: BinaryIO) -> None:
+    """Answer every request in turn."""
+    library = CachedLibrary(Library.default().folders)
+    for line in requests:
+        answers.write(json.dumps(answered(json.loads(line), library)).encode() + b"\n")
+        answers.flush()
+
+
+if __name__ == "__main__":
+    # The studio ends this process: Ctrl-C in its terminal is no affair of this one.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    work(sys.stdin.buffer, sys.stdout.buffer)
