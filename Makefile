@@ -49,9 +49,9 @@ check-slow: $(VENV)/.dev
 # Needs uv; writes the locked dependencies with hashes for every platform.
 lock:
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url \
-	    --extra cad pyproject.toml requirements-build.in --output-file requirements.lock
+	    --extra cad --extra studio pyproject.toml requirements-build.in --output-file requirements.lock
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url \
-	    --extra cad --group dev --constraint requirements.lock pyproject.toml --output-file requirements-dev.lock
+	    --extra cad --extra studio --group dev --constraint requirements.lock pyproject.toml --output-file requirements-dev.lock
 
 clean:
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache

@@ -19,7 +19,7 @@ from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.studio.answer import quick_answer, view_answer
 from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
 from pneutouch.studio.form import designs_document, form_document
-from pneutouch.studio.guard import Application, Guard, TooLargeError
+from pneutouch.studio.guard import Application, Guard, TooLargeError, too_large
 from pneutouch.studio.pages import page_files, respond
 from pneutouch.studio.question import Question
 from pneutouch.studio.solver import Solver, SupersededError
@@ -103,15 +103,14 @@ def application(bases: dict[str, str], first: str, port: int, token: str) -> App
         Route("/api/echo", echo, methods=["POST"]),
         Route("/{path:path}", page),
     ]
-    return Guard(Starlette(routes=routes, lifespan=studio.running, exception_handlers={Exception: _failed}), port, token)
+    handlers = {TooLargeError: _refused, Exception: _failed}
+    return Guard(Starlette(routes=routes, lifespan=studio.running, exception_handlers=handlers), port, token)
 
 
 async def _question(request: Request) -> Question:
     """The question in a body. Raises InputError where it is none."""
     try:
         content = json.loads(await request.body())
-    except TooLargeError:
-        raise
     except (ValueError, RecursionError):
         raise InputError("the question is not JSON") from None
     return Question.of(content)
@@ -119,6 +118,10 @@ async def _question(request: Request) -> Question:
 
 def _fault(error: PneutouchError, status: int | None = None) -> Response:
     return JSONResponse(fault_document(error), status or fault_status(error))
+
+
+async def _refused(request: Request, error: Exception) -> Response:
+    return too_large()
 
 
 async def _failed(request: Request, error: Exception) -> Response:

@@ -1,5 +1,6 @@
 """The form of the page, made from the declared fields of a design file."""
 
+import datetime
 import types
 import typing
 from typing import Any
@@ -66,16 +67,15 @@ def _kinds(annotation: Any) -> list[Any]:
 
 
 def _kind(kinds: list[Any], declared: Declaration) -> str:
-    """number, whole, numbers, flag, choice or text: how the page shows a field."""
+    """number, whole, numbers, flag, choice, date or text: how the page shows a field."""
     if declared.registry or any(typing.get_origin(kind) is typing.Literal for kind in kinds):
         return "choice"
     if bool in kinds:
         return "flag"
     if any(typing.get_origin(kind) is list for kind in kinds):
         return "numbers"
-    if declared.low is None:
-        return "text"
-    return "whole" if int in kinds else "number"
+    kind = {int: "whole", float: "number", datetime.date: "date"}
+    return next((name for type_, name in kind.items() if type_ in kinds), "text")
 
 
 def _options(name: str, kinds: list[Any], declared: Declaration, library: Library) -> list[Option]:
@@ -86,7 +86,8 @@ def _options(name: str, kinds: list[Any], declared: Declaration, library: Librar
         return []
     if declared.registry == "materials":
         return _materials(_KIND_OF_MATERIAL.get(name), library)
-    return [{"name": each, "title": _title(declared.registry, each, library)} for each in library.paths(declared.registry)]
+    registry = declared.registry
+    return [{"name": each, "title": _title(registry, each, library)} for each in library.paths(registry)]
 
 
 def _materials(kind: str | None, library: Library) -> list[Option]:

@@ -64,10 +64,7 @@ class Guard:
         if refused is not None:
             await refused(scope, receive, guarded)
             return
-        try:
-            await self._application(scope, _limited(receive), guarded)
-        except TooLargeError:
-            await _too_large()(scope, receive, guarded)
+        await self._application(scope, _limited(receive), guarded)
 
     def _refused(self, scope: Scope, headers: dict[str, str]) -> Response | None:
         """The answer to a request that goes no further; None for one that may."""
@@ -92,7 +89,7 @@ class Guard:
         if headers.get("content-type", "").partition(";")[0].strip().lower() != "application/json":
             return PlainTextResponse("a question is application/json", 415)
         length = headers.get("content-length", "0")
-        return _too_large() if not length.isdigit() or int(length) > LARGEST_BODY else None
+        return too_large() if not length.isdigit() or int(length) > LARGEST_BODY else None
 
     def _knows(self, headers: dict[str, str]) -> bool:
         try:
@@ -109,7 +106,8 @@ class Guard:
         return True
 
 
-def _too_large() -> Response:
+def too_large() -> Response:
+    """The answer to a question that is longer than `LARGEST_BODY`."""
     problem = {"message": f"a question has at most {LARGEST_BODY} bytes", "fields": []}
     return JSONResponse({"problems": [problem]}, 413)
 

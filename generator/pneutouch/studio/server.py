@@ -69,6 +69,7 @@ def serve(design: str | None, port: int, opened: Callable[[str], None]) -> None:
         config = uvicorn.Config(
             guarded,
             log_config=None,
+            log_level="critical",
             access_log=False,
             server_header=False,
             date_header=False,

@@ -2,6 +2,7 @@
 import uPlot from "/vendor/uPlot.esm.js";
 import { byId, colour, short } from "./dom.js";
 
+const HEIGHT = 270;
 const drawn = new Map();
 
 const series = (label, stroke, more = {}) => ({
@@ -10,14 +11,20 @@ const series = (label, stroke, more = {}) => ({
   width: 2,
   spanGaps: true,
   points: { show: false },
-  value: (_, value) => short(value),
+  value: (_, value) => read(value),
   ...more,
 });
+
+/** What the legend reads under the pointer. */
+const read = (value) => (value === null || value === undefined ? "" : short(value));
 
 const axis = (label, more = {}) => ({
   label,
   stroke: colour("muted"),
-  labelSize: 22,
+  labelSize: 18,
+  labelGap: 0,
+  size: 34,
+  gap: 4,
   labelFont: "13px system-ui, sans-serif",
   font: "12px system-ui, sans-serif",
   grid: { stroke: colour("fine"), width: 1 },
@@ -64,11 +71,11 @@ function show(id, across, up, lines, data, { bands = [], marks = [], points = nu
   drawn.set(host, entry);
   const options = {
     width: host.clientWidth || 300,
-    height: 240,
-    series: [{ label: across, value: (_, value) => short(value) }, ...lines],
+    height: HEIGHT,
+    series: [{ label: across, value: (_, value) => read(value) }, ...lines],
     bands,
     scales: { x: { time: false }, y: { range: (_, low, high) => [Math.min(0, low ?? 0), (high ?? 1) * 1.06 || 1] } },
-    axes: [axis(across), axis(up, { size: 56 })],
+    axes: [axis(across), axis(up, { size: 48 })],
     cursor: { drag: { x: false, y: false } },
     hooks: { draw: [markers(host)] },
     legend: { live: true },
@@ -105,8 +112,10 @@ export function drawSensitivity(answer, pinned) {
     states.map((state) => state.sensitivity_kPa_per_N),
     series("at its driving pressures", colour("ink"), { width: 0 }),
   );
-  answer.curves.resins.forEach((resin, k) => {
-    add(resin.driving_pressure_kPa, resin.sensitivity_kPa_per_N, series(resin.title, tone(k + 1), { width: 1.2 }));
+  const material = answer.drawing.bodies.find((body) => body.role === "membrane").material;
+  // The design's own resin is drawn already.
+  answer.curves.resins.filter((resin) => !own || resin.title !== material).forEach((resin, k) => {
+    add(resin.driving_pressure_kPa, resin.sensitivity_kPa_per_N, series(resin.title, tone(k % 6 + 1), { width: 1.3, dash: k < 6 ? undefined : [7, 3] }));
   });
   if (pinned && pinned.curves && pinned.curves.design) {
     const { driving_pressure_kPa: pressures, sensitivity_kPa_per_N: values } = pinned.curves.design;
@@ -156,7 +165,7 @@ export function drawInflation(answer) {
 export function resized() {
   for (const [host, { chart }] of drawn) {
     const width = host.clientWidth;
-    if (width && width !== chart.width) chart.setSize({ width, height: 240 });
+    if (width && width !== chart.width) chart.setSize({ width, height: HEIGHT });
   }
 }
 

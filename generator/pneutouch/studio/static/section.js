@@ -49,7 +49,7 @@ function dimensions(drawing, size, tick) {
 
 export function drawSection(drawing, pinned) {
   const half = drawing.size_mm[0] / 2;
-  const size = 0.055 * Math.max(half, 0.6 * (drawing.high_mm - drawing.low_mm));
+  const size = 0.068 * Math.max(half, 0.6 * (drawing.high_mm - drawing.low_mm));
   const low = drawing.low_mm - 4 * size;
   const box = [-half - 7 * size, -drawing.high_mm - 2 * size, 2 * half + 16 * size, drawing.high_mm - low + 2 * size];
   const words = drawing.bodies.map((body) => `${body.name} of ${body.material}`).join(", ");

@@ -28,15 +28,14 @@ function buttons() {
   byId("pin").disabled = !page.pinned && !page.quick;
 }
 
-/** Ask for the state as it is now: at once what is quick, the solid when the moves have ended. */
+/** Ask for the state as it is now: what is quick, and after its answer to the last move the solid. */
 function ask() {
   parts.form.show(page.state, page.quick);
   buttons();
   byId("base").value = page.state.base;
   history.replaceState(null, "", address.written(page.state));
-  parts.quick.ask(page.state);
   clearTimeout(parts.later);
-  parts.later = setTimeout(() => parts.solved.ask(page.state), SETTLED);
+  parts.quick.ask(page.state);
 }
 
 /** Go to another state; `settled` states can be come back to. */
@@ -129,6 +128,7 @@ function quickly(question, status, content) {
   say(`${why}The solid is computing.`, true);
   buttons();
   if (parts.view.renderer) parts.shapes.ask(question);
+  if (same(question, page.state)) parts.later = setTimeout(() => parts.solved.ask(question), SETTLED);
   requestAnimationFrame(() => (document.body.dataset.painted = String(1 + Number(document.body.dataset.painted ?? 0))));
 }
 

@@ -143,7 +143,7 @@ export class View {
       group.position.z = this.apart * size.z * (k ? 0.25 - 0.75 * k : 0.55);
       for (const material of group.userData.materials) material.clippingPlanes = this.open ? [CUT] : [];
     });
-    const far = (1.9 + 1.2 * this.apart) * size.length() * this.zoom * Math.max(1, height / width);
+    const far = (1.42 + 1.1 * this.apart) * size.length() * this.zoom * Math.max(1, height / width);
     const flat = far * Math.cos(this.height);
     this.camera.position.set(
       middle.x + flat * Math.cos(this.azimuth),

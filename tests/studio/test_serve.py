@@ -1,0 +1,43 @@
+"""Start and end of the command."""
+
+from __future__ import annotations
+
+import http.client
+import signal
+import socket
+from urllib.parse import urlsplit
+
+import pytest
+
+from tests.studio.served import served
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("number", "code", "line"), [(signal.SIGINT, 130, "stopped by Ctrl-C"), (signal.SIGTERM, 143, "stopped by SIGTERM")]
+)
+def test_a_stop_signal_ends_it_with_one_line(number, code, line):
+    with served() as (address, running):
+        parts = urlsplit(address)
+        asked = http.client.HTTPConnection(parts.hostname, parts.port)
+        asked.request("GET", f"/?{parts.query}")
+        assert asked.getresponse().status == 303
+        running.send_signal(number)
+        _, said = running.communicate(timeout=60)
+        assert running.returncode == code
+        assert said.splitlines()[-1] == line
+        assert "Traceback" not in said
+        with pytest.raises(OSError):
+            socket.create_connection((parts.hostname, parts.port), timeout=5)
+
+
+def test_a_port_that_is_taken_is_one_clear_error(command):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        done = command("studio", "--no-browser", "--port", str(taken.getsockname()[1]))
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: --port ")
+    assert "give another port" in done.stderr
+
+
+def test_an_unknown_design_is_the_error_of_every_command(command):
+    assert command("studio", "paper-dom", "--no-browser").stderr == command("predict", "paper-dom").stderr
