@@ -6,7 +6,10 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from contextlib import contextmanager
+
+_LONGEST = 300
 
 
 @contextmanager
@@ -23,3 +26,11 @@ def served(*words: str):
         if running.poll() is None:
             running.send_signal(signal.SIGINT)
         running.communicate(timeout=60)
+
+
+def until(screen, condition: str) -> None:
+    """Wait until a condition holds in the page."""
+    end = time.monotonic() + _LONGEST
+    while not screen.evaluate(f"!!({condition})"):
+        assert time.monotonic() < end, condition
+        time.sleep(0.1)

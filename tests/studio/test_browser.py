@@ -8,22 +8,17 @@ from urllib.parse import urlsplit
 import pytest
 
 from tests.report.browser import FOUND, WHY_NOT, WITH_WEBGL, WITHOUT_WEBGL, browser
-from tests.studio.served import served
+from tests.studio.served import served, until
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(FOUND is None, reason=WHY_NOT)]
 
-_UNTIL = "new Promise(done => {{ const look = () => ({condition}) ? done(1) : setTimeout(look, 20); look(); }})"
-_SOLVED = "document.getElementById('status').textContent === 'Answered by the model solid.'"
+_SOLVED = "document.getElementById('status')?.textContent === 'Answered by the model solid.'"
 _MOVE = """(slider => {{ slider.value = {place}; slider.dispatchEvent(new Event('input')); slider.dispatchEvent(new Event('change')); }})
 (document.querySelector('[aria-label="Wall thickness, mm"]'))"""
 _TOO_WIDE = """[...document.querySelectorAll('body *')].filter(e => !e.closest('.scroll') && !e.closest('svg') &&
 !e.matches('.skip') && e.getBoundingClientRect().right > innerWidth + 0.5).map(e => e.tagName + e.className)"""
 _UNNAMED = """[...document.querySelectorAll('input, select, button, canvas')].filter(e => !(e.labels && e.labels.length) &&
 !e.getAttribute('aria-label') && !e.textContent.trim()).map(e => e.outerHTML)"""
-
-
-def until(screen, condition: str) -> None:
-    screen.evaluate(_UNTIL.format(condition=condition))
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +53,7 @@ def test_a_slider_moves_the_figures_of_the_commands(screen, command):
         == 4
     )
     screen.evaluate("document.getElementById('undo').click()")
-    until(screen, f"{_SOLVED} && location.hash === '#paper-dome'")
+    until(screen, f"document.body.dataset.solved === '#paper-dome' && {_SOLVED}")
     assert screen.evaluate("document.getElementById('field-membrane-wall_thickness_mm').value") == "1.5"
 
 

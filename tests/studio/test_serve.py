@@ -5,6 +5,7 @@ from __future__ import annotations
 import http.client
 import signal
 import socket
+from contextlib import closing
 from urllib.parse import urlsplit
 
 import pytest
@@ -19,9 +20,9 @@ from tests.studio.served import served
 def test_a_stop_signal_ends_it_with_one_line(number, code, line):
     with served() as (address, running):
         parts = urlsplit(address)
-        asked = http.client.HTTPConnection(parts.hostname, parts.port)
-        asked.request("GET", f"/?{parts.query}")
-        assert asked.getresponse().status == 303
+        with closing(http.client.HTTPConnection(parts.hostname, parts.port)) as asked:
+            asked.request("GET", f"/?{parts.query}")
+            assert asked.getresponse().status == 303
         running.send_signal(number)
         _, said = running.communicate(timeout=60)
         assert running.returncode == code

@@ -10,7 +10,7 @@ import { View } from "./view.js";
 
 const SETTLED = 250;
 const KEPT = 500;
-const page = { state: null, past: [], future: [], quick: null, solved: null, pinned: null, from: null };
+const page = { state: null, past: [], future: [], quick: null, solved: null, pinned: null, from: null, plain: {} };
 const parts = {};
 
 const same = (one, other) => address.written(one) === address.written(other);
@@ -28,10 +28,16 @@ function buttons() {
   byId("pin").disabled = !page.pinned && !page.quick;
 }
 
+/** The form as the state has it; what the state leaves alone is the design file's. */
+function show() {
+  parts.form.show(page.state, page.plain[page.state.base] ?? page.quick);
+}
+
 /** Ask for the state as it is now: what is quick, and after its answer to the last move the solid. */
 function ask() {
-  parts.form.show(page.state, page.quick);
+  show();
   buttons();
+  say("Computing.", true);
   byId("base").value = page.state.base;
   history.replaceState(null, "", address.written(page.state));
   clearTimeout(parts.later);
@@ -118,7 +124,8 @@ function quickly(question, status, content) {
   page.quick = content;
   page.solved = null;
   parts.form.usual(content);
-  parts.form.show(page.state, content);
+  if (!Object.keys(question.values).length) page.plain[question.base] = content;
+  show();
   byId("results").classList.toggle("stale", !content.prediction);
   redraw();
   tables.showFindings(null);
