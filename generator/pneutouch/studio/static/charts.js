@@ -82,6 +82,9 @@ function show(id, across, up, lines, data, { bands = [], marks = [], points = nu
   };
   if (points) options.series[points].points = { show: true, size: 8 };
   entry.chart = new uPlot(options, data, host);
+  const { canvas } = entry.chart.ctx;
+  canvas.setAttribute("role", "img");
+  canvas.setAttribute("aria-label", `${up} over ${across}: ${lines.map((one) => one.label).join(", ")}`);
 }
 
 const tone = (number) => colour(`series-${1 + (number % 7)}`);
