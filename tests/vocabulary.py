@@ -126,7 +126,9 @@ def files(path: Path) -> list[Path]:
     """A file, or the files below a folder that are read."""
     if path.is_file():
         return [path]
-    return sorted(p for p in path.rglob("*") if p.suffix in {".py", *TEXTS} and "__pycache__" not in p.parts)
+    return sorted(
+        p for p in path.rglob("*") if p.suffix in {".py", *TEXTS} and not {"__pycache__", "vendor"} & set(p.parts)
+    )
 
 
 def covered() -> dict[str, list[Path]]:

@@ -25,7 +25,7 @@ from pneutouch.studio.question import Question
 from pneutouch.studio.solver import Solver, SupersededError
 
 _WAITING = 8
-"""Questions that may wait for an answer at once; a page has two under way."""
+"""Questions that may wait for an answer at once; a page sends two."""
 
 QuickAnswer = Callable[[Question, Mapping[str, str], Library], dict[str, Any]]
 
@@ -68,7 +68,7 @@ class Studio:
         """The answer of the process; 409 where a newer question took its place."""
         try:
             question = await _question(request)
-            answer = await self._solver.ask(question.document())
+            answer = await self._solver.request(question.document())
         except PneutouchError as error:
             return _fault(error)
         except SupersededError:
@@ -92,7 +92,7 @@ def application(bases: dict[str, str], first: str, port: int, token: str) -> App
         return respond(known, request)
 
     async def echo(request: Request) -> Response:
-        """What was sent, as it is: the measure of what the page and the way to it take."""
+        """What was sent, as it is: the measure of what the page and the network take."""
         return Response(await request.body(), media_type="application/json")
 
     routes = [

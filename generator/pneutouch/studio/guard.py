@@ -70,7 +70,7 @@ class Guard:
         """The answer to a request that goes no further; None for one that may."""
         if headers.get("host") not in self._hosts:
             return PlainTextResponse("unknown host", 403)
-        known = self._knows(headers)
+        known = self._has_cookie(headers)
         given = parse_qs(scope["query_string"].decode("latin-1")).get("token") if scope["path"] == "/" else None
         if given is not None and (known or self._opens(given[0])):
             answer = RedirectResponse("/", 303)
@@ -91,7 +91,7 @@ class Guard:
         length = headers.get("content-length", "0")
         return too_large() if not length.isdigit() or int(length) > LARGEST_BODY else None
 
-    def _knows(self, headers: dict[str, str]) -> bool:
+    def _has_cookie(self, headers: dict[str, str]) -> bool:
         try:
             cookie = SimpleCookie(headers.get("cookie", "")).get(self._cookie)
         except CookieError:

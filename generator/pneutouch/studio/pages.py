@@ -26,22 +26,22 @@ class PageFile(NamedTuple):
 def page_files() -> dict[str, PageFile]:
     """The files by the path that they are requested at; ``/`` is the page."""
     root = files("pneutouch.studio") / "static"
-    found = {}
+    files_by_path = {}
     for folder, prefix in ((root, "/"), (root / "vendor", "/vendor/")):
         for entry in sorted(folder.iterdir(), key=lambda each: each.name):
             kind = _KINDS.get(entry.name.rpartition(".")[2])
             if kind is not None and entry.is_file():
                 content = entry.read_bytes()
-                found[f"{prefix}{entry.name}"] = PageFile(kind, content, gzip.compress(content, 9, mtime=0))
-    found["/"] = found.pop("/index.html")
-    return found
+                files_by_path[f"{prefix}{entry.name}"] = PageFile(kind, content, gzip.compress(content, 9, mtime=0))
+    files_by_path["/"] = files_by_path.pop("/index.html")
+    return files_by_path
 
 
 def respond(known: dict[str, PageFile], request: Request) -> Response:
     """The file at the path of a request, compressed where the browser takes it; 404 where there is none."""
     file = known.get(request.url.path)
     if file is None:
-        return PlainTextResponse("not found", 404)
+        return PlainTextResponse("not files_by_path", 404)
     packed = "gzip" in request.headers.get("accept-encoding", "")
     headers = {"Vary": "Accept-Encoding"} | ({"Content-Encoding": "gzip"} if packed else {})
     return Response(file.compressed if packed else file.plain, media_type=file.kind, headers=headers)

@@ -1,4 +1,4 @@
-"""What the page asks: a design by its name, and the values of fields that differ from its file, as texts."""
+"""A question of the page: a design by its name, and the values of fields that differ from its file, as texts."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ _LONGEST_TEXT = 4000
 class Question:
     """A design of the catalogue, or the one the studio was started with, by ``base``; and changed fields.
 
-    ``values`` holds by ``table.key`` what is typed after ``--set table.key=``, or None where the key is left out.
+    ``values`` holds by ``table.key`` the text of a change ``table.key=text``, or None where the key is left out.
     """
 
     base: str
@@ -44,7 +44,7 @@ class Question:
         return cls(base, values)
 
     def document(self) -> dict[str, Any]:
-        """The question as the page asks it."""
+        """The question as the page sends it."""
         return {"base": self.base, "values": dict(self.values)}
 
     def source(self, bases: Mapping[str, str], library: Library) -> DesignSource:

@@ -15,11 +15,11 @@ from pneutouch.studio.application import application
 HOST = "127.0.0.1"
 
 _LAST_ANSWERS = 2
-"""Seconds that answers under way are given when the studio is stopped."""
+"""Seconds that unfinished answers have when the studio is stopped."""
 
 
 class _Server(uvicorn.Server):
-    """A server that states when it can be asked. A stop signal ends it, and is raised again when it has ended."""
+    """A server that reports when it takes requests. A stop signal ends it, and is raised again when it has ended."""
 
     def __init__(self, config: uvicorn.Config, opened: Callable[[], None]) -> None:
         super().__init__(config)

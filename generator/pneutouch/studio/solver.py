@@ -22,27 +22,51 @@ class SupersededError(Exception):
 
 
 class Solver:
-    """Asks the process, one question at a time. A newer question replaces the one that waits.
+    """Sends questions to the process, one at a time. A newer question replaces the one that waits.
 
-    One that has been computed for longer than `_PATIENCE` gives way as well: its process is ended, and another starts.
+    One that has been computed for longer than `_PATIENCE` is given up as well: its process ends, and another starts.
     """
 
     def __init__(self, bases: Mapping[str, str]) -> None:
         self._bases = dict(bases)
         self._process: asyncio.subprocess.Process | None = None
-        self._busy, self._newest = asyncio.Lock(), 0
-        self._newer = asyncio.Event()
+        self._waiting: asyncio.Future[None] | None = None
+        self._is_busy, self._newer = False, asyncio.Event()
 
-    async def ask(self, question: Mapping[str, Any]) -> Answer:
+    async def request(self, question: Mapping[str, Any]) -> Answer:
         """Status and content of the answer. Raises SupersededError where a newer question came."""
-        self._newest += 1
-        number = self._newest
         self._newer.set()
-        async with self._busy:
-            if number != self._newest:
-                raise SupersededError
+        if self._waiting is not None:
+            self._waiting.set_exception(SupersededError())
+            self._waiting = None
+        if self._is_busy:
+            await self._turn()
+        self._is_busy = True
+        if self._waiting is None:
             self._newer.clear()
+        try:
             return await self._answer({"question": question, "bases": self._bases})
+        finally:
+            self._pass_on()
+
+    async def _turn(self) -> None:
+        """Wait until the question before this one has its answer. Raises SupersededError."""
+        self._waiting = turn = asyncio.get_running_loop().create_future()
+        try:
+            await turn
+        except asyncio.CancelledError:
+            if self._waiting is turn:
+                self._waiting = None
+            elif not turn.cancelled():
+                self._pass_on()
+            raise
+
+    def _pass_on(self) -> None:
+        """Give the process to the question that waits; without one it is free."""
+        turn, self._waiting = self._waiting, None
+        self._is_busy = turn is not None
+        if turn is not None:
+            turn.set_result(None)
 
     async def close(self) -> None:
         """End the process."""

@@ -15,7 +15,7 @@ export function element(tag, attributes = {}, ...children) {
 
 export const byId = (id) => document.getElementById(id);
 
-/** A number to `digits` significant digits, without a power of ten and without zeros that say nothing. */
+/** A number to `digits` significant digits, without a power of ten and without trailing zeros. */
 export function short(value, digits = 4) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   return String(Number(value.toPrecision(digits)));

@@ -79,9 +79,9 @@ export class Form {
   row(field) {
     const id = `field-${field.name.replace(".", "-")}`;
     const entry = this.fields.get(field.name);
-    const told = { id, "aria-describedby": `${id}-help ${id}-wrong` };
+    const linked = { id, "aria-describedby": `${id}-help ${id}-wrong` };
     const send = (text, settled) => this.changed(field.name, typed(field, text), settled);
-    entry.input = this.input(field, told, send);
+    entry.input = this.input(field, linked, send);
     entry.wrong = element("p", { class: "wrong", id: `${id}-wrong` });
     const unit = field.unit ? element("small", {}, ` ${field.unit}`) : null;
     const label = element("label", { for: id }, field.label, unit);
@@ -99,19 +99,19 @@ export class Form {
     return entry.row;
   }
 
-  input(field, told, send) {
+  input(field, linked, send) {
     if (field.kind === "choice") {
       const options = field.options.map((one) =>
         element("option", { value: one.name }, one.title && one.title !== one.name ? `${one.name} – ${one.title}` : one.name),
       );
       if (field.optional) options.unshift(element("option", { value: "" }, "as usual"));
-      return element("select", { ...told, onchange: (event) => send(event.target.value, true) }, ...options);
+      return element("select", { ...linked, onchange: (event) => send(event.target.value, true) }, ...options);
     }
     if (field.kind === "flag") {
-      return element("input", { ...told, type: "checkbox", onchange: (event) => send(String(event.target.checked), true) });
+      return element("input", { ...linked, type: "checkbox", onchange: (event) => send(String(event.target.checked), true) });
     }
     return element("input", {
-      ...told,
+      ...linked,
       type: "text",
       inputmode: field.kind === "number" || field.kind === "whole" ? "decimal" : null,
       oninput: (event) => send(event.target.value, false),

@@ -1,6 +1,6 @@
 // The page: a state, its history and its address; questions to the studio, and what shows the answers.
 import * as address from "./address.js";
-import { Line, Stopped } from "./ask.js";
+import { Line, Stopped } from "./requests.js";
 import * as charts from "./charts.js";
 import { byId, element } from "./dom.js";
 import { Form } from "./form.js";
@@ -15,7 +15,7 @@ const parts = {};
 
 const same = (one, other) => address.written(one) === address.written(other);
 
-function say(words, busy = false) {
+function report(words, busy = false) {
   byId("status").textContent = words;
   byId("status").classList.toggle("busy", busy);
 }
@@ -33,15 +33,15 @@ function show() {
   parts.form.show(page.state, page.plain[page.state.base] ?? page.quick);
 }
 
-/** Ask for the state as it is now: what is quick, and after its answer to the last move the solid. */
-function ask() {
+/** Request the answers to the state as it is now: what is quick, and after its answer to the last move the solid. */
+function update() {
   show();
   buttons();
-  say("Computing.", true);
+  report("Computing.", true);
   byId("base").value = page.state.base;
   history.replaceState(null, "", address.written(page.state));
   clearTimeout(parts.later);
-  parts.quick.ask(page.state);
+  parts.quick.send(page.state);
 }
 
 /** Go to another state; `settled` states can be come back to. */
@@ -55,7 +55,7 @@ function go(state, settled = true) {
     }
     page.from = null;
   }
-  ask();
+  update();
 }
 
 function step(from, to) {
@@ -63,7 +63,7 @@ function step(from, to) {
   page[to].push(page.state);
   page.state = page[from].pop();
   page.from = null;
-  ask();
+  update();
 }
 
 function changed(name, text, settled) {
@@ -117,7 +117,7 @@ function redraw() {
 function quickly(question, status, content) {
   if (status !== 200) {
     if (same(question, page.state)) problems(content.problems);
-    say("The results below are those of the last design that can work.");
+    report("The results below are those of the last design that can work.");
     return;
   }
   problems([]);
@@ -132,10 +132,10 @@ function quickly(question, status, content) {
   tables.showPrint(null);
   parts.view.mark([]);
   const why = content.outside ? `Not in the atlas: ${content.outside}. ` : "Answered by the atlas. ";
-  say(`${why}The solid is computing.`, true);
+  report(`${why}The solid is computing.`, true);
   buttons();
-  if (parts.view.renderer) parts.shapes.ask(question);
-  if (same(question, page.state)) parts.later = setTimeout(() => parts.solved.ask(question), SETTLED);
+  if (parts.view.renderer) parts.shapes.send(question);
+  if (same(question, page.state)) parts.later = setTimeout(() => parts.solved.send(question), SETTLED);
   requestAnimationFrame(() => (document.body.dataset.painted = String(1 + Number(document.body.dataset.painted ?? 0))));
 }
 
@@ -143,7 +143,7 @@ function solved(question, status, content) {
   if (!same(question, page.state)) return;
   if (status !== 200) {
     problems(content.problems);
-    say("The solid has no answer to this design.");
+    report("The solid has no answer to this design.");
     return;
   }
   if (!page.quick) return;
@@ -153,12 +153,12 @@ function solved(question, status, content) {
   tables.showFindings(content.check, parts.view.renderer);
   tables.showPrint(content.jobs);
   parts.view.mark(content.check.findings);
-  say(`Answered by the model ${content.prediction.model}.`);
+  report(`Answered by the model ${content.prediction.model}.`);
   document.body.dataset.solved = address.written(question);
 }
 
 function failed(question, error) {
-  say(error instanceof Stopped ? error.message : `The page has a fault: ${error.message}`);
+  report(error instanceof Stopped ? error.message : `The page has a fault: ${error.message}`);
   byId("results").classList.add("stale");
   if (!(error instanceof Stopped)) throw error;
 }
@@ -173,9 +173,9 @@ async function copy() {
   const words = address.options(page.state);
   try {
     await navigator.clipboard.writeText(words);
-    say(`Copied: ${words}`);
+    report(`Copied: ${words}`);
   } catch {
-    say(words);
+    report(words);
   }
 }
 
@@ -218,7 +218,7 @@ async function start() {
   page.state = address.read(location.hash) ?? { base: declared.first, values: {} };
   byId("base").value = page.state.base;
   listen();
-  ask();
+  update();
 }
 
-start().catch((error) => say(`The page cannot start: ${error.message}`));
+start().catch((error) => report(`The page cannot start: ${error.message}`));

@@ -1,4 +1,4 @@
-// Questions to the studio: one on its way at a time, and of those that wait the newest alone.
+// Questions to the studio: one sent at a time, and of those that wait the newest alone.
 
 export class Stopped extends Error {}
 
@@ -21,13 +21,13 @@ export async function post(path, question) {
   return { status: answer.status, content };
 }
 
-/** Asks `path`; while one question is on its way the newest other one waits, and older ones are dropped. */
+/** Sends questions to `path`; while one question has no answer yet the newest other one waits, and older ones are dropped. */
 export class Line {
   constructor(path, answered, failed) {
     Object.assign(this, { path, answered, failed, busy: false, waiting: null });
   }
 
-  async ask(question) {
+  async send(question) {
     if (this.busy) {
       this.waiting = question;
       return;
