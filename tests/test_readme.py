@@ -19,9 +19,11 @@ def blocks(language):
 
 
 COMMANDS = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("pneutouch ")]
+SERVING = [line for line in COMMANDS if line.startswith("pneutouch studio ")]
+"""They run until they are stopped: tests/studio starts and stops the studio."""
 
 
-@pytest.mark.parametrize("line", COMMANDS)
+@pytest.mark.parametrize("line", [line for line in COMMANDS if line not in SERVING])
 def test_command_runs(line, command, built_as_a_user):
     words = shlex.split(line.replace("/tmp/sensors", "sensors"), comments=True)[1:]
     # A build is run once for all tests, by these words and --json.

@@ -5,6 +5,8 @@ from __future__ import annotations
 import http.client
 import signal
 import socket
+import sys
+import threading
 from contextlib import closing
 from urllib.parse import urlsplit
 
@@ -42,3 +44,26 @@ def test_a_port_that_is_taken_is_one_clear_error(command):
 
 def test_an_unknown_design_is_the_error_of_every_command(command):
     assert command("studio", "paper-dom", "--no-browser").stderr == command("predict", "paper-dom").stderr
+
+
+def test_without_its_packages_it_names_what_to_install(command, monkeypatch):
+    monkeypatch.setitem(sys.modules, "uvicorn", None)
+    done = command("studio", "--no-browser")
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: the studio needs the packages starlette and uvicorn; ")
+    assert "pip install 'pneutouch[studio]'" in done.stderr
+
+
+def test_the_address_is_opened_in_a_browser(command, monkeypatch):
+    opened = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    monkeypatch.setattr(
+        "pneutouch.studio.server.serve", lambda design, port, ready: ready("http://127.0.0.1:1/?token=x")
+    )
+    assert command("studio").stdout == "http://127.0.0.1:1/?token=x\n"
+    for thread in threading.enumerate():
+        if thread is not threading.current_thread() and thread.daemon:
+            thread.join(5)
+    assert opened == ["http://127.0.0.1:1/?token=x"]
+    command("studio", "--no-browser")
+    assert len(opened) == 1

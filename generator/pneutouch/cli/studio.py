@@ -1,5 +1,6 @@
 """``pneutouch studio``: a page in the browser."""
 
+import threading
 import webbrowser
 from typing import Annotated
 
@@ -41,6 +42,7 @@ def studio(
             echo(address)
             notify("note: the address opens the page once, on this machine; Ctrl-C ends the studio")
             if not no_browser:
-                webbrowser.open(address)
+                # A browser in a terminal would return when it is left.
+                threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
 
         serve(design, port, opened)
