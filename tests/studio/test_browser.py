@@ -57,6 +57,16 @@ def test_a_slider_moves_the_figures_of_the_commands(screen, command):
     assert screen.evaluate("document.getElementById('field-membrane-wall_thickness_mm').value") == "1.5"
 
 
+def test_a_resin_takes_a_printer_that_runs_it(screen):
+    screen.evaluate(
+        "(e => { e.value = 'Agilus30'; e.dispatchEvent(new Event('change')); })"
+        "(document.getElementById('field-membrane-material'))"
+    )
+    assert screen.evaluate("location.hash") == "#paper-dome&membrane.material=Agilus30&print.profile=j735"
+    screen.evaluate("document.getElementById('undo').click()")
+    until(screen, f"location.hash === '#paper-dome' && document.querySelectorAll('.faulty').length === 0 && {_SOLVED}")
+
+
 def test_an_error_stands_at_its_field_and_goes_again(screen):
     screen.evaluate("location.hash = '#paper-dome&membrane.wall_thickness_mm=14'")
     until(screen, "document.querySelectorAll('.faulty').length === 2")

@@ -14,6 +14,7 @@ from pneutouch.spec.contact import SIZES
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import Declaration, declarations, table_of
 from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
 
 _TWICE = ("contact.plate_diameter_mm",)
 """Fields that stand in two tables, and in the form once."""
@@ -24,9 +25,21 @@ Option = dict[str, str]
 
 
 def form_document(library: Library) -> dict[str, Any]:
-    """Groups of fields with label, unit, bounds, default, help and the names to choose from; sizes by object."""
+    """Groups of fields with label, unit, bounds, help and the names to choose from; sizes by object; printers by
+    material."""
     groups = [_group(name, library) for name in DesignFile.model_fields if table_of(DesignFile, name) is not None]
-    return {"groups": groups, "sizes": {kind: [f"contact.{key}" for key in keys] for kind, keys in SIZES.items()}}
+    sizes = {kind: [f"contact.{key}" for key in keys] for kind, keys in SIZES.items()}
+    return {"groups": groups, "sizes": sizes, "printers": _printers(library)}
+
+
+def _printers(library: Library) -> dict[str, list[str]]:
+    """The printers that run each material, by its name."""
+    printers = library.all("printers", Printer)
+    materials = library.all("materials", Material)
+    return {
+        name: [printer for printer, one in printers.items() if one.mode_for(material)]
+        for name, material in materials.items()
+    }
 
 
 def designs_document(bases: dict[str, str]) -> list[Option]:

@@ -70,8 +70,9 @@ function changed(name, text, settled) {
   go({ base: page.state.base, values: { ...page.state.values, [name]: text, ...started(name, text) } }, settled);
 }
 
-/** Sizes to begin with for an object that needs some: it cannot be answered without. */
+/** What has to change with a field: a resin takes a printer that runs it, an object needs sizes to begin with. */
 function started(name, text) {
+  if (name === "membrane.material") return printer(text);
   if (name !== "contact.object" || !page.quick) return {};
   const radius = Number(page.quick.values.membrane.inner_radius_mm);
   const begin = { "contact.ring_section_radius_mm": radius / 5, "contact.ring_radius_mm": radius / 2, "contact.cone_half_angle_deg": 60 };
@@ -83,6 +84,12 @@ function started(name, text) {
     else given[key] = String(Number((begin[key] ?? radius / 2).toPrecision(3)));
   }
   return given;
+}
+
+function printer(material) {
+  const names = parts.printers[material] ?? [];
+  const now = parts.form.fields.get("print.profile").input.value;
+  return !names.length || names.includes(now) ? {} : { "print.profile": names[0] };
 }
 
 function problems(list) {
@@ -116,8 +123,9 @@ function redraw() {
 
 function quickly(question, status, content) {
   if (status !== 200) {
-    if (same(question, page.state)) problems(content.problems);
-    report("The results below are those of the last design that can work.");
+    if (!same(question, page.state)) return;
+    problems(content.problems);
+    report(`${content.problems[0].message}. Shown below is the last design that can work.`);
     return;
   }
   problems([]);
@@ -209,6 +217,7 @@ function listen() {
 async function start() {
   const declared = await (await fetch("/api/form")).json();
   byId("base").replaceChildren(...declared.designs.map((one) => element("option", { value: one.name, title: one.title }, one.name)));
+  parts.printers = declared.printers;
   parts.view = new View(byId("view"));
   byId("view-tools").hidden = !parts.view.renderer;
   parts.form = new Form(declared, changed);
