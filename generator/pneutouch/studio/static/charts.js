@@ -117,7 +117,7 @@ export function drawSensitivity(answer, pinned) {
   );
   const material = answer.drawing.bodies.find((body) => body.role === "membrane").material;
   // The design's own resin is drawn already.
-  answer.curves.resins.filter((resin) => !own || resin.title !== material).forEach((resin, k) => {
+  answer.curves.resins.filter((resin) => !own || !material.startsWith(resin.title)).forEach((resin, k) => {
     add(resin.driving_pressure_kPa, resin.sensitivity_kPa_per_N, series(resin.title, tone(k % 6 + 1), { width: 1.3, dash: k < 6 ? undefined : [7, 3] }));
   });
   if (pinned && pinned.curves && pinned.curves.design) {

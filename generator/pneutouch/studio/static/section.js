@@ -49,7 +49,9 @@ function dimensions(drawing, size, tick) {
 
 export function drawSection(drawing, pinned) {
   const half = drawing.size_mm[0] / 2;
-  const size = 0.068 * Math.max(half, 0.6 * (drawing.high_mm - drawing.low_mm));
+  const usual = 0.068 * Math.max(half, 0.6 * (drawing.high_mm - drawing.low_mm));
+  // On a narrow screen letters of about 11 pixels, as far as there is space for them.
+  const size = Math.max(usual, Math.min((22 * half) / Math.max(1, byId("section").clientWidth - 176), 0.13 * half));
   const low = drawing.low_mm - 4 * size;
   const box = [-half - 7 * size, -drawing.high_mm - 2 * size, 2 * half + 16 * size, drawing.high_mm - low + 2 * size];
   const words = drawing.bodies.map((body) => `${body.name} of ${body.material}`).join(", ");
