@@ -207,7 +207,10 @@ function listen() {
     const state = address.read(location.hash);
     if (state && !same(state, page.state)) go(state);
   });
-  new ResizeObserver(charts.resized).observe(byId("results"));
+  new ResizeObserver(() => {
+    charts.resized();
+    if (page.quick) drawSection(page.quick.drawing, page.pinned?.drawing);
+  }).observe(byId("results"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     charts.forget();
     redraw();
