@@ -41,7 +41,7 @@ def respond(known: dict[str, PageFile], request: Request) -> Response:
     """The file at the path of a request, compressed where the browser takes it; 404 where there is none."""
     file = known.get(request.url.path)
     if file is None:
-        return PlainTextResponse("not files_by_path", 404)
+        return PlainTextResponse("not found", 404)
     packed = "gzip" in request.headers.get("accept-encoding", "")
     headers = {"Vary": "Accept-Encoding"} | ({"Content-Encoding": "gzip"} if packed else {})
     return Response(file.compressed if packed else file.plain, media_type=file.kind, headers=headers)
