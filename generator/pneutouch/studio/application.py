@@ -17,6 +17,7 @@ from pneutouch.catalogue import Library
 from pneutouch.catalogue.cached_library import CachedLibrary
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.studio.answer import quick_answer, view_answer
+from pneutouch.studio.desk import Desk
 from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
 from pneutouch.studio.form import designs_document, form_document
 from pneutouch.studio.guard import Application, Guard, TooLargeError, too_large
@@ -33,13 +34,14 @@ QuickAnswer = Callable[[Question, Mapping[str, str], Library], dict[str, Any]]
 class Studio:
     """Answers the page. ``bases`` are the designs that it may open, by name or path; ``first`` the one it begins with.
 
-    Nothing is kept between requests but the catalogue and one process, which starts with the first question for it.
+    Kept between requests are the catalogue, one process, which starts with the first question for it, and what the desk
+    has.
     """
 
     def __init__(self, bases: dict[str, str], first: str) -> None:
         self._bases, self._first = bases, first
         self._library = CachedLibrary(Library.default().folders)
-        self._solver = Solver(bases)
+        self._solver, self.desk = Solver(bases), Desk(bases)
         self._one, self._waiting = asyncio.Lock(), 0
 
     async def form(self, request: Request) -> Response:
@@ -82,6 +84,7 @@ class Studio:
             yield
         finally:
             await self._solver.close()
+            await self.desk.close()
 
 
 def application(bases: dict[str, str], first: str, port: int, token: str) -> Application:
@@ -101,6 +104,7 @@ def application(bases: dict[str, str], first: str, port: int, token: str) -> App
         Route("/api/view", partial(studio.at_once, view_answer), methods=["POST"]),
         Route("/api/solved", studio.solved, methods=["POST"]),
         Route("/api/echo", echo, methods=["POST"]),
+        *studio.desk.routes(),
         Route("/{path:path}", page),
     ]
     handlers = {TooLargeError: _refused, Exception: _failed}
@@ -121,7 +125,7 @@ def _fault(error: PneutouchError, status: int | None = None) -> Response:
 
 
 async def _refused(request: Request, error: Exception) -> Response:
-    return too_large()
+    return too_large(request.url.path)
 
 
 async def _failed(request: Request, error: Exception) -> Response:

@@ -8,8 +8,13 @@ from urllib.parse import parse_qs
 
 from starlette.responses import JSONResponse, PlainTextResponse, RedirectResponse, Response
 
+from pneutouch.studio.uploads import LARGEST_FILE
+
 LARGEST_BODY = 64 * 1024
 """Bytes of a question."""
+
+UPLOADS = "/api/uploads"
+"""Takes files, as bytes; everything else takes JSON."""
 
 HEADERS = {
     "Content-Security-Policy": "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
@@ -30,7 +35,7 @@ Application = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 
 class TooLargeError(Exception):
-    """The body of a request is longer than `LARGEST_BODY`."""
+    """The body of a request is longer than its path takes."""
 
 
 class Guard:
@@ -64,7 +69,7 @@ class Guard:
         if refused is not None:
             await refused(scope, receive, guarded)
             return
-        await self._application(scope, _limited(receive), guarded)
+        await self._application(scope, _limited(receive, _largest(scope["path"])), guarded)
 
     def _refused(self, scope: Scope, headers: dict[str, str]) -> Response | None:
         """The answer to a request that goes no further; None for one that may."""
@@ -80,16 +85,17 @@ class Guard:
         if not known:
             return PlainTextResponse("Open the address that pneutouch studio printed; it opens the page once.", 403)
         if scope["method"] == "POST":
-            return self._refused_question(headers)
+            return self._refused_question(scope["path"], headers)
         return None if scope["method"] in ("GET", "HEAD") else PlainTextResponse("not allowed", 405)
 
-    def _refused_question(self, headers: dict[str, str]) -> Response | None:
+    def _refused_question(self, path: str, headers: dict[str, str]) -> Response | None:
         if headers.get("origin") != f"http://{headers['host']}":
             return PlainTextResponse("unknown origin", 403)
-        if headers.get("content-type", "").partition(";")[0].strip().lower() != "application/json":
-            return PlainTextResponse("a question is application/json", 415)
+        kind = "application/octet-stream" if path == UPLOADS else "application/json"
+        if headers.get("content-type", "").partition(";")[0].strip().lower() != kind:
+            return PlainTextResponse(f"what is sent here is {kind}", 415)
         length = headers.get("content-length", "0")
-        return too_large() if not length.isdigit() or int(length) > LARGEST_BODY else None
+        return too_large(path) if not length.isdigit() or int(length) > _largest(path) else None
 
     def _has_cookie(self, headers: dict[str, str]) -> bool:
         try:
@@ -106,21 +112,29 @@ class Guard:
         return True
 
 
-def too_large() -> Response:
-    """The answer to a question that is longer than `LARGEST_BODY`."""
-    problem = {"message": f"a question has at most {LARGEST_BODY} bytes", "fields": []}
-    return JSONResponse({"problems": [problem]}, 413)
+def too_large(path: str) -> Response:
+    """The answer to a body that is longer than what ``path`` takes."""
+    what = (
+        f"a file has at most {LARGEST_FILE >> 20} MB"
+        if path == UPLOADS
+        else f"a question has at most {LARGEST_BODY} bytes"
+    )
+    return JSONResponse({"problems": [{"message": what, "fields": []}]}, 413)
 
 
-def _limited(receive: Receive) -> Receive:
-    """Receive a body up to `LARGEST_BODY`, whatever its head states."""
+def _largest(path: str) -> int:
+    return LARGEST_FILE if path == UPLOADS else LARGEST_BODY
+
+
+def _limited(receive: Receive, largest: int) -> Receive:
+    """Receive a body of at most ``largest`` bytes, whatever its head states."""
     taken = 0
 
     async def counted() -> Message:
         nonlocal taken
         message = await receive()
         taken += len(message.get("body", b""))
-        if taken > LARGEST_BODY:
+        if taken > largest:
             raise TooLargeError
         return message
 

@@ -1,5 +1,6 @@
 // The page: a state, its history and its address; questions to the studio, and what shows the answers.
 import * as address from "./address.js";
+import { Areas } from "./areas.js";
 import { Line, Stopped } from "./requests.js";
 import * as charts from "./charts.js";
 import { byId, element } from "./dom.js";
@@ -12,6 +13,18 @@ const SETTLED = 250;
 const KEPT = 500;
 const page = { state: null, past: [], future: [], quick: null, solved: null, pinned: null, from: null, plain: {} };
 const parts = {};
+
+/** By the id of an area, the module that fills it when it is first shown. */
+const MODULES = {};
+
+/** What the areas are given: the design as it is now, a function that opens another one, and the line of messages. */
+const desk = {
+  state: () => page.state,
+  answer: () => current(),
+  go: (state) => go(state),
+  report: (words, busy = false) => report(words, busy),
+  show: (name) => parts.areas.show(name),
+};
 
 const same = (one, other) => address.written(one) === address.written(other);
 
@@ -230,6 +243,7 @@ async function start() {
   page.state = address.read(location.hash) ?? { base: declared.first, values: {} };
   byId("base").value = page.state.base;
   listen();
+  parts.areas = new Areas(desk, MODULES);
   update();
 }
 

@@ -1,0 +1,83 @@
+"""The process of one job: a request on its input, lines of progress and then the answer on its output."""
+
+import json
+import os
+import resource
+import signal
+import sys
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from pneutouch.errors import ComputationError, PneutouchError
+from pneutouch.holding import STOPS
+from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
+
+KINDS: dict[str, str] = {}
+"""Function by kind of job, ``module:name`` below this package: ``run(arguments, folder, report)`` returns the content.
+
+``arguments`` is the JSON of the page, with ``files`` (name, path) and ``bases``; ``folder`` is for the files it makes;
+``report(done, total, what)`` states its progress.
+"""
+
+LARGEST_MEMORY = 12 << 30
+"""Bytes of address space of a job."""
+
+Report = Callable[[int, int, str | None], None]
+
+
+def answered(request: Mapping[str, Any], report: Report) -> dict[str, Any]:
+    """Status and content of a job; an error is an answer too."""
+    module, _, name = KINDS[request["kind"]].partition(":")
+    try:
+        run = getattr(import_module(f"pneutouch.studio.{module}"), name)
+        return {"status": 200, "content": run(request["arguments"], Path(request["folder"]), report)}
+    except PneutouchError as error:
+        fault = error
+    except MemoryError:
+        fault = too_little_memory()
+    except Exception as error:
+        fault = ComputationError(f"internal fault ({type(error).__name__}: {error})", remedy="please report it")
+    return {"status": fault_status(fault), "content": fault_document(fault)}
+
+
+def work(request: bytes, out: BinaryIO) -> None:
+    """Do the job of a request and write its lines."""
+
+    def write(line: Mapping[str, Any]) -> None:
+        out.write(json.dumps(line).encode() + b"\n")
+        out.flush()
+
+    def report(done: int, total: int, what: str | None = None) -> None:
+        write({"progress": {"done": done, "total": total, "what": what}})
+
+    write(answered(json.loads(request), report))
+
+
+def _stop(number: int, frame: Any) -> None:
+    """Unwind once, which removes what is half written."""
+    for each in STOPS:
+        signal.signal(each, signal.SIG_IGN)
+    raise KeyboardInterrupt
+
+
+def main() -> None:
+    """Read one request, write its lines, end."""
+    # The studio ends this process: Ctrl-C in its terminal comes as SIGTERM from there.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _stop)
+    _, most = resource.getrlimit(resource.RLIMIT_AS)
+    limit = LARGEST_MEMORY if most == resource.RLIM_INFINITY else min(most, LARGEST_MEMORY)
+    resource.setrlimit(resource.RLIMIT_AS, (limit, most))
+    # What libraries print is no answer.
+    out = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    try:
+        work(sys.stdin.buffer.readline(), out)
+    except KeyboardInterrupt:
+        sys.exit(143)
+
+
+if __name__ == "__main__":
+    main()

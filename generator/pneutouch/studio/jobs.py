@@ -1,0 +1,147 @@
+"""What takes longer than an answer: one job at a time, in a process that can be ended, with a folder for its files."""
+
+import asyncio
+import contextlib
+import json
+import os
+import shutil
+import signal
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pneutouch.errors import ComputationError
+
+KEPT = 8
+"""Jobs whose files are kept; the oldest goes first."""
+
+_LONGEST_LINE = 1 << 26
+_LAST_SECONDS = 10.0
+"""Seconds that a job has to take its half-written files away when it is cancelled."""
+
+Content = dict[str, Any]
+
+
+class Job:
+    """A job as the page sees it: ``state`` (running, done, failed, cancelled), progress, status and content.
+
+    ``place`` is removed with the job; the job writes its files into ``folder`` below it.
+    """
+
+    def __init__(self, number: int, kind: str, place: Path) -> None:
+        self.number, self.kind, self.place, self.folder = number, kind, place, place / "files"
+        self.state, self.status = "running", 200
+        self.progress: Content = {}
+        self.content: Content = {}
+        self.process: asyncio.subprocess.Process | None = None
+
+    def document(self) -> Content:
+        """The state of the job for the page; the names and bytes of the files once it is done."""
+        files = [{"name": name, "bytes": path.stat().st_size} for name, path in self.files().items()]
+        state = {"job": self.number, "kind": self.kind, "state": self.state, "progress": self.progress}
+        return {**state, "status": self.status, "content": self.content, "files": files}
+
+    def files(self) -> dict[str, Path]:
+        """Files of a job that is done, by their path below its folder; none before."""
+        if self.state != "done":
+            return {}
+        paths = sorted(path for path in self.folder.rglob("*") if path.is_file() and not path.is_symlink())
+        return {path.relative_to(self.folder).as_posix(): path for path in paths}
+
+
+class Jobs:
+    """Starts, watches and ends jobs. Their folders lie in ``folder``."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder, self._jobs = folder, dict[int, Job]()
+        self._watch: asyncio.Task[None] | None = None
+        self._number = 0
+
+    def __getitem__(self, number: int) -> Job:
+        """A job by its number. Raises KeyError where it is not known, or no longer."""
+        return self._jobs[number]
+
+    async def start(self, kind: str, arguments: Mapping[str, Any]) -> Job:
+        """Begin a job. Raises ComputationError while another runs."""
+        if any(job.state == "running" for job in self._jobs.values()):
+            raise ComputationError("another job is running", remedy="wait for it, or cancel it")
+        self._number += 1
+        job = Job(self._number, kind, self._folder / f"job-{self._number}")
+        job.folder.mkdir(parents=True)
+        self._jobs[job.number] = job
+        for old in list(self._jobs)[:-KEPT]:
+            shutil.rmtree(self._jobs.pop(old).place, ignore_errors=True)
+        request = {"kind": kind, "arguments": dict(arguments), "folder": str(job.folder)}
+        self._watch = asyncio.create_task(self._run(job, json.dumps(request).encode() + b"\n"))
+        return job
+
+    async def cancel(self, job: Job) -> None:
+        """End a job that runs; its files are removed. Nothing where it has ended."""
+        if job.state != "running":
+            return
+        job.state = "cancelled"
+        await _end(job)
+        shutil.rmtree(job.place, ignore_errors=True)
+
+    async def close(self) -> None:
+        """End what runs."""
+        for job in self._jobs.values():
+            await self.cancel(job)
+        if self._watch is not None:
+            self._watch.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await self._watch
+
+    async def _run(self, job: Job, request: bytes) -> None:
+        answer: Content | None = None
+        try:
+            answer = await self._answered(job, request)
+        finally:
+            if job.state == "running":
+                job.state = "done" if answer is not None and answer["status"] == 200 else "failed"
+                ended = {"problems": [{"message": "the job was ended from outside", "fields": []}]}
+                job.status, job.content = (answer["status"], answer["content"]) if answer else (500, ended)
+                if job.state == "failed":
+                    shutil.rmtree(job.place, ignore_errors=True)
+
+    async def _answered(self, job: Job, request: bytes) -> Content | None:
+        """The last line of the process; None where it ended without one."""
+        job.process = process = await asyncio.create_subprocess_exec(
+            sys.executable,
+            "-m",
+            "pneutouch.studio.job",
+            stdin=asyncio.subprocess.PIPE,
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.DEVNULL,
+            limit=_LONGEST_LINE,
+            start_new_session=True,
+        )
+        if job.state != "running":
+            await _end(job)
+        assert process.stdin is not None and process.stdout is not None
+        with contextlib.suppress(ConnectionError):
+            process.stdin.write(request)
+            await process.stdin.drain()
+        answer = None
+        async for line in process.stdout:
+            content = json.loads(line)
+            if "progress" in content:
+                job.progress = content["progress"]
+            else:
+                answer = content
+        await process.wait()
+        return answer
+
+
+async def _end(job: Job) -> None:
+    """Stop the process and all that it started: by SIGTERM first, then by SIGKILL."""
+    process = job.process
+    if process is None or process.returncode is not None:
+        return
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, number)
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(process.wait(), _LAST_SECONDS)
+            return

@@ -1,0 +1,73 @@
+"""Files that the page was given: names, sizes, and what is kept."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+
+from pneutouch.errors import InputError
+from pneutouch.studio import uploads as kept
+from pneutouch.studio.uploads import Uploads
+from tests.studio.conftest import HOME
+
+SENT = {"Origin": HOME, "Content-Type": "application/octet-stream"}
+
+
+async def parts(*content: bytes):
+    for part in content:
+        yield part
+
+
+def add(uploads: Uploads, name: str, *content: bytes) -> int:
+    return asyncio.run(uploads.add(name, parts(*content)))
+
+
+def test_a_file_is_kept_as_it_is(tmp_path):
+    uploads = Uploads(tmp_path)
+    first, second = add(uploads, "run 1.csv", b"a", b"b"), add(uploads, "run 1.csv", b"c")
+    assert [uploads[number].path.read_bytes() for number in (first, second)] == [b"ab", b"c"]
+    assert [uploads[number].bytes for number in (first, second)] == [2, 1]
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["", ".", "..", "../a.csv", "a/b.csv", "a\\b.csv", ".hidden", "a\0.csv", "a\n.csv", "-rf", "é.csv", "a" * 200],
+)
+def test_names_that_are_paths_or_hidden_are_refused(name, tmp_path):
+    with pytest.raises(InputError, match="not a name for a file"):
+        add(Uploads(tmp_path), name, b"x")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_is_too_large_leaves_nothing(tmp_path, monkeypatch):
+    monkeypatch.setattr(kept, "LARGEST_FILE", 10)
+    with pytest.raises(InputError, match="too large"):
+        add(Uploads(tmp_path), "a.csv", b"12345", b"678901")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_oldest_go_first_where_they_are_too_much(tmp_path, monkeypatch):
+    monkeypatch.setattr(kept, "_LARGEST_SUM", 10)
+    uploads = Uploads(tmp_path)
+    numbers = [add(uploads, "a.csv", b"1234") for _ in range(4)]
+    assert sorted(tmp_path.iterdir()) == sorted(uploads[number].path.parent for number in numbers[-2:])
+    with pytest.raises(KeyError):
+        uploads[numbers[0]]
+
+
+def test_the_studio_takes_bytes_there_and_json_elsewhere(client):
+    assert client.post("/api/uploads?name=a.csv", content=b"1", headers=SENT).json()["name"] == "a.csv"
+    assert client.post("/api/uploads?name=../a", content=b"1", headers=SENT).status_code == 422
+    assert client.post("/api/uploads?name=a.csv", json={}, headers={"Origin": HOME}).status_code == 415
+    assert client.post("/api/quick", content=b"1", headers=SENT).status_code == 415
+
+
+def test_a_job_of_files_that_are_not_there_is_refused(client):
+    origin = {"Origin": HOME}
+    answer = client.post("/api/jobs/burn", json={}, headers=origin)
+    assert answer.status_code == 422
+    assert "unknown kind of job" in answer.text
+    assert client.get("/api/jobs/7").status_code == 404
+    assert client.get("/api/jobs/7/files/..%2f..%2fetc%2fpasswd").status_code == 404
+    assert client.post("/api/jobs/7/cancel", json={}, headers=origin).status_code == 404
