@@ -1,7 +1,7 @@
 """From a slider's move to what is painted, in Chromium, over the same way with an echo for an answer; and page weight.
 
 Run as ``python -m benchmarks.studio [MOVES]``; it prints medians and 95th percentiles in milliseconds, their ratio to the
-echo's in the same run, and the memory of the page's scripts before and after.
+echo's in the same run, and what the page keeps at ten points of the moves.
 """
 
 from __future__ import annotations
@@ -9,14 +9,12 @@ from __future__ import annotations
 import gzip
 import statistics
 import sys
-import tempfile
 from importlib.resources import files
-from pathlib import Path
 
-from tests.report.browser import WITH_WEBGL, Browser, browser
-from tests.studio.served import served, until
+from tests.browser import WITH_WEBGL, Pages, launched, until
+from tests.studio.kept import Kept
+from tests.studio.served import SOLVED, Studio, served
 
-_ANSWERED = "document.getElementById('status')?.textContent?.startsWith('Answered by the model')"
 _MOVES = """(async () => {{
 const slider = document.querySelector('[aria-label="Wall thickness, mm"]'), times = [];
 for (let k = 0; k < {count}; k += 1) {{
@@ -43,12 +41,6 @@ def percentile(times: list[float]) -> float:
     return statistics.quantiles(times, n=20)[-1]
 
 
-def memory(page: Browser) -> float:
-    """What the page's scripts keep, MB."""
-    page.call("HeapProfiler.collectGarbage")
-    return page.call("Runtime.getHeapUsage")["usedSize"] / 1e6
-
-
 def weight() -> int:
     """Bytes of the page's files, compressed as they are served."""
     static = files("pneutouch.studio") / "static"
@@ -58,18 +50,21 @@ def weight() -> int:
 
 
 def main(count: int) -> None:
-    with served() as (address, _), browser(Path(tempfile.mkdtemp()), *WITH_WEBGL) as page:
-        page.visit(address, 1400)
-        until(page, _ANSWERED)
-        echoes = page.evaluate(_ECHOES.format(count=count))
-        before = memory(page)
-        moves = page.evaluate(_MOVES.format(count=count))
-        until(page, _ANSWERED)
-        after = memory(page)
+    with served() as (address, process), launched(*WITH_WEBGL) as browser:
+        page = Studio(address, process).open(Pages(browser))
+        until(page, SOLVED)
+        echoes = page.evaluate(_ECHOES.format(count=min(count, 200)))
+        moves: list[float] = []
+        print("   moves     nodes  listeners  scripts, MB")
+        for point in range(11):
+            kept = Kept.of(page)
+            print(f"{len(moves):8d}  {kept.nodes:8d}  {kept.listeners:9d}  {kept.scripts_mb:11.2f}", flush=True)
+            if point < 10:
+                moves += page.evaluate(_MOVES.format(count=max(1, count // 10)))
+                until(page, SOLVED)
     for name, times in (("echo", echoes), ("move", moves)):
         print(f"{name}: median {statistics.median(times):.0f} ms, 95th percentile {percentile(times):.0f} ms")
     print(f"ratio of the 95th percentiles: {percentile(moves) / percentile(echoes):.1f}")
-    print(f"memory of scripts: {before:.1f} MB before, {after:.1f} MB after {count} moves")
     print(f"page weight: {weight() / 1e6:.3f} MB compressed")
 
 

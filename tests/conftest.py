@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from pneutouch.catalogue import Library
 from pneutouch.evaluation import Evaluation, evaluate
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.build import build
+from tests.browser import FOUND, WITH_WEBGL, Pages, SharedBrowser, launched, leave_out_or_fail
 from tests.running import Shared, in_new_process, in_process
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -112,3 +113,24 @@ def say(capsys: pytest.CaptureFixture[str]) -> Callable[[str], None]:
             print(f"\n{text}")  # noqa: T201
 
     return line
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[SharedBrowser]:
+    """One browser, with WebGL, for every test of a worker; tests take their pages from `pages`."""
+    leave_out_or_fail(FOUND, os.environ)
+    with launched(*WITH_WEBGL) as browser:
+        shared = SharedBrowser(browser)
+        yield shared
+        shared.resume()
+
+
+@pytest.fixture
+def pages(chromium: SharedBrowser) -> Iterator[Pages]:
+    """Opens pages for one test, each in a profile of its own. No script may fail in them, and no rule on content be broken."""
+    chromium.resume()
+    opened = Pages(chromium.browser)
+    yield opened
+    opened.close()
+    chromium.rest()
+    assert opened.errors == []

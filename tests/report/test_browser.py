@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import os
+
 import pypdfium2
 import pytest
 
-from tests.report.browser import FOUND, WHY_NOT, WITH_WEBGL, WITHOUT_WEBGL, browser
+from tests.browser import FOUND, WITHOUT_WEBGL, Pages, launched, leave_out_or_fail
 from tests.report.test_datasheet import SECTIONS
 
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(FOUND is None, reason=WHY_NOT)]
+pytestmark = pytest.mark.slow
 
 _TOO_WIDE = """[...document.querySelectorAll('main *')].filter(e => !e.closest('svg') && !e.closest('script') &&
 e.getBoundingClientRect().right > innerWidth + 0.5).map(e => e.tagName + ': ' + e.textContent.slice(0, 40))"""
@@ -21,30 +23,33 @@ getComputedStyle(e).display != 'inline').map(e => e.textContent)"""
 
 
 @pytest.fixture(scope="module", params=["paper-dome", "graded-dome", "agilus-dome"])
-def page(request, built):
-    return built(request.param) / "datasheet.html"
+def sheet(request, built):
+    return (built(request.param) / "datasheet.html").resolve().as_uri()
 
 
-@pytest.fixture(scope="module")
-def screen(tmp_path_factory):
-    with browser(tmp_path_factory.mktemp("browser"), *WITH_WEBGL) as opened:
-        yield opened
+@pytest.fixture
+def show(sheet, pages):
+    """Opens the datasheet in a window of a width in pixels."""
+
+    def opened(width):
+        return pages.open(sheet, width, is_mobile=width < 600)
+
+    return opened
 
 
 @pytest.mark.parametrize("width", [360, 400, 800, 1400])
-def test_the_page_needs_no_scrolling_sideways(width, page, screen):
-    screen.show(page, width)
+def test_the_page_needs_no_scrolling_sideways(width, show):
+    screen = show(width)
     assert screen.evaluate("innerWidth") == width
     assert screen.evaluate("document.documentElement.scrollWidth") <= width
     assert screen.evaluate(_TOO_WIDE) == []
     assert screen.evaluate(_WIDER_THAN_THE_PAGE) == []
     assert screen.evaluate(_CUT) == []
-    assert screen.errors == []
 
 
-def test_letters_of_figures_can_be_read_on_a_narrow_screen(page, screen):
+def test_letters_of_figures_can_be_read_on_a_narrow_screen(show):
     """The smallest of a figure are 6.5 points at its own width: at least 7 pixels on the screen."""
-    screen.show(page, 400)
+    screen = show(400)
     sizes = screen.evaluate(
         "[...document.querySelectorAll('figure svg')].map(e => 6.5 * e.clientWidth / e.viewBox.baseVal.width)"
     )
@@ -52,8 +57,8 @@ def test_letters_of_figures_can_be_read_on_a_narrow_screen(page, screen):
     assert min(sizes) >= 7
 
 
-def test_with_webgl_the_dome_is_drawn_as_in_the_picture(page, screen):
-    screen.show(page, 1400)
+def test_with_webgl_the_dome_is_drawn_as_in_the_picture(show):
+    screen = show(1400)
     assert screen.evaluate("document.getElementById('view').className") == "view live"
     assert screen.evaluate("getComputedStyle(document.querySelector('#view img')).visibility") == "hidden"
     # Both are drawn small and in gray: what a person sees first is the same.
@@ -75,29 +80,31 @@ def test_with_webgl_the_dome_is_drawn_as_in_the_picture(page, screen):
     assert apart < 25
 
 
-def test_a_key_turns_the_dome(page, screen):
-    screen.show(page, 800)
-    first = screen.picture(0, 900)
+def test_a_key_turns_the_dome(show):
+    screen = show(800)
+    first = screen.screenshot()
     screen.evaluate(
         "document.querySelector('#view canvas').dispatchEvent(new KeyboardEvent('keydown', "
         "{key: 'ArrowLeft'})); new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
     )
-    assert screen.picture(0, 900) != first
+    assert screen.screenshot() != first
 
 
-def test_without_webgl_the_picture_is_shown_and_nothing_fails(page, tmp_path):
-    with browser(tmp_path, *WITHOUT_WEBGL) as plain:
-        plain.show(page, 800)
+def test_without_webgl_the_picture_is_shown_and_nothing_fails(sheet):
+    leave_out_or_fail(FOUND, os.environ)
+    with launched(*WITHOUT_WEBGL) as browser:
+        pages = Pages(browser)
+        plain = pages.open(sheet, 800)
         assert plain.evaluate("document.createElement('canvas').getContext('webgl')") is None
-        assert plain.errors == []
+        assert pages.errors == []
         assert plain.evaluate("document.querySelectorAll('#view canvas').length") == 0
         seen = "(i => [i.naturalWidth, i.clientWidth > 200, getComputedStyle(i).visibility])"
         assert plain.evaluate(f"{seen}(document.querySelector('#view img'))") == [900, True, "visible"]
 
 
-def test_the_page_prints_every_section_on_light_ground_within_the_paper(page, screen):
-    screen.show(page, 1400)
-    document = pypdfium2.PdfDocument(screen.printed())
+def test_the_page_prints_every_section_on_light_ground_within_the_paper(show):
+    screen = show(1400)
+    document = pypdfium2.PdfDocument(screen.pdf(prefer_css_page_size=True))
     text = "\n".join(sheet.get_textpage().get_text_range() for sheet in document)
     for section in SECTIONS:
         assert section in text
@@ -113,17 +120,14 @@ def test_the_page_prints_every_section_on_light_ground_within_the_paper(page, sc
     assert (abs(first[..., 0] - first[..., 2]) > 60).sum() > 2000
 
 
-def test_no_figure_and_no_row_is_cut_by_the_end_of_a_sheet(page, screen):
+def test_no_figure_and_no_row_is_cut_by_the_end_of_a_sheet(show):
     """Printed on endless paper and on sheets there are as many letters, and no figure is higher than a sheet."""
-    screen.show(page, 1400)
-    screen.call("Emulation.setEmulatedMedia", media="print")
-    try:
-        high = screen.evaluate("[...document.querySelectorAll('figure, tr, .tiles')].map(e => e.offsetHeight)")
-        assert max(high) < 900
-        kept = screen.evaluate(
-            "[...document.querySelectorAll('figure, tr, .tiles, .view')].every("
-            "e => getComputedStyle(e).breakInside == 'avoid')"
-        )
-        assert kept
-    finally:
-        screen.call("Emulation.setEmulatedMedia", media="")
+    screen = show(1400)
+    screen.emulate_media(media="print")
+    high = screen.evaluate("[...document.querySelectorAll('figure, tr, .tiles')].map(e => e.offsetHeight)")
+    assert max(high) < 900
+    kept = screen.evaluate(
+        "[...document.querySelectorAll('figure, tr, .tiles, .view')].every("
+        "e => getComputedStyle(e).breakInside == 'avoid')"
+    )
+    assert kept

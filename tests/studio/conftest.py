@@ -1,16 +1,36 @@
-"""A studio that is asked without a server, as the browser that was given its address."""
+"""Two ways to ask a studio.
+
+Without a server, as the browser that was given its address: ``client``. And in a browser:
+
+    def test_a_slider_moves_the_figures(screen):              # the design that the studio begins with, painted by the atlas
+        move(screen, "Wall thickness, mm", 280)               # tests/studio/served.py
+        until(screen, "document.querySelector('...')")        # tests/browser.py: any condition in JavaScript
+        screen.get_by_role("button", name="Undo").click()     # Playwright's Page
+
+    def test_another_design_in_the_dark(open_studio):
+        page = open_studio("#agilus-dome", width=360, dark=True)
+
+One browser and one studio serve every test of a worker; each page has a profile of its own. After each test the fixtures require that
+no script failed, that the Content-Security-Policy was kept and that no request left the studio.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from urllib.parse import urlsplit
 
 import pytest
 
 pytest.importorskip("starlette")
 pytest.importorskip("httpx2")
 
+from playwright.sync_api import Page
 from starlette.testclient import TestClient
 
 from pneutouch.studio.application import application
 from pneutouch.studio.server import bases_of
+from tests.browser import Pages, SharedBrowser
+from tests.studio.served import Studio, served
 
 PORT = 8123
 HOME = f"http://127.0.0.1:{PORT}"
@@ -30,3 +50,28 @@ def client(stranger):
     """A client that opened the address."""
     assert stranger.get("/", params={"token": TOKEN}).status_code == 303
     return stranger
+
+
+@pytest.fixture(scope="session")
+def studio(chromium: SharedBrowser) -> Iterator[Studio]:
+    """A studio that runs as a user starts it, for pages that leave it as they found it."""
+    with served() as (address, process):
+        yield Studio(address, process)
+
+
+@pytest.fixture
+def open_studio(studio: Studio, pages: Pages) -> Iterator[Callable[..., Page]]:
+    """Opens a page on a design: ``open_studio("#agilus-dome", width=360, height=800, dark=True)``."""
+
+    def opened(design: str = "", **options: object) -> Page:
+        return studio.open(pages, design, **options)
+
+    yield opened
+    home = {urlsplit(each).netloc for each in pages.requested if not each.startswith(("data:", "blob:"))}
+    assert home <= {studio.netloc}
+
+
+@pytest.fixture
+def screen(open_studio: Callable[..., Page]) -> Page:
+    """A page of 1400 by 900 pixels on the design that the studio begins with, painted by the atlas."""
+    return open_studio()

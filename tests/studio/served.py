@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
+import http.client
 import os
 import signal
 import subprocess
 import sys
-import time
-from contextlib import contextmanager
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from typing import Any
+from urllib.parse import urlsplit
 
-_LONGEST = 300
+from playwright.sync_api import Page
+
+from tests.browser import Pages, until
+
+SOLVED = "document.getElementById('status').textContent.startsWith('Answered by the model')"
+PAINTED = "document.body.dataset.painted"
 
 
 @contextmanager
-def served(*words: str):
+def served(*words: str) -> Iterator[tuple[str, subprocess.Popen[str]]]:
     """The address that ``pneutouch studio`` prints, and its process, which is stopped by Ctrl-C where it still runs."""
     command = [sys.executable, "-m", "pneutouch", "studio", "--no-browser", *words]
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     running = subprocess.Popen(command, env={**os.environ, "PYTHONUNBUFFERED": "1"}, **pipes)
     try:
         address = running.stdout.readline().strip()
@@ -28,9 +36,41 @@ def served(*words: str):
         running.communicate(timeout=60)
 
 
-def until(screen, condition: str) -> None:
-    """Wait until a condition holds in the page."""
-    end = time.monotonic() + _LONGEST
-    while not screen.evaluate(f"!!({condition})"):
-        assert time.monotonic() < end, condition
-        time.sleep(0.1)
+class Studio:
+    """A studio whose address was opened: any number of pages may use the cookie that it gave."""
+
+    def __init__(self, address: str, process: subprocess.Popen[str]) -> None:
+        parts = urlsplit(address)
+        self.address, self.process, self.netloc, self.port = address, process, parts.netloc, parts.port
+        self.home = f"http://{parts.netloc}/"
+        with closing(http.client.HTTPConnection(parts.netloc)) as connection:
+            connection.request("GET", f"/?{parts.query}")
+            answer = connection.getresponse()
+            assert answer.status == 303
+            self.cookie = answer.getheader("Set-Cookie").partition(";")[0]
+
+    def profile(self) -> dict[str, Any]:
+        """The state of a browser's profile that holds the cookie."""
+        name, value = self.cookie.split("=", 1)
+        entry = {"name": name, "value": value, "domain": "127.0.0.1", "path": "/", "expires": -1}
+        return {"cookies": [{**entry, "httpOnly": True, "secure": False, "sameSite": "Strict"}], "origins": []}
+
+    def open(self, pages: Pages, design: str = "", **options: Any) -> Page:
+        """A page on ``design``, written as in the address (``#paper-dome&membrane.wall_thickness_mm=1.4``), painted."""
+        page = pages.open(f"{self.home}{design}", storage_state=self.profile(), **options)
+        until(page, PAINTED)
+        return page
+
+
+def solved(page: Page, design: str) -> None:
+    """Wait until the page shows the answer of the model behind the atlas to ``design``, written as in the address."""
+    until(page, f"location.hash === {design!r} && document.body.dataset.solved === {design!r} && {SOLVED}")
+
+
+def move(page: Page, label: str, place: float) -> None:
+    """Move the slider of a name to a place and let it go."""
+    page.get_by_role("slider", name=label, exact=True).evaluate(
+        "(slider, place) => { slider.value = place; slider.dispatchEvent(new Event('input'));"
+        "slider.dispatchEvent(new Event('change')); }",
+        place,
+    )
