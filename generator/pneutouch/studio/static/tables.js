@@ -116,5 +116,5 @@ export function showComparison(pinned, answer) {
     const rated = (prediction) => short(prediction.rating.rated_pressure_kPa);
     rows.push(["rated pressure, kPa", rated(pinned.prediction), rated(answer.prediction)]);
   }
-  byId("comparison").replaceChildren(table(["", `pinned: ${pinned.name}`, `now: ${answer.name}`], rows));
+  byId("comparison").replaceChildren(table(["field or figure", `pinned: ${pinned.name}`, `now: ${answer.name}`], rows));
 }
