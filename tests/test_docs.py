@@ -221,3 +221,12 @@ def test_the_stored_coverage_is_what_the_code_gives_today(count):
             true = cell.truth[group.key.driving_pressure_kPa]
             held += [e.holds(true[key]) for key, e in group.figures.items() if key in true and e.low is not None]
     assert np.mean(held) > 0.8
+
+
+def test_the_page_on_speed_is_that_of_the_stored_measurements():
+    data, programs = stored("speed-accuracy.json"), stored("peers.json")
+    written = set(page().splitlines())
+    lines = [line for line in speed.section(data, programs, {"assembly": 1.0}) if line]
+    missing = [line for line in lines if line not in written]
+    assert missing == ["| assembly | 100% |"]
+    assert len(lines) > 40

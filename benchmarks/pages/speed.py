@@ -70,8 +70,8 @@ def _default_words(data: dict[str, Any]) -> list[str]:
         f"off by {worst['solid 24 x 1']:.1%} in the worst scene, a thick wall; fewer than 24 along make the contact's edge so "
         "coarse that the wall appears to leave the plate "
         f"({cut['solid 8 x 1']}, {cut['solid 12 x 1']} and {cut['solid 16 x 1']} scenes cut at 8, 12 and 16). 36 x 2 costs "
-        f"{dear:.1f} times as much and its worst scene is at {worst['solid 36 x 2']:.2%}, against {worst[DEFAULT]:.2%}. "
-        * _fold_words(data),
+        f"{dear:.1f} times as much and its worst scene is at {worst['solid 36 x 2']:.2%}, against {worst[DEFAULT]:.2%}.",
+        *_fold_words(data),
         "",
     ]
 
