@@ -10,9 +10,9 @@ import pytest
 from typer.testing import CliRunner
 
 from pneutouch.cli.app import app
-from pneutouch.cli.select_text import mount_note
 from pneutouch.spec.target import Target, TargetFigures
 from pneutouch.workflows.select.base import base_scene
+from pneutouch.workflows.select.words import mount_note
 
 ASKED = ["select", "--sensitivity", "1.9", "--at", "12", "--force-range", "15", "--max-diameter", "25"]
 

@@ -54,18 +54,29 @@ def graded_text(selection: GradedSelectionRun) -> str:
     """The grade and the constant membranes of its size, or what is missed."""
     from pneutouch.evaluation.contact_object import contact_document
     from pneutouch.workflows.select.contact import contact_text
-    from pneutouch.workflows.select.graded_document import missed, rated_warning
 
-    best, sensor, grade_target = selection.search.best, selection.sensor, selection.grade_target
-    pressures = [f"{p / KPA:g} kPa" for p in grade_target.pressures]
+    contact = [f"contact: {contact_text(selection.base)}"] if contact_document(selection.base) else []
+    headline, *lines = graded_lines(selection)
+    return "\n".join([headline, *contact, "", table_text(*graded_table(selection)), "", *lines])
+
+
+def graded_table(selection: GradedSelectionRun) -> tuple[list[str], list[list[str]]]:
+    """Head and rows: the grade, then the constant membranes of its size."""
+    pressures = [f"{p / KPA:g} kPa" for p in selection.grade_target.pressures]
     head = ["", *(f"S {p}" for p in pressures), *(["apart"] if len(pressures) > 1 else [])]
     head += [*(f"range {p}" for p in pressures), "ends with", "rated kPa", "meets"]
-    rows = [["graded: " + selection.grade.label, *_row(selection, best)]]
-    rows += [[constant.name, *_row(selection, constant.trial)] for constant in selection.constants]
+    rows = [["graded: " + selection.grade.label, *_row(selection, selection.search.best)]]
+    return head, rows + [[constant.name, *_row(selection, constant.trial)] for constant in selection.constants]
+
+
+def graded_lines(selection: GradedSelectionRun) -> list[str]:
+    """Whether a grade meets the target, what is missed, what it costs and what was left out."""
+    from pneutouch.workflows.select.graded_document import missed, rated_warning
+
+    sensor = selection.sensor
     size = f"R0 {sensor.dome.inner_radius:g} mm, t0 {sensor.dome.wall_thickness:g} mm, on {selection.base.where}"
     met = "a grade meets the target" if selection.search.met else "no grade of this size meets the target; the nearest"
-    contact = [f"contact: {contact_text(selection.base)}"] if contact_document(selection.base) else []
-    lines = [f"{met}: {size}", *contact, "", table_text(head, rows), ""]
+    lines = [f"{met}: {size}"]
     if not selection.search.met:
         lines += [f"it misses {line}" if k == 0 else line for k, line in enumerate(missed(selection))]
     warning = rated_warning(selection)
@@ -74,8 +85,7 @@ def graded_text(selection: GradedSelectionRun) -> str:
     too = f"a constant membrane does too: {', '.join(constant)}"
     lines.append(too if constant else "no constant one listed meets it")
     lines.append(f"cost: {selection.solves} solid solves, {len(selection.search.trials)} of them grades")
-    lines += [f"left out: {name}: {why}" for name, why in selection.left_out.items()]
-    return "\n".join(lines)
+    return lines + [f"left out: {name}: {why}" for name, why in selection.left_out.items()]
 
 
 def _row(selection: GradedSelectionRun, trial: GradeTrial) -> list[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from itertools import chain, count
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -19,12 +18,12 @@ from pneutouch.cli.app import (
     print_json,
     reporting,
 )
-from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, with_fields
+from pneutouch.cli.declared import field_tables, named_by_flag, with_fields
 from pneutouch.cli.next_step import DesignPlace, report_next, report_written
 from pneutouch.cli.progress import bar
+from pneutouch.cli.select_fields import SELECT_FIELDS
 from pneutouch.cli.terminal import echo
 from pneutouch.errors import InputError
-from pneutouch.spec.number import plain_numbers
 from pneutouch.spec.target import Target
 
 if TYPE_CHECKING:
@@ -34,49 +33,8 @@ _FLAGS_ALONE = "select"
 """Stands for the target's file where there is none."""
 
 
-def _percent(text: str) -> float:
-    from pneutouch.mechanics.models import parse_tolerance
-
-    return 100 * parse_tolerance(text)
-
-
-def _pressures(text: str) -> list[float]:
-    try:
-        return plain_numbers(text)
-    except ValueError:
-        raise InputError("write two driving pressures in kPa, such as 0,22", key="same_at", value=text) from None
-
-
-_FIELDS = {
-    "sensitivity": FieldOption("target", "sensitivity_kPa_per_N"),
-    "tolerance": FieldOption("target", "tolerance_percent", _percent, "SHARE"),
-    "at": FieldOption("target", "driving_pressure_kPa"),
-    "force_range": FieldOption("target", "force_range_N"),
-    "stiffness_least": FieldOption("target", "stiffness_least_N_per_mm"),
-    "stiffness_most": FieldOption("target", "stiffness_most_N_per_mm"),
-    "max_diameter": FieldOption("target", "max_diameter_mm"),
-    "max_footprint": FieldOption("target", "max_footprint_mm"),
-    "fits": FieldOption("target", "fits", metavar="finger:MM"),
-    "inner_radius": FieldOption("given", "inner_radius_mm"),
-    "wall": FieldOption("given", "wall_thickness_mm"),
-    "material": FieldOption("given", "materials"),
-    "mix": FieldOption("given", "mix", metavar="SOFT+STIFF"),
-    "graded": FieldOption("given", "graded"),
-    "same_at": FieldOption("target", "same_sensitivity_at_kPa", _pressures, "KPA,KPA"),
-    "same_within": FieldOption("target", "same_within_percent", _percent, "SHARE"),
-    "widest_range": FieldOption("target", "widest_range"),
-    "base": FieldOption("setting", "base"),
-    "profile": FieldOption("setting", "profile"),
-    "tube_length": FieldOption("setting", "tube_length_mm"),
-    "dead_volume": FieldOption("setting", "dead_volume_mL"),
-    "robustness": FieldOption("weights", "robustness"),
-    "tunability": FieldOption("weights", "tunability"),
-    "contact_anywhere": FieldOption("weights", "contact_anywhere"),
-}
-
-
 @app.command()
-@with_fields(Target, _FIELDS)
+@with_fields(Target, SELECT_FIELDS)
 def select(
     target: Annotated[
         Path | None, typer.Argument(metavar="TARGET", help="Target file (TOML); options override it.")
@@ -96,7 +54,8 @@ def select(
 ) -> None:
     """Find designs for a target; exit 1 where there is none."""
     where = str(target or _FLAGS_ALONE)
-    given = {f"{_FIELDS[name].table}.{_FIELDS[name].key}": name for name, value in fields.items() if value is not None}
+    stated = {name: SELECT_FIELDS[name] for name, value in fields.items() if value is not None}
+    given = {f"{option.table}.{option.key}": name for name, option in stated.items()}
     with reporting(), named_by_flag(given, where):
         from pneutouch.output.files import check_writable
         from pneutouch.output.new import check_free
@@ -145,17 +104,11 @@ def _report(selection: SelectionRun, pick: int, place: DesignPlace | None, chart
         if path is not None:
             report_written(path)
         elif designs:
-            report_next(*sys.argv[1:], "--write", _free_name())
+            from pneutouch.output.new import free_name
+
+            report_next(*sys.argv[1:], "--write", free_name())
     if not designs:
         raise typer.Exit(1)
-
-
-def _free_name() -> str:
-    """A name that no design has, of the user's or shipped."""
-    from pneutouch.catalogue import Library
-
-    known = Library.default().paths("designs")
-    return next(name for name in chain(["my-sensor"], (f"my-sensor-{k}" for k in count(2))) if name not in known)
 
 
 def _graded(target: Target, where: str, place: DesignPlace | None, *, json: bool, **others: bool) -> None:
@@ -174,7 +127,7 @@ def _target(path: Path | None, fields: dict[str, Any], set_: list[str]) -> Targe
     setting = content.get("setting")
     if path is not None and isinstance(setting, dict) and isinstance(setting.get("base"), str):
         setting["base"] = design_inside(path.parent, setting["base"], file=path, key="setting.base")
-    tables = field_tables(_FIELDS, fields)
+    tables = field_tables(SELECT_FIELDS, fields)
     for table, values in tables.items():
         section = content.setdefault(table, {})
         if not isinstance(section, dict):

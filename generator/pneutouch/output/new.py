@@ -2,6 +2,7 @@
 
 import os
 from dataclasses import dataclass
+from itertools import chain, count
 from pathlib import Path
 
 from pneutouch.catalogue import KINDS, Library, user_folder
@@ -68,6 +69,12 @@ def _copied(kind: str, path: Path, name: str | None, out: Path | None) -> NewFil
     written = write_design(name, folder, read_bytes(path).decode("utf-8-sig"), kind)
     # A name finds what lies in the user's folder alone.
     return NewFile(written, ("check", name if out is None else str(written)))
+
+
+def free_name() -> str:
+    """A name that no design has, of the user's or shipped."""
+    known = Library.default().paths("designs")
+    return next(name for name in chain(["my-sensor"], (f"my-sensor-{k}" for k in count(2))) if name not in known)
 
 
 def check_name(name: str, folder: Path, kind: str = "designs") -> Path:

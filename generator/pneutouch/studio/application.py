@@ -19,7 +19,7 @@ from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.studio.answer import quick_answer, view_answer
 from pneutouch.studio.desk import Desk
 from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
-from pneutouch.studio.form import designs_document, form_document
+from pneutouch.studio.form import designs_document, form_document, target_form_document
 from pneutouch.studio.guard import Application, Guard, TooLargeError, too_large
 from pneutouch.studio.pages import page_files, respond
 from pneutouch.studio.question import Question
@@ -48,6 +48,10 @@ class Studio:
         """What the page is built from."""
         form = await run_in_threadpool(form_document, self._library)
         return JSONResponse({**form, "designs": designs_document(self._bases), "first": self._first})
+
+    async def target_form(self, request: Request) -> Response:
+        """What the form of a target is built from."""
+        return JSONResponse(await run_in_threadpool(target_form_document, self._library, self._bases))
 
     async def at_once(self, answer: QuickAnswer, request: Request) -> Response:
         """An answer of ``answer``, which is computed in this process, one at a time."""
@@ -100,6 +104,7 @@ def application(bases: dict[str, str], first: str, port: int, token: str) -> App
 
     routes = [
         Route("/api/form", studio.form),
+        Route("/api/form/target", studio.target_form),
         Route("/api/quick", partial(studio.at_once, quick_answer), methods=["POST"]),
         Route("/api/view", partial(studio.at_once, view_answer), methods=["POST"]),
         Route("/api/solved", studio.solved, methods=["POST"]),

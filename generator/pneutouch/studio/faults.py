@@ -1,13 +1,20 @@
 """Errors of the library as the page takes them: a message for each field that caused one."""
 
+import re
 from typing import Any
+
+from pydantic import BaseModel
 
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
+from pneutouch.spec.target import Target
 
 BAD_INPUT = 422
 FAILED = 500
+
+_MODELS = (DesignFile, Target)
+"""The files that the page has a form for; no two have a table of the same name."""
 
 
 def fault_document(error: PneutouchError) -> dict[str, Any]:
@@ -38,11 +45,19 @@ def _fields(error: PneutouchError) -> list[str]:
     if field or (key in DesignFile.model_fields and table_of(DesignFile, key) is None):
         return [key]
     named = []
-    for name in DesignFile.model_fields:
-        model = table_of(DesignFile, name)
-        if model is None or (table and name != table):
+    for name, model in _tables():
+        if table and name != table:
             continue
         named += [f"{name}.{each}" for each in model.model_fields if f"{name}.{each}" in error.problem]
         if table == name:
-            named += [f"{name}.{each}" for each in model.model_fields if f"{each} " in f"{error.problem} "]
+            named += [f"{name}.{each}" for each in model.model_fields if _is_named(each, error.problem)]
     return list(dict.fromkeys(named))
+
+
+def _tables() -> list[tuple[str, type[BaseModel]]]:
+    found = [(name, table_of(file, name)) for file in _MODELS for name in file.model_fields]
+    return [(name, model) for name, model in found if model is not None]
+
+
+def _is_named(field: str, problem: str) -> bool:
+    return re.search(rf"\b{field}\b", problem) is not None

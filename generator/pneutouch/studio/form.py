@@ -1,8 +1,9 @@
-"""The form of the page, made from the declared fields of a design file."""
+"""The forms of the page, made from the declared fields of a design file and of a target."""
 
 import datetime
 import types
 import typing
+from collections.abc import Mapping
 from typing import Any
 
 from pydantic import BaseModel
@@ -15,11 +16,12 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import Declaration, declarations, table_of
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
+from pneutouch.spec.target import Target
 
 _TWICE = ("contact.plate_diameter_mm",)
 """Fields that stand in two tables, and in the form once."""
 
-_KIND_OF_MATERIAL = {"membrane.material": "elastomer", "connector.material": "rigid"}
+_KIND_OF_MATERIAL = {"membrane.material": "elastomer", "connector.material": "rigid", "given.materials": "elastomer"}
 
 Option = dict[str, str]
 
@@ -27,9 +29,16 @@ Option = dict[str, str]
 def form_document(library: Library) -> dict[str, Any]:
     """Groups of fields with label, unit, bounds, help and the names to choose from; sizes by object; printers by
     material."""
-    groups = [_group(name, library) for name in DesignFile.model_fields if table_of(DesignFile, name) is not None]
     sizes = {kind: [f"contact.{key}" for key in keys] for kind, keys in SIZES.items()}
-    return {"groups": groups, "sizes": sizes, "printers": _printers(library)}
+    return {"groups": _groups(DesignFile, library), "sizes": sizes, "printers": _printers(library)}
+
+
+def target_form_document(library: Library, bases: Mapping[str, str]) -> dict[str, Any]:
+    """Groups of fields of a target; its base is one of the designs that the page may open."""
+    groups = _groups(Target, library)
+    for field in (field for group in groups for field in group["fields"] if field["name"] == "setting.base"):
+        field["options"] = designs_document(bases)
+    return {"groups": groups}
 
 
 def _printers(library: Library) -> dict[str, list[str]]:
@@ -42,17 +51,21 @@ def _printers(library: Library) -> dict[str, list[str]]:
     }
 
 
-def designs_document(bases: dict[str, str]) -> list[Option]:
+def designs_document(bases: Mapping[str, str]) -> list[Option]:
     """The designs that can be opened, with their titles."""
     titles = {entry["name"]: entry["title"] for entry in listing("designs")["designs"] if "error" not in entry}
     return [{"name": name, "title": titles.get(name, "")} for name in bases]
 
 
-def _group(name: str, library: Library) -> dict[str, Any]:
-    model = table_of(DesignFile, name)
-    assert model is not None
-    fields = [_field(name, model, each, library) for each in declarations(model)]
-    return {"name": name, "fields": [field for field in fields if field["name"] not in _TWICE]}
+def _groups(file: type[BaseModel], library: Library) -> list[dict[str, Any]]:
+    """The tables of a file with their fields."""
+    groups = []
+    for name in file.model_fields:
+        model = table_of(file, name)
+        if model is not None:
+            fields = [_field(name, model, each, library) for each in declarations(model)]
+            groups.append({"name": name, "fields": [field for field in fields if field["name"] not in _TWICE]})
+    return groups
 
 
 def _field(table: str, model: type[BaseModel], declared: Declaration, library: Library) -> dict[str, Any]:
@@ -60,15 +73,23 @@ def _field(table: str, model: type[BaseModel], declared: Declaration, library: L
     kinds = _kinds(model.model_fields[declared.key].annotation)
     return {
         "name": name,
-        "label": declared.key.removesuffix(f"_{declared.unit}").replace("_", " ").capitalize(),
+        "label": _label(declared),
         "unit": declared.unit,
         "low": declared.low,
         "high": declared.high,
+        "default": declared.default if isinstance(declared.default, str | float | int) else None,
         "help": declared.help,
         "kind": _kind(kinds, declared),
         "optional": types.NoneType in kinds,
         "options": _options(name, kinds, declared, library),
     }
+
+
+def _label(declared: Declaration) -> str:
+    """The key in words, without its unit, which stands next to it."""
+    unit = declared.unit.replace("/", "_per_").replace("%", "percent")
+    words = declared.key.removesuffix(f"_{unit}").replace("_", " ")
+    return words[:1].upper() + words[1:]
 
 
 def _kinds(annotation: Any) -> list[Any]:
@@ -80,7 +101,9 @@ def _kinds(annotation: Any) -> list[Any]:
 
 
 def _kind(kinds: list[Any], declared: Declaration) -> str:
-    """number, whole, numbers, flag, choice, date or text: how the page shows a field."""
+    """number, whole, numbers, flag, choice, names, texts, date or text: how the page shows a field."""
+    if list[str] in kinds:
+        return "names" if declared.registry else "texts"
     if declared.registry or any(typing.get_origin(kind) is typing.Literal for kind in kinds):
         return "choice"
     if bool in kinds:

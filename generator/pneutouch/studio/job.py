@@ -14,7 +14,7 @@ from pneutouch.errors import ComputationError, PneutouchError
 from pneutouch.holding import STOPS
 from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
 
-KINDS: dict[str, str] = {}
+KINDS: dict[str, str] = {"select": "search:search"}
 """Function by kind of job, ``module:name`` below this package: ``run(arguments, folder, report)`` returns the content.
 
 ``arguments`` is the JSON of the page, with ``files`` (name, path) and ``bases``; ``folder`` is for the files it makes;

@@ -105,7 +105,10 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         **_how(choice),
         "solid": None
         if solid is None
-        else {"sensitivity_kPa_per_N": solid.sensitivity_kPa_per_N, "within_expanded_uncertainty": solid.within},
+        else {
+            "sensitivity_kPa_per_N": _known(solid.sensitivity_kPa_per_N),
+            "within_expanded_uncertainty": solid.within,
+        },
         "set": selection.assignments(choice),
     }
 

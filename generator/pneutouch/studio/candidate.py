@@ -1,0 +1,84 @@
+"""A design that was found, as the page shows it: what it is in words, and the state that makes it the page's design."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pneutouch.units import KPA
+
+if TYPE_CHECKING:
+    from pneutouch.selection import Candidate
+    from pneutouch.workflows.select.graded import GradedSelectionRun
+    from pneutouch.workflows.select.run import SelectionRun
+
+Row = tuple[str, str, str]
+"""What a figure is, the figure with its unit, and what is added to it."""
+
+
+def candidate_card(selection: SelectionRun, choice: Candidate, rank: int | None = None) -> dict[str, Any]:
+    """A candidate: its resin, rows of figures with the digits of ``select``, and its place on the chart."""
+    pool = choice.pool
+    sensitivity_kPa_per_N, force = float(pool.response.lines.sensitivity_kPa_per_N[0]), float(pool.force[0])
+    return {
+        "rank": rank,
+        "resin": choice.resin.name,
+        "title": choice.resin.material.label,
+        "at": {"sensitivity_kPa_per_N": sensitivity_kPa_per_N, "force_N": force},
+        "rows": [*_figures(selection, choice), *_sizes(selection, choice), *_limits(selection, choice, rank)],
+    }
+
+
+def graded_card(selection: GradedSelectionRun) -> dict[str, Any]:
+    """The best grade, as `candidate_card` has a candidate; it has no place on a chart."""
+    best, dome = selection.search.best, selection.sensor.dome
+    pressures_kPa = [p / KPA for p in selection.grade_target.pressures]
+    rows: list[Row] = []
+    for at_kPa, sensitivity_kPa_per_N, force in zip(pressures_kPa, best.sensitivity_kPa_per_N, best.force, strict=True):
+        rows.append((f"Sensitivity at {at_kPa:g} kPa", f"{sensitivity_kPa_per_N:.3f} kPa/N", ""))
+        rows.append((f"Force range at {at_kPa:g} kPa", f"0 to {force:.1f} N", ""))
+    rows += [("Inner radius R0", f"{dome.inner_radius:g} mm", ""), ("Wall t0", f"{dome.wall_thickness:g} mm", "")]
+    if not best.note:
+        rows.append(("Rated pressure", f"{best.rated / KPA:.1f} kPa", ""))
+    title = selection.grade.label
+    return {"rank": 1 if selection.passes else None, "resin": title, "title": title, "at": None, "rows": rows}
+
+
+def _figures(selection: SelectionRun, choice: Candidate) -> list[Row]:
+    lines, at_kPa = choice.pool.response.lines, float(choice.pool.pressure[0]) / KPA
+    sensitivity_kPa_per_N, width = float(lines.sensitivity_kPa_per_N[0]), choice.expanded
+    low_kPa_per_N, high_kPa_per_N = sensitivity_kPa_per_N * np.exp([-width, width])
+    interval = f"{low_kPa_per_N:.2f} to {high_kPa_per_N:.2f} (k = 2)" if np.isfinite(width) else "interval not known"
+    rows = [
+        (f"Sensitivity at {at_kPa:.4g} kPa", f"{sensitivity_kPa_per_N:.3f} kPa/N", interval),
+        ("Force range", f"0 to {float(choice.pool.force[0]):.2f} N", f"ends with {choice.ends_with}"),
+        ("Stiffness", f"{float(lines.stiffness[0]):.3g} N/mm", ""),
+    ]
+    if selection.problem.anywhere and choice.place is not None:
+        rows.append(("Unknown place of contact", f"{100 * choice.place:.0f} %", "of the sensitivity (k = 1)"))
+    return rows
+
+
+def _sizes(selection: SelectionRun, choice: Candidate) -> list[Row]:
+    radius, wall = float(choice.pool.radius[0]), float(choice.pool.wall[0])
+    return [
+        ("Inner radius R0", f"{radius:.2f} mm", ""),
+        ("Wall t0", f"{wall:.2f} mm", ""),
+        ("Diameter", f"{selection.footprint(choice):.1f} mm", f"dome {2 * (radius + wall):.2f} mm"),
+    ]
+
+
+def _limits(selection: SelectionRun, choice: Candidate, rank: int | None) -> list[Row]:
+    span = [f"{end:.2f}" if np.isfinite(end) else "none" for end in choice.span]
+    rows = [
+        ("Rated pressure", f"{choice.rated / KPA:.1f} kPa", f"{span[0]} kPa/N at 0 kPa, {span[1]} there"),
+        ("Binds", choice.binding, f"margin {100 * choice.margins[choice.binding]:+.0f} %"),
+    ]
+    if choice.contact is not None:
+        return [*rows, ("Under a plate", f"{choice.contact.plate_kPa_per_N:.3f} kPa/N", "by the atlas")]
+    if rank is not None and rank <= len(selection.confirmed):
+        solid = selection.confirmed[rank - 1]
+        value = f"{solid.sensitivity_kPa_per_N:.3f} kPa/N" if np.isfinite(solid.sensitivity_kPa_per_N) else "none"
+        rows.append(("By the solid", value, "in the interval" if solid.within else "outside the interval"))
+    return rows

@@ -1,0 +1,163 @@
+"""The job that answers a target: what ``select --json`` prints, its designs as cards, and the trade-off chart."""
+
+from __future__ import annotations
+
+import shlex
+from typing import TYPE_CHECKING, Any
+
+from pneutouch.catalogue import Library, ResolvedDesign
+from pneutouch.catalogue.cached_library import CachedLibrary
+from pneutouch.cli.graded import graded_lines, graded_table
+from pneutouch.cli.select_fields import target_words
+from pneutouch.errors import InputError
+from pneutouch.output.new import free_name
+from pneutouch.rounding import rounded
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.read import validate
+from pneutouch.studio.candidate import candidate_card, graded_card
+from pneutouch.studio.question import PAGE, Question
+from pneutouch.studio.state import state_of
+from pneutouch.studio.target import at_its_fields, target_of
+from pneutouch.workflows.select import words
+from pneutouch.workflows.select.charts import tradeoff
+from pneutouch.workflows.select.document import document
+from pneutouch.workflows.select.graded import select_graded
+from pneutouch.workflows.select.graded_document import graded_document
+from pneutouch.workflows.select.passing import assigned
+from pneutouch.workflows.select.run import STEPS, SelectionRun, select
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from pneutouch.selection import Candidate
+    from pneutouch.spec.target import Target
+    from pneutouch.studio.job import Report
+
+_DIGITS = 6
+_CHART = "trade-off chart"
+
+
+class _Page:
+    """What turns designs that were found into states of the page and commands that save them under a free name."""
+
+    def __init__(self, question: Question, bases: Mapping[str, str], library: Library, target: Target) -> None:
+        self._bases, self._library, self._words, self._name = bases, library, target_words(target), free_name()
+        if question.base not in bases:
+            raise InputError("unknown design", key="base", value=question.base)
+        named = (name for name, design in bases.items() if design == target.setting.base)
+        self._base = question.base if target.setting.base is None else next(named)
+
+    def state(self, base: ResolvedDesign, changes: list[str]) -> dict[str, Any]:
+        """The state of the page that is the design that ``select --write`` saves: a base with assignments."""
+        design = validate(DesignFile, assigned(base.design, changes, self._name), PAGE)
+        return state_of(design, self._base, self._bases, self._library)
+
+    def command(self, rank: int) -> str:
+        """The command that saves the design of a rank."""
+        picked = [] if rank == 1 else ["--pick", str(rank)]
+        return shlex.join(["pneutouch", "select", *self._words, *picked, "--write", self._name])
+
+
+def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> dict[str, Any]:
+    """Search for the target that ``values`` state; where it names no base, its designs are those of ``base`` changed.
+
+    Raises InputError naming the field.
+    """
+    library, bases = CachedLibrary(Library.default().folders), arguments["bases"]
+    question = Question.of({key: arguments.get(key) for key in ("base", "values")})
+    with at_its_fields():
+        target = target_of(question, bases)
+        page = _Page(question, bases, library, target)
+        return _graded(target, page, library, report) if target.given.graded else _found(target, page, library, report)
+
+
+def _found(target: Target, page: _Page, library: Library, report: Report) -> dict[str, Any]:
+    total = len(STEPS) + 1
+    run = select(target, PAGE, library, progress=lambda step: report(STEPS.index(step), total, step))
+    report(len(STEPS), total, _CHART)
+    return {
+        "selection": {**document(run), "written": None},
+        "headline": words.headline(run),
+        "notes": words.search_notes(run),
+        "cards": _cards(run, page),
+        "remarks": [*_nothing_to_drop(run), *words.remarks(run)],
+        "chart": _chart(run, library),
+        "table": None,
+    }
+
+
+def _cards(run: SelectionRun, page: _Page) -> list[dict[str, Any]]:
+    """The designs by rank; where there are none, what is nearest and what fits without one of the requirements."""
+
+    def card(choice: Candidate, kind: str, rank: int | None = None, says: str = "") -> dict[str, Any]:
+        state = page.state(run.base, run.assignments(choice))
+        command = None if rank is None else page.command(rank)
+        added = {"kind": kind, "says": says, "passes": rank in run.judged, "state": state, "command": command}
+        return {**candidate_card(run, choice, rank), **added}
+
+    answer, seen, cards = run.answer, set[str](), []
+    for rank, choice in enumerate(answer.designs, start=1):
+        cards.append(card(choice, "runner-up" if choice.resin.name in seen else "best", rank))
+        seen.add(choice.resin.name)
+    if cards or run.rejected:
+        return cards
+    if answer.nearest is not None:
+        cards.append(card(answer.nearest, "nearest", says=f"it misses: {words.missed_text(run, answer.nearest)}"))
+    for dropped, line in zip(answer.dropped, words.dropped_lines(run), strict=False):
+        cards.append(card(dropped.best, "dropped", says=line))
+    return cards
+
+
+def _nothing_to_drop(run: SelectionRun) -> list[str]:
+    """What is said where no design meets the target and none fits without one of its requirements."""
+    answer = run.answer
+    return [] if answer.designs or run.rejected or answer.dropped else words.dropped_lines(run)
+
+
+def _chart(run: SelectionRun, library: Library) -> dict[str, Any]:
+    """The chart that ``select --charts`` draws: sensitivities in kPa/N, forces in N, pressures in kPa."""
+    drawn = tradeoff(run, library)
+    window = drawn.window_kPa_per_N
+    content: dict[str, Any] = {
+        "driving_pressure_kPa": drawn.driving_pressure_kPa,
+        "gauge_kPa": drawn.gauge_kPa,
+        "window_kPa_per_N": None if window is None else list(window),
+        "least_force_N": drawn.force,
+        "caption": drawn.caption,
+        "fronts": [
+            {
+                "title": front.resin.material.title,
+                "sensitivity_kPa_per_N": front.sensitivity_kPa_per_N.tolist(),
+                "force_N": front.force.tolist(),
+            }
+            for front in drawn.known
+        ],
+    }
+    result: dict[str, Any] = rounded(content, _DIGITS)
+    return result
+
+
+def _graded(target: Target, page: _Page, library: Library, report: Report) -> dict[str, Any]:
+    """The search for a grade, with the constant membranes of its size as a table in place of the chart."""
+    run = select_graded(target, PAGE, library, lambda trial, done, most: report(done, most, "searching grades"))
+    head, rows = graded_table(run)
+    rejected = [] if run.rejected is None else [f"the grade is rejected by the check: {run.rejected}"]
+    card = {
+        **graded_card(run),
+        "kind": "best" if run.search.met else "nearest",
+        "says": "",
+        "passes": run.passes,
+        "state": page.state(run.base, run.assignments()),
+        "command": page.command(1) if run.passes else None,
+    }
+    headline, *remarks = graded_lines(run)
+    return {
+        "selection": {**graded_document(run), "written": None},
+        "headline": headline,
+        "notes": [],
+        "cards": [card],
+        "remarks": [*rejected, *remarks],
+        "chart": None,
+        "table": {"head": head, "rows": rows},
+    }
