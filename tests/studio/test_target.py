@@ -110,7 +110,7 @@ def test_where_nothing_is_found_it_says_so_in_the_words_of_select(command):
     lines = said.stdout.splitlines()
     assert content["headline"] == lines[0] == "no design meets the target"
     assert [card["kind"] for card in content["cards"]] == ["nearest", "dropped", "dropped"]
-    for words in [*(card["says"] for card in content["cards"]), *content["remarks"]]:
+    for words in [*(card["note"] for card in content["cards"]), *content["remarks"]]:
         assert words in lines
     assert {card["command"] for card in content["cards"]} == {None}
     assert content["chart"]["fronts"]

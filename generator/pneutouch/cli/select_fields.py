@@ -1,5 +1,6 @@
 """The options of ``select``: a flag for each field of a target, and a target as the words that give it."""
 
+import shlex
 from typing import Any
 
 from pneutouch.cli.declared import FieldOption
@@ -62,6 +63,12 @@ def target_words(target: Target) -> list[str]:
         flag = f"--{name.replace('_', '-')}"
         words += [flag] if value is True else [flag, _text(value, "%" if option.metavar == "SHARE" else "")]
     return [*words, *(word for text in target.setting.assignments for word in ("--set", text))]
+
+
+def saving_command(target: Target, rank: int, name: str) -> str:
+    """The command that saves the design of a rank under a name, as it is typed in a shell."""
+    picked = [] if rank == 1 else ["--pick", str(rank)]
+    return shlex.join(["pneutouch", "select", *target_words(target), *picked, "--write", name])
 
 
 def _text(value: Any, unit: str) -> str:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from pneutouch.workflows.select.graded import GradedSelectionRun
     from pneutouch.workflows.select.run import SelectionRun
 
-Row = tuple[str, str, str]
+FigureRow = tuple[str, str, str]
 """What a figure is, the figure with its unit, and what is added to it."""
 
 
@@ -34,7 +34,7 @@ def graded_card(selection: GradedSelectionRun) -> dict[str, Any]:
     """The best grade, as `candidate_card` has a candidate; it has no place on a chart."""
     best, dome = selection.search.best, selection.sensor.dome
     pressures_kPa = [p / KPA for p in selection.grade_target.pressures]
-    rows: list[Row] = []
+    rows: list[FigureRow] = []
     for at_kPa, sensitivity_kPa_per_N, force in zip(pressures_kPa, best.sensitivity_kPa_per_N, best.force, strict=True):
         rows.append((f"Sensitivity at {at_kPa:g} kPa", f"{sensitivity_kPa_per_N:.3f} kPa/N", ""))
         rows.append((f"Force range at {at_kPa:g} kPa", f"0 to {force:.1f} N", ""))
@@ -45,7 +45,7 @@ def graded_card(selection: GradedSelectionRun) -> dict[str, Any]:
     return {"rank": 1 if selection.passes else None, "resin": title, "title": title, "at": None, "rows": rows}
 
 
-def _figures(selection: SelectionRun, choice: Candidate) -> list[Row]:
+def _figures(selection: SelectionRun, choice: Candidate) -> list[FigureRow]:
     lines, at_kPa = choice.pool.response.lines, float(choice.pool.pressure[0]) / KPA
     sensitivity_kPa_per_N, width = float(lines.sensitivity_kPa_per_N[0]), choice.expanded
     low_kPa_per_N, high_kPa_per_N = sensitivity_kPa_per_N * np.exp([-width, width])
@@ -60,7 +60,7 @@ def _figures(selection: SelectionRun, choice: Candidate) -> list[Row]:
     return rows
 
 
-def _sizes(selection: SelectionRun, choice: Candidate) -> list[Row]:
+def _sizes(selection: SelectionRun, choice: Candidate) -> list[FigureRow]:
     radius, wall = float(choice.pool.radius[0]), float(choice.pool.wall[0])
     return [
         ("Inner radius R0", f"{radius:.2f} mm", ""),
@@ -69,7 +69,7 @@ def _sizes(selection: SelectionRun, choice: Candidate) -> list[Row]:
     ]
 
 
-def _limits(selection: SelectionRun, choice: Candidate, rank: int | None) -> list[Row]:
+def _limits(selection: SelectionRun, choice: Candidate, rank: int | None) -> list[FigureRow]:
     span = [f"{end:.2f}" if np.isfinite(end) else "none" for end in choice.span]
     rows = [
         ("Rated pressure", f"{choice.rated / KPA:.1f} kPa", f"{span[0]} kPa/N at 0 kPa, {span[1]} there"),

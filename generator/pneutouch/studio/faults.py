@@ -55,8 +55,8 @@ def _fields(error: PneutouchError) -> list[str]:
 
 
 def _tables() -> list[tuple[str, type[BaseModel]]]:
-    found = [(name, table_of(file, name)) for file in _MODELS for name in file.model_fields]
-    return [(name, model) for name, model in found if model is not None]
+    tables = [(name, table_of(file, name)) for file in _MODELS for name in file.model_fields]
+    return [(name, model) for name, model in tables if model is not None]
 
 
 def _is_named(field: str, problem: str) -> bool:

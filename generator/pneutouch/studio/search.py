@@ -1,14 +1,13 @@
-"""The job that answers a target: what ``select --json`` prints, its designs as cards, and the trade-off chart."""
+"""The job that answers a target: the document of ``select``, its designs as cards, and the trade-off chart."""
 
 from __future__ import annotations
 
-import shlex
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.catalogue import Library, ResolvedDesign
 from pneutouch.catalogue.cached_library import CachedLibrary
 from pneutouch.cli.graded import graded_lines, graded_table
-from pneutouch.cli.select_fields import target_words
+from pneutouch.cli.select_fields import saving_command
 from pneutouch.errors import InputError
 from pneutouch.output.new import free_name
 from pneutouch.rounding import rounded
@@ -42,21 +41,20 @@ class _Page:
     """What turns designs that were found into states of the page and commands that save them under a free name."""
 
     def __init__(self, question: Question, bases: Mapping[str, str], library: Library, target: Target) -> None:
-        self._bases, self._library, self._words, self._name = bases, library, target_words(target), free_name()
+        self._bases, self._library, self._target, self._name = bases, library, target, free_name()
         if question.base not in bases:
             raise InputError("unknown design", key="base", value=question.base)
         named = (name for name, design in bases.items() if design == target.setting.base)
         self._base = question.base if target.setting.base is None else next(named)
 
     def state(self, base: ResolvedDesign, changes: list[str]) -> dict[str, Any]:
-        """The state of the page that is the design that ``select --write`` saves: a base with assignments."""
+        """The state of the page that is the design that ``select`` saves: a base with assignments."""
         design = validate(DesignFile, assigned(base.design, changes, self._name), PAGE)
         return state_of(design, self._base, self._bases, self._library)
 
     def command(self, rank: int) -> str:
         """The command that saves the design of a rank."""
-        picked = [] if rank == 1 else ["--pick", str(rank)]
-        return shlex.join(["pneutouch", "select", *self._words, *picked, "--write", self._name])
+        return saving_command(self._target, rank, self._name)
 
 
 def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> dict[str, Any]:
@@ -69,10 +67,12 @@ def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> dict[s
     with at_its_fields():
         target = target_of(question, bases)
         page = _Page(question, bases, library, target)
-        return _graded(target, page, library, report) if target.given.graded else _found(target, page, library, report)
+        return (
+            _graded(target, page, library, report) if target.given.graded else _selected(target, page, library, report)
+        )
 
 
-def _found(target: Target, page: _Page, library: Library, report: Report) -> dict[str, Any]:
+def _selected(target: Target, page: _Page, library: Library, report: Report) -> dict[str, Any]:
     total = len(STEPS) + 1
     run = select(target, PAGE, library, progress=lambda step: report(STEPS.index(step), total, step))
     report(len(STEPS), total, _CHART)
@@ -90,10 +90,10 @@ def _found(target: Target, page: _Page, library: Library, report: Report) -> dic
 def _cards(run: SelectionRun, page: _Page) -> list[dict[str, Any]]:
     """The designs by rank; where there are none, what is nearest and what fits without one of the requirements."""
 
-    def card(choice: Candidate, kind: str, rank: int | None = None, says: str = "") -> dict[str, Any]:
+    def card(choice: Candidate, kind: str, rank: int | None = None, note: str = "") -> dict[str, Any]:
         state = page.state(run.base, run.assignments(choice))
         command = None if rank is None else page.command(rank)
-        added = {"kind": kind, "says": says, "passes": rank in run.judged, "state": state, "command": command}
+        added = {"kind": kind, "note": note, "passes": rank in run.judged, "state": state, "command": command}
         return {**candidate_card(run, choice, rank), **added}
 
     answer, seen, cards = run.answer, set[str](), []
@@ -103,26 +103,25 @@ def _cards(run: SelectionRun, page: _Page) -> list[dict[str, Any]]:
     if cards or run.rejected:
         return cards
     if answer.nearest is not None:
-        cards.append(card(answer.nearest, "nearest", says=f"it misses: {words.missed_text(run, answer.nearest)}"))
+        cards.append(card(answer.nearest, "nearest", note=f"it misses: {words.missed_text(run, answer.nearest)}"))
     for dropped, line in zip(answer.dropped, words.dropped_lines(run), strict=False):
-        cards.append(card(dropped.best, "dropped", says=line))
+        cards.append(card(dropped.best, "dropped", note=line))
     return cards
 
 
 def _nothing_to_drop(run: SelectionRun) -> list[str]:
-    """What is said where no design meets the target and none fits without one of its requirements."""
+    """What is stated where no design meets the target and none fits without one of its requirements."""
     answer = run.answer
     return [] if answer.designs or run.rejected or answer.dropped else words.dropped_lines(run)
 
 
 def _chart(run: SelectionRun, library: Library) -> dict[str, Any]:
-    """The chart that ``select --charts`` draws: sensitivities in kPa/N, forces in N, pressures in kPa."""
+    """The chart that ``select`` draws: sensitivities in kPa/N, forces in N, pressures in kPa."""
     drawn = tradeoff(run, library)
-    window = drawn.window_kPa_per_N
     content: dict[str, Any] = {
         "driving_pressure_kPa": drawn.driving_pressure_kPa,
         "gauge_kPa": drawn.gauge_kPa,
-        "window_kPa_per_N": None if window is None else list(window),
+        "window_kPa_per_N": drawn.window_kPa_per_N and list(drawn.window_kPa_per_N),
         "least_force_N": drawn.force,
         "caption": drawn.caption,
         "fronts": [
@@ -146,7 +145,7 @@ def _graded(target: Target, page: _Page, library: Library, report: Report) -> di
     card = {
         **graded_card(run),
         "kind": "best" if run.search.met else "nearest",
-        "says": "",
+        "note": "",
         "passes": run.passes,
         "state": page.state(run.base, run.assignments()),
         "command": page.command(1) if run.passes else None,

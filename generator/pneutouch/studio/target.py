@@ -1,4 +1,4 @@
-"""A target as the page asks for it: fields with texts, as in a question about a design."""
+"""A target as the page sends it: fields with texts, as in a question about a design."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def target_of(question: Question, bases: Mapping[str, str]) -> Target:
     content = override({"target": {}}, parse_changes(given), Target)
     base = content.get("setting", {}).get("base")
     if isinstance(base, str):
-        # The page knows designs by name alone: no path of a request is opened.
+        # The page has designs by name alone: no path of a request is opened.
         if base not in bases:
             raise InputError("unknown design", key="setting.base", value=base)
         content["setting"]["base"] = bases[base]

@@ -1,4 +1,4 @@
-"""What a selection says in words, in the terminal and in the studio."""
+"""A selection in words, for the terminal and the studio."""
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.selection import Candidate
