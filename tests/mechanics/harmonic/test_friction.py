@@ -13,9 +13,10 @@ from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.solid.continuation import PlateState
 from pneutouch.mechanics.solid.descend import descend
 from pneutouch.mechanics.solid.first_touch import first_touch
-from pneutouch.mechanics.solid.friction_newton import HeldState
+from pneutouch.mechanics.solid.friction_newton import HeldState, SlidingResult
 from pneutouch.mechanics.solid.friction_path import FrictionFollower
 from pneutouch.mechanics.solid.friction_system import ContactSystem
 from pneutouch.mechanics.solid.indent import PressSettings, indent, shut_in
@@ -23,7 +24,7 @@ from pneutouch.mechanics.solid.indenter import RigidObject, ball
 from pneutouch.mechanics.solid.inflate import FreeState, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.newton import evaluate, tangent
+from pneutouch.mechanics.solid.newton import NewtonFailure, evaluate, tangent
 from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.stress import StrainProbe
 
@@ -165,3 +166,30 @@ def test_the_work_of_the_object_is_stored_or_dissipated(body: RigidObject | None
     stored = path[-1].state.energy - path[0].state.energy
     assert 0.002 * work < spent < 0.2 * work
     assert stored + spent == pytest.approx(work, rel=1e-3)
+
+
+def test_the_tractions_foreseen_follow_the_tangent_of_the_path() -> None:
+    """They are off by the square of the step at points that stay in contact and stick."""
+    follower, off = _followed(BALL, 3.0, 0.0, np.inf), []
+    touching = follower.here.state.touch.traction > 0.0
+    for travel in (2.0e-3, 1.0e-3):
+        height = follower.here.height - travel
+        foreseen, solved = follower._towards(height).foreseen, follower.solve(height)
+        assert foreseen is not None and isinstance(solved, PlateState) and solved.friction is not None
+        normal, points = solved.state.touch.traction, solved.friction.points
+        stay = touching & (normal > 0.2 * normal.max()) & points.sticking
+        assert stay.sum() > 3
+        errors = [(foreseen.normal - normal)[stay], (foreseen.trial - points.traction)[stay].ravel()]
+        off.append([float(np.linalg.norm(one)) for one in errors])
+    assert np.array(off[0]) == pytest.approx(4.0 * np.array(off[1]), rel=0.25)
+
+
+def test_a_solve_that_halves_its_residual_is_not_ended_by_the_number_of_its_steps() -> None:
+    follower = _followed(BALL, 3.0, 0.0, 0.3)
+    height = follower.here.height - 0.03
+    guess = follower._extrapolate(height)
+    free = follower._towards(height).minimise(guess)
+    assert isinstance(free, SlidingResult) and free.iterations > 2
+    limited = follower._towards(height).minimise(guess, max_iterations=free.iterations - 1)
+    assert isinstance(limited, SlidingResult) and limited.iterations == free.iterations
+    assert isinstance(follower._towards(height).minimise(guess, max_iterations=0), NewtonFailure)

@@ -10,11 +10,12 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.harmonic.contact import HarmonicContact, Z, upward
-from pneutouch.mechanics.harmonic.friction import SurfaceFriction, SurfacePoints
+from pneutouch.mechanics.harmonic.friction import SurfaceFriction, SurfacePoints, tangents
 from pneutouch.mechanics.harmonic.friction_settling import SurfaceFrictionSolver
 from pneutouch.mechanics.harmonic.surface import Surface, SurfaceHeight
 from pneutouch.mechanics.solid.continuation import PlateState
 from pneutouch.mechanics.solid.friction_path import FrictionFollower, approach
+from pneutouch.mechanics.solid.friction_status import PointTractions
 from pneutouch.mechanics.solid.newton import NewtonFailure
 
 MOST_FAILED = 600
@@ -114,6 +115,30 @@ class SurfaceFrictionFollower(FrictionFollower):
             self._contact, plate, self._coefficient, rest, self._stiffness, along=along, drift=self._drift
         )
         return SurfaceFrictionSolver(replace(self._bare, plate=plate), step, self._sides)
+
+    def _towards(self, height: float) -> SurfaceFrictionSolver:
+        """The solver of the step to a place of the path, with the tractions that the path leads to."""
+        solver = super()._towards(height)
+        assert isinstance(solver, SurfaceFrictionSolver)
+        if self.here.state.x.shape[1] > 2:
+            solver.foreseen = self._foreseen(height)
+        return solver
+
+    def _foreseen(self, height: float) -> PointTractions | None:
+        """Tractions at a place of the path ahead, at the rates of the newest state; None from first contact on."""
+        here = self.here
+        touch = here.state.touch
+        assert touch is not None and here.friction is not None
+        points, touching = here.friction.points, touch.traction > 0.0
+        begun = len(self.path) > 1 or isinstance(self._plate, SlidObject)
+        if not begun or not touching.any():
+            return None
+        gone = (self._contact.points(here.by_height) - self._drift) * (height - here.height)
+        opening = -np.einsum("...i,...i->...", upward(touch.slope), gone)
+        along = np.einsum("...ij,...j->...i", tangents(touch.slope), gone)
+        normal = -self._contact.stiffness * (touch.gap + opening)
+        trial = points.traction + here.friction.stiffness * along
+        return PointTractions(normal, np.where(touching[..., None], trial, 0.0))
 
     def _places(self, x: Array) -> Array:
         """Where the points of the wall now are, (x, y) from the object, (n_edges, n_points, n_angles, 2)."""

@@ -2,11 +2,15 @@
 
 A sliding point keeps the direction in which it was found to slide; across it, what is left of its spring acts. The
 directions turn from one Newton step to the next.
+
+Tractions are carried from step to step as in `settling`, friction's with those of the contact: at a guess that
+overshoots they have negative modes in the tangent and let points slide that stick.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -22,6 +26,7 @@ from pneutouch.mechanics.harmonic.friction import (
     lengths,
     secants,
 )
+from pneutouch.mechanics.solid.contact import ContactEvaluation
 from pneutouch.mechanics.solid.friction_linear import LinearContact
 from pneutouch.mechanics.solid.friction_newton import SETTLING, FrictionSolver, HeldState
 from pneutouch.mechanics.solid.friction_status import PointStatus, PointTractions
@@ -64,10 +69,15 @@ class SurfaceStatus(PointStatus):
 
 @dataclass(frozen=True)
 class SurfaceLinearContact(LinearContact):
-    """Contact and friction linear in a displacement of the coefficients; tractions along the surface (..., 2)."""
+    """Contact and friction linear in a displacement of the coefficients; tractions along the surface (..., 2).
+
+    foreseen: tractions that act on the curvature of the object, and whose status is tried first; None for those of the
+    positions.
+    """
 
     step: SurfaceFriction
     points: SurfacePoints
+    foreseen: PointTractions | None = None
     #: A point in space that slides may turn.
     IN_PIECES: ClassVar[bool] = False
 
@@ -78,6 +88,27 @@ class SurfaceLinearContact(LinearContact):
             -contact.stiffness * contact.opening(touch, move, touch.gap),
             self.step.stiffness * (self.points.slip + self.step.change(move, touch.slope)),
         )
+
+    @property
+    def unsettled(self) -> bool:
+        """Whether a step whose points are not settled will do: the next one starts from the tractions it leads to."""
+        return self.foreseen is not None
+
+    @cached_property
+    def _bent(self) -> ContactEvaluation:
+        """The contact with the foreseen tractions, which act on the curvature of the object."""
+        return self.touch if self.foreseen is None else replace(self.touch, traction=self._seen.normal)
+
+    @cached_property
+    def _seen(self) -> PointTractions:
+        """The foreseen tractions as the points bear them."""
+        assert self.foreseen is not None
+        normal = np.maximum(self.foreseen.normal, 0.0)
+        return PointTractions(normal, clipped(self.foreseen.trial, self._grip * normal))
+
+    def begins(self, still: PointTractions) -> SurfaceStatus:
+        """The status that is tried first."""
+        return self.status(still if self.foreseen is None or self.held else self.foreseen)
 
     def status(self, at: PointTractions) -> SurfaceStatus:
         """Which points touch, stick and slide, and where to."""
@@ -105,12 +136,13 @@ class SurfaceLinearContact(LinearContact):
     def blocks(self, status: PointStatus, begun: PointTractions) -> tuple[Array, Array | None]:
         """Stiffness of points that keep a status, symmetric and not; ``begun``: their tractions without a move."""
         assert isinstance(status, SurfaceStatus)
-        contact, touch = self.step.contact, self.touch
+        contact, touch = self.step.contact, self._bent
         held = self.step.spring_form(touch.slope, status.sticking, status.sign, status.turn)
         both = contact.hessian(touch, status.touching) + contact.form_blocks(held)
         if self.held:
             return both, None
-        follows = self.step.sliding_form(in_space(begun.trial, touch.slope), touch, status.sign)
+        turns = begun.trial if self.foreseen is None else self._seen.trial
+        follows = self.step.sliding_form(in_space(turns, touch.slope), touch, status.sign)
         return both, None if follows is None else contact.form_blocks(follows)
 
     def work(self, tractions: PointTractions, begun: PointTractions, ended: PointTractions) -> float:
@@ -138,10 +170,32 @@ class SurfaceFrictionSolver(FrictionSolver):
     """Solves the steps of a path of an object in space."""
 
     step: SurfaceFriction
+    #: Tractions of the last linear model, or those that the path leads to; see `settling`.
+    foreseen: PointTractions | None = None
+
+    def direction(self, here: HeldState, kept: Array | None = None) -> Array:
+        """As that of `FrictionSolver`, from the tractions that are foreseen."""
+        # Without harmonics the steps are the solid's, and with them the last digits of its figures.
+        if here.state.x.shape[1] == 2:
+            return super().direction(here, kept)
+        if self.foreseen is None:
+            self.foreseen = self._linear(here, False).at(np.zeros_like(here.state.x))
+        step = super().direction(here, kept)
+        self._led = self._linear(here, False).at(self.solid.expand(step))
+        return step
+
+    def _search(self, here: HeldState, step: Array, slope: float) -> HeldState | None:
+        """As that of `FrictionSolver`; the foreseen tractions go as far towards those of the model as the positions."""
+        moved = super()._search(here, step, slope)
+        if moved is not None and self.foreseen is not None:
+            move, gone = self.solid.expand(step), moved.state.x - here.state.x
+            share = min(1.0, float(np.vdot(move, gone)) / float(np.vdot(move, move)))
+            self.foreseen = self.foreseen.towards(self._led, share)
+        return moved
 
     def _linear(self, here: HeldState, held: bool) -> SurfaceLinearContact:
         assert isinstance(here.points, SurfacePoints)
-        return SurfaceLinearContact(self.solid, self.step, here.touch, here.points, held)
+        return SurfaceLinearContact(self.solid, self.step, here.touch, here.points, held, foreseen=self.foreseen)
 
     def by_height(self, held: HeldState, system: ContactSystem, down: float) -> tuple[Array, float, float]:
         """Rate of the unknowns (size,), force on the object against its path and its rate, by the place on the path.

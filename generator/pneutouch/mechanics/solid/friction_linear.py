@@ -34,6 +34,11 @@ class LinearContact:
     #: Whether the tractions are linear in pieces of the displacement.
     IN_PIECES: ClassVar[bool] = True
 
+    @property
+    def unsettled(self) -> bool:
+        """Whether a step whose points are not settled will do: where the signs of slip are kept."""
+        return self.kept is not None
+
     @cached_property
     def _grip(self) -> Array:
         """Largest traction along the surface over the normal one."""
@@ -78,6 +83,10 @@ class LinearContact:
 
     def _cap(self, normal: Array) -> Array:
         return self.points.cap if self.held else self._grip * np.maximum(normal, 0.0)
+
+    def begins(self, still: PointTractions) -> PointStatus:
+        """The status that is tried first, where a step begins with tractions ``still``."""
+        return self.status(still)
 
     def status(self, at: PointTractions) -> PointStatus:
         """Which points touch, stick and slide."""

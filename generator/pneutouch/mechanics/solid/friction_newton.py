@@ -76,16 +76,20 @@ class FrictionSolver:
     ) -> SlidingResult | NewtonFailure:
         """Equilibrium near x (n_nodes, 2). Returns the state, or why there is none; never an unconverged state.
 
+        More than ``max_iterations`` steps are taken only where each of them halves the residual.
+
         kept: signs of slip (n_edges, n_points) of the points in the first step, see `friction_settling`.
         """
         state = evaluate(self.scene, x)
         if state is None:
             return NewtonFailure("the starting guess turns the wall inside out")
-        here, left = self.hold(state), np.inf
-        for iteration in range(max_iterations):
+        here, left, halved, iteration = self.hold(state), np.inf, False, 0
+        while True:
             size = float(np.linalg.norm(here.residual))
             if size <= RESIDUAL * here.scale and left <= GAIN * self._energy_scale(here):
                 return SlidingResult(here, iteration)
+            if iteration >= max_iterations and not halved:
+                return NewtonFailure(f"residual {size / here.scale:.1e} after {iteration} iterations", iteration)
             step = self.direction(here, kept if iteration == 0 else None)
             slope = float(step @ here.residual)
             if slope >= 0.0:
@@ -96,9 +100,9 @@ class FrictionSolver:
             moved = self._search(here, step, slope)
             if moved is None:
                 return NewtonFailure("no step along the Newton direction lowers the energy", iteration)
-            here, left = moved, -slope * (float(np.linalg.norm(moved.residual)) / max(size, 1.0e-300)) ** 2
-        size = float(np.linalg.norm(here.residual)) / here.scale
-        return NewtonFailure(f"residual {size:.1e} after {max_iterations} iterations", max_iterations)
+            share = float(np.linalg.norm(moved.residual)) / max(size, 1.0e-300)
+            here, left, halved = moved, -slope * share**2, share <= _BALANCES
+            iteration += 1
 
     def hold(self, state: SolverState) -> HeldState:
         """Friction at an evaluated state."""

@@ -83,8 +83,7 @@ class FrictionFollower(PathFollower):
 
     def solve(self, height: float) -> PlateState | NewtonFailure:
         """State at `height` from the extrapolated path; not kept."""
-        assert self.here.friction is not None
-        solver = self._solver(height, _known(self.here.friction.rest, self._ahead(height)))
+        solver = self._towards(height)
         kept = self._signs() if len(self.path) > 1 else None
         guess = self._extrapolate(height)
         solved = solver.minimise(guess, kept)
@@ -94,6 +93,11 @@ class FrictionFollower(PathFollower):
         if isinstance(solved, NewtonFailure):
             return solved
         return friction_plate_state(solver, solved, self.here, self.down)
+
+    def _towards(self, height: float) -> FrictionSolver:
+        """The solver of the step to a height."""
+        assert self.here.friction is not None
+        return self._solver(height, _known(self.here.friction.rest, self._ahead(height)))
 
     def _signs(self) -> Array | None:
         """Signs of slip (n_edges, n_points) of the newest state; points that do not touch have that of the next one

@@ -59,19 +59,20 @@ class StepSettling:
         self._sides, self._state, self._band, self._contact = sides, state, band, contact
         self._solid = contact.solid
         self._still = contact.at(np.zeros_like(state.x))
+        self._first = contact.begins(self._still)
 
     def step(self) -> Array | None:
         """Newton step (size,); None where the linear model is not definite or its points do not settle.
 
         With held tractions there always is one: the diagonal is raised until the model is definite, and a step that is
-        not settled lowers its energy all the same. Where the signs of slip are kept, one that is not settled will do.
+        not settled lowers its energy all the same. Where the contact allows it, one that is not settled will do.
         """
-        touching = touched(self._still)
-        edge = int(touching[0]) if touching.size else self._still.normal.shape[0] - 1
+        touching = np.concatenate([touched(self._still), self._first.edges])
+        edge = int(touching.min()) if touching.size else self._still.normal.shape[0] - 1
         while True:
             kept = max(edge - _MARGIN, 0)
             step = self._settle(kept)
-            if step is None and (self._contact.held or self._contact.kept is not None):
+            if step is None and (self._contact.held or self._contact.unsettled):
                 continue
             if step is None or not np.isfinite(step).all():
                 return step
@@ -85,7 +86,7 @@ class StepSettling:
         first = self._sides.first_unknown(edge)
         contact, system = self._contact, ContactSystem(self._sides, self._band, self._state, self._state.inner, first)
         none = PointTractions(np.zeros_like(self._still.normal), np.zeros_like(self._still.trial))
-        place, status = _Place(np.zeros_like(system.begun), self._still, 1.0, none), contact.status(self._still)
+        place, status = _Place(np.zeros_like(system.begun), self._still, 1.0, none), self._first
         last = ROUNDS if contact.kept is None else _KEPT_ROUNDS - 1
         for k in range(ROUNDS):
             there = self._solve(system, status, k == 0)
@@ -112,7 +113,7 @@ class StepSettling:
                 status = new
             else:
                 status = status.then(new)
-        return system.whole(place.unknowns) if contact.held else None
+        return system.whole(place.unknowns) if contact.held or contact.unsettled else None
 
     def _settled(
         self, system: ContactSystem, edge: int, status: PointStatus, after: PointTractions

@@ -22,6 +22,11 @@ class PointStatus:
         """Points that friction holds."""
         return np.asarray(self.bearing & (self.sign == 0.0))
 
+    @property
+    def edges(self) -> Index:
+        """Edges of the outer wall with points in contact."""
+        return np.flatnonzero(self.touching.any(axis=tuple(range(1, self.touching.ndim))))
+
     def then(self, new: PointStatus) -> PointStatus:
         """The status to try after this one led to a new one.
 
