@@ -20,19 +20,34 @@ def printed(command, *words):
     return json.loads(command(*words, "--json").stdout)
 
 
-def test_the_quick_answer_is_the_prediction_of_the_atlas(client, command):
-    answer = asked(client, "/api/quick", WALL).json()
-    assert answer["outside"] is None
-    assert answer["prediction"] == printed(command, "predict", "paper-dome", *WORDS, "--model", "atlas")
-    states = {state["driving_pressure_kPa"]: state["sensitivity_kPa_per_N"] for state in answer["prediction"]["states"]}
-    curve = answer["curves"]["design"]
+def test_the_atlas_completes_its_quick_answer_to_the_prediction_of_the_command(client, command):
+    quick, whole = (asked(client, f"/api/{path}", WALL).json() for path in ("quick", "intervals"))
+    assert quick["outside"] is None
+    expected = printed(command, "predict", "paper-dome", *WORDS, "--model", "atlas")
+    assert whole["prediction"] == expected
+    for state, one in zip(quick["prediction"]["states"], expected["states"], strict=True):
+        assert state == {key: value for key, value in one.items() if key != "uncertainty"}
+    later = {"states", "viscous", "dead_volume_note"}
+    assert {**quick["prediction"], **dict.fromkeys(later)} == {**expected, **dict.fromkeys(later)}
+    states = {state["driving_pressure_kPa"]: state["sensitivity_kPa_per_N"] for state in expected["states"]}
+    curve = whole["curves"]["design"]
     assert curve["sensitivity_kPa_per_N"][0] == pytest.approx(states[0.0], rel=1e-5)
+    assert quick["curves"]["design"] == {key: curve[key] for key in quick["curves"]["design"]}
     for low, value, high in zip(
         curve["low_kPa_per_N"], curve["sensitivity_kPa_per_N"], curve["high_kPa_per_N"], strict=True
     ):
         assert low < value < high
-    titles = [resin["title"] for resin in answer["curves"]["resins"]]
+    titles = [resin["title"] for resin in whole["curves"]["resins"]]
     assert len(titles) == len(set(titles)) >= 7
+
+
+def test_the_intervals_are_those_of_the_question_whatever_came_before(client):
+    other = {"membrane.wall_thickness_mm": "1.3"}
+    fresh = asked(client, "/api/intervals", other).json()
+    asked(client, "/api/quick", WALL)
+    assert asked(client, "/api/intervals", other).json() == fresh
+    asked(client, "/api/quick", other)
+    assert asked(client, "/api/intervals", other).json() == fresh
 
 
 def test_the_drawing_is_that_of_the_bodies(client):
@@ -44,8 +59,8 @@ def test_the_drawing_is_that_of_the_bodies(client):
     (loops,) = [body["loops"] for body in drawing["bodies"] if body["role"] == "membrane"]
     points = [(x, z) for loop in loops for x, z in zip(loop[::2], loop[1::2], strict=True)]
     radii = [(x * x + z * z) ** 0.5 for x, z in points if z > 0.5]
-    assert min(radii) == pytest.approx(9.25, abs=0.01)
-    assert max(radii) == pytest.approx(10.65, abs=0.01)
+    assert min(radii) == pytest.approx(9.25, abs=0.02)
+    assert max(radii) == pytest.approx(10.65, abs=0.02)
 
 
 def test_a_key_that_is_left_out_has_its_default(client):

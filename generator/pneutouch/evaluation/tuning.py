@@ -9,6 +9,7 @@ from pneutouch.evaluation.chart_data import TuningCurve
 from pneutouch.evaluation.uncertainty import known
 from pneutouch.mechanics import Sensor, SensorState
 from pneutouch.mechanics.atlas.respond import OUTSIDE, respond
+from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.uncertainty import FIGURES, ContactModel, batch_of
 from pneutouch.spec.calibration import SensorCalibration
@@ -31,7 +32,10 @@ def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
     The sensor must lie in the atlas. Pressures at which it has no answer are left out; None where fewer than two are
     left.
     """
-    limit = float(respond(batch_of(sensor, [0.0]), sensor.protocol.steps).limit_pressure[0])
+    limit = (
+        float(shipped().slices(np.array([sensor.dome.wall_thickness / sensor.dome.inner_radius]), ()).limit_pressure[0])
+        * sensor.wall.shear_modulus
+    )
     pressures = np.linspace(0.0, min(highest, RATED_SHARE * limit), POINTS)
     response = respond(batch_of(sensor, pressures.tolist()), sensor.protocol.steps)
     kept = np.isfinite(response.lines.sensitivity_kPa_per_N) & (response.ends != OUTSIDE)

@@ -9,7 +9,18 @@ from pneutouch.errors import BeyondLimitError
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack
 from pneutouch.mechanics.atlas.recipe import FIELDS
-from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, DEPTH, EDGE, ENDS, GAUGE, NEAR, OUTSIDE, respond
+from pneutouch.mechanics.atlas.respond import (
+    BREAK,
+    BUCKLING,
+    DEPTH,
+    EDGE,
+    ENDS,
+    GAUGE,
+    NEAR,
+    OUTSIDE,
+    AtlasResponse,
+    respond,
+)
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, AtlasSlices, shipped
 from pneutouch.mechanics.events import Event
 from pneutouch.mechanics.limits import LimitPoint, Limits
@@ -108,12 +119,14 @@ def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[ModelResult,
     for pressure in driving_pressures:
         if pressure >= limit:
             raise BeyondLimitError(float(pressure), limit, "it lies beyond the limit point")
-    response = respond(batch, sensor.protocol.steps)
-    press = AtlasPress(batch, slices, np.zeros(len(batch), dtype=np.intp))
+    # Each in a group of its own: a state does not depend on the other pressures.
+    groups = np.arange(len(batch))
+    response = respond(batch, sensor.protocol.steps, groups=groups)
+    press = AtlasPress(batch, slices, np.zeros(len(batch), dtype=np.intp), groups)
     steps, depth = np.linspace(0.0, 1.0, sensor.protocol.steps + 1), sensor.protocol.depth / sensor.dome.inner_radius
     track = press.march(steps * depth * np.ones((len(batch), 1)))
     ends = [int(end) for end in response.ends]
-    states = tuple(_state(sensor, press, track, i, ends[i], float(response.range_end[i])) for i in range(len(batch)))
+    states = tuple(_state(sensor, press, track, response, i) for i in range(len(batch)))
     limitation = next((reason for end, reason in _LIMITATIONS.items() if end in ends), None)
     if limitation is None and response.near_buckling.any():
         why = f"the wall would buckle within {NEAR:g} R0 more of travel, where the table is less accurate"
@@ -124,37 +137,31 @@ def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[ModelResult,
     return ModelResult(point, Limits(limit, rupture, sensor.gas.gauge_limit), curve, states), limitation
 
 
-def _state(sensor: Sensor, press: AtlasPress, track: PressTrack, i: int, end: int, range_end: float) -> SensorState:
+def _state(sensor: Sensor, press: AtlasPress, track: PressTrack, response: AtlasResponse, i: int) -> SensorState:
     length, mu = sensor.dome.inner_radius, sensor.wall.shear_modulus
     known = int(np.argmin(track.ok[i])) if not track.ok[i].all() else track.ok.shape[1]
     one = track.each(lambda part: part[i : i + 1, :known])
     row = press.rows(np.array([i]))
     field = {name: values[0] for name, values in zip(FIELDS, row.several(FIELDS, one), strict=True)}
     depth = (press.apex[i] - one.height[0]) * length
-    range_end = range_end if np.isfinite(range_end) else 0.0
+    range_end = float(np.nan_to_num(response.range_end[i]))
     force, rise = one.point.force[0] * mu * length**2, (one.point.pressure[0] - press.pressure[i]) * mu
-    x, f, dp = _curve(row, range_end / length, sensor.protocol.steps)
+    x, f, dp_kPa = response.indentation[i], response.force[i], response.rise[i] / KPA
     return SensorState(
         driving_pressure=float(press.batch.driving_pressure[i]),
         apex_inner=float(field["inner_apex"][0]) * length,
         apex_outer=float(press.apex[i]) * length,
         cavity_volume=float(row.volume(row.free)[0]) * length**3,
         range_end=range_end,
-        figures=figures(x * length, f * mu * length**2, dp * mu / KPA) if range_end > 0 else None,
+        figures=figures(x, f, dp_kPa) if range_end > 0 else None,
         indentation=depth,
         force=force,
         pressure_rise=rise,
         contact_radius=np.maximum(field["contact_radius"], 0.0) * length,
         max_stretch=field["stretch"],
-        events=tuple(_events(depth, field, end, range_end)),
+        events=tuple(_events(depth, field, int(response.ends[i]), range_end)),
         max_von_mises=field["von_mises"] * mu,
     )
-
-
-def _curve(row: AtlasPress, end: float, steps: int) -> tuple[Array, Array, Array]:
-    grid = np.linspace(0.0, end, steps + 1)
-    track = row.march(grid[None, :])
-    return grid, track.point.force[0], track.point.pressure[0] - row.pressure[0]
 
 
 def _events(depth: Array, field: dict[str, Array], end: int, range_end: float) -> list[Event]:

@@ -8,7 +8,9 @@ from pneutouch.api.prediction import Prediction
 from pneutouch.api.results import CheckResult
 from pneutouch.catalogue import load_scene
 from pneutouch.evaluation.charts import tuning
+from pneutouch.evaluation.document import rating_document
 from pneutouch.evaluation.evaluate import PredictionOptions, elastomers, evaluate_scene, sensor_of
+from pneutouch.evaluation.tuning import curve
 from pneutouch.evaluation.uncertainty import unknown
 from pneutouch.evaluation.variants import resin_curves
 from pneutouch.mechanics.atlas_states import outside_atlas
@@ -22,25 +24,56 @@ if TYPE_CHECKING:
 
     from pneutouch.catalogue import DesignSource, Library
     from pneutouch.evaluation.evaluate import Evaluation
+    from pneutouch.spec.material import Material
     from pneutouch.studio.question import Question
 
 _DIGITS = 6
 
 
-def quick_answer(question: Question, bases: Mapping[str, str], library: Library) -> dict[str, Any]:
-    """Drawing, prediction and curves by the atlas; where it has no answer, ``outside`` states why.
+class Answers:
+    """What the atlas answers at once, for the designs ``bases``. The last design is kept: its intervals are requested
+    next."""
 
-    Raises InputError naming the field.
-    """
-    source = question.source(bases, library)
-    scene = load_scene(source, {}, library)
-    assembly = assemble(scene)
-    answer = _head(source) | {"drawing": drawing_document(assembly)}
-    outside = outside_atlas(sensor_of(assembly))
-    if outside is not None:
-        return {**answer, "outside": outside, "prediction": None, "curves": None}
-    evaluation = evaluate_scene(scene, lambda: elastomers(library), PredictionOptions("atlas"))
-    return {**answer, "outside": None, **_predicted(evaluation)}
+    def __init__(self, bases: Mapping[str, str], library: Library) -> None:
+        self._bases, self._library = bases, library
+        self._last: tuple[Question, Evaluation] | None = None
+
+    def quick(self, question: Question) -> dict[str, Any]:
+        """Drawing, prediction and the design's curve without intervals; where the atlas has no answer, ``outside`` has
+        the reason.
+
+        Raises InputError naming the field.
+        """
+        source = question.source(self._bases, self._library)
+        scene = load_scene(source, {}, self._library)
+        assembly = assemble(scene)
+        answer = _head(source) | {"drawing": drawing_document(assembly)}
+        outside = outside_atlas(sensor_of(assembly))
+        if outside is not None:
+            return {**answer, "outside": outside, "prediction": None, "curves": None}
+        evaluation = evaluate_scene(scene, self._resins, PredictionOptions("atlas"))
+        self._last = question, evaluation
+        prediction = {**evaluation.prediction.document(), "rating": rating_document(evaluation)}
+        drawn = curve(evaluation.sensor, _highest(evaluation), "this design")
+        design = None if drawn is None else _line(drawn.driving_pressure_kPa, drawn.sensitivity_kPa_per_N)
+        return {**answer, "outside": None, "prediction": prediction, "curves": {"design": rounded(design, _DIGITS)}}
+
+    def intervals(self, question: Question) -> dict[str, Any]:
+        """The prediction with the intervals of its figures, the design's curve with its band, and the other resins'.
+
+        Raises InputError naming the field.
+        """
+        if self._last is None or self._last[0] != question:
+            scene = load_scene(question.source(self._bases, self._library), {}, self._library)
+            self._last = question, evaluate_scene(scene, self._resins, PredictionOptions("atlas"))
+        return _predicted(self._last[1])
+
+    def view(self, question: Question) -> dict[str, Any]:
+        """The bodies as meshes to look at. Raises InputError naming the field."""
+        return view_document(assemble(load_scene(question.source(self._bases, self._library), {}, self._library)))
+
+    def _resins(self) -> dict[str, Material]:
+        return elastomers(self._library)
 
 
 def full_answer(question: Question, bases: Mapping[str, str], library: Library) -> dict[str, Any]:
@@ -55,11 +88,6 @@ def full_answer(question: Question, bases: Mapping[str, str], library: Library) 
     return {**_head(source), **_predicted(evaluation), "check": check.to_dict(), "jobs": jobs}
 
 
-def view_answer(question: Question, bases: Mapping[str, str], library: Library) -> dict[str, Any]:
-    """The bodies as meshes to look at. Raises InputError naming the field."""
-    return view_document(assemble(load_scene(question.source(bases, library), {}, library)))
-
-
 def _head(source: DesignSource) -> dict[str, Any]:
     file = source.changed({})
     values = file.model_dump(mode="json", by_alias=True)
@@ -67,25 +95,40 @@ def _head(source: DesignSource) -> dict[str, Any]:
 
 
 def _predicted(evaluation: Evaluation) -> dict[str, Any]:
-    return {"prediction": Prediction(evaluation).to_dict(), "curves": _curves(evaluation)}
+    """The prediction as ``predict`` prints it; sensitivity over driving pressure of the design and of every resin."""
+    curves = {"resins": _resin_curves(evaluation), "design": _banded(evaluation)}
+    return {"prediction": Prediction(evaluation).to_dict(), "curves": rounded(curves, _DIGITS)}
 
 
-def _curves(evaluation: Evaluation) -> dict[str, Any]:
-    """Sensitivity over driving pressure: of the design with its interval, and of every resin."""
-    prediction, states = evaluation.prediction, evaluation.prediction.states
-    highest = max(evaluation.rating.pressure, states[-1].driving_pressure)
-    resins = resin_curves(evaluation.sensor, evaluation.resins, highest, prediction.model, prediction.closure, states)
-    drawn = tuning(evaluation, highest) if unknown(evaluation.sensor, prediction.model) is None else None
-    content: dict[str, Any] = {
-        "resins": [{"title": title, **_line(*curve)} for title, curve in resins.items()],
-        "design": None,
-    }
-    if drawn is not None:
-        ends = {"low_kPa_per_N": drawn.low_kPa_per_N, "high_kPa_per_N": drawn.high_kPa_per_N}
-        known = {key: end.tolist() for key, end in ends.items() if end is not None}
-        content["design"] = _line(drawn.chosen.driving_pressure_kPa, drawn.chosen.sensitivity_kPa_per_N) | known
-    result: dict[str, Any] = rounded(content, _DIGITS)
-    return result
+def _highest(evaluation: Evaluation) -> float:
+    """Driving pressure up to which curves are drawn, MPa."""
+    return max(evaluation.rating.pressure, evaluation.prediction.states[-1].driving_pressure)
+
+
+def _banded(evaluation: Evaluation) -> dict[str, Any] | None:
+    """Sensitivity of the design over driving pressure with its interval; None where that is not known."""
+    if unknown(evaluation.sensor, evaluation.prediction.model) is not None:
+        return None
+    drawn = tuning(evaluation, _highest(evaluation))
+    if drawn is None:
+        return None
+    ends = {"low_kPa_per_N": drawn.low_kPa_per_N, "high_kPa_per_N": drawn.high_kPa_per_N}
+    known = {key: end.tolist() for key, end in ends.items() if end is not None}
+    return _line(drawn.chosen.driving_pressure_kPa, drawn.chosen.sensitivity_kPa_per_N) | known
+
+
+def _resin_curves(evaluation: Evaluation) -> list[dict[str, Any]]:
+    """Sensitivity over driving pressure of every resin."""
+    prediction = evaluation.prediction
+    resins = resin_curves(
+        evaluation.sensor,
+        evaluation.resins,
+        _highest(evaluation),
+        prediction.model,
+        prediction.closure,
+        prediction.states,
+    )
+    return [{"title": title, **_line(*each)} for title, each in resins.items()]
 
 
 def _line(pressure_kPa: Any, sensitivity_kPa_per_N: Any, model: str = "atlas") -> dict[str, Any]:

@@ -3,7 +3,7 @@
 import asyncio
 import contextlib
 import json
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator, Callable
 from functools import partial
 from typing import Any
 
@@ -16,7 +16,7 @@ from starlette.routing import Route
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.cached_library import CachedLibrary
 from pneutouch.errors import ComputationError, InputError, PneutouchError
-from pneutouch.studio.answer import quick_answer, view_answer
+from pneutouch.studio.answer import Answers
 from pneutouch.studio.desk import Desk
 from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
 from pneutouch.studio.form import designs_document, form_document, target_form_document
@@ -28,7 +28,7 @@ from pneutouch.studio.solver import Solver, SupersededError
 _WAITING = 8
 """Questions that may wait for an answer at once; a page sends two."""
 
-QuickAnswer = Callable[[Question, Mapping[str, str], Library], dict[str, Any]]
+QuickAnswer = Callable[[Question], dict[str, Any]]
 
 
 class Studio:
@@ -41,6 +41,7 @@ class Studio:
     def __init__(self, bases: dict[str, str], first: str) -> None:
         self._bases, self._first = bases, first
         self._library = CachedLibrary(Library.default().folders)
+        self.answers = Answers(bases, self._library)
         self._solver, self.desk = Solver(bases), Desk(bases)
         self._one, self._waiting = asyncio.Lock(), 0
 
@@ -61,7 +62,7 @@ class Studio:
         try:
             question = await _question(request)
             async with self._one:
-                content = await run_in_threadpool(answer, question, self._bases, self._library)
+                content = await run_in_threadpool(answer, question)
             return JSONResponse(content)
         except PneutouchError as error:
             return _fault(error)
@@ -105,8 +106,9 @@ def application(bases: dict[str, str], first: str, port: int, token: str) -> App
     routes = [
         Route("/api/form", studio.form),
         Route("/api/form/target", studio.target_form),
-        Route("/api/quick", partial(studio.at_once, quick_answer), methods=["POST"]),
-        Route("/api/view", partial(studio.at_once, view_answer), methods=["POST"]),
+        Route("/api/quick", partial(studio.at_once, studio.answers.quick), methods=["POST"]),
+        Route("/api/intervals", partial(studio.at_once, studio.answers.intervals), methods=["POST"]),
+        Route("/api/view", partial(studio.at_once, studio.answers.view), methods=["POST"]),
         Route("/api/solved", studio.solved, methods=["POST"]),
         Route("/api/echo", echo, methods=["POST"]),
         *studio.desk.routes(),

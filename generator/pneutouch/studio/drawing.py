@@ -11,11 +11,8 @@ from pneutouch.body.normals import corner_normals
 from pneutouch.parts import Assembly
 from pneutouch.report.section import section
 
-_SECTION_TOLERANCE = 5e-3
-"""Greatest distance of the drawn section from the exact one, mm."""
-
-_VIEW_TOLERANCE = 0.02
-"""Greatest distance of a mesh that is looked at from the exact surface, mm."""
+_TOLERANCE = 0.02
+"""Greatest distance of the drawn section, and of a mesh that is looked at, from the exact surface, mm."""
 
 _DIGITS = 3
 
@@ -24,7 +21,7 @@ def drawing_document(assembly: Assembly) -> dict[str, Any]:
     """Loops (x, z) in mm where the plane y = 0 cuts each body, and the lengths that the dimensions state, mm."""
     bodies = []
     for solid in assembly.solids:
-        body = solid.mesh(_SECTION_TOLERANCE)
+        body = solid.mesh(_TOLERANCE)
         loops = [_flat(loop, _DIGITS) for loop in section(body)]
         bodies.append({"name": solid.name, "role": solid.role, "material": body.material.label, "loops": loops})
     layout = assembly.layout
@@ -43,7 +40,7 @@ def drawing_document(assembly: Assembly) -> dict[str, Any]:
 
 def view_document(assembly: Assembly) -> dict[str, Any]:
     """Each body as triangle corners (float32, mm) with normals (int8, in 1/127), both little-endian in base 64."""
-    bodies = [_mesh(solid.mesh(_VIEW_TOLERANCE)) for solid in assembly.solids]
+    bodies = [_mesh(solid.mesh(_TOLERANCE)) for solid in assembly.solids]
     return {"bodies": bodies}
 
 

@@ -102,10 +102,12 @@ export function drawSensitivity(answer, pinned) {
   const bands = [];
   if (own) {
     add(own.driving_pressure_kPa, own.sensitivity_kPa_per_N, series("this design", colour("accent"), { width: 3 }));
-    if (own.low_kPa_per_N) {
-      const edge = { width: 1, dash: [2, 3] };
-      add(own.driving_pressure_kPa, own.high_kPa_per_N, series("interval, k = 2: to", colour("accent"), edge));
-      add(own.driving_pressure_kPa, own.low_kPa_per_N, series("from", colour("accent"), edge));
+    // The intervals come a moment later: the lines stay, so that the chart is not made again.
+    const nothing = own.driving_pressure_kPa.map(() => null);
+    const edge = { width: 1, dash: [2, 3] };
+    if (own.low_kPa_per_N || answer.pending) {
+      add(own.driving_pressure_kPa, own.high_kPa_per_N ?? nothing, series("interval, k = 2: to", colour("accent"), edge));
+      add(own.driving_pressure_kPa, own.low_kPa_per_N ?? nothing, series("from", colour("accent"), edge));
       bands.push({ series: [2, 3], fill: colour("band") });
     }
   }

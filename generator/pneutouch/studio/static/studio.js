@@ -9,6 +9,8 @@ import { drawSection } from "./section.js";
 import * as tables from "./tables.js";
 import { View } from "./view.js";
 
+/** Milliseconds after the last move at which the atlas completes its answer, and at which the solid begins. */
+const PAUSED = 80;
 const SETTLED = 250;
 const KEPT = 500;
 const page = { state: null, past: [], future: [], quick: null, solved: null, pinned: null, from: null, plain: {} };
@@ -53,6 +55,7 @@ function update() {
   report("Computing.", true);
   byId("base").value = page.state.base;
   history.replaceState(null, "", address.written(page.state));
+  clearTimeout(parts.soon);
   clearTimeout(parts.later);
   parts.quick.send(page.state);
 }
@@ -111,7 +114,7 @@ function problems(list) {
   byId("results").classList.toggle("stale", list.length > 0);
 }
 
-/** Draw what predicts: the quick answer, or the solid's in its place. */
+/** Draw the prediction: that of the quick answer, with its intervals once they are there, or the solid's in its place. */
 function predicted(answer) {
   charts.drawSensitivity(answer, page.pinned);
   charts.drawStates("force", "contact_force_N", "contact force, N", answer, page.pinned);
@@ -142,7 +145,9 @@ function quickly(question, status, content) {
     return;
   }
   problems([]);
-  page.quick = content;
+  // Curves of the resins stay those of the design before until the next ones are there.
+  if (content.curves) content.curves.resins = page.quick?.curves?.resins ?? [];
+  page.quick = { ...content, pending: true };
   page.solved = null;
   parts.form.usual(content);
   if (!Object.keys(question.values).length) page.plain[question.base] = content;
@@ -156,8 +161,18 @@ function quickly(question, status, content) {
   report(`${why}The solid is computing.`, true);
   buttons();
   if (parts.view.renderer) parts.shapes.send(question);
-  if (same(question, page.state)) parts.later = setTimeout(() => parts.solved.send(question), SETTLED);
+  if (same(question, page.state)) {
+    if (content.prediction) parts.soon = setTimeout(() => parts.intervals.send(question), PAUSED);
+    parts.later = setTimeout(() => parts.solved.send(question), SETTLED);
+  }
   requestAnimationFrame(() => (document.body.dataset.painted = String(1 + Number(document.body.dataset.painted ?? 0))));
+}
+
+/** What the atlas adds to its quick answer: intervals, and the other resins. */
+function completed(question, status, content) {
+  if (status !== 200 || !same(question, page.state) || page.solved) return;
+  page.quick = { ...page.quick, ...content, pending: false };
+  redraw();
 }
 
 function solved(question, status, content) {
@@ -168,7 +183,7 @@ function solved(question, status, content) {
     return;
   }
   if (!page.quick) return;
-  page.solved = content;
+  page.solved = { ...content, pending: false };
   byId("results").classList.remove("stale");
   predicted(current());
   tables.showFindings(content.check, parts.view.renderer);
@@ -238,6 +253,7 @@ async function start() {
   byId("view-tools").hidden = !parts.view.renderer;
   parts.form = new Form(declared, changed);
   parts.quick = new Line("/api/quick", quickly, failed);
+  parts.intervals = new Line("/api/intervals", completed, failed);
   parts.solved = new Line("/api/solved", solved, failed);
   parts.shapes = new Line("/api/view", (_, status, content) => status === 200 && parts.view.show(content.bodies), failed);
   page.state = address.read(location.hash) ?? { base: declared.first, values: {} };

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from pneutouch.errors import InputError, shown
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.neighbours import joined
 from pneutouch.mechanics.uncertainty.source import FIGURE, FIGURES, SENSITIVITY, UncertaintySource, counting
 from pneutouch.spec.material import Material, PaperMeasurements
@@ -63,11 +65,18 @@ def _pooled(resin_errors: tuple[float, ...], others: list[Material], rest: list[
 
 def table_s1_errors(materials: list[Material]) -> list[tuple[float, ...]]:
     """Relative errors of the atlas at 0 and 22 kPa by material; empty for one that was not measured."""
-    known = [(m.measured, batch_of(material_sensor(m), [0.0, 22.0 * KPA])) for m in materials if m.measured is not None]
-    if not known:
-        return [() for _ in materials]
-    source_list = iter(respond(joined([batch for _, batch in known])).lines.sensitivity_kPa_per_N.reshape(-1, 2))
-    return [() if m.measured is None else _against(m.measured, next(source_list)) for m in materials]
+    sensors = tuple(material_sensor(m) for m in materials if m.measured is not None)
+    computed = iter(_table_s1_sensitivities(sensors))
+    return [() if m.measured is None else _against(m.measured, next(computed)) for m in materials]
+
+
+@lru_cache
+def _table_s1_sensitivities(sensors: tuple[Sensor, ...]) -> Array:
+    """By the atlas at 0 and 22 kPa, kPa/N, (n, 2). Kept, since they do not depend on the design."""
+    if not sensors:
+        return np.empty((0, 2))
+    batch = joined([batch_of(sensor, [0.0, 22.0 * KPA]) for sensor in sensors])
+    return respond(batch).lines.sensitivity_kPa_per_N.reshape(-1, 2)
 
 
 def _against(measured: PaperMeasurements, sensitivity: Array) -> tuple[float, ...]:
