@@ -144,3 +144,25 @@ def test_the_solid_s_answer_is_what_the_commands_print(client, command):
     if "check" in answer:
         said = printed(command, "check", "paper-dome", *WORDS)
         assert answer["check"]["findings"] == said["findings"]
+
+
+def test_the_pressed_walls_are_those_that_the_solid_solved(client):
+    answer = asked(client, "/api/solved", {"pneumatics.driving_pressures_kPa": "[0, 12]"}).json()
+    for walls, state in zip(answer["walls"], answer["prediction"]["states"], strict=True):
+        assert walls["driving_pressure_kPa"] == state["driving_pressure_kPa"]
+        assert walls["indentation_mm"] == pytest.approx(state["curve"]["indentation_mm"], abs=1e-3)
+        highest = [max(loop[1::2]) for loop in walls["walls"]]
+        # The plate lies on the wall: its height falls by the indentation, to the depth by which the contact gives way.
+        for top, depth in zip(highest, walls["indentation_mm"], strict=True):
+            assert top == pytest.approx(highest[0] - depth, abs=0.03)
+        assert highest[0] == pytest.approx(state["apex_height_outer_mm"], abs=1e-3)
+        # Without touching its base the wall keeps its volume, nearly: Poisson's ratio is 0.49.
+        areas = [_turned_volume(loop) for loop in walls["walls"]]
+        assert areas[-1] == pytest.approx(areas[0], rel=0.02)
+
+
+def _turned_volume(loop):
+    """Volume of a loop (r, z) turned about the axis, by Pappus: integral of pi r^2 dz around it."""
+    r, z = loop[::2], loop[1::2]
+    pairs = zip(r, z, [*r[1:], r[0]], [*z[1:], z[0]], strict=True)
+    return abs(sum(3.141592653589793 / 3 * (a * a + a * c + c * c) * (d - b) for a, b, c, d in pairs))

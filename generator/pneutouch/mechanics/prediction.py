@@ -115,6 +115,19 @@ class DeformedShape:
 
 
 @dataclass(frozen=True, slots=True)
+class WallPath:
+    """The faces of the wall at the solved indentations (k,), mm: points (k, n, 2) in (r, z) from the base to the pole.
+
+    ``objects`` are the sections of an object that is no plate, (m, 2) each; empty for a plate.
+    """
+
+    indentation: Array
+    inner: Array
+    outer: Array
+    objects: tuple[Array, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class SensorState:
     """One driving pressure: the inflated dome and its loading curve (arrays of one length, mm, N, MPa).
 
@@ -135,6 +148,7 @@ class SensorState:
     events: tuple[Event, ...]
     max_von_mises: Array | None = None
     shapes: tuple[DeformedShape, ...] = ()
+    walls: WallPath | None = None
     beyond_axis: OffAxisCurve | None = None
     face: PressedFace | None = None
 

@@ -14,7 +14,7 @@ from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.object_mesh import object_cells
-from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState
+from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState, WallPath
 from pneutouch.mechanics.pressed_face import PressedFace
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
@@ -23,7 +23,7 @@ from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
 from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, inflate, state_at
-from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.mesh import dome, nodes_along
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.printed import printed_dome
 from pneutouch.mechanics.solid.rigid_base import RigidBase
@@ -211,6 +211,7 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
         max_von_mises=pressed.column("von_mises"),
         events=tuple(happened),
         shapes=_shapes(probe, free, press, pressed, end),
+        walls=_walls(probe.solid, free, press, pressed),
         face=_face(probe.solid, free, press, pressed, end),
     )
 
@@ -257,6 +258,20 @@ def _shapes(
     return tuple(
         DeformedShape(at, probe.outlines(x), probe.cell_stretch(x / solid.length), _section(press, body, at, solid))
         for at, x in positions
+    )
+
+
+def _walls(solid: SolidModel, free: FreeState, press: PressSettings, pressed: IndentationPath) -> WallPath:
+    """Both faces of the wall at every solved state."""
+    at = pressed.column("indentation")
+    positions = np.stack([state.positions for state in pressed.path])
+    body = None if press.body is None else first_touch(solid, free, press.body, press.plate_diameter).body
+    sections = (_section(press, body, depth, solid) for depth in at.tolist())
+    return WallPath(
+        indentation=at,
+        inner=positions[:, nodes_along(solid.mesh.inner)],
+        outer=positions[:, nodes_along(solid.mesh.outer)],
+        objects=tuple(section for section in sections if section is not None),
     )
 
 

@@ -17,7 +17,7 @@ from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.models import USUAL
 from pneutouch.parts import assemble
 from pneutouch.rounding import rounded
-from pneutouch.studio.drawing import drawing_document, view_document
+from pneutouch.studio.drawing import drawing_document, view_document, walls_document
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -85,7 +85,8 @@ def full_answer(question: Question, bases: Mapping[str, str], library: Library) 
     evaluation = evaluate_scene(load_scene(source, {}, library), lambda: elastomers(library), PredictionOptions(USUAL))
     check = CheckResult(source.name, tuple(evaluation.findings))
     jobs = [job.document() for job in evaluation.estimates]
-    return {**_head(source), **_predicted(evaluation), "check": check.to_dict(), "jobs": jobs}
+    walls = [walls_document(state) for state in evaluation.prediction.states]
+    return {**_head(source), **_predicted(evaluation), "check": check.to_dict(), "jobs": jobs, "walls": walls}
 
 
 def _head(source: DesignSource) -> dict[str, Any]:

@@ -8,8 +8,10 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.body import Body
 from pneutouch.body.normals import corner_normals
+from pneutouch.mechanics import SensorState
 from pneutouch.parts import Assembly
 from pneutouch.report.section import section
+from pneutouch.units import KPA
 
 _TOLERANCE = 0.02
 """Greatest distance of the drawn section, and of a mesh that is looked at, from the exact surface, mm."""
@@ -51,6 +53,20 @@ def _mesh(body: Body) -> dict[str, Any]:
         "colour": body.material.colour,
         "corners": base64.b64encode(body.corners.astype("<f4").tobytes()).decode(),
         "normals": base64.b64encode(normals.tobytes()).decode(),
+    }
+
+
+def walls_document(state: SensorState) -> dict[str, Any] | None:
+    """The faces of the pressed wall at every solved indentation, (r, z) in mm; None by a model without them."""
+    walls = state.walls
+    if walls is None:
+        return None
+    loops = np.concatenate([walls.inner, walls.outer[:, ::-1]], axis=1)
+    return {
+        "driving_pressure_kPa": state.driving_pressure / KPA,
+        "indentation_mm": [round(float(depth), _DIGITS) for depth in walls.indentation],
+        "walls": [_flat(loop, _DIGITS) for loop in loops],
+        "objects": [_flat(section, _DIGITS) for section in walls.objects],
     }
 
 

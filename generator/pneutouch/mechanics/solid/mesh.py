@@ -159,3 +159,9 @@ def dome(
     if not slides:
         return mesh
     return replace(mesh, clamped=mesh.sliding, sliding=mesh.clamped)
+
+
+def nodes_along(edges: Index) -> Index:
+    """Nodes of a face from end to end, (n_nodes,), of its edges (n_edges, 2 | 3)."""
+    inward = edges[:, [START, MIDDLE]] if edges.shape[1] > MIDDLE else edges[:, [START]]
+    return np.append(inward.ravel(), edges[-1, END])

@@ -47,7 +47,26 @@ function dimensions(drawing, size, tick) {
   ];
 }
 
-export function drawSection(drawing, pinned) {
+/** The pressed wall and what presses it over the section; a plate is drawn as its lower face. */
+function pressedWall(pressed, half) {
+  if (!pressed) return [];
+  const wall = pressed.walls[pressed.at];
+  const mirrored = wall.map((value, k) => (k % 2 ? value : -value));
+  const section = pressed.objects[pressed.at];
+  const top = Math.max(...wall.filter((_, k) => k % 2));
+  const object = section
+    ? [section, section.map((value, k) => (k % 2 ? value : -value))].map((points) => element("svg:polyline", { points: pairs(points), class: "object" }))
+    : [line([[-1.1 * half, top], [1.1 * half, top]], "object")];
+  return [element("svg:path", { d: path(wall) + path(mirrored), class: "pressed" }), ...object];
+}
+
+const pairs = (points) => {
+  let text = "";
+  for (let k = 0; k < points.length; k += 2) text += `${points[k]},${-points[k + 1]} `;
+  return text;
+};
+
+export function drawSection(drawing, pinned, pressed) {
   const half = drawing.size_mm[0] / 2;
   const usual = 0.068 * Math.max(half, 0.6 * (drawing.high_mm - drawing.low_mm));
   // On a narrow screen letters of about 11 pixels, as far as there is space for them.
@@ -61,6 +80,7 @@ export function drawSection(drawing, pinned) {
     ...drawing.bodies.map((body) =>
       element("svg:path", { d: outline([body]), class: `outline ${body.role === "membrane" ? "membrane" : "rigid"}` }),
     ),
+    ...pressedWall(pressed, half),
     pinned ? element("svg:path", { d: outline(pinned.bodies), class: "pinned" }) : null,
     ...dimensions(drawing, size, 0.35 * size),
   );

@@ -5,6 +5,7 @@ import { Line, Stopped } from "./requests.js";
 import * as charts from "./charts.js";
 import { byId, element } from "./dom.js";
 import { Form } from "./form.js";
+import { Pressed } from "./pressed.js";
 import { drawSection } from "./section.js";
 import * as tables from "./tables.js";
 import { View } from "./view.js";
@@ -132,7 +133,7 @@ function current() {
 function redraw() {
   const answer = current();
   if (!answer) return;
-  drawSection(answer.drawing, page.pinned?.drawing);
+  drawSection(answer.drawing, page.pinned?.drawing, parts.pressed.now);
   if (answer.prediction) predicted(answer);
   else tables.showComparison(page.pinned, answer);
 }
@@ -145,6 +146,7 @@ function quickly(question, status, content) {
     return;
   }
   problems([]);
+  parts.pressed.show(null);
   // Curves of the resins stay those of the design before until the next ones are there.
   if (content.curves) content.curves.resins = page.quick?.curves?.resins ?? [];
   page.quick = { ...content, pending: true };
@@ -186,6 +188,7 @@ function solved(question, status, content) {
   page.solved = { ...content, pending: false };
   byId("results").classList.remove("stale");
   predicted(current());
+  parts.pressed.show(content);
   tables.showFindings(content.check, parts.view.renderer);
   tables.showPrint(content.jobs);
   parts.view.mark(content.check.findings);
@@ -237,7 +240,7 @@ function listen() {
   });
   new ResizeObserver(() => {
     charts.resized();
-    if (page.quick) drawSection(page.quick.drawing, page.pinned?.drawing);
+    if (page.quick) drawSection(page.quick.drawing, page.pinned?.drawing, parts.pressed.now);
   }).observe(byId("results"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     charts.forget();
@@ -251,6 +254,10 @@ async function start() {
   parts.printers = declared.printers;
   parts.view = new View(byId("view"));
   byId("view-tools").hidden = !parts.view.renderer;
+  parts.pressed = new Pressed((pressed) => {
+    if (page.quick) drawSection(page.quick.drawing, page.pinned?.drawing, pressed);
+    parts.view.press(pressed);
+  });
   parts.form = new Form(declared, changed);
   parts.quick = new Line("/api/quick", quickly, failed);
   parts.intervals = new Line("/api/intervals", completed, failed);

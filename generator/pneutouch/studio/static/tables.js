@@ -64,7 +64,8 @@ export function showFindings(check, shownIn3d) {
     byId("findings").replaceChildren(element("p", { class: "muted" }, "The rules are checked a moment after a change."));
     return;
   }
-  const verdict = check.passed ? "No rule is broken." : "A rule is broken: this design would not be built.";
+  const sound = check.findings.some((one) => one.severity === "warning") ? "It can be built; read the warnings." : "No rule is broken.";
+  const verdict = check.passed ? sound : "A rule is broken: this design would not be built.";
   byId("findings").replaceChildren(
     element("p", {}, verdict),
     ...check.findings.map((one) =>

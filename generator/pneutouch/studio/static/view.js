@@ -3,6 +3,7 @@ import * as three from "/vendor/three.module.min.js";
 import { element } from "./dom.js";
 
 const CUT = new three.Plane(new three.Vector3(0, 1, 0), 1e-3);
+const BASE = new three.Plane(new three.Vector3(0, 0, -1), 0.01);
 const MARKS = { error: 0xd93025, warning: 0xe09b00, note: 0x2a7ab8 };
 
 function bytes(text) {
@@ -126,6 +127,35 @@ export class View {
     this.draw();
   }
 
+  /** The wall as pressed, turned about the axis, in place of the membrane above the base; null for the sensor as printed. */
+  press(pressed) {
+    if (!this.renderer) return;
+    if (this.wall) {
+      this.scene.remove(this.wall);
+      this.wall.children.forEach((part) => part.geometry.dispose());
+      this.wall.userData.materials.forEach((material) => material.dispose());
+    }
+    this.wall = pressed ? this.turned(pressed) : null;
+    if (this.wall) this.scene.add(this.wall);
+    this.draw();
+  }
+
+  turned({ walls, at }) {
+    const points = walls[at];
+    const loop = [];
+    for (let k = 0; k < points.length; k += 2) loop.push(new three.Vector2(Math.max(0, points[k]), points[k + 1]));
+    const shape = new three.LatheGeometry([...loop, loop[0]].reverse(), 96);
+    shape.rotateX(Math.PI / 2);
+    const [membrane] = this.groups.values();
+    const colour = membrane ? membrane.userData.materials[0].color : new three.Color(0xd98a4b);
+    const outside = new three.MeshStandardMaterial({ color: colour, roughness: 0.55, metalness: 0 });
+    const within = new three.MeshBasicMaterial({ color: colour.clone().multiplyScalar(0.62), side: three.BackSide });
+    const group = new three.Group();
+    group.add(new three.Mesh(shape, outside), new three.Mesh(shape, within));
+    group.userData = { materials: [outside, within] };
+    return group;
+  }
+
   set({ open = this.open, apart = this.apart }) {
     Object.assign(this, { open, apart });
     this.draw();
@@ -141,7 +171,13 @@ export class View {
     [...this.groups.values()].forEach((group, k) => {
       // The membrane comes first: it goes up, and each other body further down.
       group.position.z = this.apart * size.z * (k ? 0.25 - 0.75 * k : 0.55);
-      for (const material of group.userData.materials) material.clippingPlanes = this.open ? [CUT] : [];
+      // A pressed wall takes the place of the printed one above the base.
+      const planes = [...(this.open ? [CUT] : []), ...(this.wall && !k ? [BASE] : [])];
+      for (const material of group.userData.materials) material.clippingPlanes = planes;
+      if (!k && this.wall) {
+        this.wall.position.z = group.position.z;
+        for (const material of this.wall.userData.materials) material.clippingPlanes = this.open ? [CUT] : [];
+      }
     });
     const far = (1.42 + 1.1 * this.apart) * size.length() * this.zoom * Math.max(1, height / width);
     const flat = far * Math.cos(this.height);
