@@ -214,6 +214,7 @@ def new(
         str | None,
         typer.Option("--from", metavar="EXAMPLE", help="Copy a design, a specimen or an example: see pneutouch list."),
     ] = None,
+    set_: SetOption = None,
     out: DesignFolderOption = None,
 ) -> None:
     """Write a commented design file, or a copy of an example."""
@@ -221,7 +222,9 @@ def new(
         from pneutouch.output.new import NewFile, new_design, new_from
 
         if from_ is not None:
-            made = new_from(from_, name, out)
+            made = new_from(from_, name, out, changes(set_))
+        elif set_:
+            raise InputError("no design to change", key="set", remedy="give one with `from`")
         elif name is not None:
             path = new_design(name, design_folder(out))
             made = NewFile(path, ("check", name if out is None else str(path)))

@@ -175,15 +175,11 @@ def _evaluated(
 
 
 def _calibrated_name(design: str, changed: dict[str, Any]) -> str | None:
-    """Name of the build of a calibrated sensor, so that it does not replace the design's; None without calibration."""
+    """Name of the build of a calibrated sensor, which is not the design's; None without calibration."""
     from pneutouch.catalogue import DesignSource, Library
-    from pneutouch.spec.design import NO_CALIBRATION
+    from pneutouch.workflows.build.naming import calibrated_name
 
-    source = DesignSource.of(design, Library.default())
-    calibration = changed.get("calibration", source.content.get("calibration", NO_CALIBRATION))
-    if calibration == NO_CALIBRATION or not isinstance(calibration, str):
-        return None
-    return calibration if calibration.startswith(source.name) else f"{source.name}-{calibration}"
+    return calibrated_name(DesignSource.of(design, Library.default()), changed)
 
 
 def _is_specimen(design: str) -> bool:

@@ -1,18 +1,19 @@
 """Write a new file to start from: a commented design, or a copy of a design, a specimen or an example."""
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain, count
 from pathlib import Path
 
-from pneutouch.catalogue import KINDS, Library, user_folder
+from pneutouch.catalogue import KINDS, DesignSource, Library, user_folder
 from pneutouch.catalogue.examples import COMMANDS, examples
 from pneutouch.catalogue.library import is_specimen
 from pneutouch.errors import InputError, nearest
 from pneutouch.output.files import create_file, replace_file
+from pneutouch.spec.design import DesignFile
 from pneutouch.spec.files import is_file, read_bytes
 from pneutouch.spec.names import plain_name
-from pneutouch.spec.read import read_toml
+from pneutouch.spec.read import Changes, override, read_toml
 from pneutouch.spec.template import design_template
 
 
@@ -32,13 +33,24 @@ def new_design(name: str, folder: Path) -> Path:
     return write_design(name, folder, design_template(name))
 
 
-def new_from(source: str, name: str | None = None, out: Path | None = None) -> NewFile:
+def new_changed(source: DesignSource, name: str, folder: Path, *, overwrite: bool = False) -> Path:
+    """Write a design as it is now, every key with its value, as ``folder/name.toml``; over a file with ``overwrite``
+    alone. Raises InputError."""
+    values = source.changed({}).model_dump(by_alias=True)
+    text = design_template(name, values, "Every key may be left out.")
+    return write_design(name, folder, text, overwrite=overwrite)
+
+
+def new_from(source: str, name: str | None = None, out: Path | None = None, changes: Changes | None = None) -> NewFile:
     """Copy a design, a specimen or an example, by name, or a design or a specimen by path, to a new name.
 
     The copy goes to ``out``, else a design or a specimen to the user's folder, where it is found by its name, and an
-    example to the working folder; ``name`` left out is the example's own. Never over a file. Raises InputError.
+    example to the working folder; ``name`` left out is the example's own. ``changes`` are of a design alone. Never
+    over a file. Raises InputError.
     """
     library, shipped = Library.default(), examples()
+    if changes:
+        return _changed(DesignSource.of(source, library), changes, name, out)
     for kind in ("designs", "specimens"):
         if source in library.paths(kind):
             return _copied(kind, library.paths(kind)[source], name, out)
@@ -61,10 +73,22 @@ def new_from(source: str, name: str | None = None, out: Path | None = None) -> N
     raise InputError(f"no such design, specimen or example.{nearest(source, known)}", key="from", value=source)
 
 
+def _changed(source: DesignSource, changes: Changes, name: str | None, out: Path | None) -> NewFile:
+    if name is None:
+        raise _nameless(source.name)
+    changed = replace(source, content=override(source.content, changes, DesignFile))
+    written = new_changed(changed, name, out or user_folder() / KINDS["designs"].folder)
+    return NewFile(written, ("check", name if out is None else str(written)))
+
+
+def _nameless(original: str) -> InputError:
+    return InputError(f"{original} is the name of the original", key="name", remedy="give the copy another name")
+
+
 def _copied(kind: str, path: Path, name: str | None, out: Path | None) -> NewFile:
     KINDS[kind].validate(read_toml(path), str(path))
     if name is None:
-        raise InputError(f"{path.stem} is the name of the original", key="name", remedy="give the copy another name")
+        raise _nameless(path.stem)
     folder = out or user_folder() / KINDS[kind].folder
     written = write_design(name, folder, read_bytes(path).decode("utf-8-sig"), kind)
     # A name finds what lies in the user's folder alone.

@@ -87,7 +87,8 @@ def parse_changes(assignments: Iterable[str], keys: Collection[str] = ("calibrat
 def _bare_list(text: str) -> Any:
     """A value of TOML or a bare word; numbers with commas between are a list without its brackets."""
     value = toml_value(text)
-    if not isinstance(value, str) or "," not in value:
+    if value != text or "," not in text:
+        # A text in quotes is a text, whatever it holds.
         return value
     listed = toml_value(f"[{value}]")
     is_numbers = isinstance(listed, list) and all(type(item) in (int, float) for item in listed)
@@ -96,10 +97,12 @@ def _bare_list(text: str) -> Any:
 
 def assignments(changes: Changes) -> list[str]:
     """Changes as texts that `parse_changes` reads, words bare where they can be."""
-    return [
-        f"{key}={value if isinstance(value, str) and toml_value(value) == value else value_text(value)}"
-        for key, value in changes.items()
-    ]
+    return [f"{key}={value if _is_bare(value) else value_text(value)}" for key, value in changes.items()]
+
+
+def _is_bare(value: Any) -> bool:
+    """Whether a text reads as itself without quotes."""
+    return isinstance(value, str) and value == value.strip() and _bare_list(value) == value
 
 
 def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:

@@ -13,6 +13,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
+from pneutouch import __version__
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.cached_library import CachedLibrary
 from pneutouch.errors import ComputationError, InputError, PneutouchError
@@ -48,7 +49,8 @@ class Studio:
     async def form(self, request: Request) -> Response:
         """What the page is built from."""
         form = await run_in_threadpool(form_document, self._library)
-        return JSONResponse({**form, "designs": designs_document(self._bases), "first": self._first})
+        known = {"designs": designs_document(self._bases), "first": self._first, "version": __version__}
+        return JSONResponse({**form, **known})
 
     async def target_form(self, request: Request) -> Response:
         """What the form of a target is built from."""

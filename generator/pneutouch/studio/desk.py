@@ -1,10 +1,9 @@
-"""The requests for jobs and their files, and for uploads."""
+"""The requests for jobs and their files, for uploads, and for designs to be saved."""
 
 import asyncio
 import json
 import tempfile
 import zipfile
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,19 +14,23 @@ from starlette.routing import Route
 
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.studio.faults import fault_document, fault_status
-from pneutouch.studio.guard import UPLOADS
+from pneutouch.studio.guard import SHEET, UPLOADS
 from pneutouch.studio.job import KINDS
 from pneutouch.studio.jobs import Job, Jobs
+from pneutouch.studio.saving import NameTakenError, save_design
 from pneutouch.studio.uploads import Uploads
 
-_BUSY = 409
+_BUSY = _CLASH = 409
 
 
 class Desk:
-    """Takes uploads and jobs, and hands out files. Its temporary folder is removed with the studio."""
+    """Takes uploads and jobs, and hands out files. Its temporary folder is removed with the studio.
 
-    def __init__(self, bases: Mapping[str, str]) -> None:
-        self._bases = dict(bases)
+    ``bases`` are the designs that the page may open; a design that is saved is added to them.
+    """
+
+    def __init__(self, bases: dict[str, str]) -> None:
+        self._bases = bases
         self._place = tempfile.TemporaryDirectory(prefix="pneutouch-studio-", ignore_cleanup_errors=True)
         folder = Path(self._place.name)
         self.jobs, self.uploads = Jobs(folder), Uploads(folder)
@@ -37,6 +40,8 @@ class Desk:
         """Its part of the application."""
         return [
             Route(UPLOADS, self.upload, methods=["POST"]),
+            Route("/api/designs", self.save, methods=["POST"]),
+            Route("/api/jobs", self.known, methods=["GET"]),
             Route("/api/jobs/{kind:str}", self.start, methods=["POST"]),
             Route("/api/jobs/{number:int}", self.state, methods=["GET"]),
             Route("/api/jobs/{number:int}/cancel", self.cancel, methods=["POST"]),
@@ -56,6 +61,20 @@ class Desk:
         except PneutouchError as error:
             return _fault(error)
         return JSONResponse({"upload": number, "name": self.uploads[number].name})
+
+    async def save(self, request: Request) -> Response:
+        """Write a design into the user's folder; 409 where there is such a file and it is not to be replaced."""
+        try:
+            document = await run_in_threadpool(save_design, await _object(request), self._bases)
+        except NameTakenError as error:
+            return _fault(error, _CLASH)
+        except PneutouchError as error:
+            return _fault(error)
+        return JSONResponse(document)
+
+    async def known(self, request: Request) -> Response:
+        """The jobs that run or whose files are kept: a page that is opened again finds its own there."""
+        return JSONResponse({"jobs": self.jobs.documents()})
 
     async def start(self, request: Request) -> Response:
         """Begin a job with the JSON of the page; ``uploads``, numbers of files, are given to it as paths."""
@@ -100,7 +119,7 @@ class Desk:
             return _unknown()
         shown = request.query_params.get("show") == "1"
         kind = "inline" if shown else "attachment"
-        return FileResponse(path, filename=path.name, content_disposition_type=kind)
+        return FileResponse(path, filename=path.name, content_disposition_type=kind, headers=SHEET if shown else None)
 
     async def zipped(self, request: Request) -> Response:
         """All files of a job in one archive."""
@@ -128,7 +147,10 @@ def _archived(job: Job) -> Path:
         part = archive.with_suffix(".part")
         with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as packed:
             for name, path in files.items():
-                packed.writestr(zipfile.ZipInfo(name), path.read_bytes(), zipfile.ZIP_DEFLATED)
+                entry = zipfile.ZipInfo(name)
+                # Without a mode of its own it would be extracted for its owner alone.
+                entry.external_attr = 0o644 << 16
+                packed.writestr(entry, path.read_bytes(), zipfile.ZIP_DEFLATED)
         part.rename(archive)
     return archive
 
@@ -139,7 +161,7 @@ async def _object(request: Request) -> dict[str, Any]:
     except (ValueError, RecursionError):
         raise InputError("the request is not JSON") from None
     if not isinstance(content, dict) or not isinstance(content.get("uploads", []), list):
-        raise InputError("a job is a JSON object, and its uploads are a list of numbers")
+        raise InputError("what is sent is a JSON object, and its uploads are a list of numbers")
     return content
 
 

@@ -52,9 +52,13 @@ def _printers(library: Library) -> dict[str, list[str]]:
 
 
 def designs_document(bases: Mapping[str, str]) -> list[Option]:
-    """The designs that can be opened, with their titles."""
+    """The designs that can be opened, with their titles and the words that the commands know them by."""
     titles = {entry["name"]: entry["title"] for entry in listing("designs")["designs"] if "error" not in entry}
-    return [{"name": name, "title": titles.get(name, "")} for name in bases]
+    known = Library.default().paths("designs")
+    return [
+        {"name": name, "title": titles.get(name, ""), "words": name if name in known else given}
+        for name, given in bases.items()
+    ]
 
 
 def _groups(file: type[BaseModel], library: Library) -> list[dict[str, Any]]:

@@ -25,6 +25,13 @@ HEADERS = {
     "Cache-Control": "no-store",
 }
 
+SHEET = {
+    "Content-Security-Policy": "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
+    "img-src data:; font-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'self'; sandbox allow-scripts"
+}
+"""In place of the policy of `HEADERS`, for a page that a job wrote: whole in itself, it is shown in a frame, where it
+has no origin, reaches neither the studio nor anything else, and opens nothing."""
+
 _NAMES = ("127.0.0.1", "localhost")
 
 Scope = MutableMapping[str, Any]
@@ -51,7 +58,7 @@ class Guard:
         self._hosts = {f"{name}:{port}" for name in _NAMES}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request, or hand it on; every answer has `HEADERS`."""
+        """Answer a request, or hand it on; every answer has `HEADERS`, a sheet shown in place its own policy."""
         if scope["type"] != "http":
             # Start and stop of the server; there are no web sockets.
             if scope["type"] == "lifespan":
@@ -62,8 +69,10 @@ class Guard:
 
         async def guarded(message: Message) -> None:
             if message["type"] == "http.response.start":
+                given = list(message.get("headers", []))
+                stated = {name for name, _ in given}
                 added = [(name.lower().encode(), value.encode()) for name, value in HEADERS.items()]
-                message["headers"] = [*message.get("headers", []), *added]
+                message["headers"] = [*given, *(each for each in added if each[0] not in stated)]
             await send(message)
 
         if refused is not None:

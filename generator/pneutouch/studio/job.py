@@ -5,6 +5,7 @@ import os
 import resource
 import signal
 import sys
+import threading
 from collections.abc import Callable, Mapping
 from importlib import import_module
 from pathlib import Path
@@ -14,12 +15,15 @@ from pneutouch.errors import ComputationError, PneutouchError
 from pneutouch.holding import STOPS
 from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
 
-KINDS: dict[str, str] = {"select": "search:search"}
+KINDS: dict[str, str] = {"build": "building:build_design", "open": "opening:open_file", "select": "search:search"}
 """Function by kind of job, ``module:name`` below this package: ``run(arguments, folder, report)`` returns the content.
 
 ``arguments`` is the JSON of the page, with ``files`` (name, path) and ``bases``; ``folder`` is for the files it makes;
 ``report(done, total, what)`` states its progress.
 """
+
+BRIEF = ("open",)
+"""Kinds that take a moment: one of them may run beside a job of another kind."""
 
 LARGEST_MEMORY = 12 << 30
 """Bytes of address space of a job."""
@@ -62,6 +66,12 @@ def _stop(number: int, frame: Any) -> None:
     raise KeyboardInterrupt
 
 
+def _end_with_input() -> None:
+    """Stop where the input ends before the job does: the studio was killed, and nobody takes the answer."""
+    os.read(sys.stdin.fileno(), 1)
+    os.kill(os.getpid(), signal.SIGTERM)
+
+
 def main() -> None:
     """Read one request, write its lines, end."""
     # The studio ends this process: Ctrl-C in its terminal comes as SIGTERM from there.
@@ -74,7 +84,9 @@ def main() -> None:
     out = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     try:
-        work(sys.stdin.buffer.readline(), out)
+        request = sys.stdin.buffer.readline()
+        threading.Thread(target=_end_with_input, daemon=True).start()
+        work(request, out)
     except KeyboardInterrupt:
         sys.exit(143)
 

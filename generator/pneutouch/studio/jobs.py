@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch.errors import ComputationError
+from pneutouch.studio.job import BRIEF
 
 KEPT = 8
-"""Jobs whose files are kept; the oldest goes first."""
+"""Jobs of a kind whose files are kept; the oldest goes first."""
 
 _LONGEST_LINE = 1 << 26
 _LAST_SECONDS = 10.0
@@ -51,30 +52,44 @@ class Job:
 
 
 class Jobs:
-    """Starts, watches and ends jobs. Their folders lie in ``folder``."""
+    """Starts, watches and ends jobs. Their folders lie in ``folder``.
+
+    One job runs at a time; one of the kinds `BRIEF`, which take a moment, may run beside it.
+    """
 
     def __init__(self, folder: Path) -> None:
         self._folder, self._jobs = folder, dict[int, Job]()
-        self._watch: asyncio.Task[None] | None = None
+        self._watches = set[asyncio.Task[None]]()
         self._number = 0
 
     def __getitem__(self, number: int) -> Job:
         """A job by its number. Raises KeyError where it is not known, or no longer."""
         return self._jobs[number]
 
+    def documents(self) -> list[Content]:
+        """The jobs that are known, as the page sees them, oldest first."""
+        return [job.document() for job in self._jobs.values()]
+
     async def start(self, kind: str, arguments: Mapping[str, Any]) -> Job:
         """Begin a job. Raises ComputationError while another runs."""
-        if any(job.state == "running" for job in self._jobs.values()):
-            raise ComputationError("another job is running", remedy="wait for it, or cancel it")
+        brief = kind in BRIEF
+        running = [job for job in self._jobs.values() if job.state == "running" and (job.kind in BRIEF) == brief]
+        if running:
+            raise ComputationError(f"another job is running: {running[0].kind}", remedy="wait for it, or cancel it")
         self._number += 1
         job = Job(self._number, kind, self._folder / f"job-{self._number}")
         job.folder.mkdir(parents=True)
         self._jobs[job.number] = job
-        for old in list(self._jobs)[:-KEPT]:
-            shutil.rmtree(self._jobs.pop(old).place, ignore_errors=True)
+        self._drop_oldest(kind)
         request = {"kind": kind, "arguments": dict(arguments), "folder": str(job.folder)}
-        self._watch = asyncio.create_task(self._run(job, json.dumps(request).encode() + b"\n"))
+        watch = asyncio.create_task(self._run(job, json.dumps(request).encode() + b"\n"))
+        self._watches.add(watch)
+        watch.add_done_callback(self._watches.discard)
         return job
+
+    def _drop_oldest(self, kind: str) -> None:
+        for old in [job for job in self._jobs.values() if job.kind == kind][:-KEPT]:
+            shutil.rmtree(self._jobs.pop(old.number).place, ignore_errors=True)
 
     async def cancel(self, job: Job) -> None:
         """End a job that runs; its files are removed. Nothing where it has ended."""
@@ -86,22 +101,24 @@ class Jobs:
 
     async def close(self) -> None:
         """End what runs."""
-        for job in self._jobs.values():
-            await self.cancel(job)
-        if self._watch is not None:
-            self._watch.cancel()
+        await asyncio.gather(*(self.cancel(job) for job in self._jobs.values()))
+        for watch in list(self._watches):
+            watch.cancel()
             with contextlib.suppress(asyncio.CancelledError):
-                await self._watch
+                await watch
 
     async def _run(self, job: Job, request: bytes) -> None:
         answer: Content | None = None
         try:
             answer = await self._answered(job, request)
+        except (OSError, ValueError):
+            # No process could be started, or it wrote half a line as it was ended, or one without end.
+            await _end(job)
         finally:
             if job.state == "running":
-                job.state = "done" if answer is not None and answer["status"] == 200 else "failed"
                 ended = {"problems": [{"message": "the job was ended from outside", "fields": []}]}
                 job.status, job.content = (answer["status"], answer["content"]) if answer else (500, ended)
+                job.state = "done" if job.status == 200 else "failed"
                 if job.state == "failed":
                     shutil.rmtree(job.place, ignore_errors=True)
 
@@ -130,6 +147,8 @@ class Jobs:
                 job.progress = content["progress"]
             else:
                 answer = content
+        # The process ends where its input does: that is how it sees that the studio was ended.
+        process.stdin.close()
         await process.wait()
         return answer
 
@@ -144,4 +163,7 @@ async def _end(job: Job) -> None:
             os.killpg(process.pid, number)
         with contextlib.suppress(TimeoutError):
             await asyncio.wait_for(process.wait(), _LAST_SECONDS)
-            return
+            break
+    with contextlib.suppress(ProcessLookupError):
+        # What the process itself started and left behind.
+        os.killpg(process.pid, signal.SIGKILL)

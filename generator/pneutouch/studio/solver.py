@@ -28,7 +28,7 @@ class Solver:
     """
 
     def __init__(self, bases: Mapping[str, str]) -> None:
-        self._bases = dict(bases)
+        self._bases = bases
         self._process: asyncio.subprocess.Process | None = None
         self._waiting: asyncio.Future[None] | None = None
         self._is_busy, self._newer = False, asyncio.Event()
