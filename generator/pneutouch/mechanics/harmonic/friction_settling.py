@@ -78,6 +78,7 @@ class SurfaceLinearContact(LinearContact):
     step: SurfaceFriction
     points: SurfacePoints
     foreseen: PointTractions | None = None
+    unsettled: bool = False
     #: A point in space that slides may turn.
     IN_PIECES: ClassVar[bool] = False
 
@@ -88,11 +89,6 @@ class SurfaceLinearContact(LinearContact):
             -contact.stiffness * contact.opening(touch, move, touch.gap),
             self.step.stiffness * (self.points.slip + self.step.change(move, touch.slope)),
         )
-
-    @property
-    def unsettled(self) -> bool:
-        """Whether a step whose points are not settled will do: the next one starts from the tractions it leads to."""
-        return self.foreseen is not None
 
     @cached_property
     def _bent(self) -> ContactEvaluation:
@@ -178,8 +174,6 @@ class SurfaceFrictionSolver(FrictionSolver):
         # Without harmonics the steps are the solid's, and with them the last digits of its figures.
         if here.state.x.shape[1] == 2:
             return super().direction(here, kept)
-        if self.foreseen is None:
-            self.foreseen = self._linear(here, False).at(np.zeros_like(here.state.x))
         step = super().direction(here, kept)
         self._led = self._linear(here, False).at(self.solid.expand(step))
         return step
@@ -187,15 +181,19 @@ class SurfaceFrictionSolver(FrictionSolver):
     def _search(self, here: HeldState, step: Array, slope: float) -> HeldState | None:
         """As that of `FrictionSolver`; the foreseen tractions go as far towards those of the model as the positions."""
         moved = super()._search(here, step, slope)
-        if moved is not None and self.foreseen is not None:
+        if moved is not None and here.state.x.shape[1] > 2:
             move, gone = self.solid.expand(step), moved.state.x - here.state.x
             share = min(1.0, float(np.vdot(move, gone)) / float(np.vdot(move, move)))
-            self.foreseen = self.foreseen.towards(self._led, share)
+            before = self.foreseen or PointTractions(here.touch.traction, here.points.traction)
+            self.foreseen = before.towards(self._led, share)
         return moved
 
     def _linear(self, here: HeldState, held: bool) -> SurfaceLinearContact:
         assert isinstance(here.points, SurfacePoints)
-        return SurfaceLinearContact(self.solid, self.step, here.touch, here.points, held, foreseen=self.foreseen)
+        carried = here.state.x.shape[1] > 2
+        return SurfaceLinearContact(
+            self.solid, self.step, here.touch, here.points, held, foreseen=self.foreseen, unsettled=carried
+        )
 
     def by_height(self, held: HeldState, system: ContactSystem, down: float) -> tuple[Array, float, float]:
         """Rate of the unknowns (size,), force on the object against its path and its rate, by the place on the path.

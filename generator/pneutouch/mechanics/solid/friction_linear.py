@@ -23,6 +23,7 @@ class LinearContact:
 
     held: the largest tractions along the surface stay those of the points there; the model then has an energy.  kept:
     signs of slip (n_edges, n_points), 0 for points that stick, which all points keep, however large their tractions.
+    unsettled: a step whose points are not settled will do, as the next one starts from the tractions that it leads to.
     """
 
     solid: SolidModel
@@ -31,13 +32,9 @@ class LinearContact:
     points: FrictionPoints
     held: bool = False
     kept: Array | None = None
+    unsettled: bool = False
     #: Whether the tractions are linear in pieces of the displacement.
     IN_PIECES: ClassVar[bool] = True
-
-    @property
-    def unsettled(self) -> bool:
-        """Whether a step whose points are not settled will do: where the signs of slip are kept."""
-        return self.kept is not None
 
     @cached_property
     def _grip(self) -> Array:

@@ -72,7 +72,7 @@ class StepSettling:
         while True:
             kept = max(edge - _MARGIN, 0)
             step = self._settle(kept)
-            if step is None and (self._contact.held or self._contact.unsettled):
+            if step is None and (self._contact.held or self._contact.kept is not None or self._contact.unsettled):
                 continue
             if step is None or not np.isfinite(step).all():
                 return step
