@@ -17,7 +17,7 @@ def nearest_state(source: DesignSource, bases: Mapping[str, str], library: Libra
     """
     design = source.changed({})
     states: list[dict[str, Any]] = []
-    for base in [source.name] if source.name in bases else bases:
+    for base in bases:
         try:
             states.append(state_of(design, base, bases, library))
         except PneutouchError:
@@ -26,7 +26,7 @@ def nearest_state(source: DesignSource, bases: Mapping[str, str], library: Libra
     if not states:
         raise InputError("no design of this page can be read", remedy="mend the design files that pneutouch list names")
     # By the same limits as what comes from a browser.
-    question = Question.of(min(states, key=lambda state: len(state["values"])))
+    question = Question.of(min(states, key=lambda state: (state["base"] != source.name, len(state["values"]))))
     if question.source(bases, library).changed({}).model_dump() != design.model_dump():
         remedy = "build it by its file with the commands"
         raise InputError("has values that the page cannot hold", file=source.where, remedy=remedy)

@@ -25,9 +25,11 @@ export function read(hash) {
   }
 }
 
+/** A word of a command, quoted where a shell would take it apart. */
+export const quoted = (text) => (/^[\w.,@%+=:/-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
+
 /** The changed values as options of the commands, to be typed in a shell. */
-export function options(state) {
-  const quoted = (text) => (/^[\w.,@%+=:-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
+export function options(state, base = state.base) {
   const set = Object.entries(state.values).filter(([, text]) => text !== null);
-  return [state.base, ...set.map(([name, text]) => `--set ${quoted(`${name}=${text}`)}`)].join(" ");
+  return [quoted(base), ...set.map(([name, text]) => `--set ${quoted(`${name}=${text}`)}`)].join(" ");
 }

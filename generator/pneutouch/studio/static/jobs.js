@@ -3,32 +3,50 @@ import { post, Stopped } from "./requests.js";
 
 const PAUSE = 300;
 
-/** What went wrong, as the studio's problems. */
+const LARGEST_MB = 64;
+
+/** What went wrong, as the studio's problems; `busy` where another job runs. */
 export class Failed extends Error {
-  constructor(problems) {
+  constructor(problems, busy = false) {
     super(problems.map((each) => each.message).join("; "));
-    this.problems = problems;
+    Object.assign(this, { problems, busy });
   }
 }
 
 async function get(path) {
+  let answer;
   try {
-    return await (await fetch(path)).json();
+    answer = await fetch(path);
   } catch {
     throw new Stopped("pneutouch studio does not answer: it was stopped. Start it again; this design is in the address.");
   }
+  if (answer.status === 403) {
+    throw new Stopped("This page belongs to a studio that was stopped. Open the address that the new one printed.");
+  }
+  return answer.json();
 }
 
 /** A job that runs: `done` is a promise of its document, null where it was cancelled, and fails with `Failed`. */
 export class Job {
   /** `moved` is called with {done, total, what} while the job runs. */
   constructor(kind, request, moved = () => {}) {
-    this.done = this.run(kind, request, moved);
+    this.done = this.run(post(`/api/jobs/${kind}`, request), moved);
   }
 
-  async run(kind, request, moved) {
-    const { status, content } = await post(`/api/jobs/${kind}`, request);
-    if (status !== 202) throw new Failed(content.problems);
+  /** The newest job of a kind (any, where none is given) that runs or has its files still; null without one. */
+  static async known(kind, moved = () => {}) {
+    const { jobs } = await get("/api/jobs");
+    const own = jobs.filter((one) => (!kind || one.kind === kind) && ["running", "done"].includes(one.state)).at(-1);
+    if (!own) return null;
+    const job = Object.create(Job.prototype);
+    job.running = own.state === "running";
+    job.done = job.run(Promise.resolve({ status: 202, content: own }), moved);
+    return job;
+  }
+
+  async run(begun, moved) {
+    const { status, content } = await begun;
+    if (status !== 202) throw new Failed(content.problems, status === 409);
     this.path = `/api/jobs/${content.job}`;
     if (this.unwanted) await this.cancel();
     let job = content;
@@ -59,6 +77,9 @@ export class Job {
 
 /** Gives a file of the user to the studio; the number that jobs name it by. */
 export async function upload(file) {
+  if (file.size > LARGEST_MB * 2 ** 20) {
+    throw new Failed([{ message: `${file.name}: a file has at most ${LARGEST_MB} MB`, fields: [] }]);
+  }
   let answer;
   try {
     answer = await fetch(`/api/uploads?name=${encodeURIComponent(file.name)}`, {
@@ -67,7 +88,7 @@ export async function upload(file) {
       body: file,
     });
   } catch {
-    throw new Stopped("pneutouch studio does not answer: it was stopped, or it refused the file.");
+    throw new Stopped(`${file.name} cannot be read (a folder is no file), or pneutouch studio was stopped.`);
   }
   const content = await answer.json();
   if (answer.status !== 200) throw new Failed(content.problems);

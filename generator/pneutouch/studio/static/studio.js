@@ -5,6 +5,7 @@ import { Line, Stopped } from "./requests.js";
 import * as charts from "./charts.js";
 import { byId, element } from "./dom.js";
 import { Form } from "./form.js";
+import { listenForFiles } from "./opening.js";
 import { Pressed } from "./pressed.js";
 import { drawSection } from "./section.js";
 import * as tables from "./tables.js";
@@ -18,7 +19,7 @@ const page = { state: null, past: [], future: [], quick: null, solved: null, pin
 const parts = {};
 
 /** By the id of an area, the module that fills it when it is first shown. */
-const MODULES = {};
+const MODULES = { files: "./files.js" };
 
 /** What the areas are given: the design as it is now, a function that opens another one, and the line of messages. */
 const desk = {
@@ -27,6 +28,9 @@ const desk = {
   go: (state) => go(state),
   report: (words, busy = false) => report(words, busy),
   show: (name) => parts.areas.show(name),
+  words: (base) => parts.words.get(base) ?? base,
+  version: () => parts.version,
+  saved: (name) => saved(name),
 };
 
 const same = (one, other) => address.written(one) === address.written(other);
@@ -56,6 +60,7 @@ function update() {
   report("Computing.", true);
   byId("base").value = page.state.base;
   history.replaceState(null, "", address.written(page.state));
+  document.dispatchEvent(new Event("design"));
   clearTimeout(parts.soon);
   clearTimeout(parts.later);
   parts.quick.send(page.state);
@@ -73,6 +78,14 @@ function go(state, settled = true) {
     page.from = null;
   }
   update();
+}
+
+/** A design of this name was written: it is among the designs, and the page goes on with it. */
+function saved(name) {
+  if (!parts.words.has(name)) byId("base").append(element("option", { value: name }, name));
+  parts.words.set(name, name);
+  delete page.plain[name];
+  go({ base: name, values: {} });
 }
 
 function step(from, to) {
@@ -209,7 +222,7 @@ function pin() {
 }
 
 async function copy() {
-  const words = address.options(page.state);
+  const words = address.options(page.state, desk.words(page.state.base));
   try {
     await navigator.clipboard.writeText(words);
     report(`Copied: ${words}`);
@@ -251,7 +264,8 @@ function listen() {
 async function start() {
   const declared = await (await fetch("/api/form")).json();
   byId("base").replaceChildren(...declared.designs.map((one) => element("option", { value: one.name, title: one.title }, one.name)));
-  parts.printers = declared.printers;
+  parts.words = new Map(declared.designs.map((one) => [one.name, one.words]));
+  Object.assign(parts, { printers: declared.printers, version: declared.version });
   parts.view = new View(byId("view"));
   byId("view-tools").hidden = !parts.view.renderer;
   parts.pressed = new Pressed((pressed) => {
@@ -267,6 +281,7 @@ async function start() {
   byId("base").value = page.state.base;
   listen();
   parts.areas = new Areas(desk, MODULES);
+  listenForFiles(desk);
   update();
 }
 
