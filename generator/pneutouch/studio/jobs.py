@@ -7,7 +7,7 @@ import os
 import shutil
 import signal
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,9 @@ KEPT = 8
 _LONGEST_LINE = 1 << 26
 _LAST_SECONDS = 10.0
 """Seconds that a job has to take its half-written files away when it is cancelled."""
+
+_COMMAND = (sys.executable, "-m", "pneutouch.studio.job")
+"""The process of a job."""
 
 Content = dict[str, Any]
 
@@ -36,6 +39,11 @@ class Job:
         self.progress: Content = {}
         self.content: Content = {}
         self.process: asyncio.subprocess.Process | None = None
+
+    @property
+    def runs(self) -> bool:
+        """Whether it has not ended; one that was cancelled may take a moment to."""
+        return self.state == "running" or (self.process is not None and self.process.returncode is None)
 
     def document(self) -> Content:
         """The state of the job for the page; the names and bytes of the files once it is done."""
@@ -57,8 +65,8 @@ class Jobs:
     One job runs at a time; one of the kinds `BRIEF`, which take a moment, may run beside it.
     """
 
-    def __init__(self, folder: Path) -> None:
-        self._folder, self._jobs = folder, dict[int, Job]()
+    def __init__(self, folder: Path, command: Sequence[str] = _COMMAND) -> None:
+        self._folder, self._command, self._jobs = folder, command, dict[int, Job]()
         self._watches = set[asyncio.Task[None]]()
         self._number = 0
 
@@ -73,7 +81,7 @@ class Jobs:
     async def start(self, kind: str, arguments: Mapping[str, Any]) -> Job:
         """Begin a job. Raises ComputationError while another runs."""
         brief = kind in BRIEF
-        running = [job for job in self._jobs.values() if job.state == "running" and (job.kind in BRIEF) == brief]
+        running = [job for job in self._jobs.values() if job.runs and (job.kind in BRIEF) == brief]
         if running:
             raise ComputationError(f"another job is running: {running[0].kind}", remedy="wait for it, or cancel it")
         self._number += 1
@@ -102,10 +110,11 @@ class Jobs:
     async def close(self) -> None:
         """End what runs."""
         await asyncio.gather(*(self.cancel(job) for job in self._jobs.values()))
-        for watch in list(self._watches):
-            watch.cancel()
-            with contextlib.suppress(asyncio.CancelledError):
-                await watch
+        if self._watches:
+            # They end with the output of their processes.
+            _, hung = await asyncio.wait(self._watches, timeout=_LAST_SECONDS)
+            for watch in hung:
+                watch.cancel()
 
     async def _run(self, job: Job, request: bytes) -> None:
         answer: Content | None = None
@@ -125,9 +134,7 @@ class Jobs:
     async def _answered(self, job: Job, request: bytes) -> Content | None:
         """The last line of the process; None where it ended without one."""
         job.process = process = await asyncio.create_subprocess_exec(
-            sys.executable,
-            "-m",
-            "pneutouch.studio.job",
+            *self._command,
             stdin=asyncio.subprocess.PIPE,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.DEVNULL,

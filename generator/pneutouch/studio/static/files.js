@@ -44,7 +44,7 @@ class Files {
   constructor(root, page) {
     Object.assign(this, { page, job: null, opened: null });
     this.built = new Built(page);
-    root.replaceChildren(element("main", { class: "files" }, this.buildCard(), this.built.files, this.openCard(), this.saveCard(), this.built.sheet));
+    root.replaceChildren(element("div", { class: "files" }, this.buildCard(), this.built.files, this.openCard(), this.saveCard(), this.built.sheet));
     document.addEventListener("design", () => this.show());
     document.addEventListener("opened", ({ detail }) => this.named(detail));
     this.show();

@@ -1,0 +1,203 @@
+"""The area Files in the browser: build, download, cancel, open, save; and what it looks like to a screen reader."""
+
+from __future__ import annotations
+
+import base64
+import json
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page
+
+from tests.browser import Pages, until
+from tests.conftest import ROOT
+from tests.export import test_threemf_unsafe as unsafe
+from tests.export.threemf_files import read_strictly
+from tests.studio.access import violations
+from tests.studio.served import Studio, served
+
+_DROP = """(files) => {
+  const data = new DataTransfer();
+  for (const [name, text] of files) data.items.add(new File([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))], name));
+  const send = (kind) => document.body.dispatchEvent(new DragEvent(kind, { dataTransfer: data, bubbles: true, cancelable: true }));
+  send("dragenter");
+  const marked = !document.getElementById("drop").hidden;
+  send("dragover");
+  send("drop");
+  return marked && document.getElementById("drop").hidden;
+}"""
+_STATUS = "document.getElementById('build-status').textContent"
+_NOTICE = "document.getElementById('notice').textContent"
+_BUILT = f"{_STATUS}.startsWith('Built')"
+
+
+def dropped(page: Page, *files: tuple[str, bytes]) -> None:
+    """Drop files on the page, which shows that it takes them while they are above it."""
+    assert page.evaluate(_DROP, [[name, base64.b64encode(content).decode()] for name, content in files])
+
+
+def shown(page: Page, area: str = "Files") -> Page:
+    page.get_by_role("tab", name=area).click()
+    return page
+
+
+@pytest.fixture(scope="module")
+def home(tmp_path_factory) -> Path:
+    return tmp_path_factory.mktemp("home")
+
+
+@pytest.fixture(scope="module")
+def own(chromium, home) -> Iterator[Studio]:
+    """A studio of this file alone: it builds, and saves into a folder of its own."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PNEUTOUCH_HOME", str(home))
+        with served() as (address, process):
+            yield Studio(address, process)
+
+
+@pytest.fixture
+def page(own: Studio, pages: Pages) -> Page:
+    return shown(own.open(pages))
+
+
+def test_a_dropped_design_file_becomes_the_design_and_a_hostile_one_a_message(page):
+    dropped(page, ("mine.toml", b"[membrane]\nwall_thickness_mm = 1.25\n"))
+    until(page, f"{_NOTICE}.startsWith('Opened mine.toml')")
+    assert "membrane.wall_thickness_mm=1.25" in page.evaluate("location.hash")
+    assert page.locator("#build-command").text_content().endswith("--name mine")
+    assert page.get_by_label("Name").first.input_value() == "mine"
+    before = page.evaluate("location.hash")
+    dropped(page, ("bad.3mf", unsafe.bomb(2**28 + 1)))
+    until(page, f"{_NOTICE}.includes('bad.3mf: inflates to more than 256 MiB')")
+    dropped(page, ("../x.toml", b""), ("b.toml", b""))
+    until(page, f"{_NOTICE}.includes('One file is opened at a time')")
+    assert page.evaluate("location.hash") == before
+    page.get_by_role("button", name="Close this message").click()
+    assert page.locator("#notice").text_content() == ""
+    page.get_by_role("button", name="Undo").click()
+    until(page, "location.hash === '#paper-dome'")
+    assert page.get_by_label("Name").first.input_value() == ""
+    assert violations(page) == []
+
+
+@pytest.mark.slow
+def test_what_is_built_and_downloaded_is_what_the_command_writes(page, command, tmp_path):
+    page.evaluate("location.hash = '#paper-dome&membrane.wall_thickness_mm=1.4'")
+    page.get_by_role("button", name="Build", exact=True).click()
+    until(page, f"{_STATUS}.includes('step 2 of 9') || {_STATUS}.includes('step 3 of 9')")
+    assert violations(page) == []
+    until(page, _BUILT)
+    words = page.locator("#build-command").text_content().split()
+    assert words == ["pneutouch", "build", "paper-dome", "--set", "membrane.wall_thickness_mm=1.4"]
+    done = command(*words[1:])
+    assert done.returncode == 0, done.stderr
+    folder = tmp_path / "outputs/paper-dome"
+    written = {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    with page.expect_download() as taken:
+        page.get_by_role("link", name="paper-dome.3mf").click()
+    sensor = tmp_path / taken.value.suggested_filename
+    taken.value.save_as(sensor)
+    assert sensor.name == "paper-dome.3mf"
+    assert sensor.read_bytes() == written["paper-dome.3mf"]
+    _, reader = read_strictly(sensor)
+    assert reader.GetWarningCount() == 0
+    with page.expect_download() as taken:
+        page.get_by_role("link", name="Download all").click()
+    with zipfile.ZipFile(taken.value.path()) as archive:
+        assert {name.removeprefix("paper-dome/"): archive.read(name) for name in archive.namelist()} == written
+    listed = page.locator("#built .groups a").all_text_contents()
+    assert sorted(listed) == sorted(written)
+    _sheet_is_shown(page)
+    assert violations(page) == []
+    # What was built becomes the design again, from the 3MF alone.
+    page.evaluate("location.hash = '#soft-pad'")
+    until(page, "document.querySelector('#built .old').textContent.includes('was changed since')")
+    page.get_by_label("File", exact=True).set_input_files(sensor)
+    until(page, f"{_NOTICE}.startsWith('Opened paper-dome.3mf')")
+    assert page.evaluate("location.hash") == "#paper-dome&membrane.wall_thickness_mm=1.4"
+    assert page.locator("#built .old").text_content() == ""
+
+
+def _sheet_is_shown(page: Page) -> None:
+    """The datasheet stands in its frame, its scripts draw, and it reaches nothing of the page."""
+    frame = next(each for each in page.frames if "datasheet.html" in each.url)
+    frame.wait_for_selector("canvas")
+    assert frame.evaluate("origin") == "null"
+    reached = frame.evaluate(
+        "fetch('/api/form').then(() => 'reached', () => 'refused').then((word) => { try { return word + parent.document.title; }"
+        "catch { return word; } })"
+    )
+    assert reached == "refused"
+
+
+@pytest.mark.slow
+def test_a_build_is_cancelled_here_or_from_another_page(page, own, pages):
+    other = shown(own.open(pages))
+
+    def begin():
+        page.get_by_role("button", name="Build", exact=True).press("Enter")
+        until(page, f"{_STATUS}.includes('step 1 of 9')")
+
+    begin()
+    assert page.evaluate("document.activeElement.id") == "build-cancel"
+    page.keyboard.press("Enter")
+    until(page, f"{_STATUS} === 'Cancelled. Nothing was kept.'")
+    assert page.evaluate("document.activeElement.id") == "build"
+    begin()
+    other.get_by_role("button", name="Build", exact=True).click()
+    until(other, "document.getElementById('build-problems').textContent.includes('another job is running: build')")
+    assert violations(other) == []
+    # A page that is opened now finds the build.
+    late = shown(own.open(pages))
+    until(late, f"{_STATUS}.includes('of 9')")
+    other.get_by_role("button", name="Cancel the other job").click()
+    for each in (page, late):
+        until(each, f"{_STATUS} === 'Cancelled. Nothing was kept.'")
+    assert other.locator("#build-problems").text_content() == ""
+    assert page.locator("#built").is_hidden()
+
+
+@pytest.mark.slow
+def test_a_design_is_saved_exported_and_opened_again(page, home, tmp_path):
+    page.evaluate("location.hash = '#paper-dome&membrane.wall_thickness_mm=1.3'")
+    name = page.get_by_label("Name").last
+    name.fill("mine")
+    assert page.locator("#save-command").text_content() == (
+        "pneutouch new mine --from paper-dome --set membrane.wall_thickness_mm=1.3"
+    )
+    name.press("Enter")
+    until(page, "location.hash === '#mine'")
+    assert (home / "designs/mine.toml").is_file()
+    assert page.locator("#base").input_value() == "mine"
+    page.evaluate("location.hash = '#mine&membrane.wall_thickness_mm=1.2'")
+    name.fill("mine")
+    name.press("Enter")
+    until(page, "document.getElementById('save-problems').textContent.includes('there is such a file already')")
+    assert "wall_thickness_mm = 1.3" in (home / "designs/mine.toml").read_text()
+    assert violations(page) == []
+    assert page.evaluate("document.activeElement.id") == "save-replace"
+    page.keyboard.press("Space")
+    page.get_by_role("button", name="Save", exact=True).click()
+    until(page, "location.hash === '#mine'")
+    assert "wall_thickness_mm = 1.2" in (home / "designs/mine.toml").read_text()
+    page.evaluate("location.hash = '#mine&membrane.wall_thickness_mm=1.1'")
+    with page.expect_download() as taken:
+        page.get_by_role("button", name="Export").click()
+    exported = json.loads(taken.value.path().read_text())
+    assert (exported["base"], exported["values"]) == ("mine", {"membrane.wall_thickness_mm": "1.1"})
+    page.evaluate("location.hash = '#soft-pad'")
+    dropped(page, (taken.value.suggested_filename, taken.value.path().read_bytes()))
+    until(page, "location.hash === '#mine&membrane.wall_thickness_mm=1.1'")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize("width", [360, 1400, 2560])
+def test_the_area_breaks_no_rule_and_scrolls_in_one_way(width, dark, own, pages):
+    page = shown(own.open(pages, "#graded-dome", width=width, dark=dark, is_mobile=width < 600))
+    dropped(page, ("paper-dome.toml", (ROOT / "designs/stiff-dome.toml").read_bytes()))
+    until(page, f"{_NOTICE}.startsWith('Opened')")
+    assert violations(page) == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
