@@ -52,7 +52,7 @@ def _printers(library: Library) -> dict[str, list[str]]:
 
 
 def designs_document(bases: Mapping[str, str]) -> list[Option]:
-    """The designs that can be opened, with their titles and the words that the commands know them by."""
+    """The designs that can be opened, with their titles and what the commands call them."""
     titles = {entry["name"]: entry["title"] for entry in listing("designs")["designs"] if "error" not in entry}
     known = Library.default().paths("designs")
     return [

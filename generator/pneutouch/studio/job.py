@@ -23,7 +23,7 @@ KINDS: dict[str, str] = {"build": "building:build_design", "open": "opening:open
 """
 
 BRIEF = ("open",)
-"""Kinds that take a moment: one of them may run beside a job of another kind."""
+"""Kinds that take a moment: one of them may run at the same time as a job of another kind."""
 
 LARGEST_MEMORY = 12 << 30
 """Bytes of address space of a job."""
@@ -67,7 +67,7 @@ def _stop(number: int, frame: Any) -> None:
 
 
 def _end_with_input() -> None:
-    """Stop where the input ends before the job does: the studio was killed, and nobody takes the answer."""
+    """Stop where the input ends before the job does: the studio was killed, and no page takes the answer."""
     os.read(sys.stdin.fileno(), 1)
     os.kill(os.getpid(), signal.SIGTERM)
 

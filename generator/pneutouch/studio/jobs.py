@@ -62,7 +62,7 @@ class Job:
 class Jobs:
     """Starts, watches and ends jobs. Their folders lie in ``folder``.
 
-    One job runs at a time; one of the kinds `BRIEF`, which take a moment, may run beside it.
+    One job runs at a time; one of the kinds `BRIEF`, which take a moment, may run at the same time.
     """
 
     def __init__(self, folder: Path, command: Sequence[str] = _COMMAND) -> None:

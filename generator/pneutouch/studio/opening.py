@@ -130,7 +130,7 @@ def _other_options(options: PredictionOptions) -> list[str]:
 
 
 def _by_name(error: PneutouchError, path: Path) -> InputError:
-    """The error with the name that the user knows in place of where the file lies."""
+    """The error with the name that the user gave in place of where the file lies."""
     place = f"{path.parent}/"
     first, *others = [InputError(_words(each).replace(place, "")) for each in (error, *error.others)]
     first.others = tuple(others)

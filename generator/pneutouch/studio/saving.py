@@ -17,7 +17,7 @@ _KEYS = {"question", "name", "replace"}
 
 
 class NameTakenError(InputError):
-    """There is a file of this name already, and it was not asked to be replaced."""
+    """There is a file of this name already, and it is not to be replaced."""
 
 
 def save_design(request: Mapping[str, Any], bases: dict[str, str]) -> dict[str, str]:

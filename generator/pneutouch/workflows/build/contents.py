@@ -30,8 +30,8 @@ def described(names: Iterable[str], design: str) -> list[tuple[list[str], str]]:
     left = list(names)
     groups = []
     for patterns, words in CONTENTS:
-        wanted = [pattern.replace(_NAME, design) for pattern in patterns]
-        there = [name for pattern in wanted for name in left if fnmatchcase(name, pattern)]
+        expected = [pattern.replace(_NAME, design) for pattern in patterns]
+        there = [name for pattern in expected for name in left if fnmatchcase(name, pattern)]
         left = [name for name in left if name not in there]
         groups.append((there, words))
     return [(there, words) for there, words in [*groups, (left, "")] if there]

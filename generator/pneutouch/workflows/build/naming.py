@@ -1,4 +1,4 @@
-"""What a build is called where nobody names it."""
+"""What a build is called where no name is given."""
 
 from pneutouch.catalogue import DesignSource
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION
