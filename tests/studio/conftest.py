@@ -32,7 +32,7 @@ from starlette.testclient import TestClient
 
 from pneutouch.studio.application import application
 from pneutouch.studio.server import bases_of
-from tests.browser import Pages, SharedBrowser
+from tests.browser import Pages
 from tests.studio.served import Studio, served
 
 PORT = 8123
@@ -56,14 +56,14 @@ def client(stranger):
 
 
 @pytest.fixture(scope="session")
-def studio(chromium: SharedBrowser) -> Iterator[Studio]:
-    """A studio that runs as a user starts it, for pages that leave it as they found it."""
+def studio() -> Iterator[Studio]:
+    """A studio that runs as a user starts it, for tests that leave it as they found it."""
     with served() as (address, process):
         yield Studio(address, process)
 
 
 @pytest.fixture
-def open_studio(studio: Studio, pages: Pages) -> Iterator[Callable[..., Page]]:
+def open_studio(pages: Pages, studio: Studio) -> Iterator[Callable[..., Page]]:
     """Opens a page on a design: ``open_studio("#agilus-dome", width=360, height=800, dark=True)``."""
 
     def opened(design: str = "", **options: object) -> Page:

@@ -43,6 +43,7 @@ class Studio:
         parts = urlsplit(address)
         self.address, self.process, self.netloc, self.port = address, process, parts.netloc, parts.port
         self.home = f"http://{parts.netloc}/"
+        self.token = parts.query.removeprefix("token=")
         with closing(http.client.HTTPConnection(parts.netloc)) as connection:
             connection.request("GET", f"/?{parts.query}")
             answer = connection.getresponse()

@@ -2,7 +2,6 @@
 
 import asyncio
 import contextlib
-import json
 from collections.abc import AsyncIterator, Callable
 from functools import partial
 from typing import Any
@@ -16,8 +15,9 @@ from starlette.routing import Route
 from pneutouch import __version__
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.cached_library import CachedLibrary
-from pneutouch.errors import ComputationError, InputError, PneutouchError
+from pneutouch.errors import ComputationError, PneutouchError
 from pneutouch.studio.answer import Answers
+from pneutouch.studio.body import json_body
 from pneutouch.studio.desk import Desk
 from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
 from pneutouch.studio.form import designs_document, form_document, target_form_document
@@ -122,11 +122,7 @@ def application(bases: dict[str, str], first: str, port: int, token: str) -> App
 
 async def _question(request: Request) -> Question:
     """The question in a body. Raises InputError where it is none."""
-    try:
-        content = json.loads(await request.body())
-    except (ValueError, RecursionError):
-        raise InputError("the question is not JSON") from None
-    return Question.of(content)
+    return Question.of(await json_body(request, "question"))
 
 
 def _fault(error: PneutouchError, status: int | None = None) -> Response:

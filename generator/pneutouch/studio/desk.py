@@ -1,7 +1,6 @@
 """The requests for jobs and their files, for uploads, and for designs to be saved."""
 
 import asyncio
-import json
 import tempfile
 import zipfile
 from pathlib import Path
@@ -13,6 +12,7 @@ from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import Route
 
 from pneutouch.errors import InputError, PneutouchError
+from pneutouch.studio.body import json_body
 from pneutouch.studio.faults import fault_document, fault_status
 from pneutouch.studio.guard import SHEET, UPLOADS
 from pneutouch.studio.job import KINDS
@@ -43,10 +43,10 @@ class Desk:
             Route("/api/designs", self.save, methods=["POST"]),
             Route("/api/jobs", self.known, methods=["GET"]),
             Route("/api/jobs/{kind:str}", self.start, methods=["POST"]),
-            Route("/api/jobs/{number:int}", self.state, methods=["GET"]),
-            Route("/api/jobs/{number:int}/cancel", self.cancel, methods=["POST"]),
-            Route("/api/jobs/{number:int}/files.zip", self.zipped, methods=["GET"]),
-            Route("/api/jobs/{number:int}/files/{name:path}", self.file, methods=["GET"]),
+            Route("/api/jobs/{number}", self.state, methods=["GET"]),
+            Route("/api/jobs/{number}/cancel", self.cancel, methods=["POST"]),
+            Route("/api/jobs/{number}/files.zip", self.zipped, methods=["GET"]),
+            Route("/api/jobs/{number}/files/{name:path}", self.file, methods=["GET"]),
         ]
 
     async def close(self) -> None:
@@ -94,7 +94,7 @@ class Desk:
     def _uploaded(self, number: Any) -> dict[str, str]:
         try:
             upload = self.uploads[int(number)]
-        except (KeyError, TypeError, ValueError):
+        except (KeyError, TypeError, ValueError, OverflowError):
             raise InputError("no such file, or no longer", remedy="give the file again") from None
         return {"name": upload.name, "path": str(upload.path)}
 
@@ -132,8 +132,8 @@ class Desk:
 
     def _job(self, request: Request) -> Job | None:
         try:
-            return self.jobs[request.path_params["number"]]
-        except KeyError:
+            return self.jobs[int(request.path_params["number"])]
+        except (KeyError, ValueError):
             return None
 
 
@@ -156,10 +156,7 @@ def _archived(job: Job) -> Path:
 
 
 async def _object(request: Request) -> dict[str, Any]:
-    try:
-        content = json.loads(await request.body())
-    except (ValueError, RecursionError):
-        raise InputError("the request is not JSON") from None
+    content = await json_body(request, "request")
     if not isinstance(content, dict) or not isinstance(content.get("uploads", []), list):
         raise InputError("what is sent is a JSON object, and its uploads are a list of numbers")
     return content

@@ -104,7 +104,8 @@ class Guard:
         if headers.get("content-type", "").partition(";")[0].strip().lower() != kind:
             return PlainTextResponse(f"what is sent here is {kind}", 415)
         length = headers.get("content-length", "0")
-        return too_large(path) if not length.isdigit() or int(length) > _largest(path) else None
+        is_number = length.isdecimal() and len(length) < 20
+        return None if is_number and int(length) <= _largest(path) else too_large(path)
 
     def _has_cookie(self, headers: dict[str, str]) -> bool:
         try:

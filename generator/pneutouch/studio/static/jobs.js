@@ -1,5 +1,5 @@
 // Jobs of the studio: started, watched, cancelled; and files given to it.
-import { post, Stopped } from "./requests.js";
+import { ask, post } from "./requests.js";
 
 const PAUSE = 300;
 
@@ -13,19 +13,6 @@ export class Failed extends Error {
   }
 }
 
-async function get(path) {
-  let answer;
-  try {
-    answer = await fetch(path);
-  } catch {
-    throw new Stopped("pneutouch studio does not answer: it was stopped. Start it again; this design is in the address.");
-  }
-  if (answer.status === 403) {
-    throw new Stopped("This page belongs to a studio that was stopped. Open the address that the new one printed.");
-  }
-  return answer.json();
-}
-
 /** A job that runs: `done` is a promise of its document, null where it was cancelled, and fails with `Failed`. */
 export class Job {
   /** `moved` is called with {done, total, what} while the job runs. */
@@ -35,7 +22,7 @@ export class Job {
 
   /** The newest job of a kind (any, where none is given) that runs or has its files still; null without one. */
   static async known(kind, moved = () => {}) {
-    const { jobs } = await get("/api/jobs");
+    const { jobs } = await (await ask("/api/jobs")).json();
     const own = jobs.filter((one) => (!kind || one.kind === kind) && ["running", "done"].includes(one.state)).at(-1);
     if (!own) return null;
     const job = Object.create(Job.prototype);
@@ -52,7 +39,7 @@ export class Job {
     let job = content;
     while (job.state === "running") {
       await new Promise((next) => setTimeout(next, PAUSE));
-      job = await get(this.path);
+      job = await (await ask(this.path)).json();
       moved(job.progress ?? {});
     }
     if (job.state === "cancelled") return null;
@@ -80,16 +67,9 @@ export async function upload(file) {
   if (file.size > LARGEST_MB * 2 ** 20) {
     throw new Failed([{ message: `${file.name}: a file has at most ${LARGEST_MB} MB`, fields: [] }]);
   }
-  let answer;
-  try {
-    answer = await fetch(`/api/uploads?name=${encodeURIComponent(file.name)}`, {
-      method: "POST",
-      headers: { "Content-Type": "application/octet-stream" },
-      body: file,
-    });
-  } catch {
-    throw new Stopped(`${file.name} cannot be read (a folder is no file), or pneutouch studio was stopped.`);
-  }
+  const options = { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: file };
+  const silent = `${file.name} cannot be read (a folder is no file), or pneutouch studio was stopped.`;
+  const answer = await ask(`/api/uploads?name=${encodeURIComponent(file.name)}`, options, silent);
   const content = await answer.json();
   if (answer.status !== 200) throw new Failed(content.problems);
   return content.upload;

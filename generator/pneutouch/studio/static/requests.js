@@ -2,20 +2,30 @@
 
 export class Stopped extends Error {}
 
-export async function post(path, question) {
+const STOPPED =
+  `pneutouch studio does not answer: it was stopped. Start it again with --port ${location.port} and open the address that it prints: ` +
+  "then this page answers again. Its design is in its address.";
+
+/** Like fetch, but with words for a studio that was stopped. The page tries again with the user's next move. */
+export async function ask(path, options, silent = STOPPED) {
   let answer;
   try {
-    answer = await fetch(path, {
-      method: "POST",
-      headers: { "Content-Type": "application/json" },
-      body: JSON.stringify(question),
-    });
+    answer = await fetch(path, options);
   } catch {
-    throw new Stopped("pneutouch studio does not answer: it was stopped. Start it again; this design is in the address.");
+    throw new Stopped(silent);
   }
   if (answer.status === 403) {
-    throw new Stopped("This page belongs to a studio that was stopped. Open the address that the new one printed.");
+    throw new Stopped("This page belongs to a studio that was stopped. Open the address that the new one printed, and this page answers again.");
   }
+  return answer;
+}
+
+export async function post(path, question) {
+  const answer = await ask(path, {
+    method: "POST",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify(question),
+  });
   const type = answer.headers.get("content-type") || "";
   const content = type.includes("json") ? await answer.json() : { problems: [{ message: await answer.text(), fields: [] }] };
   return { status: answer.status, content };
@@ -23,8 +33,9 @@ export async function post(path, question) {
 
 /** Sends questions to `path`; while one question has no answer yet the newest other one waits, and older ones are dropped. */
 export class Line {
-  constructor(path, answered, failed) {
-    Object.assign(this, { path, answered, failed, busy: false, waiting: null });
+  /** `replaced(question)`: the studio gave the place of a question to another one. */
+  constructor(path, answered, failed, replaced = () => {}) {
+    Object.assign(this, { path, answered, failed, replaced, busy: false, waiting: null });
   }
 
   async send(question) {
@@ -38,7 +49,8 @@ export class Line {
       this.waiting = null;
       try {
         const { status, content } = await post(this.path, next);
-        if (status !== 409) this.answered(next, status, content);
+        if (status === 409) this.replaced(next);
+        else this.answered(next, status, content);
       } catch (error) {
         this.failed(next, error);
       }

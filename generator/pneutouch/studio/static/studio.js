@@ -152,6 +152,7 @@ function redraw() {
 }
 
 function quickly(question, status, content) {
+  page.lost = page.owed = false;
   if (status !== 200) {
     if (!same(question, page.state)) return;
     problems(content.problems);
@@ -209,7 +210,22 @@ function solved(question, status, content) {
   document.body.dataset.solved = address.written(question);
 }
 
+/** Another page of this studio took the solid: the page that has the user's attention asks for it again. */
+function replaced(question) {
+  if (!same(question, page.state)) return;
+  page.owed = true;
+  if (document.hasFocus()) parts.later = setTimeout(askAgain, 4 * SETTLED);
+  else report("Another page of this studio took the solid; it is asked again when you come back to this one.");
+}
+
+function askAgain() {
+  if (page.lost) update();
+  else if (page.owed) parts.solved.send(page.state);
+  page.owed = false;
+}
+
 function failed(question, error) {
+  page.lost = error instanceof Stopped;
   report(error instanceof Stopped ? error.message : `The page has a fault: ${error.message}`);
   byId("results").classList.add("stale");
   if (!(error instanceof Stopped)) throw error;
@@ -247,6 +263,8 @@ function listen() {
     else return;
     event.preventDefault();
   });
+  // Back from another page, in which a new studio was opened perhaps.
+  window.addEventListener("focus", askAgain);
   window.addEventListener("hashchange", () => {
     const state = address.read(location.hash);
     if (state && !same(state, page.state)) go(state);
@@ -275,7 +293,7 @@ async function start() {
   parts.form = new Form(declared, changed);
   parts.quick = new Line("/api/quick", quickly, failed);
   parts.intervals = new Line("/api/intervals", completed, failed);
-  parts.solved = new Line("/api/solved", solved, failed);
+  parts.solved = new Line("/api/solved", solved, failed, replaced);
   parts.shapes = new Line("/api/view", (_, status, content) => status === 200 && parts.view.show(content.bodies), failed);
   page.state = address.read(location.hash) ?? { base: declared.first, values: {} };
   byId("base").value = page.state.base;
