@@ -1,5 +1,5 @@
 // Jobs of the studio: started, watched, cancelled; and files given to it.
-import { ask, post } from "./requests.js";
+import { post, send } from "./requests.js";
 
 const PAUSE = 300;
 
@@ -22,7 +22,7 @@ export class Job {
 
   /** The newest job of a kind (any, where none is given) that runs or has its files still; null without one. */
   static async known(kind, moved = () => {}) {
-    const { jobs } = await (await ask("/api/jobs")).json();
+    const { jobs } = await (await send("/api/jobs")).json();
     const own = jobs.filter((one) => (!kind || one.kind === kind) && ["running", "done"].includes(one.state)).at(-1);
     if (!own) return null;
     const job = Object.create(Job.prototype);
@@ -39,7 +39,7 @@ export class Job {
     let job = content;
     while (job.state === "running") {
       await new Promise((next) => setTimeout(next, PAUSE));
-      job = await (await ask(this.path)).json();
+      job = await (await send(this.path)).json();
       moved(job.progress ?? {});
     }
     if (job.state === "cancelled") return null;
@@ -69,7 +69,7 @@ export async function upload(file) {
   }
   const options = { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: file };
   const silent = `${file.name} cannot be read (a folder is no file), or pneutouch studio was stopped.`;
-  const answer = await ask(`/api/uploads?name=${encodeURIComponent(file.name)}`, options, silent);
+  const answer = await send(`/api/uploads?name=${encodeURIComponent(file.name)}`, options, silent);
   const content = await answer.json();
   if (answer.status !== 200) throw new Failed(content.problems);
   return content.upload;

@@ -7,7 +7,7 @@ const STOPPED =
   "then this page answers again. Its design is in its address.";
 
 /** Like fetch, but with words for a studio that was stopped. The page tries again with the user's next move. */
-export async function ask(path, options, silent = STOPPED) {
+export async function send(path, options, silent = STOPPED) {
   let answer;
   try {
     answer = await fetch(path, options);
@@ -21,7 +21,7 @@ export async function ask(path, options, silent = STOPPED) {
 }
 
 export async function post(path, question) {
-  const answer = await ask(path, {
+  const answer = await send(path, {
     method: "POST",
     headers: { "Content-Type": "application/json" },
     body: JSON.stringify(question),

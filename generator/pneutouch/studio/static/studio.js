@@ -7,6 +7,7 @@ import { byId, element } from "./dom.js";
 import { Form } from "./form.js";
 import { listenForFiles } from "./opening.js";
 import { Pressed } from "./pressed.js";
+import { Owed } from "./owed.js";
 import { drawSection } from "./section.js";
 import * as tables from "./tables.js";
 import { View } from "./view.js";
@@ -17,6 +18,7 @@ const SETTLED = 250;
 const KEPT = 500;
 const page = { state: null, past: [], future: [], quick: null, solved: null, pinned: null, from: null, plain: {} };
 const parts = {};
+const owed = new Owed();
 
 /** By the id of an area, the module that fills it when it is first shown. */
 const MODULES = { files: "./files.js" };
@@ -152,7 +154,7 @@ function redraw() {
 }
 
 function quickly(question, status, content) {
-  page.lost = page.owed = false;
+  owed.send = null;
   if (status !== 200) {
     if (!same(question, page.state)) return;
     problems(content.problems);
@@ -210,22 +212,16 @@ function solved(question, status, content) {
   document.body.dataset.solved = address.written(question);
 }
 
-/** Another page of this studio took the solid: the page that has the user's attention asks for it again. */
+/** Another page of this studio took the solid: the page that has the focus requests it again. */
 function replaced(question) {
   if (!same(question, page.state)) return;
-  page.owed = true;
-  if (document.hasFocus()) parts.later = setTimeout(askAgain, 4 * SETTLED);
-  else report("Another page of this studio took the solid; it is asked again when you come back to this one.");
-}
-
-function askAgain() {
-  if (page.lost) update();
-  else if (page.owed) parts.solved.send(page.state);
-  page.owed = false;
+  owed.send = () => parts.solved.send(page.state);
+  if (document.hasFocus()) parts.later = setTimeout(() => owed.settle(), 4 * SETTLED);
+  else report("Another page of this studio took the solid; it answers again when you come back to this page.");
 }
 
 function failed(question, error) {
-  page.lost = error instanceof Stopped;
+  owed.send = error instanceof Stopped ? update : null;
   report(error instanceof Stopped ? error.message : `The page has a fault: ${error.message}`);
   byId("results").classList.add("stale");
   if (!(error instanceof Stopped)) throw error;
@@ -263,8 +259,6 @@ function listen() {
     else return;
     event.preventDefault();
   });
-  // Back from another page, in which a new studio was opened perhaps.
-  window.addEventListener("focus", askAgain);
   window.addEventListener("hashchange", () => {
     const state = address.read(location.hash);
     if (state && !same(state, page.state)) go(state);
