@@ -1,0 +1,46 @@
+"""The studio's pictures of the documentation: ``python -m benchmarks.studio_pictures`` writes docs/studio-*.png."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+from PIL import Image
+from playwright.sync_api import Page
+
+from tests.browser import WITH_WEBGL, Pages, launched, until
+from tests.studio.served import SOLVED, Studio, served
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+
+_COLOURS = 128
+"""Of a picture: enough for a page of few colours, at a third of the bytes."""
+
+SIZES = {"wide": (1400, 900, False), "dark": (1400, 900, True), "narrow": (360, 780, False), "large": (2560, 1440, True)}
+"""Width and height in pixels, and whether in the dark."""
+
+_PRESSED = """(slider => { slider.value = Math.round(0.6 * slider.max); slider.dispatchEvent(new Event('input')); })
+(document.getElementById('press-depth'))"""
+
+
+def write(name: str, page: Page) -> None:
+    """What the window of a page shows, as docs/studio-NAME.png with few colours."""
+    picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+    path = DOCS / f"studio-{name}.png"
+    picture.quantize(_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(path, optimize=True)
+    print(f"wrote docs/{path.name}: {path.stat().st_size} bytes")
+
+
+def main() -> None:
+    with served() as (address, process), launched(*WITH_WEBGL) as browser:
+        studio, pages = Studio(address, process), Pages(browser)
+        for name, (width, height, dark) in SIZES.items():
+            page = studio.open(pages, width=width, height=height, dark=dark)
+            until(page, SOLVED)
+            page.evaluate(_PRESSED)
+            page.wait_for_timeout(1000)
+            write(name, page)
+
+
+if __name__ == "__main__":
+    main()
