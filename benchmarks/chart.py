@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks import full_depth, laws, peers, shares, speed_accuracy, validation, validity
-from benchmarks.pages import speed
+from benchmarks import full_depth, laws, off_axis_calculix, peers, shares, speed_accuracy, validation, validity
+from benchmarks.pages import off_axis_speed, speed
 from benchmarks.pages.speed_chart import chart
 from benchmarks.scenes import SCENES
 from benchmarks.theory import METHODS, Cell, ship_errors, table_s1
@@ -36,8 +36,9 @@ def main() -> None:
     speeds = speed_accuracy.measure()
     paper = next(scene for scene in speeds["scenes"] if scene["scene"] == SCENES[1].name)
     programs = peers.measure(1e-3 * paper["reference"]["limit_pressure_kPa"])
+    off_axis = json.loads(off_axis_calculix.STORED.read_text(encoding="utf-8"))
     map_rows, law_curves = validity.measure(), laws.curves()
-    _write("speed-accuracy.svg", chart(speeds, programs))
+    _write("speed-accuracy.svg", chart(speeds, programs, off_axis))
     _write("validity.svg", validity.draw(map_rows))
     _write("laws.svg", laws.draw(law_curves))
     for name, data in (("speed-accuracy.json", speeds), ("peers.json", programs), ("validity.json", map_rows)):
@@ -46,6 +47,7 @@ def main() -> None:
         *contact_section(cells),
         *full_depth.section(),
         *speed.section(speeds, programs, shares.shares()),
+        *off_axis_speed.section(off_axis),
         *validity.section(map_rows),
         *inflation_section(),
         *laws.section(law_curves),

@@ -111,7 +111,8 @@ def _cost_lines(data: list[dict[str, Any]]) -> list[str]:
     ]
     return [
         "Processor times of both programs, one after the other on one machine, of one thread, CalculiX's of its whole "
-        "process. The last column is the share of its Newton iterations that went to the second pressure, from which Boyle's law follows.",
+        "process. The last column is the share of its Newton iterations that went to the second pressure, from which Boyle's law follows. "
+        "Time at equal error: [accuracy.md](accuracy.md#contact-off-the-axis-time-at-equal-error).",
         "",
         "| scene | M | CalculiX's cells | CalculiX's time over that of the harmonic solid | second pressure |",
         "|---|---|---|---|---|",

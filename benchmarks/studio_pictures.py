@@ -7,7 +7,6 @@ from pathlib import Path
 
 from PIL import Image
 from playwright.sync_api import Page
-
 from tests.browser import WITH_WEBGL, Pages, launched, until
 from tests.studio.served import SOLVED, Studio, served
 
@@ -16,7 +15,12 @@ DOCS = Path(__file__).resolve().parents[1] / "docs"
 _COLOURS = 128
 """Of a picture: enough for a page of few colours, at a third of the bytes."""
 
-SIZES = {"wide": (1400, 900, False), "dark": (1400, 900, True), "narrow": (360, 780, False), "large": (2560, 1440, True)}
+SIZES = {
+    "wide": (1400, 900, False),
+    "dark": (1400, 900, True),
+    "narrow": (360, 780, False),
+    "large": (2560, 1440, True),
+}
 """Width and height in pixels, and whether in the dark."""
 
 _PRESSED = """(slider => { slider.value = Math.round(0.6 * slider.max); slider.dispatchEvent(new Event('input')); })

@@ -37,8 +37,9 @@ def section(data: dict[str, Any], peers: dict[str, Any], shares: dict[str, float
         "",
         "![Error over processor time with the Pareto front](speed-accuracy.svg)",
         "",
-        "Left: marker at the median scene, line up to the worst; hollow markers end the range of more than a quarter of the "
-        "scenes by an event that the reference does not have. Right: the paper's sensor in TangoPlus.",
+        "Upper left: marker at the median scene, line up to the worst; hollow markers end the range of more than a quarter of the "
+        "scenes by an event that the reference does not have. Upper right: the paper's sensor in "
+        "TangoPlus. Lower row: [contact off the axis](#contact-off-the-axis-time-at-equal-error).",
         "",
         "Errors, median / worst scene; times over the default's, median over scenes, processor time of the same run. A scene "
         f"is cut where the method's range ends before {CUT:.0%} of the reference's.",

@@ -6,6 +6,7 @@ import statistics
 from typing import TYPE_CHECKING, Any
 
 from benchmarks.models import AT_ONCE, ATLAS, MODEL_METHODS
+from benchmarks.pages import off_axis_speed
 from benchmarks.peers import WITHIN
 from benchmarks.speed_accuracy import METHODS
 from pneutouch.report.style import ACCENT, FAINT, INK, LINES, MARKERS, MUTED, figure, svg
@@ -38,13 +39,22 @@ def front(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
     return kept
 
 
-def chart(data: dict[str, Any], peers: dict[str, Any]) -> str:
-    """Two log-log panels: sensitivity over the work of both studies, limit pressure over the inflation sweep."""
-    with figure(178, 92) as drawn:
-        left, right = drawn.subplots(1, 2)
+def chart(data: dict[str, Any], peers: dict[str, Any], off_axis: list[dict[str, Any]]) -> str:
+    """Log-log panels: sensitivity over the work of both studies, limit pressure over the inflation sweep, and below them
+    the forces off the axis in scenes of `off_axis_calculix`."""
+    scenes = off_axis_speed.measured(off_axis)
+    with figure(178, 176) as drawn:
+        upper, lower = drawn.subfigures(2, 1)
+        left, right = upper.subplots(1, 2)
         _sensitivity_panel(left, data)
         _limit_panel(right, data, peers)
+        for ax, scene in zip(lower.subplots(1, len(scenes), squeeze=False)[0], scenes, strict=True):
+            off_axis_speed.panel(ax, scene)
         return svg(drawn)
+
+
+_ASIDE = {"8×1": -6, "12×1": -4, "16×1": 4, "24×1": 8}
+"""Points by which the labels of meshes that stand at nearly one cost are moved."""
 
 
 def _front_line(ax: Axes, points: list[tuple[float, float]]) -> None:
@@ -69,12 +79,12 @@ def _sensitivity_panel(ax: Axes, data: dict[str, Any]) -> None:
         ax.plot(cost, middle, marker=marker, color=colour, mfc=face, ms=6 if chosen else 4, ls="", zorder=3)
         label = method.replace("membrane ", "").replace("solid ", "").replace(" x ", "×")
         if membrane or table:
-            up = 0 if membrane else (4 if method == ATLAS else -5)  # the two stand at nearly one cost
-            ax.annotate(
-                label, (cost, middle), xytext=(6, up), textcoords="offset points", va="center", fontsize=6, color=colour
-            )
+            # The atlas and what takes it stand at nearly one cost.
+            place, side = ((-6, 6), "right") if method == ATLAS else ((6, 0 if membrane else -5), "left")
+            words = {"xytext": place, "textcoords": "offset points", "ha": side, "va": "center"}
+            ax.annotate(label, (cost, middle), **words, fontsize=6, color=colour)
         else:
-            aside = 6 if method.endswith(" 24 x 1") else 0  # it stands beside 16 x 1
+            aside = _ASIDE.get(label, 0)
             ax.annotate(
                 label,
                 (cost, worst),
@@ -144,5 +154,5 @@ def _limit_panel(ax: Axes, data: dict[str, Any], peers: dict[str, Any]) -> None:
         ylabel="error of limit pressure, paper's sensor  (%)",
     )
     ax.text(0.02, 100 * WITHIN, "0.5 %", transform=ax.get_yaxis_transform(), fontsize=6, va="bottom", color=MUTED)
-    ax.set_ylim(top=8)
+    ax.set_ylim(top=25)
     ax.legend(loc="upper left", fontsize=6, ncols=1)
