@@ -17,6 +17,7 @@ from tests.export import test_threemf_unsafe as unsafe
 from tests.export.threemf_files import read_strictly
 from tests.studio.access import violations
 from tests.studio.served import Studio, served
+from tests.studio.test_opening import HOSTILE
 
 _DROP = """(files) => {
   const data = new DataTransfer();
@@ -83,7 +84,7 @@ def test_a_dropped_design_file_becomes_the_design_and_a_hostile_one_a_message(pa
 
 
 @pytest.mark.slow
-def test_what_is_built_and_downloaded_is_what_the_command_writes(page, command, tmp_path):
+def test_what_is_built_and_downloaded_is_what_the_command_writes(page, pages, command, tmp_path):
     page.evaluate("location.hash = '#paper-dome&membrane.wall_thickness_mm=1.4'")
     page.get_by_role("button", name="Build", exact=True).click()
     until(page, f"{_STATUS}.includes('step 2 of 9') || {_STATUS}.includes('step 3 of 9')")
@@ -109,7 +110,7 @@ def test_what_is_built_and_downloaded_is_what_the_command_writes(page, command, 
         assert {name.removeprefix("paper-dome/"): archive.read(name) for name in archive.namelist()} == written
     listed = page.locator("#built .groups a").all_text_contents()
     assert sorted(listed) == sorted(written)
-    _sheet_is_shown(page)
+    _sheet_is_shown(page, pages)
     assert violations(page) == []
     # What was built becomes the design again, from the 3MF alone.
     page.evaluate("location.hash = '#soft-pad'")
@@ -120,7 +121,7 @@ def test_what_is_built_and_downloaded_is_what_the_command_writes(page, command, 
     assert page.locator("#built .old").text_content() == ""
 
 
-def _sheet_is_shown(page: Page) -> None:
+def _sheet_is_shown(page: Page, pages: Pages) -> None:
     """The datasheet stands in its frame, its scripts draw, and it reaches nothing of the page."""
     frame = next(each for each in page.frames if "datasheet.html" in each.url)
     frame.wait_for_selector("canvas")
@@ -130,6 +131,22 @@ def _sheet_is_shown(page: Page) -> None:
         "catch { return word; } })"
     )
     assert reached == "refused"
+    # The attempt, and nothing else, is against the policy of the sheet.
+    assert pages.errors
+    assert all("/api/form" in each and "Content Security Policy" in each for each in pages.errors), pages.errors
+    pages.errors.clear()
+
+
+@pytest.mark.slow
+def test_every_unsafe_file_is_a_message_at_the_page_and_the_studio_goes_on(page, own, built, tmp_path):
+    files = {name: tmp_path / f"{name.replace(' ', '-')}.3mf" for name in HOSTILE}
+    for name, path in files.items():
+        HOSTILE[name](built("paper-dome") / "paper-dome.3mf", path)
+        dropped(page, (path.name, path.read_bytes()))
+        until(page, f"document.querySelector('#notice .wrong')?.textContent.startsWith({path.name!r})")
+        assert str(path.parent) not in page.locator("#notice").text_content()
+    assert page.evaluate("location.hash") == "#paper-dome"
+    assert own.process.poll() is None
 
 
 @pytest.mark.slow

@@ -10,23 +10,26 @@ const labelled = (words, input, ...more) => element("label", { class: "named" },
 const text = (more = {}) => element("input", { type: "text", autocomplete: "off", spellcheck: "false", maxlength: 100, ...more });
 const button = (words, onclick, more = {}) => element("button", { type: "button", onclick, ...more }, words);
 
+/** A problem in words; its field is named where the words do not. */
+const worded = ({ message, fields = [] }) => element("p", {}, fields.length && !message.includes(fields[0]) ? `${fields[0]}: ${message}` : message);
+
 /** A card with its heading. */
 function card(id, title, ...content) {
   return element("section", { class: "card", "aria-labelledby": `${id}-title` }, element("h2", { id: `${id}-title` }, title), ...content);
 }
 
-/** A command to be typed, with a button that copies it; `show(words, why)` has `why` where no command does the same. */
+/** A command to be typed, with a button that copies it; hidden where `left` has keys that are left out: no option does that. */
 class Command {
   constructor(id) {
     this.code = element("code", { id });
-    this.copy = button("Copy", () => this.taken(), { "aria-label": "Copy the command" });
-    this.why = element("p", { class: "muted" });
+    this.copy = button("Copy", () => this.taken());
     this.line = element("div", { class: "command" }, element("pre", { tabindex: 0, "aria-label": "Command" }, this.code), this.copy);
-    this.row = element("div", {}, element("p", { class: "muted" }, "The command that does the same:"), this.line, this.why);
+    this.row = element("div", {}, element("p", { class: "muted" }, "The command that does the same:"), this.line);
   }
 
   show(words, left) {
     this.code.textContent = words;
+    this.copy.textContent = "Copy";
     this.row.hidden = left.length > 0;
   }
 
@@ -151,8 +154,7 @@ class Files {
   }
 
   async failed(error) {
-    const lines = (error.problems ?? [{ message: error.message }]).map((each) => element("p", {}, each.message));
-    this.problems.replaceChildren(...lines);
+    this.problems.replaceChildren(...(error.problems ?? [error]).map(worded));
     const other = error.busy ? await Job.known(null).catch(() => null) : null;
     if (!other?.running) return;
     const end = async () => {
@@ -164,11 +166,11 @@ class Files {
   }
 
   busy(on) {
+    const held = [this.begin, this.cancel].includes(document.activeElement);
     this.begin.disabled = on;
     this.progress.hidden = this.cancel.hidden = !on;
-    // What was pressed is gone: the keyboard goes on where the work does.
-    if (on && document.activeElement === document.body) this.cancel.focus();
-    if (!on && document.activeElement === document.body) this.begin.focus();
+    // What was pressed is gone: the keyboard goes on with the other one.
+    if (held) (on ? this.cancel : this.begin).focus();
   }
 
   moved({ done, total, what }) {
@@ -191,7 +193,7 @@ class Files {
     this.replaceRow.hidden = status !== 409;
     this.replace.checked = false;
     if (status !== 200) {
-      this.saveProblems.replaceChildren(...content.problems.map((each) => element("p", {}, each.message)));
+      this.saveProblems.replaceChildren(...content.problems.map(worded));
       if (status === 409) this.replace.focus();
       return;
     }

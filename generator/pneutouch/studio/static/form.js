@@ -29,7 +29,10 @@ const toPlace = (field, value) => {
 const asText = (value) => {
   if (value === null || value === undefined) return "";
   if (Array.isArray(value)) return value.some(Array.isArray) ? JSON.stringify(value) : value.join(", ");
-  return typeof value === "object" ? JSON.stringify(value) : String(value);
+  if (typeof value !== "object") return String(value);
+  // A mix of resins, as a design file has it.
+  const entries = Object.entries(value).filter(([, each]) => each !== null);
+  return `{ ${entries.map(([key, each]) => `${key} = ${JSON.stringify(each)}`).join(", ")} }`;
 };
 
 /** What is typed after --set KEY= : text in quotes where it could be read as something else. */
@@ -37,6 +40,7 @@ function typed(field, text) {
   const plain = text.trim();
   if (plain === "" && field.optional) return null;
   if (field.kind === "numbers") return plain.startsWith("[") ? plain : `[${plain}]`;
+  if (field.kind === "choice" && plain.startsWith("{")) return plain;
   if (field.kind === "text" || field.kind === "choice") {
     return BARE.test(plain) && !RESERVED.includes(plain) ? plain : JSON.stringify(plain);
   }
