@@ -121,7 +121,14 @@ def test_cancelled_it_ends_with_all_it_started_and_leaves_nothing(manner, tmp_pa
             job = await jobs.start("build", {"waits": True, **manner})
             await begun(job)
             assert left(tmp_path)
-            await jobs.cancel(job)
+            ending = asyncio.create_task(jobs.cancel(job))
+            await asyncio.sleep(0)
+            # Not before its process has ended is there room for another.
+            assert (job.state, job.document()["state"]) == ("cancelled", "running")
+            with pytest.raises(ComputationError, match="another job is running"):
+                await jobs.start("build", {})
+            await ending
+            assert job.document()["state"] == "cancelled"
             child = job.progress.get("child")
             while child and not gone(child):
                 await asyncio.sleep(0.005)

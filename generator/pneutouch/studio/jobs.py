@@ -46,10 +46,13 @@ class Job:
         return self.state == "running" or (self.process is not None and self.process.returncode is None)
 
     def document(self) -> Content:
-        """The state of the job for the page; the names and bytes of the files once it is done."""
+        """The state of the job for the page; the names and bytes of the files once it is done.
+
+        One that is cancelled still runs until its process has ended: only then another can begin.
+        """
         files = [{"name": name, "bytes": path.stat().st_size} for name, path in self.files().items()]
-        state = {"job": self.number, "kind": self.kind, "state": self.state, "progress": self.progress}
-        return {**state, "status": self.status, "content": self.content, "files": files}
+        state = {"job": self.number, "kind": self.kind, "state": "running" if self.runs else self.state}
+        return {**state, "progress": self.progress, "status": self.status, "content": self.content, "files": files}
 
     def files(self) -> dict[str, Path]:
         """Files of a job that is done, by their path below its folder; none before."""

@@ -176,7 +176,8 @@ class Files {
   moved({ done, total, what }) {
     if (total) Object.assign(this.progress, { max: total, value: done });
     else this.progress.removeAttribute("value");
-    this.status.textContent = what ? `Building: ${what}, step ${done + 1} of ${total}.` : "Starting.";
+    const stage = what ? `Building: ${what}, step ${done + 1} of ${total}.` : "Starting.";
+    this.status.textContent = this.job?.unwanted ? "Cancelling." : stage;
   }
 
   async save(event) {
