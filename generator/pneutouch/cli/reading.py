@@ -33,10 +33,6 @@ ColumnsOption = Annotated[
 ]
 
 
-_NAMED = 12
-"""Files that are named of a group that does not hold all."""
-
-
 def reading_of(columns: Sequence[str] | None, fields: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """The tables [columns] and [format] that the options state."""
     from pneutouch.workflows.characterize import parse_columns
@@ -55,14 +51,6 @@ def reading_words(columns: Sequence[str] | None, fields: Mapping[str, Any]) -> l
 
 def reading_text(read_as: Sequence[Mapping[str, Any]]) -> str:
     """How files were read whose columns or format were found by their look, as the lines to keep."""
-    from pneutouch.bench.source import campaign_lines
+    from pneutouch.workflows.characterize.reading import reading_text as text
 
-    blocks = []
-    for entry in read_as:
-        files, whole = entry["files"], entry["whole_campaign"]
-        named = files[:1] if whole else files[:_NAMED]
-        more = f" and {len(files) - len(named)} more" if len(files) > len(named) else ""
-        place = "into campaign.toml" if whole else "below the [[runs]] entry of each of these files in campaign.toml"
-        lines = campaign_lines(entry, "" if whole else "runs.")
-        blocks.append(f"note: {', '.join(named)}{more}: read as follows; to keep it, put it {place}\n{lines}")
-    return "\n".join(blocks).rstrip()
+    return text(read_as)

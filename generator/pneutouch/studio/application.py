@@ -14,7 +14,6 @@ from starlette.routing import Route
 
 from pneutouch import __version__
 from pneutouch.catalogue import Library
-from pneutouch.catalogue.cached_library import CachedLibrary
 from pneutouch.errors import ComputationError, PneutouchError
 from pneutouch.studio.answer import Answers
 from pneutouch.studio.body import json_body
@@ -22,6 +21,7 @@ from pneutouch.studio.desk import Desk
 from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
 from pneutouch.studio.form import designs_document, form_document, target_form_document
 from pneutouch.studio.guard import Application, Guard, TooLargeError, too_large
+from pneutouch.studio.library import PageLibrary
 from pneutouch.studio.pages import page_files, respond
 from pneutouch.studio.question import Question
 from pneutouch.studio.solver import Solver, SupersededError
@@ -41,7 +41,7 @@ class Studio:
 
     def __init__(self, bases: dict[str, str], first: str) -> None:
         self._bases, self._first = bases, first
-        self._library = CachedLibrary(Library.default().folders)
+        self._library = PageLibrary(Library.default().folders)
         self.answers = Answers(bases, self._library)
         self._solver, self.desk = Solver(bases), Desk(bases)
         self._one, self._waiting = asyncio.Lock(), 0

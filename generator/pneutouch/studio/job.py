@@ -15,14 +15,21 @@ from pneutouch.errors import ComputationError, PneutouchError
 from pneutouch.holding import STOPS
 from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
 
-KINDS: dict[str, str] = {"build": "building:build_design", "open": "opening:open_file", "select": "search:search"}
+KINDS: dict[str, str] = {
+    "build": "building:build_design",
+    "open": "opening:open_file",
+    "select": "search:search",
+    "recognise": "measuring:recognised",
+    "characterize": "measuring:characterize",
+    "calibrate": "measuring:calibrate",
+}
 """Function by kind of job, ``module:name`` below this package: ``run(arguments, folder, report)`` returns the content.
 
 ``arguments`` is the JSON of the page, with ``files`` (name, path) and ``bases``; ``folder`` is for the files it makes;
 ``report(done, total, what)`` states its progress.
 """
 
-BRIEF = ("open",)
+BRIEF = ("open", "recognise")
 """Kinds that take a moment: one of them may run at the same time as a job of another kind."""
 
 LARGEST_MEMORY = 12 << 30

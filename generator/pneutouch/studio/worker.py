@@ -7,10 +7,10 @@ from collections.abc import Iterable, Mapping
 from typing import Any, BinaryIO
 
 from pneutouch.catalogue import Library
-from pneutouch.catalogue.cached_library import CachedLibrary
 from pneutouch.errors import ComputationError, PneutouchError
 from pneutouch.studio.answer import full_answer
 from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
+from pneutouch.studio.library import PageLibrary
 from pneutouch.studio.question import Question
 
 
@@ -30,7 +30,7 @@ def answered(request: Mapping[str, Any], library: Library) -> dict[str, Any]:
 
 def work(requests: Iterable[bytes], answers: BinaryIO) -> None:
     """Answer every request in turn."""
-    library = CachedLibrary(Library.default().folders)
+    library = PageLibrary(Library.default().folders)
     for line in requests:
         answers.write(json.dumps(answered(json.loads(line), library)).encode() + b"\n")
         answers.flush()

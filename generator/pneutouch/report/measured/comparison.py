@@ -1,6 +1,6 @@
 """What the measured datasheet is made from: groups of runs, each compared with its prediction."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from pneutouch.bench.record import MeasuredCurve
@@ -23,6 +23,7 @@ class GroupComparison:
         predicted: Predicted figures by key of `bench.figure.FIGURES`, with the ends of their 95 % band where known:
             value, low, high.
         why: Why there is no prediction; empty where there is one.
+        published: What the paper measured of this sensor, by key of `bench.figure.FIGURES`.
     """
 
     group: RunGroup
@@ -31,6 +32,12 @@ class GroupComparison:
     uncertainty: UncertaintyRecord
     predicted: dict[str, tuple[float, float | None, float | None]]
     why: str = ""
+    published: dict[str, float] = field(default_factory=dict)
+
+    def relative_band(self, figure: str) -> tuple[float, float] | None:
+        """Ends of a figure's predicted band over its value; None where it has none."""
+        value, low, high = self.predicted.get(figure, (0.0, None, None))
+        return None if not value or low is None or high is None else (low / value, high / value)
 
 
 @dataclass(frozen=True, slots=True)

@@ -149,7 +149,7 @@ def _curves(panels: Sequence[Panel], over: _Axes, labels: tuple[str, str]) -> Pl
     drawn = [b for p in panels for b in p.comparisons if b.group.of_kind("steps")]
     pressures_kPa = sorted({b.group.key.driving_pressure_kPa for b in drawn})
     legend: dict[str, Artist] = {**key(panels), **lines_of(panels, pressures_kPa)}
-    if any(b.state is not None and _ends(b, over.figure) for b in drawn):
+    if any(b.state is not None and b.relative_band(over.figure) for b in drawn):
         legend |= band_of()
     return multiples(panels, lambda ax, panel: _draw(ax, panel, over), labels, legend)
 
@@ -178,14 +178,8 @@ def _predicted(
     x, y = (values[kept] for values in over.predicted(state))
     color, line = panel.tone(comparison)
     ax.plot(x, y, color=color, ls=line, lw=1.0, zorder=3)
-    ends = _ends(comparison, over.figure)
+    ends = comparison.relative_band(over.figure)
     if shade and ends:
         ax.fill_between(x, ends[0] * y, ends[1] * y, fc=FAINT, alpha=0.45, ec="none", zorder=1)
         for end in ends:
             ax.plot(x, end * y, color=color, ls=LINES[0], lw=0.35, zorder=2)
-
-
-def _ends(comparison: GroupComparison, figure: str) -> tuple[float, float] | None:
-    """Ends of a figure's band over its value."""
-    value, low, high = comparison.predicted.get(figure, (0.0, None, None))
-    return None if not value or low is None or high is None else (low / value, high / value)

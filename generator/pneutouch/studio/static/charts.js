@@ -5,7 +5,7 @@ import { byId, colour, short } from "./dom.js";
 const HEIGHT = 270;
 const drawn = new Map();
 
-const series = (label, stroke, more = {}) => ({
+export const series = (label, stroke, more = {}) => ({
   label,
   stroke,
   width: 2,
@@ -57,7 +57,7 @@ function markers(host) {
   };
 }
 
-function show(id, across, up, lines, data, { bands = [], marks = [], points = null } = {}) {
+export function show(id, across, up, lines, data, { bands = [], marks = [], points = null, legend = true } = {}) {
   const host = byId(id);
   const key = JSON.stringify([lines.map((one) => [one.label, one.stroke, one.dash]), bands.length]);
   const known = drawn.get(host);
@@ -78,7 +78,7 @@ function show(id, across, up, lines, data, { bands = [], marks = [], points = nu
     axes: [axis(across), axis(up, { size: 48 })],
     cursor: { drag: { x: false, y: false } },
     hooks: { draw: [markers(host)] },
-    legend: { live: true },
+    legend: { show: legend, live: true },
   };
   if (points) options.series[points].points = { show: true, size: 8 };
   entry.chart = new uPlot(options, data, host);
@@ -87,7 +87,7 @@ function show(id, across, up, lines, data, { bands = [], marks = [], points = nu
   canvas.setAttribute("aria-label", `${up} over ${across}: ${lines.map((one) => one.label).join(", ")}`);
 }
 
-const tone = (number) => colour(`series-${1 + (number % 7)}`);
+export const tone = (number) => colour(`series-${1 + (number % 7)}`);
 
 /** Sensitivity over driving pressure: this design with its band, its states, every resin, and a pinned design. */
 export function drawSensitivity(answer, pinned) {
@@ -169,6 +169,11 @@ export function drawInflation(answer) {
 
 export function resized() {
   for (const [host, { chart }] of drawn) {
+    if (!host.isConnected) {
+      chart.destroy();
+      drawn.delete(host);
+      continue;
+    }
     const width = host.clientWidth;
     if (width && width !== chart.width) chart.setSize({ width, height: HEIGHT });
   }

@@ -32,7 +32,7 @@ from pneutouch.workflows.characterize import CampaignData, Progress, Reading, an
 
 @dataclass(frozen=True, slots=True)
 class CalibrationOptions:
-    """Options of a calibration: see the command."""
+    """Options of a calibration: see the command. ``into`` holds ``calibrations``; None: the user's folder."""
 
     data: Path
     design: str | DesignSource | None
@@ -43,6 +43,12 @@ class CalibrationOptions:
     save: str | None
     replace: bool
     out: Path
+    into: Path | None = None
+
+    @property
+    def root(self) -> Path:
+        """The folder that the calibration goes into, below ``calibrations``."""
+        return user_folder() if self.into is None else self.into
 
 
 @dataclass(frozen=True)
@@ -78,7 +84,7 @@ def run_calibration(
     """
     library = library or Library.default()
     if options.save is not None:
-        check_place(options.save, user_folder())
+        check_place(options.save, options.root)
     loaded = load_curves(options.data, progress=progress, reading=reading)
     design = options.design or design_of(loaded.campaign, loaded.folder)
     if design is None:
@@ -139,21 +145,21 @@ def _write(
             raise InputError(problem, key=error.key, remedy=error.remedy) from None
     written = [write_calibration(calibration, options.out, source, unsaved)]
     if not unsaved:
-        written.append(_saved(calibration, name, source, replace=options.replace))
+        written.append(_saved(calibration, name, options.root, source, replace=options.replace))
     return written, unsaved
 
 
 def _check_places(options: CalibrationOptions, name: str, folder: Path, source: CampaignSource) -> None:
     """Raise InputError, before the fit, where its output or its calibration could not be written."""
     check_writable(folder)
-    path = check_place(name, user_folder())
+    path = check_place(name, options.root)
     # An unknown parameter is refused by the fit, before it computes.
     if not options.replace and set(options.names) <= set(NAMES):
         check_unlike(path, source.digest, options.names, options.hold_out)
 
 
-def _saved(calibration: Calibration, name: str, source: CampaignSource, *, replace: bool) -> Path:
-    saved = prepare(calibration, name, user_folder(), source, replace=replace)
+def _saved(calibration: Calibration, name: str, root: Path, source: CampaignSource, *, replace: bool) -> Path:
+    saved = prepare(calibration, name, root, source, replace=replace)
     save(saved)
     return saved.path
 
@@ -165,7 +171,7 @@ def save_calibration(outcome: CalibrationOutcome, name: str | None = None, *, re
     """
     calibration = outcome.calibration
     name = name or outcome.document["calibration"] or default_name(calibration.scene.name, calibration.sensor)
-    return _saved(calibration, name, outcome.source, replace=replace)
+    return _saved(calibration, name, user_folder(), outcome.source, replace=replace)
 
 
 def _named(design: str | DesignSource) -> str:

@@ -1,6 +1,6 @@
 """Measured data to figures, compared with the predicted ones."""
 
-from pneutouch.workflows.characterize.load import CampaignData, Progress, load_curves
+from pneutouch.workflows.characterize.load import CampaignData, Progress, load_curves, recognise
 from pneutouch.workflows.characterize.predicted import answers
 from pneutouch.workflows.characterize.reading import Reading, parse_columns, read_as
 from pneutouch.workflows.characterize.run import CharacterizationResult, characterize, sound
@@ -15,5 +15,6 @@ __all__ = [
     "load_curves",
     "parse_columns",
     "read_as",
+    "recognise",
     "sound",
 ]

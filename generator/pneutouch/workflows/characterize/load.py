@@ -143,12 +143,7 @@ def _size(path: Path) -> int:
 def _read(
     run: CampaignRun, campaign: Campaign, folder: Path, gathered: _Gathered, progress: Callable[[float], None]
 ) -> None:
-    path = folder / run.file
-    if not is_file(path):
-        raise InputError("no such file", file=path, remedy=f"the campaign names it as {run.label}")
-    channels = {"injection": INJECTION, "leak": LEAK}.get(run.kind, PLATE)
-    columns, written = campaign.reading(run)
-    source = gathered.sources[run.file] = identify(path, columns, channels, written)
+    source = gathered.sources[run.file] = recognise(run, campaign, folder)
     if run.kind == "injection":
         gathered.injections.append((run, *read_injection(source)))
         return
@@ -159,6 +154,16 @@ def _read(
         gathered.leaks.append((run, *leak_rate(blocks)))
     else:
         gathered.curves.append(curve_of(run, blocks, campaign.rig))
+
+
+def recognise(run: CampaignRun, campaign: Campaign, folder: Path) -> MeasuredFile:
+    """The file of a run with its columns; no sample is read. Raises InputError where one is not found."""
+    path = folder / run.file
+    if not is_file(path):
+        raise InputError("no such file", file=path, remedy=f"the campaign names it as {run.label}")
+    channels = {"injection": INJECTION, "leak": LEAK}.get(run.kind, PLATE)
+    columns, written = campaign.reading(run)
+    return identify(path, columns, channels, written)
 
 
 def _single(data: Path, scene: ResolvedDesign | None) -> Campaign:

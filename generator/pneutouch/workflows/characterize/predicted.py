@@ -1,5 +1,6 @@
 """The prediction for each group of runs, and the plausibility of the files against it."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -11,6 +12,7 @@ from pneutouch.catalogue import DesignSource, Library
 from pneutouch.errors import PneutouchError
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.evaluation.read_at import figures_at
+from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
 from pneutouch.report.measured import GroupComparison
@@ -95,7 +97,15 @@ def compared(group: RunGroup, answer: StatePrediction) -> GroupComparison:
     if group.key.age_days > 0:
         return GroupComparison(group, label, None, {}, {}, "predictions are of fresh prints; see aged predictions")
     uncertainty = answer.evaluation.uncertainty[answer.place]
-    return GroupComparison(group, label, state, uncertainty, _figures(state, uncertainty, depths_of(group)))
+    predicted = _figures(state, uncertainty, depths_of(group))
+    return GroupComparison(group, label, state, uncertainty, predicted, published=_published(answer.evaluation, group))
+
+
+def _published(evaluation: Evaluation, group: RunGroup) -> dict[str, float]:
+    """The sensitivity in Table S1, kPa/N, where the sensor is the paper's and was measured at this driving pressure."""
+    known = published_sensitivities(evaluation.sensor, evaluation.scene.membrane_material)
+    at = [value for pressure, value in known.items() if math.isclose(pressure, group.key.driving_pressure_kPa)]
+    return {"sensitivity_kPa_per_N": at[0]} if at else {}
 
 
 def depths_of(group: RunGroup) -> list[list[Array]]:

@@ -15,6 +15,9 @@ Reading = Mapping[str, Mapping[str, Any]]
 
 _CHANNELS = "|".join(UNITS)
 _NEXT = re.compile(rf",(?=\s*(?:{_CHANNELS})\s*=)")
+_NAMED = 12
+"""Files that are named of a group that does not hold all."""
+
 _FORM = "write channel=NAME or channel=NAME:UNIT, such as force=Load or force=Load:N; -NAME turns the sign"
 
 
@@ -73,3 +76,16 @@ def read_as(sources: Mapping[str, MeasuredFile], runs: int) -> list[dict[str, An
         if source.guessed:
             alike.setdefault(campaign_lines(source.content), {"files": [], **source.content})["files"].append(file)
     return [{**entry, "whole_campaign": len(entry["files"]) == runs} for entry in alike.values()]
+
+
+def reading_text(read_as: Sequence[Mapping[str, Any]]) -> str:
+    """How files were read whose columns or format were found by their look, as the lines to keep."""
+    blocks = []
+    for entry in read_as:
+        files, whole = entry["files"], entry["whole_campaign"]
+        named = files[:1] if whole else files[:_NAMED]
+        more = f" and {len(files) - len(named)} more" if len(files) > len(named) else ""
+        place = "into campaign.toml" if whole else "below the [[runs]] entry of each of these files in campaign.toml"
+        lines = campaign_lines(entry, "" if whole else "runs.")
+        blocks.append(f"note: {', '.join(named)}{more}: read as follows; to keep it, put it {place}\n{lines}")
+    return "\n".join(blocks).rstrip()

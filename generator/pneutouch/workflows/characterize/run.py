@@ -2,13 +2,14 @@
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from pneutouch.bench.outliers import outliers
 from pneutouch.bench.plausible import check_plausible
 from pneutouch.bench.record import MeasuredCurve
+from pneutouch.bench.source import MeasuredFile
 from pneutouch.bench.summary import summarize
 from pneutouch.bench.trace import Trace
 from pneutouch.catalogue import DesignSource, Library, load_scene
@@ -39,13 +40,14 @@ EVIDENCE = ("doubtful", "all", "none")
 @dataclass(frozen=True)
 class CharacterizationResult:
     """What became of a campaign: the sheet's content, the folder written, the traces of the runs by file, how the files
-    were read (`reading.read_as`), and the design as a command takes it."""
+    were read (`reading.read_as`), the design as a command takes it, and the files with their columns."""
 
     measured: CampaignReport
     traces: Mapping[str, Trace]
     name: str
     read_as: Sequence[Mapping[str, Any]] = ()
     design_given: str = ""
+    sources: Mapping[str, MeasuredFile] = field(default_factory=dict)
 
     @property
     def fitted(self) -> bool:
@@ -128,6 +130,7 @@ def characterize(
         f"{_stem(data)}-measured",
         read_as(loaded.sources, len(loaded.campaign.runs)),
         name.name if isinstance(name, DesignSource) else name,
+        loaded.sources,
     )
 
 

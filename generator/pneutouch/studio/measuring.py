@@ -1,0 +1,282 @@
+"""Jobs on measured runs: their columns recognised, their figures, the model fitted to a sensor."""
+
+import contextlib
+import shutil
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, get_args
+
+from pneutouch.bench.calibrate import NAMES, USUAL
+from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
+from pneutouch.errors import ComputationError, InputError, PneutouchError
+from pneutouch.evaluation.resins import resin_of
+from pneutouch.spec.campaign import Campaign, CampaignRun, RunKind
+from pneutouch.spec.campaign_file import CAMPAIGN, campaign_of
+from pneutouch.studio.campaign import placed, write_runs
+from pneutouch.studio.job import Report
+from pneutouch.studio.measured import groups_document, head_document, run_document, runs_document
+from pneutouch.studio.measuring_words import calibrate_words, characterize_words
+from pneutouch.studio.question import Question
+from pneutouch.workflows.calibrate.run import CalibrationOptions, CalibrationOutcome, run_calibration
+from pneutouch.workflows.characterize import Reading, load_curves, parse_columns, read_as, recognise
+from pneutouch.workflows.characterize.reading import reading_text, with_reading
+from pneutouch.workflows.characterize.run import characterize as run_characterize
+from pneutouch.workflows.characterize.run import write
+
+_NO_RUNS = (".toml", ".json", ".md", ".html", ".pdf", ".svg", ".png", ".zip", ".3mf", ".step", ".stl", ".glb")
+"""Endings of files that lie next to runs and are none."""
+
+KINDS = list(get_args(RunKind))
+"""Kinds of runs that a campaign may list."""
+
+_SENSOR = "sensor-1"
+"""Name of the specimen of runs that came without a campaign file, until the user gives another."""
+
+_CHECK, _READ = "finding columns, files", "reading runs, MB"
+
+
+@dataclass(frozen=True)
+class _Given:
+    """What a job was given: the campaign's folder (relative to the working folder), its files, whether a campaign file
+    came with them, the page's design (None: the campaign's) and how files are read."""
+
+    data: Path
+    files: list[str]
+    planned: bool
+    question: Question | None
+    source: DesignSource | None
+    reading: Reading
+    library: Library
+    root: Path
+
+    @property
+    def run_files(self) -> list[str]:
+        """Files that may be runs."""
+        return [file for file in self.files if not file.lower().endswith(_NO_RUNS)]
+
+
+def recognised(arguments: Mapping[str, Any], folder: Path, report: Report) -> dict[str, Any]:
+    """The runs of the files: as their campaign file lists them, with the columns found; else proposed, each read as a
+    steps run at the driving pressure that it shows before contact.
+
+    Raises InputError where the campaign is wrong or nothing may be a run.
+    """
+    with _given(arguments, folder) as given:
+        if given.planned:
+            return _planned(given, report)
+        if not given.run_files:
+            raise InputError("none of the files can be a run", remedy="give the files that the rig recorded")
+        if given.source is None:
+            raise InputError(f"no {CAMPAIGN} names the design", remedy="compare with the page's design")
+        return _proposed(given, given.source, report)
+
+
+def _planned(given: _Given, report: Report) -> dict[str, Any]:
+    campaign, folder = campaign_of(given.data)
+    read = with_reading(campaign, given.reading)
+    runs, sources = [], {}
+    for place, run in enumerate(read.runs):
+        report(place, len(read.runs), _CHECK)
+        try:
+            sources[run.file] = recognise(run, read, folder)
+            runs.append(run_document(run, sources[run.file]))
+        except PneutouchError as error:
+            runs.append(run_document(run, None, str(error)))
+    named = {run.file for run in campaign.runs}
+    return {
+        **_answer(campaign, runs),
+        "planned": True,
+        "read_as": reading_text(read_as(sources, len(read.runs))),
+        "unused": [file for file in given.run_files if file not in named],
+    }
+
+
+def _proposed(given: _Given, source: DesignSource, report: Report) -> dict[str, Any]:
+    scene = load_scene(source, {}, given.library)
+    resin = resin_of(scene)
+    runs, sources, seen = [], {}, Counter[float]()
+    for place, file in enumerate(given.run_files):
+        report(place, len(given.run_files), _CHECK)
+        run, problem = CampaignRun(file=file, sensor=_SENSOR, resin=resin), None
+        try:
+            loaded = load_curves(given.data / file, scene, reading=given.reading)
+            sources[file] = loaded.sources[Path(file).name]
+            read_kPa = loaded.curves[0].run.driving_pressure_kPa
+            run = run.model_copy(update={"driving_pressure_kPa": read_kPa})
+        except PneutouchError as error:
+            problem = str(error).removeprefix(f"{given.data / file}: none of its files can be read\n")
+        seen[run.driving_pressure_kPa] += 1
+        run = run.model_copy(update={"run": seen[run.driving_pressure_kPa]})
+        runs.append(run_document(run, sources.get(file), problem))
+    campaign = Campaign.model_construct(title="", design=None, assignments=[], simulated=False)
+    return {
+        **_answer(campaign, runs),
+        "planned": False,
+        "read_as": reading_text(read_as(sources, len(given.run_files))),
+        "unused": [file for file in given.files if file not in given.run_files],
+    }
+
+
+def _answer(campaign: Campaign, runs: list[dict[str, Any]]) -> dict[str, Any]:
+    named = {"design": campaign.design, "assignments": campaign.assignments}
+    return {"title": campaign.title, "simulated": campaign.simulated, **named, "kinds": KINDS, "runs": runs}
+
+
+def characterize(arguments: Mapping[str, Any], folder: Path, report: Report) -> dict[str, Any]:
+    """What the command ``characterize`` does with the campaign; the measured sheet and its files go into ``folder``.
+
+    ``document`` is what it prints as JSON, without the folder. Raises InputError as it does.
+    """
+    with _given(arguments, folder) as given:
+        _plan(given, arguments)
+        outcome = run_characterize(
+            given.data,
+            given.source,
+            library=given.library,
+            progress=lambda done, total: report(done, total, _READ),
+            reading=given.reading,
+        )
+        report(0, 0, "drawing the measured sheet")
+        written = write(outcome, folder)
+        if not given.planned:
+            shutil.copyfile(given.data / CAMPAIGN, folder / CAMPAIGN)
+        runs = runs_document(outcome)
+        measured = outcome.measured
+        words = characterize_words(given.data, given.question, arguments)
+    return {
+        "document": outcome.document,
+        **head_document(measured),
+        "runs": runs,
+        "groups": groups_document(measured),
+        "read_as": reading_text(outcome.read_as),
+        "sheet": f"{written.name}/measured-datasheet.html",
+        "sensors": _sensors(measured.campaign) if outcome.fitted else [],
+        "parameters": [{"name": name, "usual": name in USUAL} for name in NAMES],
+        **words,
+    }
+
+
+def _sensors(campaign: Campaign) -> list[dict[str, Any]]:
+    """Sensors that can be fitted, with the driving pressures of their steps runs, kPa."""
+    pressures: dict[str, set[float]] = {}
+    for run in campaign.runs:
+        if run.kind in ("steps", "injection"):
+            held = pressures.setdefault(run.sensor, set())
+            held |= {run.driving_pressure_kPa} if run.kind == "steps" else set()
+    return [{"name": name, "driving_pressures_kPa": sorted(held)} for name, held in sorted(pressures.items())]
+
+
+def calibrate(arguments: Mapping[str, Any], folder: Path, report: Report) -> dict[str, Any]:
+    """What the command ``calibrate`` does with the campaign; its files go into ``folder``.
+
+    Without ``save`` the calibration goes there as well, and nothing into the user's folder. ``document`` is what it
+    prints as JSON, ``opens`` the design with a saved calibration as the page opens it. Raises InputError as it
+    does.
+    """
+    save = _text(arguments, "save")
+    with _given(arguments, folder) as given:
+        _plan(given, arguments)
+        options = CalibrationOptions(
+            given.data,
+            given.source,
+            _text(arguments, "sensor"),
+            tuple(_texts(arguments, "fit")) or USUAL,
+            tuple(_numbers(arguments, "hold_out_kPa")),
+            arguments.get("priors") is not False,
+            save,
+            arguments.get("replace") is True,
+            folder,
+            folder if save is None else given.root,
+        )
+        outcome = run_calibration(
+            options, given.library, lambda done, total: report(done, total, _READ), reading=given.reading
+        )
+        document = outcome.document
+        words = calibrate_words(given.data, given.question, arguments, options)
+    paths = [Path(path) for path in document["written"]]
+    there = [path for path in paths if path.is_relative_to(folder)]
+    return {
+        "document": {**document, "written": [str(path.relative_to(folder)) for path in there]},
+        "chart": f"{there[0].relative_to(folder)}/residuals.svg",
+        "saved": str(paths[-1]) if save is not None else None,
+        "opens": None if save is None else _opens(given, outcome, arguments["bases"]),
+        **words,
+    }
+
+
+def _opens(given: _Given, outcome: CalibrationOutcome, bases: Mapping[str, str]) -> dict[str, Any] | None:
+    """Base and values of the calibrated design, where the page can open it."""
+    named = {"calibration": outcome.document["calibration"]}
+    if given.question is not None:
+        return {"base": given.question.base, "values": {**given.question.values, **named}}
+    if outcome.design_given not in bases:
+        return None
+    values = dict(text.split("=", 1) for text in outcome.assignments)
+    return {"base": outcome.design_given, "values": {**values, **named}}
+
+
+@contextlib.contextmanager
+def _given(arguments: Mapping[str, Any], folder: Path) -> Iterator[_Given]:
+    """The campaign's folder, relative to the working folder, so that messages name files as the user does.
+
+    Errors are given with file and key in their words. Raises InputError for what is none of the page's.
+    """
+    library, root = Library.default(), user_folder().absolute()
+    place = folder.absolute().parent / "input"
+    place.mkdir(exist_ok=True)
+    try:
+        data, files = placed(arguments["files"], _texts(arguments, "paths"), place)
+        given_design = arguments.get("design")
+        question = None if given_design is None else Question.of(given_design)
+        source = None if question is None else question.source(arguments["bases"], library)
+        planned = CAMPAIGN in files
+        with contextlib.chdir(place):
+            yield _Given(data, files, planned, question, source, _reading(arguments), library, root)
+    except InputError as error:
+        raise InputError(str(error)) from None
+    except PneutouchError as error:
+        raise ComputationError(str(error)) from None
+
+
+def _plan(given: _Given, arguments: Mapping[str, Any]) -> None:
+    """Write the campaign file of runs that came without one."""
+    if given.planned:
+        return
+    runs = arguments.get("runs")
+    if not isinstance(runs, list) or not runs or not all(isinstance(run, dict) for run in runs):
+        raise InputError("no runs are stated", key="runs", remedy="choose the files that are runs")
+    write_runs(given.data, runs)
+
+
+def _reading(arguments: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """The tables [columns] and [format] that the page states, as the options of the command do. Raises InputError."""
+    columns, stated = arguments.get("columns") or "", arguments.get("format") or {}
+    if not isinstance(columns, str) or not isinstance(stated, dict):
+        raise InputError("columns is a text and format is an object")
+    known = {key: value for key, value in stated.items() if value not in (None, "")}
+    if isinstance(known.get("skip_rows"), str) and known["skip_rows"].isdecimal():
+        known["skip_rows"] = int(known["skip_rows"])
+    return {"columns": parse_columns([columns] if columns.strip() else []), "format": known}
+
+
+def _text(arguments: Mapping[str, Any], key: str) -> str | None:
+    value = arguments.get(key)
+    if value is not None and not isinstance(value, str):
+        raise InputError("must be a text", key=key)
+    return value
+
+
+def _texts(arguments: Mapping[str, Any], key: str) -> list[str]:
+    values = arguments.get(key) or []
+    if not isinstance(values, list) or not all(isinstance(value, str) for value in values):
+        raise InputError("must be a list of texts", key=key)
+    return values
+
+
+def _numbers(arguments: Mapping[str, Any], key: str) -> list[float]:
+    values = arguments.get(key) or []
+    if not isinstance(values, list) or not all(type(value) in (int, float) for value in values):
+        raise InputError("must be a list of numbers", key=key)
+    return [float(value) for value in values]
