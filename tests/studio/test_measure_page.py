@@ -97,9 +97,11 @@ def test_figures_calibration_and_design_are_those_of_the_commands(campaign, own,
     did(page, "measured")
     document = json.loads(command("characterize", NAME, "--design", "paper-dome", "--json").stdout)
     for place, group in enumerate(document["groups"]):
-        rows = cells(page, f"section[aria-labelledby=measured-title-{place}] table.figures")
-        assert len(rows) == len(group["figures"])
-        for row, figure in zip(rows, group["figures"].values(), strict=True):
+        table = f"section[aria-labelledby=measured-title-{place}] table.figures"
+        keys = page.evaluate(f"[...document.querySelectorAll('{table} tbody tr')].map(e => e.dataset.key)")
+        assert sorted(keys) == sorted(group["figures"])
+        for row, key in zip(cells(page, table), keys, strict=True):
+            figure = group["figures"][key]
             assert float(row[1]) == short(figure["value"])
             assert row[2] == "–" or ends(row[2]) == [short(figure["low"]), short(figure["high"])]
             predicted = figure.get("predicted")

@@ -91,14 +91,16 @@ class Measure {
   }
 
   listen() {
+    // Wherever files are dropped while this area is shown, they are runs.
     const over = (event) => {
+      if (document.body.dataset.area !== "measure" || !event.dataTransfer?.types.includes("Files")) return false;
       event.preventDefault();
-      event.stopPropagation();
       this.drop.classList.toggle("over", event.type === "dragover");
+      return true;
     };
-    for (const kind of ["dragenter", "dragover", "dragleave"]) this.root.addEventListener(kind, over);
-    this.root.addEventListener("drop", (event) => {
-      over(event);
+    for (const kind of ["dragenter", "dragover", "dragleave"]) document.addEventListener(kind, over);
+    document.addEventListener("drop", (event) => {
+      if (!over(event)) return;
       const files = dropped(event.dataTransfer);
       this.take(() => files);
     });

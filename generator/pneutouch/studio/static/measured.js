@@ -19,7 +19,7 @@ function figureRow(figure) {
     predicted ? range(predicted) : "",
     element("span", { class: kind }, word),
     figure.published === undefined ? "" : short(figure.published),
-  ]);
+  ], { "data-key": figure.key });
 }
 
 const HEAD = ["figure", "measured", "95 % interval", "predicted", "95 % band", "agrees", "paper"];
