@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
+import tomllib
 from itertools import product
 
 import pytest
@@ -71,11 +72,12 @@ def test_every_card_is_its_design_with_the_figures_of_the_table(found, library):
         whole = validate(DesignFile, assigned(DesignFile(), design["set"], "my-sensor"), "a test")
         assert opened(card["state"], library) == whole
         rows = {what: (value, added) for what, value, added in card["rows"]}
-        value, interval = rows["Sensitivity at 12 kPa"]
+        value, interval = rows["Sensitivity"]
         assert value == f"{design['sensitivity_kPa_per_N']:.3f} kPa/N"
         low_kPa_per_N, high_kPa_per_N = (float(word) for word in interval.split(" (")[0].split(" to "))
         product_of_ends = low_kPa_per_N * high_kPa_per_N
         assert product_of_ends == pytest.approx(design["sensitivity_kPa_per_N"] ** 2, rel=0.02)
+        assert rows["Driving pressure"][0] == f"{design['driving_pressure_kPa']:.2f} kPa"
         assert rows["Force range"][0] == f"0 to {design['force_range_N'][1]:.2f} N"
         assert rows["Diameter"][0] == f"{design['footprint_mm']:.1f} mm"
         assert (card["kind"] == "runner-up") is design["runner_up"]
@@ -253,6 +255,8 @@ def test_the_form_of_a_target_is_made_of_the_declared_fields(client):
                 declared.help,
             )
     assert not fields
+    example = Target.model_validate(tomllib.loads((ROOT / "docs/examples/fingertip.toml").read_text()))
+    assert target_of(Question("paper-dome", answer["example"]), {}) == example
 
 
 def test_a_target_is_a_job_of_the_studio():

@@ -51,7 +51,8 @@ def _figures(selection: SelectionRun, choice: Candidate) -> list[FigureRow]:
     low_kPa_per_N, high_kPa_per_N = sensitivity_kPa_per_N * np.exp([-width, width])
     interval = f"{low_kPa_per_N:.2f} to {high_kPa_per_N:.2f} (k = 2)" if np.isfinite(width) else "interval not known"
     rows = [
-        (f"Sensitivity at {at_kPa:.4g} kPa", f"{sensitivity_kPa_per_N:.3f} kPa/N", interval),
+        ("Sensitivity", f"{sensitivity_kPa_per_N:.3f} kPa/N", interval),
+        ("Driving pressure", f"{at_kPa:.2f} kPa", "gauge, before contact"),
         ("Force range", f"0 to {float(choice.pool.force[0]):.2f} N", f"ends with {choice.ends_with}"),
         ("Stiffness", f"{float(lines.stiffness[0]):.3g} N/mm", ""),
     ]
@@ -72,7 +73,7 @@ def _sizes(selection: SelectionRun, choice: Candidate) -> list[FigureRow]:
 def _limits(selection: SelectionRun, choice: Candidate, rank: int | None) -> list[FigureRow]:
     span = [f"{end:.2f}" if np.isfinite(end) else "none" for end in choice.span]
     rows = [
-        ("Rated pressure", f"{choice.rated / KPA:.1f} kPa", f"{span[0]} kPa/N at 0 kPa, {span[1]} there"),
+        ("Rated pressure", f"{choice.rated / KPA:.1f} kPa", f"S {span[0]} to {span[1]} kPa/N from 0 to it"),
         ("Binds", choice.binding, f"margin {100 * choice.margins[choice.binding]:+.0f} %"),
     ]
     if choice.contact is not None:

@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from pneutouch.catalogue import Library
+from pneutouch.catalogue.examples import examples
 from pneutouch.catalogue.listing import listing
 from pneutouch.errors import PneutouchError
 from pneutouch.spec.contact import SIZES
@@ -16,6 +17,7 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import Declaration, declarations, table_of
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
+from pneutouch.spec.read import assignments, read_toml
 from pneutouch.spec.target import Target
 
 _TWICE = ("contact.plate_diameter_mm",)
@@ -38,7 +40,16 @@ def target_form_document(library: Library, bases: Mapping[str, str]) -> dict[str
     groups = _groups(Target, library)
     for field in (field for group in groups for field in group["fields"] if field["name"] == "setting.base"):
         field["options"] = designs_document(bases)
-    return {"groups": groups}
+    return {"groups": groups, "example": _example_target()}
+
+
+def _example_target() -> dict[str, str]:
+    """The target of the shipped examples by ``table.key``, as the form sends it."""
+    example = next(each for each in examples().values() if each.kind == "target")
+    tables = read_toml(example.path)
+    content = {f"{table}.{key}": value for table, fields in tables.items() for key, value in fields.items()}
+    pairs = (text.partition("=") for text in assignments(content))
+    return {name: value for name, _, value in pairs}
 
 
 def _printers(library: Library) -> dict[str, list[str]]:

@@ -90,22 +90,28 @@ def _selected(target: Target, page: _Page, library: Library, report: Report) -> 
 def _cards(run: SelectionRun, page: _Page) -> list[dict[str, Any]]:
     """The designs by rank; where there are none, what is nearest and what fits without one of the requirements."""
 
-    def card(choice: Candidate, kind: str, rank: int | None = None, note: str = "") -> dict[str, Any]:
-        state = page.state(run.base, run.assignments(choice))
-        command = None if rank is None else page.command(rank)
-        added = {"kind": kind, "note": note, "passes": rank in run.judged, "state": state, "command": command}
-        return {**candidate_card(run, choice, rank), **added}
+    def card(choice: Candidate, kind: str, label: str, *, rank: int | None = None, note: str = "") -> dict[str, Any]:
+        return {
+            **candidate_card(run, choice, rank),
+            "kind": kind,
+            "label": label,
+            "note": note,
+            "passes": rank in run.judged,
+            "state": page.state(run.base, run.assignments(choice)),
+            "command": None if rank is None else page.command(rank),
+        }
 
     answer, seen, cards = run.answer, set[str](), []
     for rank, choice in enumerate(answer.designs, start=1):
-        cards.append(card(choice, "runner-up" if choice.resin.name in seen else "best", rank))
+        cards.append(card(choice, "runner-up" if choice.resin.name in seen else "best", str(rank), rank=rank))
         seen.add(choice.resin.name)
     if cards or run.rejected:
         return cards
     if answer.nearest is not None:
-        cards.append(card(answer.nearest, "nearest", note=f"it misses: {words.missed_text(run, answer.nearest)}"))
+        misses = f"it misses: {words.missed_text(run, answer.nearest)}"
+        cards.append(card(answer.nearest, "nearest", "nearest", note=misses))
     for dropped, line in zip(answer.dropped, words.dropped_lines(run), strict=False):
-        cards.append(card(dropped.best, "dropped", note=line))
+        cards.append(card(dropped.best, "dropped", f"without {dropped.requirement}", note=line))
     return cards
 
 
@@ -145,6 +151,7 @@ def _graded(target: Target, page: _Page, library: Library, report: Report) -> di
     card = {
         **graded_card(run),
         "kind": "best" if run.search.met else "nearest",
+        "label": "grade",
         "note": "",
         "passes": run.passes,
         "state": page.state(run.base, run.assignments()),

@@ -9,6 +9,8 @@ export class Areas {
     this.tabs = this.areas.map((area) => this.tab(area));
     byId("areas").replaceChildren(...this.tabs);
     byId("areas").hidden = this.areas.length < 2;
+    // The address holds the design: the link to the results moves the focus alone.
+    document.querySelector(".skip").addEventListener("click", (event) => this.skip(event));
     byId("areas").addEventListener("keydown", (event) => this.key(event));
     this.show("design");
   }
@@ -33,6 +35,12 @@ export class Areas {
       this.opened.add(name);
       (await import(this.modules[name])).open(byId(`area-${name}`), this.page);
     }
+  }
+
+  skip(event) {
+    event.preventDefault();
+    const shown = this.areas.find((area) => !area.hidden);
+    (shown.querySelector("[tabindex='-1']:not([role])") ?? shown).focus();
   }
 
   /** Arrow keys, Home and End move between tabs. */

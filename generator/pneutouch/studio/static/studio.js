@@ -21,7 +21,7 @@ const parts = {};
 const owed = new Owed();
 
 /** By the id of an area, the module that fills it when it is first shown. */
-const MODULES = { files: "./files.js", measure: "./measure.js" };
+const MODULES = { target: "./target.js", files: "./files.js", measure: "./measure.js" };
 
 /** What the areas are given: the design as it is now, a function that opens another one, and the line of messages. */
 const desk = {
