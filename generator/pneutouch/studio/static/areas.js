@@ -40,7 +40,9 @@ export class Areas {
   skip(event) {
     event.preventDefault();
     const shown = this.areas.find((area) => !area.hidden);
-    (shown.querySelector("[tabindex='-1']:not([role])") ?? shown).focus();
+    const place = shown.querySelector("[tabindex='-1']:not([role])") ?? shown;
+    place.tabIndex = -1;
+    place.focus();
   }
 
   /** Arrow keys, Home and End move between tabs. */

@@ -29,7 +29,7 @@ export class Candidates {
   /** `use(card)`: a design was chosen to go on with. */
   constructor(host, use) {
     Object.assign(this, { host, use });
-    this.chart = new TradeOff((index, focus) => this.choose(index, focus));
+    this.chart = new TradeOff((index, go) => this.choose(index, go));
   }
 
   show(content) {
@@ -114,13 +114,14 @@ export class Candidates {
     return element("details", {}, element("summary", {}, label), table(label, ["candidate", ...keys], rows));
   }
 
-  /** Mark a candidate on the chart and among the cards; `focus` brings its card into sight. */
-  choose(index, focus) {
+  /** Mark a candidate on the chart and among the cards; `go` moves the focus to its card. */
+  choose(index, go) {
     if (!this.items.length) return;
     this.items.forEach((item, k) => item.classList.toggle("chosen", k === index));
     this.chart.choose(index);
-    if (!focus) return;
+    if (!go) return;
     if (this.others?.contains(this.items[index])) this.others.open = true;
-    this.items[index].scrollIntoView({ block: "nearest", behavior: "smooth" });
+    this.items[index].querySelector("button").focus({ preventScroll: true });
+    this.items[index].scrollIntoView({ block: "nearest" });
   }
 }

@@ -38,7 +38,7 @@ function ticks([low, high]) {
 const wide = (values, share) => [Math.min(...values) / share, Math.max(...values) * share];
 
 export class TradeOff {
-  /** `chosen(index, focus)`: a candidate was chosen on the chart. */
+  /** `chosen(index, go)`: a candidate was chosen on the chart; `go` to its card. */
   constructor(chosen) {
     Object.assign(this, { chosen, near: true, picked: 0 });
     this.host = element("div", { class: "plot" });
@@ -226,14 +226,20 @@ export class TradeOff {
     return svg("g", { role: "radiogroup", "aria-label": "Candidates on the chart" }, ...groups);
   }
 
+  /** Arrow keys, Home and End choose; Enter and the space bar go to the card. */
   key(event, index) {
+    if (event.key === "Enter" || event.key === " ") {
+      event.preventDefault();
+      this.chosen(index, true);
+      return;
+    }
     const now = this.order.indexOf(index);
     const last = this.order.length - 1;
-    const step = { ArrowDown: now + 1, ArrowRight: now + 1, ArrowUp: now - 1, ArrowLeft: now - 1, Home: 0, End: last, " ": now, Enter: now }[event.key];
+    const step = { ArrowDown: now + 1, ArrowRight: now + 1, ArrowUp: now - 1, ArrowLeft: now - 1, Home: 0, End: last }[event.key];
     if (step === undefined) return;
     event.preventDefault();
     const next = this.order[(step + last + 1) % (last + 1)];
-    this.chosen(next, true);
+    this.chosen(next, false);
     this.dots[next].focus();
   }
 
