@@ -59,8 +59,8 @@ export class TradeOff {
   legend() {
     const { window_kPa_per_N: window, least_force_N: least, gauge_kPa: gauge } = this.chart;
     const sample = (shape, words) => element("span", {}, svg("svg", { width: 24, height: 14, "aria-hidden": "true" }, shape), words);
-    const wanted = [window ? `${window.map((end) => short(end)).join(" to ")} kPa/N` : null, least === null ? null : `at least ${short(least)} N`];
-    const words = wanted.filter(Boolean).join(", ");
+    const required = [window ? `${window.map((end) => short(end)).join(" to ")} kPa/N` : null, least === null ? null : `at least ${short(least)} N`];
+    const words = required.filter(Boolean).join(", ");
     const target = words ? sample(svg("rect", { x: 1, y: 1, width: 22, height: 12, class: "window" }), `target: ${words}`) : "";
     const end = sample(svg("line", { x1: 0, y1: 7, x2: 24, y2: 7, class: "gauge" }), `end of the gauge's range: force × sensitivity = ${short(gauge)} kPa`);
     return element("p", { class: "key" }, target, end);
@@ -144,9 +144,9 @@ export class TradeOff {
     const middle = (top + bottom) / 2;
     const below = svg("text", { x: (left + right) / 2, y: bottom + 38, "text-anchor": "middle", class: "axis" });
     below.textContent = "sensitivity, kPa/N";
-    const beside = svg("text", { x: 14, y: middle, "text-anchor": "middle", class: "axis", transform: `rotate(-90 14 ${middle})` });
-    beside.textContent = "greatest force range, N";
-    return [below, beside];
+    const side = svg("text", { x: 14, y: middle, "text-anchor": "middle", class: "axis", transform: `rotate(-90 14 ${middle})` });
+    side.textContent = "greatest force range, N";
+    return [below, side];
   }
 
   /** The target's window: from its least to its greatest sensitivity, upwards of its force range. */
@@ -209,12 +209,12 @@ export class TradeOff {
     this.order = order.map((one) => one.index);
     this.dots = [];
     const groups = order.map(({ card, index, x, y, at }) => {
-      const said = `${card.label}: ${card.resin}, ${short(card.at.sensitivity_kPa_per_N)} kPa/N, ${short(card.at.force_N)} N`;
+      const called = `${card.label}: ${card.resin}, ${short(card.at.sensitivity_kPa_per_N)} kPa/N, ${short(card.at.force_N)} N`;
       const text = svg("text", { x: right + 20, y: at + 4 });
       text.textContent = this.label(card, names);
       const made = svg(
         "g",
-        { role: "radio", tabindex: -1, "aria-label": said, "aria-checked": "false", class: `mark ${card.kind}`, onclick: () => this.chosen(index, true), onkeydown: (event) => this.key(event, index) },
+        { role: "radio", tabindex: -1, "aria-label": called, "aria-checked": "false", class: `mark ${card.kind}`, onclick: () => this.chosen(index, true), onkeydown: (event) => this.key(event, index) },
         svg("rect", { x: right + 12, y: at - LABEL / 2, width: this.width - right - 14, height: LABEL, rx: 5, class: "hit" }),
         svg("path", { d: `M${x} ${y}L${right + 4} ${at}H${right + 14}`, class: "leader" }),
         svg("circle", { cx: x, cy: y, r: card.kind === "runner-up" ? 4 : 5.5, class: "dot" }),
