@@ -1,14 +1,14 @@
 """From a slider's move to what is painted, in Chromium, over the same way with an echo for an answer; and page weight.
 
-Run as ``python -m benchmarks.studio [MOVES]``; it prints medians and 95th percentiles in milliseconds, their ratio to the
+Run as ``python -m benchmarks.studio [--moves N]``; it prints medians and 95th percentiles in milliseconds, their ratio to the
 echo's in the same run, and what the page keeps at ten points of the moves.
 """
 
 from __future__ import annotations
 
+import argparse
 import gzip
 import statistics
-import sys
 from importlib.resources import files
 
 from tests.browser import WITH_WEBGL, Pages, launched, until
@@ -36,6 +36,11 @@ for (let k = 0; k < {count}; k += 1) {{
 return times; }})()"""
 
 
+_FIRST_PAINT = """new Promise((done) => new PerformanceObserver((list) => {
+const found = list.getEntriesByName('first-contentful-paint');
+if (found.length) done(found[0].startTime); }).observe({type: 'paint', buffered: true}))"""
+
+
 def percentile(times: list[float]) -> float:
     """The 95th."""
     return statistics.quantiles(times, n=20)[-1]
@@ -53,6 +58,7 @@ def main(count: int) -> None:
     with served() as (address, process), launched(*WITH_WEBGL) as browser:
         page = Studio(address, process).open(Pages(browser))
         until(page, SOLVED)
+        first_paint = page.evaluate(_FIRST_PAINT)
         echoes = page.evaluate(_ECHOES.format(count=min(count, 200)))
         moves: list[float] = []
         print("   moves     nodes  listeners  scripts, MB")
@@ -62,6 +68,7 @@ def main(count: int) -> None:
             if point < 10:
                 moves += page.evaluate(_MOVES.format(count=max(1, count // 10)))
                 until(page, SOLVED)
+    print(f"first contentful paint: {first_paint:.0f} ms after the address was entered")
     for name, times in (("echo", echoes), ("move", moves)):
         print(f"{name}: median {statistics.median(times):.0f} ms, 95th percentile {percentile(times):.0f} ms")
     print(f"ratio of the 95th percentiles: {percentile(moves) / percentile(echoes):.1f}")
@@ -69,4 +76,6 @@ def main(count: int) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 200)
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--moves", type=int, default=200)
+    main(options.parse_args().moves)
