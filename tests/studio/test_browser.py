@@ -36,7 +36,10 @@ def test_a_slider_moves_the_figures_of_the_commands(screen, command):
     assert screen.evaluate(f"{_WALL}.value") == "1.5"
 
 
-def test_a_resin_takes_a_printer_that_runs_it(screen):
+def test_a_resin_takes_a_printer_that_runs_it(screen, pages):
+    # That no request goes elsewhere is required by the fixtures; here, that requests are seen at all.
+    seen = {each.rpartition("/")[2] for each in pages.requested}
+    assert {"studio.js", "three.module.min.js", "uPlot.esm.js", "form", "quick"} <= seen
     screen.get_by_label("Material").first.select_option("Agilus30")
     assert screen.evaluate("location.hash") == "#paper-dome&membrane.material=Agilus30&print.profile=j735"
     screen.get_by_role("button", name="Undo").click()
@@ -61,12 +64,6 @@ def test_no_scrolling_sideways_and_every_control_has_a_name(width, open_studio):
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert page.evaluate(_TOO_WIDE) == []
     assert page.evaluate(_UNNAMED) == []
-
-
-def test_the_page_asks_for_its_parts(screen, pages):
-    """That no request goes elsewhere is required of every test by its fixtures; here, that requests are seen at all."""
-    asked = {each.rpartition("/")[2] for each in pages.requested}
-    assert {"studio.js", "three.module.min.js", "uPlot.esm.js", "form", "quick"} <= asked
 
 
 @pytest.mark.slow
