@@ -70,6 +70,7 @@ def test_a_killed_process_is_reported_and_the_next_move_is_answered(screen, stud
     assert _children(studio.process) not in ([], [worker])
 
 
+@pytest.mark.slow
 def test_a_page_that_is_left_open_overnight_sends_nothing(pages, studio):
     profile = studio.profile()
     page = pages.open("about:blank", storage_state=profile)
