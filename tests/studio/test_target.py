@@ -267,3 +267,35 @@ def test_a_target_is_a_job_of_the_studio():
     answer = answered({"kind": "select", "arguments": arguments, "folder": "."}, lambda *progress: None)
     problem = {"message": "must be from 0.0001 to 100000 N", "fields": ["target.force_range_N"]}
     assert answer == {"status": 422, "content": {"problems": [problem]}}
+
+
+@pytest.mark.slow
+def test_a_grade_is_one_card_with_the_table_of_the_command(tmp_path, command, library, monkeypatch):
+    monkeypatch.setattr("pneutouch.workflows.select.graded._TRIALS", 6)
+    path = tmp_path / "shallow.toml"
+    text = (ROOT / "designs" / "paper-dome.toml").read_text()
+    path.write_text(text.replace("[indentation]", "[indentation]\ndepth_mm = 4\nsteps = 6"))
+    bases, first = bases_of(str(path))
+    values = {
+        "target.sensitivity_kPa_per_N": "1.9",
+        "target.tolerance_percent": "25",
+        "target.same_sensitivity_at_kPa": "[0, 22]",
+        "target.same_within_percent": "9",
+        "given.graded": "true",
+        "given.wall_thickness_mm": "1.2",
+        "setting.base": first,
+    }
+    arguments = {"base": "paper-dome", "values": values, "files": [], "bases": bases}
+    steps = []
+    content = search(arguments, None, lambda done, total, what: steps.append((done, total)))
+    assert steps == [(done, 6) for done in range(1, 7)]
+    words = shlex.split("select --graded --sensitivity 1.9 --tolerance 25% --same-at 0,22 --same-within 9% --wall 1.2")
+    said = command(*words, "--base", str(path), "--json")
+    assert content["selection"] == json.loads(said.stdout)
+    (card,) = content["cards"]
+    state = Question.of(card["state"]).source(bases, library).changed({})
+    base = DesignSource.of(str(path), library).changed({})
+    assert state == validate(DesignFile, assigned(base, content["selection"]["design"]["set"], "my-sensor"), "a test")
+    assert [row[0] for row in content["table"]["rows"]][1:] == [one["name"] for one in content["selection"]["constant"]]
+    assert (card["command"] is None) is not content["selection"]["met"]
+    assert content["chart"] is None

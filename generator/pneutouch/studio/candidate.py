@@ -73,7 +73,7 @@ def _sizes(selection: SelectionRun, choice: Candidate) -> list[FigureRow]:
 def _limits(selection: SelectionRun, choice: Candidate, rank: int | None) -> list[FigureRow]:
     span = [f"{end:.2f}" if np.isfinite(end) else "none" for end in choice.span]
     rows = [
-        ("Rated pressure", f"{choice.rated / KPA:.1f} kPa", f"S {span[0]} to {span[1]} kPa/N from 0 to it"),
+        ("Rated pressure", f"{choice.rated / KPA:.1f} kPa", f"S {span[0]} to {span[1]} kPa/N up to it"),
         ("Binds", choice.binding, f"margin {100 * choice.margins[choice.binding]:+.0f} %"),
     ]
     if choice.contact is not None:

@@ -25,13 +25,15 @@ class Target {
     this.status = element("p", { class: "status", role: "status", "aria-live": "polite" });
     this.progress = element("progress", { max: 1, value: 0, "aria-label": "Progress of the search" });
     this.problems = element("ul", { class: "problems" });
-    this.results = element("div", { class: "found" });
+    this.results = element("div", { class: "selection" });
     this.candidates = new Candidates(this.results, (card) => this.use(card));
     this.stop = element("button", { type: "button", onclick: () => this.cancel() }, "Cancel");
     this.under = element("div", { class: "under", hidden: true }, this.progress, this.stop);
     const alert = element("div", { role: "alert" }, this.problems);
     root.replaceChildren(this.form(), element("div", { tabindex: -1 }, this.status, this.under, alert, this.results));
     this.show();
+    // A design that was saved meanwhile may be a base as well.
+    document.addEventListener("design", () => this.known(page.state().base));
     this.report("Give a sensitivity, a force range or a stiffness, then find designs. What is left out is free.");
   }
 
@@ -75,6 +77,11 @@ class Target {
       if (field.kind === "choice") input.options[0].textContent = LEFT_OUT[name];
       else input.placeholder = LEFT_OUT[name] ?? field.default ?? (field.optional ? "free" : "");
     }
+  }
+
+  known(base) {
+    const { input } = this.fields.fields.get("setting.base");
+    if (![...input.options].some((option) => option.value === base)) input.append(element("option", { value: base }, base));
   }
 
   report(words, busy = false) {
