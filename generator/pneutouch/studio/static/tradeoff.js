@@ -214,10 +214,10 @@ export class TradeOff {
       text.textContent = this.label(card, names);
       const made = svg(
         "g",
-        { role: "radio", tabindex: -1, "aria-label": called, "aria-checked": "false", class: `mark ${card.kind}`, onclick: () => this.chosen(index, true), onkeydown: (event) => this.key(event, index) },
+        { role: "radio", tabindex: -1, "aria-label": called, "aria-checked": "false", class: `place ${card.kind}`, onclick: () => this.chosen(index, true), onkeydown: (event) => this.key(event, index) },
         svg("rect", { x: right + 12, y: at - LABEL / 2, width: this.width - right - 14, height: LABEL, rx: 5, class: "hit" }),
         svg("path", { d: `M${x} ${y}L${right + 4} ${at}H${right + 14}`, class: "leader" }),
-        svg("circle", { cx: x, cy: y, r: card.kind === "runner-up" ? 4 : 5.5, class: "dot" }),
+        svg("circle", { cx: x, cy: y, r: card.kind === "runner-up" ? 4 : 5.5, class: "spot" }),
         text,
       );
       this.dots[index] = made;
