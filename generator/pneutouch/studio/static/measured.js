@@ -120,7 +120,7 @@ export class Measured {
     const sensors = [...new Set(runs.map((run) => run.sensor))];
     for (const run of runs) {
       const stroke = tone(sensors.indexOf(run.sensor) + 1);
-      add([run[x], run[y]], series(`${run.sensor}, run ${run.run}`, stroke, { width: 0, points: { show: true, size: 6, stroke, width: 1.5 } }));
+      add([run[x], run[y]], series(`${run.sensor}, run ${run.run}`, stroke, { width: 0, points: { show: true, size: 6, stroke, fill: colour("card"), width: 1.5 } }));
     }
     show(id, across, up, lines, uPlot.join(tables), { bands, legend: false });
   }
@@ -136,7 +136,7 @@ export class Measured {
       "section",
       { class: "card", "aria-labelledby": "measured-others" },
       element("h2", { id: "measured-others" }, "Injections, leaks, ageing"),
-      scroll("Injections, leaks, ageing", table(["sensor", "figure", "value ± standard error", "unit"], rows)),
+      scroll("Injections, leaks, ageing", table(["sensor", "figure", "value ± standard error", "unit"], rows, { class: "words" })),
     );
   }
 
