@@ -197,3 +197,17 @@ def test_the_paper_s_sensitivity_stands_beside_that_of_its_sensor_alone(campaign
 
     assert published({}) == [2.547, 1.923]
     assert published({"membrane.wall_thickness_mm": "1.6"}) == [None, None]
+
+
+@pytest.mark.slow
+def test_the_campaign_file_of_runs_without_one_leads_the_command_to_the_same_figures(campaign, tmp_path, ask, command):
+    files = uploaded(campaign / "runs", within="lab", only=("*steps*.csv",))
+    runs = ask(measuring.recognised, files)["runs"]
+    stated = [{key: run[key] for key in ("file", "kind", "sensor", "resin", "driving_pressure_kPa")} for run in runs]
+    content = ask(measuring.characterize, files, runs=stated)
+    assert "campaign.toml" in content["before"]
+    shutil.copytree(campaign / "runs", tmp_path / "lab")
+    shutil.copyfile(ask.folders[1] / "campaign.toml", tmp_path / "lab/campaign.toml")
+    document = printed(command(*shlex.split(content["command"])[1:], "--json"))
+    document.pop("folder")
+    assert content["document"] == document

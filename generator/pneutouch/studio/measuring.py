@@ -144,7 +144,7 @@ def characterize(arguments: Mapping[str, Any], folder: Path, report: Report) -> 
             shutil.copyfile(given.data / CAMPAIGN, folder / CAMPAIGN)
         runs = runs_document(outcome)
         measured = outcome.measured
-        words = characterize_words(given.data, given.question, arguments)
+        words = _noted(given, characterize_words(given.data, given.question, arguments))
     return {
         "document": outcome.document,
         **head_document(measured),
@@ -194,7 +194,7 @@ def calibrate(arguments: Mapping[str, Any], folder: Path, report: Report) -> dic
             options, given.library, lambda done, total: report(done, total, _READ), reading=given.reading
         )
         document = outcome.document
-        words = calibrate_words(given.data, given.question, arguments, options)
+        words = _noted(given, calibrate_words(given.data, given.question, arguments, options))
     paths = [Path(path) for path in document["written"]]
     there = [path for path in paths if path.is_relative_to(folder)]
     return {
@@ -248,6 +248,14 @@ def _plan(given: _Given, arguments: Mapping[str, Any]) -> None:
     if not isinstance(runs, list) or not runs or not all(isinstance(run, dict) for run in runs):
         raise InputError("no runs are stated", key="runs", remedy="choose the files that are runs")
     write_runs(given.data, runs)
+
+
+def _noted(given: _Given, words: dict[str, str]) -> dict[str, str]:
+    """The words of a command, with where the campaign file is that the runs came without."""
+    if given.planned:
+        return words
+    place = f"{CAMPAIGN}, which the command needs next to the runs, is in the zip of the measured sheet"
+    return {**words, "before": "; ".join(each for each in (words["before"], place) if each)}
 
 
 def _reading(arguments: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
