@@ -12,6 +12,9 @@ from tests.studio.served import SOLVED, Studio, served
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 
+_LONGEST = 300_000
+"""Milliseconds that a build may take."""
+
 _COLOURS = 128
 """Of a picture: enough for a page of few colours, at a third of the bytes."""
 
@@ -44,6 +47,17 @@ def main() -> None:
             page.evaluate(_PRESSED)
             page.wait_for_timeout(1000)
             write(name, page)
+        page = studio.open(pages, width=1400, height=1000)
+        page.get_by_role("tab", name="Target").click()
+        page.get_by_role("button", name="Example").click()
+        page.get_by_role("button", name="Find designs").click()
+        page.get_by_role("button", name="Use this design").first.wait_for()
+        write("target", page)
+        page.get_by_role("tab", name="Files").click()
+        page.get_by_role("button", name="Build", exact=True).click()
+        page.get_by_role("link", name="Download all").wait_for(timeout=_LONGEST)
+        page.wait_for_timeout(1000)
+        write("files", page)
 
 
 if __name__ == "__main__":
