@@ -65,9 +65,7 @@ def summary(rows: list[FrictionCost]) -> str:
         "driving pressures to 0.9 of the limit, coefficients of 0.05 to 1.5 and grip, depth 0.6 R0) the mean is "
         f"{ratios.mean():.2f} and the greatest {ratios.max():.1f}; {len(above)} take more than twice as long, {thin} of "
         f"them with walls below {THIN:g} R0, whose points between the centre and the edge of the contact bear next to "
-        "nothing and come and go. The two costliest, of walls of 0.05 and 0.064 R0, take about as many Newton steps as "
-        "without friction, but each step changes the status of 19 of their 72 points, one after another; in walls above "
-        f"{THIN:g} R0 it changes that of one to six."
+        "nothing and come and go."
     )
 
 

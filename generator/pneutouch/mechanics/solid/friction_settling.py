@@ -7,8 +7,8 @@ of the wall before the contact do not take part in it: they are eliminated once.
 
 Where the first round does not settle it, it is settled one point after another (`friction_pivots`). In thin walls,
 whose points between the centre and the edge of the contact bear next to nothing and come and go, that takes a third of
-the rounds or less. Where that leads nowhere, further rounds seldom settle it: the step is then one with the largest
-tractions held, whose model has an energy.
+the rounds. Where that leads nowhere, further rounds seldom settle it: the step is then one with the largest tractions
+held, whose model has an energy.
 
 The first step from an extrapolated state has its points stick and slide as they did at the state before: only which
 points touch is settled. The tractions at extrapolated positions do not show what slides, and points that were
@@ -72,7 +72,7 @@ class StepSettling:
         while True:
             kept = max(edge - _MARGIN, 0)
             step = self._settle(kept)
-            if step is None and (self._contact.held or self._contact.kept is not None or self._contact.unsettled):
+            if step is None and (self._contact.held or self._contact.unsettled):
                 continue
             if step is None or not np.isfinite(step).all():
                 return step
