@@ -78,35 +78,6 @@ def test_the_answer_solves_the_model(held):
     assert changed > 20
 
 
-class _Watched(PiecewiseLine):
-    """A line that remembers whether it led away from its end."""
-
-    turned = False
-
-    def _change(self, *change):
-        done = super()._change(*change)
-        self.turned |= self._sense < 0.0
-        return done
-
-
-def test_a_line_that_leads_away_from_its_end_comes_back_to_an_answer():
-    """Coefficients of 0.5 to 2, under which determinants change their signs."""
-    turned = 0
-    for seed in range(60):
-        model, still = _Model(seed, False), np.zeros(SIZE)
-        model.grip = np.random.default_rng(seed).uniform(0.5, 2.0, N)
-        first = model.status(still)
-        move, matrix = model.solved(first)
-        response = model.rows @ np.linalg.solve(matrix, model.rows.T)
-        line = _Watched(first, model.at(still), model.at(move), response, model.areas, model.grip, False)
-        found = line.status()
-        if np.linalg.det(matrix) > 0.0 and line.turned and found is not None:
-            turned += 1
-            answer, _ = model.solved(found)
-            assert np.abs(model.residual(answer, model.status(answer))).max() < 1e-9
-    assert turned >= 5
-
-
 def test_a_thin_wall_is_settled_in_fewer_rounds_to_the_same_forces():
     """A wall of 0.07 R0 with a coefficient of 0.72, whose points bear next to nothing inside the contact."""
     solid = SolidModel(dome(RADIUS, 0.07 * RADIUS), neo_hookean(1.08), base=RigidBase())

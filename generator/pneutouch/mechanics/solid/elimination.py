@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
-from pneutouch.arrays import Array, Index
+from pneutouch.arrays import Array
 from pneutouch.mechanics.solid import lapack
 
 
@@ -36,7 +35,7 @@ class LeadingElimination:
         if info:
             return whole
         across, last = np.zeros((width, width)), np.zeros((width, width))
-        i, j = _upper(width)
+        i, j = np.triu_indices(width)
         across[i, j] = band[width + i - j, first - width + j]
         last[j, i] = factor[j - i, first - width + i]
         half, _ = lapack.dtrtrs(last, across.T, lower=1)
@@ -65,9 +64,3 @@ class LeadingElimination:
             width = self.across.shape[0]
             out[-width:] = self.across.T @ x[:width]
         return out
-
-
-@lru_cache(maxsize=8)
-def _upper(width: int) -> tuple[Index, Index]:
-    """Rows and columns of the upper triangle of a square matrix."""
-    return np.triu_indices(width)

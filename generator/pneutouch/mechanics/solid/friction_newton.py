@@ -50,14 +50,10 @@ class HeldState:
     touch: ContactEvaluation
     points: FrictionPoints
     term: FrictionTerm
+    energy: float
     residual: Array
     pull: Array
     scale: float
-
-    @property
-    def energy(self) -> float:
-        """Total energy with the largest tractions held."""
-        return self.state.energy + self.term.energy(self.state.x)
 
 
 @dataclass(frozen=True)
@@ -115,7 +111,8 @@ class FrictionSolver:
         term = self.step.held(self.solid, points)
         pull = self.solid.push(self.step.force(points.traction, points.slope))
         scale = state.scale + float(np.linalg.norm(pull)) + 10.0 * term.noise / RESIDUAL
-        return HeldState(state, state.touch, points, term, state.residual + pull, pull, scale)
+        energy = state.energy + term.energy(state.x)
+        return HeldState(state, state.touch, points, term, energy, state.residual + pull, pull, scale)
 
     def _energy_scale(self, here: HeldState) -> float:
         return here.state.local.energy + here.scale * self.solid.wall
@@ -183,18 +180,19 @@ class FrictionSolver:
     def _search(self, here: HeldState, step: Array, slope: float) -> HeldState | None:
         """The state at the end of a step that balances the forces better, else of a line search by the energy with
         friction held; None where no step lowers it."""
-        move, state = self.solid.expand(step), here.state
-        whole = evaluate(self.scene, state.x + move)
-        if whole is not None:
-            held = self.hold(whole)
-            if float(np.linalg.norm(held.residual)) <= _BALANCES * float(np.linalg.norm(here.residual)):
-                return held
-        begun = here.energy
+        move = self.solid.expand(step)
+        state = here.state
+        noise = 1.0e-13 * (abs(here.energy) + state.local.energy + self.solid.wall)
 
         def trial(share: float) -> tuple[float, Callable[[], HeldState]] | None:
             there = whole if share == 1.0 else evaluate(self.scene, state.x + share * move)
             if there is None:
                 return None
-            return there.energy + here.term.energy(there.x) - begun, lambda: self.hold(there)
+            return there.energy + here.term.energy(there.x) - here.energy, lambda: self.hold(there)
 
-        return line_search(trial, step, slope, 1.0e-13 * (abs(begun) + state.local.energy + self.solid.wall))
+        whole = evaluate(self.scene, state.x + move)
+        if whole is not None:
+            held = self.hold(whole)
+            if float(np.linalg.norm(held.residual)) <= _BALANCES * float(np.linalg.norm(here.residual)):
+                return held
+        return line_search(trial, step, slope, noise)

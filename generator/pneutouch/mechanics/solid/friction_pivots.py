@@ -3,10 +3,7 @@
 The tractions are continuous and linear in pieces. From the start the residual of the model shrinks evenly along a
 straight line in every piece; where the line leaves a piece, one point touches, leaves, sticks or slides, and the
 stiffness changes by one rank (Katzenelson 1965, Bell Syst. Tech. J. 44, 1605,
-doi:10.1002/j.1538-7305.1965.tb04195.x). Friction may change the sign of the determinant there: in the piece beyond, the
-line then leads away from its end, and the residual grows until the sign changes again.
-
-All is kept by points: how their tractions follow from loads on them.
+doi:10.1002/j.1538-7305.1965.tb04195.x). All is kept by points: how their tractions follow from loads on them.
 """
 
 from __future__ import annotations
@@ -18,10 +15,8 @@ from pneutouch.mechanics.solid.friction_status import PointStatus, PointTraction
 
 #: Changes of a point on average, beyond which the search is given up.
 _MOST = 3
-#: A change that leaves less of the stiffness than this share makes it singular.
+#: A change that leaves less of the stiffness than this share turns the line back.
 _FLAT = 1.0e-9
-#: In place of a margin that has fallen to nothing.
-_NOTHING = 1.0e-200
 
 
 class PiecewiseLine:
@@ -45,8 +40,6 @@ class PiecewiseLine:
         self._response, self._areas, self._grip, self._held = response, areas, grip, held
         self._at, self._move = (np.concatenate([one.normal, one.trial]) for one in (begun, ended))
         self._move -= self._at
-        # -1 in pieces in which the line leads away from its end.
-        self._sense = 1.0
         n = grip.size
         self._touching, self._bearing, self._sign = status.touching.copy(), status.bearing.copy(), status.sign.copy()
         # Three margins a point, each (by the normal traction, by the trial one, constant): the piece ends where one of
@@ -56,27 +49,25 @@ class PiecewiseLine:
             self._bound(j)
 
     def status(self) -> PointStatus | None:
-        """The status at the end of the line; None where it leads nowhere or goes through too many pieces."""
+        """The status at the end of the line; None where it turns back or goes through too many pieces."""
         n = self._grip.size
         for _ in range(_MOST * n):
             margin = self._by_normal * self._at[:n] + self._by_trial * self._at[n:] + self._free
-            rate = self._sense * (self._by_normal * self._move[:n] + self._by_trial * self._move[n:])
-            nearing = rate / np.maximum(margin, _NOTHING)
-            k = int(nearing.argmin())
-            fastest = float(nearing.flat[k])
-            if self._sense > 0.0 and fastest >= -1.0:
+            rate = self._by_normal * self._move[:n] + self._by_trial * self._move[n:]
+            share = np.full(margin.shape, np.inf)
+            np.divide(np.maximum(margin, 0.0), -rate, out=share, where=rate < 0.0)
+            k = int(share.argmin())
+            first = float(share.flat[k])
+            if first >= 1.0:
                 return PointStatus(self._touching, self._bearing, self._sign)
-            if fastest >= 0.0:
-                return None
-            share = -self._sense / fastest
-            self._at += share * self._move
-            self._move *= 1.0 - share
+            self._at += first * self._move
+            self._move *= 1.0 - first
             if not self._cross(k // n, k % n):
                 return None
         return None
 
     def _cross(self, side: int, j: int) -> bool:
-        """Go into the piece beyond a margin of a point; False where the stiffness there is singular."""
+        """Go into the piece beyond a margin of a point; False where the line turns back there."""
         n = self._grip.size
         trial, grip, held = float(self._at[n + j]), float(self._grip[j]), self._held
         across, along = self._areas[:, j]
@@ -102,15 +93,11 @@ class PiecewiseLine:
     def _change(self, j: int, push: tuple[float, float], gap: tuple[float, float]) -> bool:
         """Change the stiffness by the product of a load on a point and a combination of its tractions."""
         n, response = self._grip.size, self._response
-        column = push[1] * response[:, n + j]
-        if push[0]:
-            column += push[0] * response[:, j]
+        column = push[0] * response[:, j] + push[1] * response[:, n + j]
         row = gap[0] * response[j] + gap[1] * response[n + j]
         left = 1.0 + gap[0] * float(column[j]) + gap[1] * float(column[n + j])
-        if not abs(left) > _FLAT:
+        if not left > _FLAT:
             return False
-        if left < 0.0:
-            self._sense = -self._sense
         column /= left
         self._move -= column * (gap[0] * float(self._move[j]) + gap[1] * float(self._move[n + j]))
         response -= np.multiply.outer(column, row)

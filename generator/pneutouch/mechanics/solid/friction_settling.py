@@ -5,10 +5,8 @@ so far as the work of the model's residual along its move falls (Matthies & Stra
 1613, there for whole steps): without this, points at the edge of the contact come and go in turn for ever. The unknowns
 of the wall before the contact do not take part in it: they are eliminated once.
 
-Where the first round does not settle it, it is settled one point after another (`friction_pivots`). In thin walls,
-whose points between the centre and the edge of the contact bear next to nothing and come and go, that takes a third of
-the rounds. Where that leads nowhere, further rounds seldom settle it: the step is then one with the largest tractions
-held, whose model has an energy.
+Where a few rounds do not settle it, it is settled one point after another (`friction_pivots`). In thin walls, whose
+points between the centre and the edge of the contact bear next to nothing and come and go, that saves half the rounds.
 
 The first step from an extrapolated state has its points stick and slide as they did at the state before: only which
 points touch is settled. The tractions at extrapolated positions do not show what slides, and points that were
@@ -30,8 +28,10 @@ from pneutouch.mechanics.solid.newton import SolverState, downhill
 
 #: Rounds in which the status of the points is settled.
 ROUNDS = 30
+#: Rounds after which the rest is settled one point after another.
+_BEFORE_PIVOTS = 3
 #: Rounds in which it is settled only which points touch; the next step goes on from there.
-_KEPT_ROUNDS = 4
+_KEPT_ROUNDS = 10
 #: Edges next to the contact that the eliminated part keeps away from.
 _MARGIN = 2
 #: A round goes to its end where the work of the residual at its end is no more than this share of that it begins with.
@@ -99,13 +99,13 @@ class StepSettling:
             if contact.kept is not None:
                 status = new
                 continue
-            if k == 0 and contact.IN_PIECES:
-                settled = self._settled(system, edge, status, after)
+            if k == 0:
+                begun = status, after
+            if k == _BEFORE_PIVOTS and contact.IN_PIECES:
+                settled = self._settled(system, edge, *begun)
                 end = None if settled is None else self._solve(system, settled, False)
                 if settled is not None and (end is None or np.isfinite(end).all()):
                     return None if end is None else system.whole(end)
-                if not contact.held:
-                    return None
             place, whole = self._advanced(system, place, _Place(there, after, 0.0, contact.under(status, after)))
             if not whole:
                 status = contact.status(place.at)

@@ -47,17 +47,12 @@ class ContactSystem:
         return None if solved is None else self._filled(solved)
 
     def response(self, blocks: Array, rows: Array) -> Array:
-        """R M^-1 R' (n, n) with M the system and blocks; R: ``rows`` by the unknowns of the last edges,
-        (n, n_edges, 2 n_nodes)."""
-        g, (unknown, rows) = self._rest[:, 1], self.sides.gathered(rows, self.first)
-        n = unknown.size
-        load = np.zeros((g.size, n + 1), order="F")
-        load[unknown, np.arange(n)], load[:, n] = 1.0, g
-        moved = self.sides.solve_widened(self._wide, blocks, load, self.first)
-        pulled = g @ moved
-        gas = self._share / (1.0 + self._share * float(pulled[n]))
-        inverse = moved[unknown, :n] - gas * np.multiply.outer(moved[unknown, n], pulled[:n])
-        return np.asarray(rows @ inverse @ rows.T)
+        """R M^-1 R' (n, n) with M the system and blocks; rows: R as `OneSidedBlocks.spread` takes them."""
+        g = self._rest[:, 1]
+        both = np.concatenate([self.sides.spread(rows, self.first, g.size), g[None]])
+        out = self.sides.response(self._wide, blocks, both, self.first)
+        gas = self._share / (1.0 + self._share * float(out[-1, -1]))
+        return np.asarray(out[:-1, :-1] - gas * np.multiply.outer(out[:-1, -1], out[-1, :-1]))
 
     def definite(self, blocks: Array) -> bool:
         """Whether K with symmetric blocks is positive definite; False also where that is not known."""

@@ -45,23 +45,35 @@ class OneSidedBlocks:
 
     def solve_widened(self, wide: Array, blocks: Array, b: Array, first: int = 0) -> Array:
         """`solve` with a band as `widened` gives it, of the unknowns from ``first`` on."""
-        width, full = self._width, wide.copy()
-        values = np.asarray(np.bincount(self._number, blocks.ravel()[self._entries]), dtype=np.float64)
-        _add(full, self._places - first * (3 * width + 1), values)
+        width = self._width
+        full = self._with_blocks(wide, blocks, first)
         _, _, x, info = lapack.dgbsv(width, width, full.T, b, overwrite_ab=1)
         return x if info == 0 else np.full_like(b, np.nan)
 
-    def gathered(self, rows: Array, first: int) -> tuple[Index, Array]:
-        """Unknowns of the last edges (m,), counted from ``first`` on, and rows (n, m) by them, from rows by the edges,
+    def _with_blocks(self, wide: Array, blocks: Array, first: int) -> Array:
+        full = wide.copy()
+        values = np.asarray(np.bincount(self._number, blocks.ravel()[self._entries]), dtype=np.float64)
+        _add(full, self._places - first * (3 * self._width + 1), values)
+        return full
+
+    def response(self, wide: Array, blocks: Array, rows: Array, first: int) -> Array:
+        """R X^-1 R' (n, n) with X = symmetric band + blocks by LU, the band as `widened` gives it, of the unknowns from
+        ``first`` on; rows: R, (n, size). Not finite where X is singular."""
+        width = self._width
+        factor, pivots, info = lapack.dgbtrf(self._with_blocks(wide, blocks, first).T, width, width, overwrite_ab=1)
+        if info:
+            return np.full((rows.shape[0],) * 2, np.nan)
+        return np.asarray(rows @ lapack.dgbtrs(factor, width, width, rows.T, pivots)[0])
+
+    def spread(self, rows: Array, first: int, size: int) -> Array:
+        """Rows (n, size) of the unknowns from ``first`` on, from rows by the unknowns of the last edges,
         (n, n_edges, 2 n_nodes)."""
         table = self._table[-rows.shape[1] :]
-        unknown, place = np.unique(table, return_inverse=True)
-        out = np.zeros((rows.shape[0], unknown.size))
-        for k, places in enumerate(place.reshape(table.shape)):
+        out = np.zeros((rows.shape[0], size + 1))
+        # The unknowns that are fixed, with number -1, have the last column, which is left out.
+        for k, places in enumerate(np.where(table >= 0, table - first, size)):
             out[:, places] += rows[:, k]
-        # Those that are fixed, with number -1, come first.
-        free = int(np.searchsorted(unknown, 0))
-        return unknown[free:] - first, np.ascontiguousarray(out[:, free:])
+        return out[:, :size]
 
     def solve_definite(self, band: Array, blocks: Array, b: Array, first: int = 0) -> Array | None:
         """X of (band + symmetric blocks) x = b by Cholesky; None where the matrix is not positive definite."""
