@@ -67,3 +67,18 @@ def test_the_address_is_opened_in_a_browser(command, monkeypatch):
     assert opened == ["http://127.0.0.1:1/?token=x"]
     command("studio", "--no-browser")
     assert len(opened) == 1
+
+
+def test_answers_are_sent_without_waiting_for_more(monkeypatch):
+    """The listener states TCP: asyncio then sets TCP_NODELAY on what it accepts."""
+    taken = []
+
+    async def serve(server, sockets):
+        taken.extend(each.proto for each in sockets)
+
+    monkeypatch.setattr("pneutouch.studio.server._Server.serve", serve)
+    monkeypatch.setattr("pneutouch.studio.server.application", lambda *words: None)
+    from pneutouch.studio.server import serve as studio
+
+    studio("paper-dome", 0, print)
+    assert taken == [socket.IPPROTO_TCP]

@@ -4,6 +4,7 @@ import { Areas } from "./areas.js";
 import { Line, Stopped } from "./requests.js";
 import * as charts from "./charts.js";
 import { byId, element } from "./dom.js";
+import { Following } from "./following.js";
 import { Form } from "./form.js";
 import { listenForFiles } from "./opening.js";
 import { Pressed } from "./pressed.js";
@@ -50,7 +51,7 @@ function buttons() {
   byId("pin").disabled = !page.pinned && !page.quick;
 }
 
-/** The form as the state has it; what the state leaves alone is the design file's. */
+/** The form as the state has it. */
 function show() {
   parts.form.show(page.state, page.plain[page.state.base] ?? page.quick);
 }
@@ -99,29 +100,8 @@ function step(from, to) {
 }
 
 function changed(name, text, settled) {
-  go({ base: page.state.base, values: { ...page.state.values, [name]: text, ...started(name, text) } }, settled);
-}
-
-/** What has to change with a field: a resin takes a printer that runs it, an object needs sizes to begin with. */
-function started(name, text) {
-  if (name === "membrane.material") return printer(text);
-  if (name !== "contact.object" || !page.quick) return {};
-  const radius = Number(page.quick.values.membrane.inner_radius_mm);
-  const begin = { "contact.ring_section_radius_mm": radius / 5, "contact.ring_radius_mm": radius / 2, "contact.cone_half_angle_deg": 60 };
-  const given = {};
-  for (const key of parts.form.sizes[text] ?? []) {
-    const [table, field] = key.split(".");
-    if (page.state.values[key] || page.quick.values[table][field] !== null) continue;
-    if (key === "contact.profile_mm") given[key] = `[[0, 0], [${radius}, ${radius / 4}]]`;
-    else given[key] = String(Number((begin[key] ?? radius / 2).toPrecision(3)));
-  }
-  return given;
-}
-
-function printer(material) {
-  const names = parts.printers[material] ?? [];
-  const now = parts.form.fields.get("print.profile").input.value;
-  return !names.length || names.includes(now) ? {} : { "print.profile": names[0] };
+  const following = (field, value) => parts.following.of(field, value, page.state, page.quick);
+  go({ base: page.state.base, values: { ...page.state.values, [name]: text, ...following(name, text) } }, settled);
 }
 
 function problems(list) {
@@ -178,12 +158,18 @@ function quickly(question, status, content) {
   const why = content.outside ? `Not in the atlas: ${content.outside}. ` : "Answered by the atlas. ";
   report(`${why}The solid is computing.`, true);
   buttons();
-  if (parts.view.renderer) parts.shapes.send(question);
+  if (parts.view.renderer && !parts.view.drawnBySoftware) parts.shapes.send(question);
   if (same(question, page.state)) {
-    if (content.prediction) parts.soon = setTimeout(() => parts.intervals.send(question), PAUSED);
+    parts.soon = setTimeout(() => complete(question, content), PAUSED);
     parts.later = setTimeout(() => parts.solved.send(question), SETTLED);
   }
   requestAnimationFrame(() => (document.body.dataset.painted = String(1 + Number(document.body.dataset.painted ?? 0))));
+}
+
+/** After the last move: the rest of the atlas's answer, and the view where it would hold up the moves. */
+function complete(question, content) {
+  if (parts.view.drawnBySoftware) parts.shapes.send(question);
+  if (content.prediction) parts.intervals.send(question);
 }
 
 /** What the atlas adds to its quick answer: intervals, and the other resins. */
@@ -277,7 +263,7 @@ async function start() {
   const declared = await (await fetch("/api/form")).json();
   byId("base").replaceChildren(...declared.designs.map((one) => element("option", { value: one.name, title: one.title }, one.name)));
   parts.words = new Map(declared.designs.map((one) => [one.name, one.words]));
-  Object.assign(parts, { printers: declared.printers, version: declared.version });
+  parts.version = declared.version;
   parts.view = new View(byId("view"));
   byId("view-tools").hidden = !parts.view.renderer;
   parts.pressed = new Pressed((pressed) => {
@@ -285,6 +271,7 @@ async function start() {
     parts.view.press(pressed);
   });
   parts.form = new Form(declared, changed);
+  parts.following = new Following(parts.form, declared.printers);
   parts.quick = new Line("/api/quick", quickly, failed);
   parts.intervals = new Line("/api/intervals", completed, failed);
   parts.solved = new Line("/api/solved", solved, failed, replaced);

@@ -39,6 +39,10 @@ export class View {
     this.sun = new three.DirectionalLight(0xffffff, 2.1);
     this.scene.add(new three.HemisphereLight(0xffffff, 0x8899aa, 1.5), this.sun);
     Object.assign(this, { groups: new Map(), azimuth: -1.1, height: 0.42, zoom: 1, open: true, apart: 0, findings: [] });
+    // Without a graphics card a frame takes the processor longer than an answer of the atlas.
+    const info = this.renderer.getContext().getExtension("WEBGL_debug_renderer_info");
+    const name = info ? this.renderer.getContext().getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
+    this.drawnBySoftware = /swiftshader|llvmpipe|software/i.test(name);
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute("role", "img");
@@ -92,6 +96,7 @@ export class View {
     this.bounds = new three.Box3();
     for (const group of this.groups.values()) this.bounds.expandByObject(group);
     this.mark(this.findings);
+    this.draw();
   }
 
   group(body) {
@@ -110,7 +115,7 @@ export class View {
 
   /** Spheres where findings of the print rules lie; they move with their bodies. */
   mark(findings) {
-    if (!this.renderer) return;
+    if (!this.renderer || (!findings.length && !this.findings.length)) return;
     this.findings = findings;
     if (!this.bounds) return;
     const radius = 0.012 * this.bounds.getSize(new three.Vector3()).length();
@@ -129,7 +134,7 @@ export class View {
 
   /** The wall as pressed, turned about the axis, in place of the membrane above the base; null for the sensor as printed. */
   press(pressed) {
-    if (!this.renderer) return;
+    if (!this.renderer || (!pressed && !this.wall)) return;
     if (this.wall) {
       this.scene.remove(this.wall);
       this.wall.children.forEach((part) => part.geometry.dispose());
@@ -161,7 +166,13 @@ export class View {
     this.draw();
   }
 
+  /** Draw once before the next frame, whatever changed until then. */
   draw() {
+    this.due ??= requestAnimationFrame(() => this.render());
+  }
+
+  render() {
+    this.due = null;
     if (!this.renderer || !this.bounds) return;
     const width = this.host.clientWidth;
     const height = this.host.clientHeight;
