@@ -14,6 +14,7 @@ from urllib.parse import urlsplit
 
 from playwright.sync_api import Page
 
+from pneutouch.spec.fields import Declaration
 from tests.browser import Pages, until
 
 SOLVED = "document.getElementById('status').textContent.startsWith('Answered by the model')"
@@ -75,3 +76,8 @@ def move(page: Page, label: str, place: float) -> None:
         "slider.dispatchEvent(new Event('change')); }",
         place,
     )
+
+
+def is_declared(field: dict[str, Any], declared: Declaration) -> bool:
+    """Whether a field of a form has what is declared."""
+    return all(field[key] == getattr(declared, key) for key in ("unit", "low", "high", "help"))

@@ -23,6 +23,7 @@ from pneutouch.studio.state import state_of
 from pneutouch.studio.target import target_of
 from pneutouch.workflows.select.passing import assigned
 from tests.conftest import ROOT
+from tests.studio.served import is_declared
 
 FIELDS = {
     "target.sensitivity_kPa_per_N": "1.9",
@@ -248,12 +249,7 @@ def test_the_form_of_a_target_is_made_of_the_declared_fields(client):
     for name in Target.model_fields:
         for declared in declarations(table_of(Target, name)):
             field = fields.pop(f"{name}.{declared.key}")
-            assert (field["unit"], field["low"], field["high"], field["help"]) == (
-                declared.unit,
-                declared.low,
-                declared.high,
-                declared.help,
-            )
+            assert is_declared(field, declared)
     assert not fields
     example = Target.model_validate(tomllib.loads((ROOT / "docs/examples/fingertip.toml").read_text()))
     assert target_of(Question("paper-dome", answer["example"]), {}) == example

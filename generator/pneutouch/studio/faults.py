@@ -1,6 +1,7 @@
 """Errors of the library as the page takes them: a message for each field that caused one."""
 
 import re
+from collections.abc import Callable
 from typing import Any
 
 from pydantic import BaseModel
@@ -25,6 +26,19 @@ def fault_document(error: PneutouchError) -> dict[str, Any]:
 def fault_status(error: PneutouchError) -> int:
     """The status of an answer: the input is wrong, or a computation could not be completed."""
     return BAD_INPUT if isinstance(error, InputError) else FAILED
+
+
+def reported(compute: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    """``status`` and ``content`` of what is computed; an error is an answer too, without a traceback."""
+    try:
+        return {"status": 200, "content": compute()}
+    except PneutouchError as error:
+        fault = error
+    except MemoryError:
+        fault = too_little_memory()
+    except Exception as error:
+        fault = ComputationError(f"internal fault ({type(error).__name__}: {error})", remedy="please report it")
+    return {"status": fault_status(fault), "content": fault_document(fault)}
 
 
 def too_little_memory() -> PneutouchError:

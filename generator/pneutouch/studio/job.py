@@ -11,9 +11,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from pneutouch.errors import ComputationError, PneutouchError
 from pneutouch.holding import STOPS
-from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
+from pneutouch.studio.faults import reported
 
 KINDS: dict[str, str] = {
     "build": "building:build_design",
@@ -41,16 +40,13 @@ Report = Callable[[int, int, str | None], None]
 def answered(request: Mapping[str, Any], report: Report) -> dict[str, Any]:
     """Status and content of a job; an error is an answer too."""
     module, _, name = KINDS[request["kind"]].partition(":")
-    try:
-        run = getattr(import_module(f"pneutouch.studio.{module}"), name)
-        return {"status": 200, "content": run(request["arguments"], Path(request["folder"]), report)}
-    except PneutouchError as error:
-        fault = error
-    except MemoryError:
-        fault = too_little_memory()
-    except Exception as error:
-        fault = ComputationError(f"internal fault ({type(error).__name__}: {error})", remedy="please report it")
-    return {"status": fault_status(fault), "content": fault_document(fault)}
+
+    def run() -> dict[str, Any]:
+        job = getattr(import_module(f"pneutouch.studio.{module}"), name)
+        content: dict[str, Any] = job(request["arguments"], Path(request["folder"]), report)
+        return content
+
+    return reported(run)
 
 
 def work(request: bytes, out: BinaryIO) -> None:

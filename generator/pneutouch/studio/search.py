@@ -91,6 +91,7 @@ def _cards(run: SelectionRun, page: _Page) -> list[dict[str, Any]]:
     """The designs by rank; where there are none, what is nearest and what fits without one of the requirements."""
 
     def card(choice: Candidate, kind: str, label: str, *, rank: int | None = None, note: str = "") -> dict[str, Any]:
+        """A design as the page shows it, with the state that makes it the page's design."""
         return {
             **candidate_card(run, choice, rank),
             "kind": kind,

@@ -7,25 +7,15 @@ from collections.abc import Iterable, Mapping
 from typing import Any, BinaryIO
 
 from pneutouch.catalogue import Library
-from pneutouch.errors import ComputationError, PneutouchError
 from pneutouch.studio.answer import full_answer
-from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
+from pneutouch.studio.faults import reported
 from pneutouch.studio.library import PageLibrary
 from pneutouch.studio.question import Question
 
 
 def answered(request: Mapping[str, Any], library: Library) -> dict[str, Any]:
     """Status and content of the answer to a request with ``question`` and ``bases``; an error is an answer too."""
-    try:
-        content = full_answer(Question.of(request["question"]), request["bases"], library)
-        return {"status": 200, "content": content}
-    except PneutouchError as error:
-        fault = error
-    except MemoryError:
-        fault = too_little_memory()
-    except Exception as error:
-        fault = ComputationError(f"internal fault ({type(error).__name__}: {error})", remedy="please report it")
-    return {"status": fault_status(fault), "content": fault_document(fault)}
+    return reported(lambda: full_answer(Question.of(request["question"]), request["bases"], library))
 
 
 def work(requests: Iterable[bytes], answers: BinaryIO) -> None:
