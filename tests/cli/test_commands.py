@@ -63,6 +63,7 @@ def test_list_shows_designs_materials_printers_and_parts(command, root):
         "materials",
         "mixing",
         "printers",
+        "gauges",
         "parts",
     }
     assert "paper-dome" in [entry["name"] for entry in document["designs"]]

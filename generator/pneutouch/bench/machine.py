@@ -9,7 +9,7 @@ from pneutouch.bench.finding import CouponFindings, ReadingSource, rounded
 from pneutouch.bench.statistics import mean
 from pneutouch.errors import InputError
 from pneutouch.parts.coupons import COUPONS, CouponContext
-from pneutouch.spec.coupon import Gauge, GaugeSize
+from pneutouch.spec.coupon import FeatureGauge, GaugeSize
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import HOLE_UNDERSIZE_MM, FeatureSize, Printer
 
@@ -39,7 +39,7 @@ _SMALLEST = MappingProxyType(
 )
 """Row of the gauge and kinds of material behind each smallest feature of a printer profile."""
 
-MeasuredGauges = Sequence[tuple[str, Material, Gauge]]
+MeasuredGauges = Sequence[tuple[str, Material, FeatureGauge]]
 """Gauges of one printer: name of the material, the material and the readings."""
 
 
@@ -58,7 +58,7 @@ def gauges(
             _least(name, key, judged, getattr(printer.smallest, key), source, results)
 
 
-def _check_sizes(gauge: Gauge, material: Material, where: str) -> None:
+def _check_sizes(gauge: FeatureGauge, material: Material, where: str) -> None:
     known: dict[str, list[float]] = {}
     for nominal in COUPONS["gauge"].nominals(CouponContext(material)):
         known.setdefault(nominal.feature, []).append(nominal.value or 0.0)

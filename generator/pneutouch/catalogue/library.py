@@ -16,6 +16,7 @@ from pneutouch.catalogue.places import PACKAGE, shipped_root, user_folder
 from pneutouch.errors import InputError, nearest, one_line
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.files import is_file
+from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.material import Material
 from pneutouch.spec.mixing import MixingCurve
 from pneutouch.spec.part import MOUNTS, PORTS, SEATS, Tube
@@ -73,6 +74,7 @@ KINDS: dict[str, FileKind] = {
     "materials": FileKind(_one(Material), "printprofiles/materials"),
     "mixing": FileKind(_one(MixingCurve), "printprofiles/mixing"),
     "printers": FileKind(_one(Printer), "printprofiles"),
+    "gauges": FileKind(_one(Gauge), "printprofiles/gauges"),
     "tubes": FileKind(_one(Tube), "parts/tubes", part=True),
     "ports": FileKind(_by_family(PORTS), "parts/ports", part=True),
     "seats": FileKind(_by_family(SEATS), "parts/seats", part=True),

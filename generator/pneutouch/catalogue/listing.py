@@ -20,6 +20,7 @@ _GROUPS = {
     "materials": ["materials"],
     "mixing": ["mixing"],
     "printers": ["printers"],
+    "gauges": ["gauges"],
     "parts": ["ports", "seats", "mounts", "tubes"],
 }
 

@@ -12,6 +12,7 @@ from pneutouch.catalogue.mixture import mixed_material
 from pneutouch.errors import InputError, shown
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import MaterialKind
+from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.names import name_of
@@ -39,6 +40,7 @@ class ResolvedDesign:
     seat: AnySeat
     mount: AnyMount
     calibration: SensorCalibration | None = None
+    gauge: Gauge | None = None
 
     def __repr__(self) -> str:
         return f"ResolvedDesign({self.name!r}, {self.where!r})"
@@ -146,6 +148,7 @@ def _resolved(name: str, where: str, design: DesignFile, library: Library) -> Re
         seat=find("seats", "connector", "seat"),
         mount=_mount(design, where, library),
         calibration=_calibration(design, where, library),
+        gauge=_gauge(design, where, library),
     )
     check_scene(scene)
     return scene
@@ -169,6 +172,15 @@ def _calibration(design: DesignFile, where: str, library: Library) -> SensorCali
     return calibration
 
 
+def _gauge(design: DesignFile, where: str, library: Library) -> Gauge | None:
+    """The gauge that the design names; None without one."""
+    name = design.pneumatics.gauge
+    if name is None:
+        return None
+    gauge: Gauge = library.load("gauges", name, file=where, key="pneumatics.gauge")
+    return gauge
+
+
 def check_scene(scene: ResolvedDesign) -> None:
     """What must hold between the parts of a scene. Raises InputError that names ``scene.where`` and the key."""
     _check_kind(scene, "membrane.material", scene.membrane_material, "elastomer")
@@ -177,6 +189,7 @@ def check_scene(scene: ResolvedDesign) -> None:
     _check_runs(scene, "print.connector_profile", scene.connector_printer, scene.connector_material)
     _check_one_piece(scene)
     _check_calibration(scene)
+    _check_gauge(scene)
 
 
 def _tube(design: DesignFile, where: str, library: Library) -> Tube:
@@ -195,6 +208,20 @@ def _tube(design: DesignFile, where: str, library: Library) -> Tube:
             )
     tube: Tube = library.load("tubes", name or port.tubes[0], file=where, key="tubes of connector.port")
     return tube
+
+
+def _check_gauge(scene: ResolvedDesign) -> None:
+    """A gauge must read above the ambient pressure."""
+    gauge, ambient_kPa = scene.gauge, scene.design.pneumatics.ambient_pressure_kPa
+    if gauge is not None and gauge.gauge_pressures_kPa(ambient_kPa)[1] <= 0:
+        raise InputError(
+            f"the {gauge.title} reads to {gauge.range_kPa.high:g} kPa absolute, not above the ambient "
+            f"{ambient_kPa:g} kPa",
+            file=scene.where,
+            key="pneumatics.gauge",
+            value=scene.design.pneumatics.gauge,
+            remedy="take another gauge",
+        )
 
 
 def _mount(design: DesignFile, where: str, library: Library) -> AnyMount:

@@ -135,7 +135,7 @@ class GaugeSize(Table):
         return True if self.measured_mm else self.came_out
 
 
-class Gauge(Table):
+class FeatureGauge(Table):
     """[gauge.PRINTER.MATERIAL]: the block's lengths, then the rows of the gauge."""
 
     x: list[GaugeSize] = Field(default_factory=list)
@@ -181,7 +181,7 @@ class CouponResults(Table):
     puck: dict[str, Puck] = Field(default_factory=dict)
     dumbbell: dict[str, Dumbbell] = Field(default_factory=dict)
     mixing: dict[str, Blends] = Field(default_factory=dict)
-    gauge: dict[str, dict[str, Gauge]] = Field(default_factory=dict)
+    gauge: dict[str, dict[str, FeatureGauge]] = Field(default_factory=dict)
     leak_cap: dict[str, LeakCap] = Field(default_factory=dict, alias="leak-cap")
     volume_plug: dict[str, VolumePlug] = Field(default_factory=dict, alias="volume-plug")
 
@@ -226,6 +226,6 @@ def _owner(path: list[str]) -> type[Table]:
 
 def _inner(owner: type[Table], field: str) -> type[Table] | None:
     if owner is CouponResults and field == "gauge":
-        return Gauge
+        return FeatureGauge
     table = table_of(owner, field)
     return table if table is not None and issubclass(table, Table) else None

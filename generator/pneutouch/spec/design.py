@@ -104,6 +104,12 @@ class Pneumatics(Table):
     tube_length_mm: float = number(
         300.0, unit="mm", low=0, high=20000, help="Tube between the port and the pressure sensor."
     )
+    gauge: str | None = Field(
+        default=None,
+        min_length=1,
+        description="Pressure gauge at the end of the tube; left out: the paper's, +-100 kPa.",
+        json_schema_extra={"registry": "gauges"},
+    )
     dead_volume_mL: float | None = number(
         None,
         unit="mL",
@@ -111,6 +117,13 @@ class Pneumatics(Table):
         high=1000,
         help="Total gas volume behind the cavity; left out: computed from connector and tube.",
     )
+
+    @model_serializer(mode="wrap")
+    def _without_no_gauge(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        content: dict[str, Any] = handler(self)
+        if content.get("gauge") is None:
+            content.pop("gauge", None)
+        return content
 
 
 class Indentation(Table):

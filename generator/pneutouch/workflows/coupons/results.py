@@ -10,7 +10,7 @@ from pneutouch.bench.resin import dumbbell, puck
 from pneutouch.bench.volume import leak, volume
 from pneutouch.catalogue import KINDS, Library, load_scene, user_folder
 from pneutouch.errors import InputError
-from pneutouch.spec.coupon import CouponResults, Gauge, read_results
+from pneutouch.spec.coupon import CouponResults, FeatureGauge, read_results
 from pneutouch.spec.material import Material
 from pneutouch.spec.names import file_name
 from pneutouch.spec.printer import Printer
@@ -57,7 +57,11 @@ def evaluate_results(results: CouponResults, where: str, library: Library) -> Co
 
 
 def _gauges(
-    name: str, by_material: Mapping[str, Gauge], source: ReadingSource, library: Library, findings: CouponFindings
+    name: str,
+    by_material: Mapping[str, FeatureGauge],
+    source: ReadingSource,
+    library: Library,
+    findings: CouponFindings,
 ) -> None:
     printer: Printer = _shipped("printers", name, source.where, "gauge", library)
     measured = []
