@@ -46,6 +46,7 @@ COMMANDS: dict[str, dict[str, CommandEntry]] = {
         "simulate": CommandEntry("simulate", "Simulate a campaign: records with known truth."),
         "characterize": CommandEntry("characterize", "Turn measured runs into figures; compare with prediction."),
         "calibrate": CommandEntry("calibrate", "Fit the model to the runs of one sensor."),
+        "export-reader": CommandEntry("export_reader", "Write the sensor's pressure-to-force model for a machine."),
         "scan": CommandEntry("scan", "Scan a texture with a sensor: signals and their spectrum."),
     },
 }

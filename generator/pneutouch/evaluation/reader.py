@@ -1,0 +1,220 @@
+"""A sensor's force over gauge pressure and driving pressure, tabulated for readers in machines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.errors import ComputationError
+from pneutouch.evaluation.calibrated import BEYOND
+from pneutouch.mechanics import Sensor, SensorPrediction, SensorState, predict
+from pneutouch.units import KPA
+
+if TYPE_CHECKING:
+    from pneutouch.evaluation.evaluate import Evaluation
+
+COLUMNS = 41
+"""Indentations of a row of the grid: the first is no contact, the last the end of the range."""
+
+ROWS = {"atlas": 17, "membrane": 17, "solid": 9, "harmonic": 5}
+"""Driving pressures of the grid by model: what a press costs differs a thousandfold."""
+
+GAS_ROWS = 65
+"""Driving pressures at which the gas volume without contact is tabulated."""
+
+CHANGE_K = 5.0
+"""Change of the gas temperature since the tare, up and down, that a reader corrects: our choice, a room in a day."""
+
+CHANGE_KPA = 3.0
+"""Ambient pressure, up and down from the design's, that a reader corrects: our choice, the weather of most days."""
+
+ROOM_K = 293.15
+"""Temperature at which a change by a kelvin is counted."""
+
+_LIMIT_SHARE = 0.97
+"""Share of the limit point up to which the grid goes beyond the highest driving pressure of the design."""
+
+
+class PressCurve(NamedTuple):
+    """A press at one driving pressure within its range: indentation (mm), force (N), pressure rise (MPa), of one
+    length and ascending, and the gas volume before contact (cavity and dead volume, mm3)."""
+
+    indentation: Array
+    force: Array
+    rise: Array
+    gas_volume: float
+
+
+@dataclass(frozen=True)
+class ReaderGrid:
+    """Force and pressure rise of n driving pressures at m shares of the indentation.
+
+    Attributes:
+        driving_pressure: Equal steps, MPa (n,). Rows below zero are extrapolated: see `computed`.
+        computed: Number of the first row that the model computed.
+        reach: Indentation of the last column, mm (n,).
+        force: N (n, m), the first column 0, ascending along the rows.
+        rise: MPa (n, m), likewise.
+        pressure_factor: Pressure rise of the sensor over that of the gas law, (n,): 1 without a calibration.
+        gas_pressure: Equal steps over the same span, MPa (k,).
+        gas_volume: Cavity and dead volume without contact at these, mm3 (k,).
+        low, high: The driving pressures that may be set, MPa.
+        model: Name of the model.
+    """
+
+    driving_pressure: Array
+    computed: int
+    reach: Array
+    force: Array
+    rise: Array
+    pressure_factor: Array
+    gas_pressure: Array
+    gas_volume: Array
+    low: float
+    high: float
+    model: str
+
+    @property
+    def full_scale(self) -> float:
+        """Greatest force of the grid's computed rows, N."""
+        return float(self.force[self.computed :, -1].max())
+
+
+def reader_grid(evaluation: Evaluation) -> ReaderGrid:
+    """Tabulate a design's sensor. Raises ComputationError where a press has no range, InputError as `predict`."""
+    sensor, options = evaluation.sensor, evaluation.options
+    set_to = [state.driving_pressure for state in evaluation.prediction.states]
+    rows, computed, low, high = _driving_pressures(evaluation, min(set_to), max(set_to))
+    computed_rows = [float(p) for p in rows[computed:]]
+    prediction = predict(
+        evaluation.scene.name,
+        fine(sensor),
+        computed_rows,
+        model=options.model,
+        closure=options.closure,
+        tolerance=options.tolerance,
+    )
+    curves = [curve_of(state, sensor, _deepest(evaluation)) for state in prediction.states]
+    reach = _common_reach(np.array([curve.indentation[-1] for curve in curves]))
+    share = np.linspace(0.0, 1.0, COLUMNS)
+    force, rise = (
+        np.stack(
+            [
+                _at(curve.indentation, getattr(curve, name), end * share)
+                for curve, end in zip(curves, reach, strict=True)
+            ]
+        )
+        for name in ("force", "rise")
+    )
+    gas_pressure = np.linspace(rows[0], rows[-1], GAS_ROWS)
+    return ReaderGrid(
+        driving_pressure=rows,
+        computed=computed,
+        reach=_continued(reach, computed),
+        force=_continued(force, computed),
+        rise=_continued(rise, computed),
+        pressure_factor=np.array([sensor.correction.at(max(float(p), 0.0))[1] for p in rows]),
+        gas_pressure=gas_pressure,
+        gas_volume=_gas_volume(prediction, sensor, gas_pressure),
+        low=low,
+        high=high,
+        model=prediction.model,
+    )
+
+
+def fine(sensor: Sensor) -> Sensor:
+    """The sensor pressed in as many steps as the grid has."""
+    return sensor.replace(steps=max(COLUMNS - 1, sensor.protocol.steps))
+
+
+def _driving_pressures(evaluation: Evaluation, lowest: float, highest: float) -> tuple[Array, int, float, float]:
+    """Rows of the grid, the first that is not below zero, and the lowest and highest driving pressure of the box.
+
+    Beyond those of the design the box has what a change of the temperature by `CHANGE_K` makes of them, and the grid
+    what the ambient pressure adds. Below zero the models do not go.
+    """
+    ambient = evaluation.sensor.gas.ambient_pressure
+    limits = evaluation.prediction.limits
+    cap = np.inf if limits.limit_point is None else _LIMIT_SHARE * limits.limit_point
+    high = max(min(highest + (highest + ambient) * CHANGE_K / ROOM_K, cap), highest)
+    low = max(lowest - (lowest + ambient) * CHANGE_K / ROOM_K, 0.0)
+    margin = ambient * CHANGE_K / ROOM_K + CHANGE_KPA * KPA
+    steps = ROWS[evaluation.prediction.model] - 1
+    bottom = low - margin
+    if bottom >= 0.0:
+        return np.linspace(bottom, high, steps + 1), 0, low, high
+    below = max(1, round(steps * -bottom / (high - bottom)))
+    step = high / (steps - below)
+    return step * np.arange(-below, steps - below + 1), below, low, high
+
+
+def curve_of(state: SensorState, sensor: Sensor, deepest: float = np.inf) -> PressCurve:
+    """The part of a press that a reader may use: up to its range's end, ``deepest`` (mm), or where it turns back.
+
+    Raises ComputationError where nothing is left.
+    """
+    end = min(state.range_end, deepest)
+    kept = int(np.searchsorted(state.indentation, end * (1 + 1e-9), side="right"))
+    rising = (np.diff(state.force[:kept]) > 0.0) & (np.diff(state.pressure_rise[:kept]) > 0.0)
+    kept = kept if rising.all() else int(np.argmin(rising)) + 1
+    if kept < 3:
+        raise ComputationError(
+            f"at {state.driving_pressure / KPA:.4g} kPa force and pressure do not rise together from first contact: "
+            "there is no range to read a force in",
+            remedy="take other driving pressures",
+        )
+    part = slice(0, kept)
+    depth, force, rise = (a[part] - a[0] for a in (state.indentation, state.force, state.pressure_rise))
+    if rising.all() and end > state.indentation[kept - 1]:
+        last = np.append(depth, end - state.indentation[0])
+        force, rise = (
+            _at(state.indentation - state.indentation[0], a - a[0], last) for a in (state.force, state.pressure_rise)
+        )
+        depth = last
+    return PressCurve(depth, force, rise, state.cavity_volume + sensor.gas.dead_volume)
+
+
+def _at(x: Array, y: Array, at: Array) -> Array:
+    from scipy.interpolate import PchipInterpolator
+
+    place, first = np.unique(x, return_index=True)
+    return np.asarray(PchipInterpolator(place, y[first])(np.clip(at, place[0], place[-1])))
+
+
+def _deepest(evaluation: Evaluation) -> float:
+    """Greatest indentation that the calibration has measured, mm."""
+    calibration = evaluation.scene.calibration
+    measured = None if calibration is None else calibration.source.depth_mm
+    return np.inf if measured is None else BEYOND * measured
+
+
+def _common_reach(ends: Array) -> Array:
+    """Ends of the rows, none more than a tenth beyond its neighbour's: between rows both are read at one share."""
+    reach = ends.copy()
+    for order in (range(1, len(ends)), range(len(ends) - 2, -1, -1)):
+        step = 1 if order.step == 1 else -1
+        for k in order:
+            reach[k] = min(reach[k], 1.1 * reach[k - step])
+    return reach
+
+
+def _continued(rows: Array, below: int) -> Array:
+    """Rows with ``below`` more in front, by the parabola through the first three."""
+    steps = -np.arange(below, 0, -1).reshape(-1, *[1] * (rows.ndim - 1))
+    a, b, c = rows[0], rows[1], rows[2]
+    added = a + steps * (b - a) + 0.5 * steps * (steps - 1) * (c - 2 * b + a)
+    return np.concatenate([added, rows])
+
+
+def _gas_volume(prediction: SensorPrediction, sensor: Sensor, pressures: Array) -> Array:
+    """Cavity and dead volume without contact at driving pressures, mm3; below zero by the slope at zero."""
+    inflation = prediction.inflation
+    top = int(np.argmax(inflation.pressure))
+    pressure, volume = inflation.pressure[: top + 1], inflation.volume[: top + 1]
+    read = _at(pressure, volume, np.maximum(pressures, 0.0))
+    small = 0.01 * float(pressure[-1])
+    slope = (float(_at(pressure, volume, np.array([small]))[0]) - float(volume[0])) / small
+    return np.asarray(read + np.minimum(pressures, 0.0) * slope + sensor.gas.dead_volume)

@@ -1,0 +1,81 @@
+"""The document of a reader, ``reader.json``: what its files in C and Python are made from."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, ReaderGrid
+from pneutouch.evaluation.reader_uncertainty import force_uncertainty, why_unknown
+from pneutouch.units import KPA, ML
+
+if TYPE_CHECKING:
+    from pneutouch.evaluation.evaluate import Evaluation
+
+FORMAT = 1
+"""Number of the form of ``reader.json``; raised where a reader of the form before would misread it."""
+
+_DRIFT_SHARE = 0.001
+"""Share of full scale that a driving pressure just below its box may be off by without a status."""
+
+
+def reader_record(evaluation: Evaluation, grid: ReaderGrid) -> dict[str, Any]:
+    """The document without its source and its largest difference from the full model. Numbers are float32 ones."""
+    scene, sensor = evaluation.scene, evaluation.sensor
+    relative = force_uncertainty(evaluation, grid)
+    ambient_kPa = sensor.gas.ambient_pressure / KPA
+    return {
+        "format": FORMAT,
+        "design": scene.name,
+        "calibration": scene.design.calibration_name,
+        "model": grid.model,
+        "units": {"pressure": "kPa", "force": "N", "length": "mm", "volume": "mL", "temperature": "degC"},
+        "grid": {
+            "driving_pressure_kPa": _single(grid.driving_pressure / KPA),
+            "pressure_rise_kPa": _single(grid.rise / KPA),
+            "contact_force_N": _single(grid.force),
+            "indentation_mm": _single(grid.reach),
+            "pressure_factor": _single(grid.pressure_factor),
+            "force_uncertainty_relative": None if relative is None else _single(relative),
+            "force_uncertainty_unknown": why_unknown(evaluation, grid),
+        },
+        "gas": {"driving_pressure_kPa": _single(grid.gas_pressure / KPA), "volume_mL": _single(grid.gas_volume / ML)},
+        "box": {
+            "driving_pressure_kPa": _single(np.array([grid.low, grid.high]) / KPA),
+            "driving_pressure_margin_kPa": _one(_margin(grid) / KPA),
+            "contact_force_N": [0.0, _one(grid.full_scale)],
+            "pressure_rise_kPa": [0.0, _one(float(grid.rise[grid.computed :, -1].max()) / KPA)],
+            "indentation_mm": [0.0, _one(float(grid.reach[grid.computed :].max()))],
+            "ambient_pressure_kPa": _single(np.array([ambient_kPa - CHANGE_KPA, ambient_kPa + CHANGE_KPA])),
+            "temperature_change_K": CHANGE_K,
+        },
+        "rating": {"driving_pressure_kPa": _one(evaluation.rating.pressure_kPa), "basis": evaluation.rating.basis},
+        "gauge": {"range_kPa": _single(np.array([-ambient_kPa, sensor.gas.gauge_limit / KPA]))},
+        "conditions": {
+            "driving_pressures_kPa": scene.design.pneumatics.driving_pressures_kPa,
+            "ambient_pressure_kPa": _one(ambient_kPa),
+            "dead_volume_mL": sensor.gas.dead_volume / ML,
+            "assumptions": list(evaluation.prediction.assumptions),
+        },
+    }
+
+
+def _margin(grid: ReaderGrid) -> float:
+    """How far a driving pressure may be below the box, MPa, so that the table moves by `_DRIFT_SHARE` at most."""
+    first = grid.computed
+    step = float(grid.driving_pressure[1] - grid.driving_pressure[0])
+    moved = np.interp(grid.rise[first], grid.rise[first + 1], grid.force[first + 1]) - grid.force[first]
+    slope = float(np.abs(moved).max()) / step
+    return min(_DRIFT_SHARE * grid.full_scale / slope, step) if slope > 0.0 else step
+
+
+def _one(value: float) -> float:
+    """The number as float32 has it, with the digits that distinguish it."""
+    return float(f"{float(np.float32(value)):.9g}")
+
+
+def _single(values: Array) -> Any:
+    """As `_one`, nested lists."""
+    return [_one(value) for value in values] if values.ndim == 1 else [_single(row) for row in values]
