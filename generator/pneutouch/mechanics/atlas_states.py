@@ -9,7 +9,18 @@ from pneutouch.errors import BeyondLimitError
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack
 from pneutouch.mechanics.atlas.recipe import FIELDS
-from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, DEPTH, EDGE, ENDS, GAUGE, NEAR, OUTSIDE, respond
+from pneutouch.mechanics.atlas.respond import (
+    BREAK,
+    BUCKLING,
+    DEPTH,
+    EDGE,
+    ENDS,
+    GAUGE,
+    NEAR,
+    OUTSIDE,
+    AtlasResponse,
+    run,
+)
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, AtlasSlices, shipped
 from pneutouch.mechanics.events import Event
 from pneutouch.mechanics.limits import LimitPoint, Limits
@@ -103,71 +114,49 @@ def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[ModelResult,
     The sensor must lie in the box (`outside_atlas`). Raises BeyondLimitError beyond the limit point.
     """
     batch = batch_of(sensor, driving_pressures)
-    slices = shipped().slices(batch.wall_ratio[:1])
-    limit = float(slices.limit_pressure[0]) * sensor.wall.shear_modulus
+    # Each pressure is a group of its own: its figures do not depend on the others.
+    response, press, whole = run(batch, sensor.protocol.steps, shipped(), np.arange(len(batch)), FIELDS)
+    limit = float(press.slices.limit_pressure[0]) * sensor.wall.shear_modulus
     for pressure in driving_pressures:
         if pressure >= limit:
             raise BeyondLimitError(float(pressure), limit, "it lies beyond the limit point")
-    response = respond(batch, sensor.protocol.steps)
-    press = AtlasPress(batch, slices, np.zeros(len(batch), dtype=np.intp))
-    steps, depth = np.linspace(0.0, 1.0, sensor.protocol.steps + 1), sensor.protocol.depth / sensor.dome.inner_radius
-    track = press.march(steps * depth * np.ones((len(batch), 1)))
     ends = [int(end) for end in response.ends]
-    ranges = np.nan_to_num(response.range_end)
-    curves = _curves(press, ranges / sensor.dome.inner_radius, sensor.protocol.steps)
-    states = tuple(_state(sensor, press, track, i, ends[i], float(ranges[i]), curves[i]) for i in range(len(batch)))
+    fields = dict(zip(FIELDS, press.several(FIELDS, whole), strict=True))
+    states = tuple(_state(sensor, press, whole, fields, response, i) for i in range(len(batch)))
     limitation = next((reason for end, reason in _LIMITATIONS.items() if end in ends), None)
     if limitation is None and response.near_buckling.any():
         why = f"the wall would buckle within {NEAR:g} R0 more of travel, where the table is less accurate"
         limitation = AnswerLimitation(why, False)
     if limitation is None and meets_ring(sensor):
         limitation = _MEETS_RING
-    curve, point, rupture = _inflation(sensor, slices)
+    curve, point, rupture = _inflation(sensor, press.slices)
     return ModelResult(point, Limits(limit, rupture, sensor.gas.gauge_limit), curve, states), limitation
 
 
-def _curves(press: AtlasPress, range_end: Array, steps: int) -> list[tuple[Array, Array, Array]]:
-    """Travel, force and pressure rise of every sensor from first contact to the end of its range (R0), nondimensional.
-
-    Each is a group of its own: its figures do not depend on the other pressures.
-    """
-    alone = press.rows(np.arange(len(press.batch)))
-    alone.groups = np.arange(len(press.batch))
-    grid = np.stack([np.linspace(0.0, end, steps + 1) for end in range_end])
-    track = alone.march(grid)
-    return list(zip(grid, track.point.force, track.point.pressure - press.pressure[:, None], strict=True))
-
-
 def _state(
-    sensor: Sensor,
-    press: AtlasPress,
-    track: PressTrack,
-    i: int,
-    end: int,
-    range_end: float,
-    curve: tuple[Array, Array, Array],
+    sensor: Sensor, press: AtlasPress, whole: PressTrack, fields: dict[str, Array], response: AtlasResponse, i: int
 ) -> SensorState:
+    """The state of one driving pressure; ``fields`` are those of ``whole``, (n, m) each."""
     length, mu = sensor.dome.inner_radius, sensor.wall.shear_modulus
-    known = int(np.argmin(track.ok[i])) if not track.ok[i].all() else track.ok.shape[1]
-    one = track.each(lambda part: part[i : i + 1, :known])
-    row = press.rows(np.array([i]))
-    field = {name: values[0] for name, values in zip(FIELDS, row.several(FIELDS, one), strict=True)}
-    depth = (press.apex[i] - one.height[0]) * length
-    force, rise = one.point.force[0] * mu * length**2, (one.point.pressure[0] - press.pressure[i]) * mu
-    x, f, dp = curve
+    ok = whole.ok[i]
+    known = slice(0, ok.size if ok.all() else int(np.argmin(ok)))
+    field = {name: values[i, known] for name, values in fields.items()}
+    depth = (press.apex[i] - whole.height[i, known]) * length
+    range_end = float(np.nan_to_num(response.range_end[i]))
+    curve = response.indentation[i], response.force[i], response.rise[i] / KPA
     return SensorState(
         driving_pressure=float(press.batch.driving_pressure[i]),
         apex_inner=float(field["inner_apex"][0]) * length,
         apex_outer=float(press.apex[i]) * length,
-        cavity_volume=float(row.volume(row.free)[0]) * length**3,
+        cavity_volume=float(press.volume(press.free)[i]) * length**3,
         range_end=range_end,
-        figures=figures(x * length, f * mu * length**2, dp * mu / KPA) if range_end > 0 else None,
+        figures=figures(*curve) if range_end > 0 else None,
         indentation=depth,
-        force=force,
-        pressure_rise=rise,
+        force=whole.point.force[i, known] * mu * length**2,
+        pressure_rise=(whole.point.pressure[i, known] - press.pressure[i]) * mu,
         contact_radius=np.maximum(field["contact_radius"], 0.0) * length,
         max_stretch=field["stretch"],
-        events=tuple(_events(depth, field, end, range_end)),
+        events=tuple(_events(depth, field, int(response.ends[i]), range_end)),
         max_von_mises=field["von_mises"] * mu,
     )
 

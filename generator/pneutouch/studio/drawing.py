@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.body import Body
+from pneutouch.body import Body, Solid
 from pneutouch.body.normals import corner_normals
 from pneutouch.mechanics import SensorState
+from pneutouch.meridian import Meridian
 from pneutouch.parts import Assembly
 from pneutouch.report.section import section
 from pneutouch.units import KPA
@@ -21,13 +22,18 @@ _DIGITS = 3
 
 def drawing_document(assembly: Assembly) -> dict[str, Any]:
     """Loops (x, z) in mm where the plane y = 0 cuts each body, and the lengths that the dimensions state, mm."""
-    bodies = []
-    for solid in assembly.solids:
-        body = solid.mesh(_TOLERANCE)
-        loops = [_flat(loop, _DIGITS) for loop in section(body)]
-        bodies.append({"name": solid.name, "role": solid.role, "material": body.material.label, "loops": loops})
+    meshes = [solid.mesh(_TOLERANCE) for solid in assembly.solids]
+    bodies = [
+        {
+            "name": body.name,
+            "role": body.role,
+            "material": body.material.label,
+            "loops": [_flat(loop, _DIGITS) for loop in section(body)],
+        }
+        for body in meshes
+    ]
     layout = assembly.layout
-    bounds = [body.bounds for body in assembly.bodies]
+    bounds = [_bounds(solid, body) for solid, body in zip(assembly.solids, meshes, strict=True)]
     low, high = np.min([each[0] for each in bounds], axis=0), np.max([each[1] for each in bounds], axis=0)
     return {
         "bodies": bodies,
@@ -38,6 +44,14 @@ def drawing_document(assembly: Assembly) -> dict[str, Any]:
         "low_mm": round(float(low[2]), _DIGITS),
         "high_mm": round(float(high[2]), _DIGITS),
     }
+
+
+def _bounds(solid: Solid, body: Body) -> Array:
+    """Smallest and largest corner, shape (2, 3), mm; those of the exact surface where nothing sits on a turned body."""
+    if not isinstance(solid.base, Meridian) or solid.adds or solid.cuts:
+        return body.bounds
+    radius, low, high = solid.base.bounds()
+    return np.array([(-radius, -radius, low), (radius, radius, high)])
 
 
 def view_document(assembly: Assembly) -> dict[str, Any]:

@@ -103,28 +103,44 @@ def respond(
     chosen = atlas or shipped()
     groups = np.zeros(len(batch), dtype=np.intp) if groups is None else groups
     chunks = [slice(start, start + _CHUNK) for start in range(0, len(batch), _CHUNK)]
-    parts = [_respond(batch.take(chunk), steps, chosen, groups[chunk]) for chunk in chunks]
+    parts = [run(batch.take(chunk), steps, chosen, groups[chunk]).response for chunk in chunks]
     return parts[0] if len(parts) == 1 else AtlasResponse.join(parts)
 
 
-def _respond(batch: SensorBatch, steps: int, atlas: Atlas, groups: Index) -> AtlasResponse:
+class AtlasRun(NamedTuple):
+    """One pass over sensors: their answers, the press with its inflated states, and every press over its whole depth,
+    (n, steps + 1), whatever ends its range before."""
+
+    response: AtlasResponse
+    press: AtlasPress
+    whole: PressTrack
+
+
+def run(batch: SensorBatch, steps: int, atlas: Atlas, groups: Index, names: Sequence[str] = _FIELDS) -> AtlasRun:
+    """`respond` in one pass, with the states behind it; ``names`` are the fields that are looked up in them."""
     good = inside(batch, atlas)
     batch = _harmless(batch, good, atlas)
     walls, k = np.unique(batch.wall_ratio, return_inverse=True)
-    slices = atlas.slices(walls, _FIELDS)
-    limit = slices.limit_pressure[k] * batch.shear_modulus
-    press = AtlasPress(batch, slices, k, groups)
+    press = AtlasPress(batch, atlas.slices(walls, names), k, groups)
     share = np.linspace(0.0, 1.0, steps + 1)
-    depth = batch.depth / batch.inner_radius
-    track = press.march(share * depth[:, None])
-    end, ends = _first_end(press, share * depth[:, None], track)
+    travel = share * (batch.depth / batch.inner_radius)[:, None]
+    whole = press.march(travel)
+    end, ends = _first_end(press, travel, whole)
+    track = whole
     cut = np.flatnonzero(ends != DEPTH)
     if cut.size:
-        again = press.rows(cut).march(share * end[cut, None])
-        for whole, part in zip(
-            (*track[:2], *track.point, *track[3:]), (*again[:2], *again.point, *again[3:]), strict=True
-        ):
-            whole[cut] = part
+        track, again = whole.each(np.copy), press.rows(cut).march(share * end[cut, None])
+        pairs = zip((*track[:2], *track.point, *track[3:]), (*again[:2], *again.point, *again[3:]), strict=True)
+        for used, part in pairs:
+            used[cut] = part
+    return AtlasRun(_read_off(press, track, end, np.where(good, ends, OUTSIDE), good), press, whole)
+
+
+def _read_off(press: AtlasPress, track: PressTrack, end: Array, ends: Index, good: Flags) -> AtlasResponse:
+    """The answers along presses to the travel ``end`` in R0, (n,); ``good`` are the sensors that the atlas covers."""
+    batch = press.batch
+    limit = press.limit * batch.shear_modulus
+    share = np.linspace(0.0, 1.0, track.nu.shape[1])
     mu, radius = batch.shear_modulus[:, None], batch.inner_radius[:, None]
     indentation = share * end[:, None] * radius
     force = track.point.force * mu * radius**2
@@ -136,7 +152,7 @@ def _respond(batch: SensorBatch, steps: int, atlas: Atlas, groups: Index) -> Atl
     contact = press.field("contact_radius", track.each(lambda column: column[:, -1:]))[:, 0]
     return AtlasResponse(
         lines=lines(indentation, force, rise / KPA),
-        ends=np.where(good, ends, OUTSIDE),
+        ends=ends,
         near_buckling=good & _near(press, track),
         range_end=np.where(infeasible, np.nan, end * batch.inner_radius),
         contact_radius=np.where(infeasible, np.nan, contact * batch.inner_radius),

@@ -5,6 +5,30 @@ import { byId, colour, short } from "./dom.js";
 const HEIGHT = 270;
 const drawn = new Map();
 
+/** Hosts of charts outside the window, and what they show once they are inside or the moves pause. */
+const outside = new Set();
+const waiting = new Map();
+const seen = new IntersectionObserver((entries) => {
+  for (const { target, isIntersecting } of entries) {
+    if (!isIntersecting) outside.add(target);
+    else {
+      outside.delete(target);
+      bring(target);
+    }
+  }
+});
+
+function bring(host) {
+  const show = waiting.get(host);
+  waiting.delete(host);
+  if (host.isConnected) show?.();
+}
+
+/** Draw the charts that waited outside the window. */
+export function complete() {
+  for (const host of [...waiting.keys()]) bring(host);
+}
+
 export const series = (label, stroke, more = {}) => ({
   label,
   stroke,
@@ -62,10 +86,15 @@ export function show(id, across, up, lines, data, { bands = [], marks = [], poin
   const key = JSON.stringify([lines.map((one) => [one.label, one.stroke, one.dash]), bands.length]);
   const known = drawn.get(host);
   if (known && known.key === key) {
-    known.marks = marks;
-    known.chart.setData(data);
+    const draw = () => {
+      known.marks = marks;
+      known.chart.setData(data);
+    };
+    if (outside.has(host)) waiting.set(host, draw);
+    else draw();
     return;
   }
+  waiting.delete(host);
   if (known) known.chart.destroy();
   const entry = { key, marks };
   drawn.set(host, entry);
@@ -82,6 +111,7 @@ export function show(id, across, up, lines, data, { bands = [], marks = [], poin
   };
   if (points) options.series[points].points = { show: true, size: 8 };
   entry.chart = new uPlot(options, data, host);
+  seen.observe(host);
   const { canvas } = entry.chart.ctx;
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", `${up} over ${across}: ${lines.map((one) => one.label).join(", ")}`);
@@ -171,7 +201,8 @@ export function resized() {
   for (const [host, { chart }] of drawn) {
     if (!host.isConnected) {
       chart.destroy();
-      drawn.delete(host);
+      seen.unobserve(host);
+      for (const kept of [outside, waiting, drawn]) kept.delete(host);
       continue;
     }
     const width = host.clientWidth;
@@ -182,5 +213,6 @@ export function resized() {
 /** Forget every chart: the colours of the page changed. */
 export function forget() {
   for (const { chart } of drawn.values()) chart.destroy();
+  waiting.clear();
   drawn.clear();
 }

@@ -66,11 +66,19 @@ const pairs = (points) => {
   return text;
 };
 
+/** Width of the section's place in pixels, kept: to ask for it in the middle of changes costs a layout. */
+let width = 0;
+const measured = new ResizeObserver(([entry]) => (width = entry.contentRect.width));
+
 export function drawSection(drawing, pinned, pressed) {
+  if (!width) {
+    width = byId("section").clientWidth;
+    measured.observe(byId("section"));
+  }
   const half = drawing.size_mm[0] / 2;
   const usual = 0.068 * Math.max(half, 0.6 * (drawing.high_mm - drawing.low_mm));
   // On a narrow screen letters of about 11 pixels, as far as there is space for them.
-  const size = Math.max(usual, Math.min((22 * half) / Math.max(1, byId("section").clientWidth - 176), 0.13 * half));
+  const size = Math.max(usual, Math.min((22 * half) / Math.max(1, width - 176), 0.13 * half));
   const low = drawing.low_mm - 4 * size;
   const box = [-half - 7 * size, -drawing.high_mm - 2 * size, 2 * half + 16 * size, drawing.high_mm - low + 2 * size];
   const words = drawing.bodies.map((body) => `${body.name} of ${body.material}`).join(", ");

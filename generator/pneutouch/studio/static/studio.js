@@ -56,13 +56,22 @@ function show() {
   parts.form.show(page.state, page.plain[page.state.base] ?? page.quick);
 }
 
+/** The state in the address, so that a link or a bookmark brings it back. */
+function note() {
+  clearTimeout(parts.noting);
+  history.replaceState(null, "", address.written(page.state));
+}
+
 /** Request the answers to the state as it is now: what is quick, and after its answer to the last move the solid. */
-function update() {
+function update(settled = true) {
   show();
   buttons();
   report("Computing.", true);
   byId("base").value = page.state.base;
-  history.replaceState(null, "", address.written(page.state));
+  clearTimeout(parts.noting);
+  // The browser takes several milliseconds to change an address.
+  if (settled) note();
+  else parts.noting = setTimeout(note, SETTLED);
   document.dispatchEvent(new Event("design"));
   clearTimeout(parts.soon);
   clearTimeout(parts.later);
@@ -80,7 +89,7 @@ function go(state, settled = true) {
     }
     page.from = null;
   }
-  update();
+  update(settled);
 }
 
 /** A design of this name was written: it is among the designs, and the page goes on with it. */
@@ -126,6 +135,12 @@ function current() {
 }
 
 function redraw() {
+  draw();
+  charts.complete();
+}
+
+/** Draw the answer; charts outside the window wait until they are inside, or until the rest of the answer is there. */
+function draw() {
   const answer = current();
   if (!answer) return;
   drawSection(answer.drawing, page.pinned?.drawing, parts.pressed.now);
@@ -151,7 +166,7 @@ function quickly(question, status, content) {
   if (!Object.keys(question.values).length) page.plain[question.base] = content;
   show();
   byId("results").classList.toggle("stale", !content.prediction);
-  redraw();
+  draw();
   tables.showFindings(null);
   tables.showPrint(null);
   parts.view.mark([]);
@@ -190,6 +205,7 @@ function solved(question, status, content) {
   page.solved = { ...content, pending: false };
   byId("results").classList.remove("stale");
   predicted(current());
+  charts.complete();
   parts.pressed.show(content);
   tables.showFindings(content.check, parts.view.renderer);
   tables.showPrint(content.jobs);
@@ -207,7 +223,7 @@ function replaced(question) {
 }
 
 function failed(question, error) {
-  owed.send = error instanceof Stopped ? update : null;
+  owed.send = error instanceof Stopped ? () => update() : null;
   report(error instanceof Stopped ? error.message : `The page has a fault: ${error.message}`);
   byId("results").classList.add("stale");
   if (!(error instanceof Stopped)) throw error;
@@ -245,7 +261,9 @@ function listen() {
     else return;
     event.preventDefault();
   });
+  window.addEventListener("pagehide", note);
   window.addEventListener("hashchange", () => {
+    clearTimeout(parts.noting);
     const state = address.read(location.hash);
     if (state && !same(state, page.state)) go(state);
   });

@@ -83,34 +83,53 @@ export class View {
     this.draw();
   }
 
+  /** Bodies in place of those before; a body of a name that is there already keeps its materials. */
   show(bodies) {
     if (!this.renderer) return;
-    for (const group of this.groups.values()) {
-      this.scene.remove(group);
-      group.traverse((part) => {
-        if (part.geometry) part.geometry.dispose();
-        if (part.material) part.material.dispose();
-      });
-    }
-    this.groups = new Map(bodies.map((body) => [body.name, this.group(body)]));
+    const before = this.groups;
+    this.groups = new Map(bodies.map((body) => [body.name, this.group(body, before.get(body.name))]));
+    for (const [name, group] of before) if (!this.groups.has(name)) this.drop(group);
     this.bounds = new three.Box3();
     for (const group of this.groups.values()) this.bounds.expandByObject(group);
     this.mark(this.findings);
     this.draw();
   }
 
-  group(body) {
+  group(body, known) {
     const shape = new three.BufferGeometry();
     shape.setAttribute("position", new three.BufferAttribute(new Float32Array(bytes(body.corners)), 3));
     shape.setAttribute("normal", new three.BufferAttribute(new Int8Array(bytes(body.normals)), 3, true));
-    const outside = new three.MeshStandardMaterial({ color: body.colour, roughness: 0.55, metalness: 0 });
-    // Where a body is cut open its far side is seen from within: in one flat colour that reads as the cut face.
-    const within = new three.MeshBasicMaterial({ color: new three.Color(body.colour).multiplyScalar(0.62), side: three.BackSide });
-    const group = new three.Group();
-    group.add(new three.Mesh(shape, outside), new three.Mesh(shape, within));
-    group.userData = { materials: [outside, within] };
+    const group = this.made(shape, body.colour, known);
     this.scene.add(group);
     return group;
+  }
+
+  /** A shape seen from outside and from within; in the group that is known, whose shaders are compiled already. */
+  made(shape, colour, known) {
+    if (known) {
+      known.children[0].geometry.dispose();
+      for (const part of known.children.slice(0, 2)) part.geometry = shape;
+    }
+    const materials = known?.userData.materials ?? [
+      new three.MeshStandardMaterial({ roughness: 0.55, metalness: 0 }),
+      // Where a body is cut open its far side is seen from within: in one flat colour that reads as the cut face.
+      new three.MeshBasicMaterial({ side: three.BackSide }),
+    ];
+    materials[0].color.set(colour);
+    materials[1].color.set(colour).multiplyScalar(0.62);
+    if (known) return known;
+    const group = new three.Group();
+    group.add(...materials.map((material) => new three.Mesh(shape, material)));
+    group.userData = { materials };
+    return group;
+  }
+
+  drop(group) {
+    this.scene.remove(group);
+    for (const part of group.children) {
+      part.geometry.dispose();
+      part.material.dispose();
+    }
   }
 
   /** Spheres where findings of the print rules lie; they move with their bodies. */
@@ -134,14 +153,11 @@ export class View {
 
   /** The wall as pressed, turned about the axis, in place of the membrane above the base; null for the sensor as printed. */
   press(pressed) {
-    if (!this.renderer || (!pressed && !this.wall)) return;
-    if (this.wall) {
-      this.scene.remove(this.wall);
-      this.wall.children.forEach((part) => part.geometry.dispose());
-      this.wall.userData.materials.forEach((material) => material.dispose());
-    }
-    this.wall = pressed ? this.turned(pressed) : null;
-    if (this.wall) this.scene.add(this.wall);
+    if (!this.renderer || (!pressed && !this.pressed)) return;
+    this.pressed = Boolean(pressed);
+    if (pressed) this.wall = this.turned(pressed);
+    if (pressed) this.scene.add(this.wall);
+    else this.scene.remove(this.wall);
     this.draw();
   }
 
@@ -152,13 +168,7 @@ export class View {
     const shape = new three.LatheGeometry([...loop, loop[0]].reverse(), 96);
     shape.rotateX(Math.PI / 2);
     const [membrane] = this.groups.values();
-    const colour = membrane ? membrane.userData.materials[0].color : new three.Color(0xd98a4b);
-    const outside = new three.MeshStandardMaterial({ color: colour, roughness: 0.55, metalness: 0 });
-    const within = new three.MeshBasicMaterial({ color: colour.clone().multiplyScalar(0.62), side: three.BackSide });
-    const group = new three.Group();
-    group.add(new three.Mesh(shape, outside), new three.Mesh(shape, within));
-    group.userData = { materials: [outside, within] };
-    return group;
+    return this.made(shape, membrane ? membrane.userData.materials[0].color : 0xd98a4b, this.wall);
   }
 
   set({ open = this.open, apart = this.apart }) {
@@ -183,9 +193,9 @@ export class View {
       // The membrane comes first: it goes up, and each other body further down.
       group.position.z = this.apart * size.z * (k ? 0.25 - 0.75 * k : 0.55);
       // A pressed wall takes the place of the printed one above the base.
-      const planes = [...(this.open ? [CUT] : []), ...(this.wall && !k ? [BASE] : [])];
+      const planes = [...(this.open ? [CUT] : []), ...(this.pressed && !k ? [BASE] : [])];
       for (const material of group.userData.materials) material.clippingPlanes = planes;
-      if (!k && this.wall) {
+      if (!k && this.pressed) {
         this.wall.position.z = group.position.z;
         for (const material of this.wall.userData.materials) material.clippingPlanes = this.open ? [CUT] : [];
       }
@@ -203,8 +213,16 @@ export class View {
     this.camera.updateProjectionMatrix();
     this.camera.lookAt(middle);
     this.sun.position.copy(this.camera.position).add(new three.Vector3(0, 0, 0.6 * far));
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
-    this.renderer.setSize(width, height, false);
+    this.fit(width, height, Math.min(2, window.devicePixelRatio || 1));
     this.renderer.render(this.scene, this.camera);
+  }
+
+  /** Pixels for the place of the view: to set them makes a new buffer, whatever they were. */
+  fit(width, height, ratio) {
+    const now = [width, height, ratio].join();
+    if (now === this.fitted) return;
+    this.fitted = now;
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
   }
 }
