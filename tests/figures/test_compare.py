@@ -38,10 +38,11 @@ def test_a_document_equals_itself():
 @pytest.mark.parametrize(
     ("path", "value", "line"),
     [
-        (("states", 0, "force_N", 1), 1.50000000001, "states.0.force_N.1: 1.5 before, 1.50000000001 now"),
-        (("states", 0, "force_N", 0), 2e-15, "states.0.force_N.0: 0.0 before, 2e-15 now"),
+        (("states", 0, "force_N", 1), 1.50001, "states.0.force_N.1: 1.5 before, 1.50001 now"),
+        (("states", 0, "force_N", 0), 2e-7, "states.0.force_N.0: 0.0 before, 2e-07 now"),
         (("states", 0, "force_N", 1), math.nan, "states.0.force_N.1: 1.5 before, nan now"),
         (("states", 0, "force_N"), [0.0], "states.0.force_N: 2 entries before, 1 now"),
+        (("states", 0, "driving_pressure_kPa"), 22.0002, "states.0.driving_pressure_kPa: 22.0 before, 22.0002 now"),
         (("states", 0, "limit"), 0.0, "states.0.limit: None before, 0.0 now"),
         (("states", 0, "told"), None, "states.0.told: 2 before, not there now"),
         (("states", 0, "more"), 3, "states.0.more: not there before, 3 now"),
@@ -57,13 +58,24 @@ def test_a_change_is_found(path, value, line):
 @pytest.mark.parametrize(
     ("path", "value"),
     [
-        (("states", 0, "force_N", 1), 1.5 * (1 + 5e-13)),
-        (("states", 0, "force_N", 0), 5e-16),
+        (("states", 0, "force_N", 1), 1.5 * (1 + 2e-6)),
+        (("states", 0, "force_N", 0), 1e-7),
+        (("states", 0, "driving_pressure_kPa"), 22.00005),
         (("told", 0), "the modulus is a published value"),
     ],
 )
 def test_rounding_and_other_words_are_no_change(path, value):
     assert not list(differences(DOCUMENT, changed(*path, value=value)))
+
+
+@pytest.mark.parametrize(("key", "found"), [("correlation", 0), ("covariance", 1)])
+def test_correlations_of_a_fit_are_compared_to_fewer_digits(key, found):
+    before, now = ({key: {"matrix": [[1.0, value], [value, 1.0]]}} for value in (0.05752, 0.05762))
+    assert len(list(differences(before, now))) == 2 * found
+
+
+def test_a_whole_number_in_a_list_is_not_true():
+    assert list(differences({"passed": [True, 1]}, {"passed": [1, 1]})) == ["passed.0: True before, 1 now"]
 
 
 def test_a_renamed_key_is_no_change_at_any_depth_and_its_value_still_counts():

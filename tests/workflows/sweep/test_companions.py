@@ -130,6 +130,7 @@ def test_a_finished_sweep_whose_states_were_removed_is_refused(library, tmp_path
         ("status", lambda values: values.astype("S"), "column status does not hold text"),
         ("r_squared", lambda values: np.full(values.shape, "0.9", object), "column r_squared does not hold numbers"),
         ("membrane_wall_thickness_mm", lambda values: values.astype("S"), "membrane_wall_thickness_mm does not hold"),
+        ("membrane_wall_thickness_mm", lambda values: values * np.nan, "membrane_wall_thickness_mm has no value"),
     ],
 )
 def test_a_dataset_with_a_column_of_another_type_is_refused_by_its_name(

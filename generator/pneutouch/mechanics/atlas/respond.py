@@ -116,7 +116,7 @@ class AtlasRun(NamedTuple):
     whole: PressTrack
 
 
-def run(batch: SensorBatch, steps: int, atlas: Atlas, groups: Index, names: Sequence[str] = _FIELDS) -> AtlasRun:
+def run(batch: SensorBatch, steps: int, atlas: Atlas, groups: Index, names: tuple[str, ...] = _FIELDS) -> AtlasRun:
     """`respond` in one pass, with the states behind it; ``names`` are the fields that are looked up in them."""
     good = inside(batch, atlas)
     batch = _harmless(batch, good, atlas)

@@ -103,11 +103,15 @@ def write_companions(out: Path) -> tuple[list[dict[str, Any]], list[Path]]:
 
 
 def _check_columns(content: xarray.Dataset) -> None:
-    """Raise KeyError for a column that is missing, or has text in place of numbers, or bytes in place of text."""
+    """Raise KeyError for a column that is missing, has text in place of numbers or bytes in place of text, or lacks
+    values that were swept."""
     for variable in (*STATE, *POINT):
         _check_column(content, variable.name, texts=variable.text, numbers=not variable.text)
     for name in content.coords:
         _check_column(content, str(name), texts=True, numbers=True)
+        # A swept value may be infinite, as the friction of a surface that grips; it is always there.
+        if content[name].dtype.kind == "f" and np.isnan(content[name].values).any():
+            raise KeyError(f"column {name} has no value in some rows")
 
 
 def _check_column(content: xarray.Dataset, name: str, *, texts: bool, numbers: bool) -> None:
