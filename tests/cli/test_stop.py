@@ -211,3 +211,32 @@ def test_shapes_of_a_stopped_command_are_not_reported_as_leaked():
     words = [sys.executable, "-c", STOPPED_WITH_SHAPES]
     ended = subprocess.run(words, capture_output=True, text=True, check=False)
     assert (ended.returncode, ended.stderr) == (143, "stopped by SIGTERM\n")
+
+
+_LOADING = """
+import enum, os, signal, time
+from pneutouch.cli.stop import stop_signals
+
+make, sent = enum.EnumType.__call__, []
+
+def stopping(*words, **named):
+    if not sent:
+        sent.append(os.kill(os.getpid(), signal.SIGINT))
+    return make(*words, **named)
+
+with stop_signals() as stop:
+    enum.EnumType.__call__ = stopping
+    import manifold3d
+    assert sent and stop.received == signal.SIGINT
+    try:
+        while True:
+            time.sleep(0.01)
+    except KeyboardInterrupt:
+        print("stopped with", manifold3d.Manifold.cube().volume())
+"""
+
+
+def test_a_stop_waits_until_a_compiled_library_is_loaded():
+    # Its module makes enumerations in Python while it is loaded.
+    done = subprocess.run([sys.executable, "-c", _LOADING], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "stopped with 1.0\n"), done.stderr

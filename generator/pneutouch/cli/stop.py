@@ -4,6 +4,7 @@ import signal
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.machinery import ExtensionFileLoader
 from types import FrameType
 from typing import Any
 
@@ -21,11 +22,12 @@ class StopSignals:
         self.notes: list[str] = []
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
-        """Raise KeyboardInterrupt where the program stands."""
+        """Raise KeyboardInterrupt where the program stands; a little later where a library is being loaded."""
         if self.received is None and number in STOPS:
             self.received = number
             signal.setitimer(signal.ITIMER_REAL, _AGAIN, _AGAIN)
-        raise KeyboardInterrupt
+        if not _loads_library(frame):
+            raise KeyboardInterrupt
 
     def end(self) -> None:
         """Raise nothing again: the command has unwound."""
@@ -46,6 +48,15 @@ class StopSignals:
         """What stopped the command, and what the library adds to it."""
         by = "stopped by Ctrl-C" if self.received == signal.SIGINT else "stopped by SIGTERM"
         return "; ".join([by, *self.notes])
+
+
+def _loads_library(frame: FrameType | None) -> bool:
+    """Whether a compiled library is being loaded: manifold3d ends the process where Python raises in the middle of it."""
+    while frame is not None:
+        if isinstance(frame.f_locals.get("self"), ExtensionFileLoader):
+            return True
+        frame = frame.f_back
+    return False
 
 
 @contextmanager
