@@ -9,16 +9,16 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.anywhere.recipe import PlaceTableRecipe
 
 _STATE = DomeState(0.15, 0.25, 0.12)
-_SCENES = ((0.0, 0.0), (1.0, 0.0), (1.0, 0.22))
-"""Curvature and lean."""
+_SCENES = ((0.0, 0.0, False), (1.0, 0.0, False), (1.0, 0.22, False), (1.0, 0.22, True))
+"""Curvature, lean, and whether it is an edge."""
 _CELLS = 12
 _LEVELS = (0.15, 0.3)
 
 
 def model_answers(recipe: PlaceTableRecipe) -> Array:
-    """Force and pressure rise of a plate, a central ball and one off the axis at two travels, (12,).
+    """Force and pressure rise of a plate, a central ball, one off the axis and an edge there at two travels, (16,).
 
     They follow from the model's behaviour and not from its text; a test compares them with the shipped ones.
     """
-    curves = [pressed(recipe, _STATE, bend, lean, cells=_CELLS) for bend, lean in _SCENES]
+    curves = [pressed(recipe, _STATE, bend, lean, lying=lying, cells=_CELLS) for bend, lean, lying in _SCENES]
     return np.array([np.interp(_LEVELS, c.travel, values) for c in curves for values in (c.force, c.rise)]).ravel()

@@ -11,12 +11,12 @@ from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.mechanics.anywhere.recipe import PlaceTableRecipe
 from pneutouch.mechanics.harmonic.press import OffAxisPress
-from pneutouch.mechanics.harmonic.surface import PlacedObject
+from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject, ProfiledObject
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.indent import PressSettings
-from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, ball
-from pneutouch.mechanics.solid.inflate import Inflation, inflate, state_at
+from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, Indenter, RigidObject, ball, edge
+from pneutouch.mechanics.solid.inflate import FreeState, Inflation, inflate, state_at
 from pneutouch.mechanics.solid.mesh import arc_cells, dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.rigid_base import RigidBase
@@ -67,17 +67,34 @@ def pressed(
     curvature: float,
     lean: float,
     *,
+    lying: bool = False,
     order: int | None = None,
     cells: int | None = None,
 ) -> ReadingCurve:
-    """A press by an object of a curvature at a lean, see `recipe`; a central one is axisymmetric."""
-    cells = cells or (central_cells(state.wall, curvature) if lean == 0.0 else recipe.cells)
+    """A press by an object of a curvature at a lean, see `recipe`: a plate or a ball, or the edge of a bar where it is
+    ``lying``. A central plate or ball is axisymmetric."""
+    central = lean == 0.0
+    cells = cells or (recipe.cells if lying or not central else central_cells(state.wall, curvature))
     probe, run = _inflated(state.wall, cells, recipe.poisson_ratio)
     assert run.limit is not None
     free = state_at(probe.solid, state.share * run.limit.pressure, run)
+    body = None if curvature == 0.0 else (edge if lying else ball)(1.0 / curvature)
+    settings = _settings(recipe, state, free, body)
+    placed = _placed(first_touch(probe.solid, free, body, _WIDE).body, state, curvature, lean, lying)
+    usual = recipe.edge_order if lying else 0 if central else recipe.order
+    press = OffAxisPress(probe.solid, free, settings, placed, probe, symmetric=lying and central)
+    path = press.run(usual if order is None else order)
+    ends = [event.indentation for event in path.events if KINDS[event.kind][1]]
+    travel, rise, force = (np.array([getattr(s, name) for s in path.path]) for name in ("indentation", "rise", "force"))
+    order_of = np.argsort(travel, kind="stable")
+    travel, rise, force = travel[order_of], rise[order_of], force[order_of]
+    return ReadingCurve(travel, rise, force, min([*ends, float(travel[-1])]))
+
+
+def _settings(recipe: PlaceTableRecipe, state: DomeState, free: FreeState, body: RigidObject | None) -> PressSettings:
+    """The protocol of a press, with the gas that has the stiffness of a state."""
     ambient = max(state.gas * free.volume - free.pressure, _AMBIENT)
-    body = None if curvature == 0.0 else ball(1.0 / curvature)
-    press = PressSettings(
+    return PressSettings(
         depth=recipe.depth,
         steps=recipe.steps,
         plate_diameter=_WIDE,
@@ -86,16 +103,14 @@ def pressed(
         dead_volume=max((ambient + free.pressure) / state.gas - free.volume, 0.0),
         gauge_range=np.inf,
     )
-    touching = first_touch(probe.solid, free, body, _WIDE).body
-    offset = 0.0 if body is None else lean * (1.0 + state.wall + 1.0 / curvature)
-    tilt = float(np.arcsin(lean)) if body is None else 0.0
-    run_order = (recipe.order if order is None else order) if lean else 0
-    path = OffAxisPress(probe.solid, free, press, PlacedObject(touching, offset, tilt), probe).run(run_order)
-    ends = [event.indentation for event in path.events if KINDS[event.kind][1]]
-    travel, rise, force = (np.array([getattr(s, name) for s in path.path]) for name in ("indentation", "rise", "force"))
-    order_of = np.argsort(travel, kind="stable")
-    travel, rise, force = travel[order_of], rise[order_of], force[order_of]
-    return ReadingCurve(travel, rise, force, min([*ends, float(travel[-1])]))
+
+
+def _placed(touching: Indenter, state: DomeState, curvature: float, lean: float, lying: bool) -> ProfiledObject:
+    """An object at first contact on the axis, moved to its lean."""
+    if curvature == 0.0:
+        return PlacedObject(touching, 0.0, float(np.arcsin(lean)))
+    offset = lean * (1.0 + state.wall + 1.0 / curvature)
+    return LyingObject(touching, offset) if lying else PlacedObject(touching, offset)
 
 
 def at_equal_reading(recipe: PlaceTableRecipe, plate: ReadingCurve, under: ReadingCurve) -> tuple[Array, float]:

@@ -145,14 +145,26 @@ def test_the_section_has_a_row_a_contact_and_a_column_a_reading(plain):
     assert len(contact_section(contact_chart(one, plain.sensor))["head"]) == 3
 
 
+def test_edges_have_rows_next_to_those_of_balls(plain):
+    chart = contact_chart(plain.prediction, plain.sensor)
+    size = plain.sensor.dome.inner_radius
+    by_contact = {(row.kind, round(row.radius / size, 3), round(row.offset / size, 3)): row for row in chart.rows[:-2]}
+    edge, ball = (by_contact[kind, 1.0, 0.0].errors_percent for kind in ("edge", "ball"))
+    assert all(0.0 < e < b for e, b in zip(np.ravel(edge), np.ravel(ball), strict=True))
+    labels = [row[0] for row in contact_section(chart)["rows"]]
+    assert f"edge of {size:.3g} mm radius, across the pole" in labels
+    assert f"edge of {0.3 * size:.3g} mm radius, {0.6 * size:.3g} mm off the axis" in labels
+    contacts = contact_anywhere_document(plain.prediction, plain.sensor)["contacts"]
+    assert [one["object"] for one in contacts] == [row.kind for row in chart.rows]
+    assert {one["object"] for one in contacts} == {"ball", "edge", "plate"}
+
+
 def test_the_chart_has_a_curve_a_driving_pressure_and_axes_with_units(plain):
     chart = contact_chart(plain.prediction, plain.sensor)
     charts = contact_figures(chart)
     assert charts == contact_figures(chart)
     for text, words in zip(
-        charts.values(),
-        ("radius of a central ball  (mm)", "offset of a ball from the axis  (mm)", "(degrees)"),
-        strict=True,
+        charts.values(), ("radius, contact central  (mm)", "offset from the axis  (mm)", "(degrees)"), strict=True
     ):
         assert words in text
         assert all(f"driven at {pressure} kPa" in text for pressure in (0, 22)) and "error of the force read" in text

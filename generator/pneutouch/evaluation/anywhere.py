@@ -17,12 +17,14 @@ from pneutouch.mechanics.anywhere.reading import (
     STEEPEST_TILT,
     TABLE_ERROR,
     ball_places,
+    edge_places,
     force_logs,
     place_uncertainty,
     plate_places,
 )
 from pneutouch.mechanics.anywhere.table import ContactPlaces, DomeConditions
 from pneutouch.rounding import rounded
+from pneutouch.spec.contact import ContactKind
 from pneutouch.units import KPA
 
 _READINGS = (1.0 / 3.0, 2.0 / 3.0)
@@ -30,6 +32,9 @@ _READINGS = (1.0 / 3.0, 2.0 / 3.0)
 
 _BALLS = ((0.3, 0.0), (0.6, 0.0), (1.0, 0.0), (2.0, 0.0), (0.6, 0.3), (0.6, 0.6), (1.0, 0.6))
 """Radii and offsets of the balls of the table, R0."""
+
+_EDGES = ((0.3, 0.0), (1.0, 0.0), (0.3, 0.3), (0.3, 0.6), (1.0, 0.6))
+"""The same of the edges of bars."""
 
 _TILTS_DEG = (10.0, 20.0)
 _DRAWN_BALL, _FLATTEST, _POINTS = 0.6, 10.0, 41
@@ -62,6 +67,8 @@ def contact_chart(prediction: SensorPrediction, sensor: Sensor) -> ContactChart 
         by_radius=ErrorCurves(radius, drawn(ball_places(walls, radius / size, still))),
         by_offset=ErrorCurves(offset, drawn(ball_places(walls, ball / size, offset / size))),
         by_tilt=ErrorCurves(np.degrees(tilt), drawn(plate_places(walls, tilt))),
+        edges_by_radius=ErrorCurves(radius, drawn(edge_places(walls, radius / size, still))),
+        edges_by_offset=ErrorCurves(offset, drawn(edge_places(walls, ball / size, offset / size))),
         ball_radius=size * _DRAWN_BALL,
         rows=_rows(domes, levels, size),
         standard_uncertainties=tuple(place_uncertainty(domes, ends).tolist()),
@@ -94,12 +101,7 @@ def contact_anywhere_document(prediction: SensorPrediction, sensor: Sensor) -> d
         for k, pressure_kPa in enumerate(chart.driving_pressures_kPa)
     ]
     contacts = [
-        {
-            "object": "plate" if row.radius is None else "ball",
-            "radius_mm": row.radius,
-            "offset_mm": row.offset,
-            "tilt_deg": row.tilt_deg,
-        }
+        {"object": row.kind, "radius_mm": row.radius, "offset_mm": row.offset, "tilt_deg": row.tilt_deg}
         for row in chart.rows
     ]
     document = {
@@ -117,14 +119,23 @@ def _percent(domes: DomeConditions, places: ContactPlaces, levels: Array) -> Arr
 
 
 def _rows(domes: DomeConditions, levels: Array, size: float) -> tuple[ContactRow, ...]:
-    radii, offsets = np.array(_BALLS).T
-    balls = _percent(domes, ball_places(domes.wall_ratio, radii, offsets), levels)
+    rows = [*_round_rows("ball", _BALLS, domes, levels, size), *_round_rows("edge", _EDGES, domes, levels, size)]
     plates = _percent(domes, plate_places(domes.wall_ratio, np.radians(_TILTS_DEG)), levels)
-    rows = [
-        ContactRow(size * radius, size * offset, 0.0, _numbers(balls[:, i]))
-        for i, (radius, offset) in enumerate(_BALLS)
+    tilted = [ContactRow("plate", None, 0.0, tilt, _numbers(plates[:, i])) for i, tilt in enumerate(_TILTS_DEG)]
+    return (*rows, *tilted)
+
+
+def _round_rows(
+    kind: ContactKind, sizes: Sequence[tuple[float, float]], domes: DomeConditions, levels: Array, size: float
+) -> list[ContactRow]:
+    """Rows of balls or edges of radii and offsets in R0."""
+    radii, offsets = np.array(sizes).T
+    places = (edge_places if kind == "edge" else ball_places)(domes.wall_ratio, radii, offsets)
+    errors = _percent(domes, places, levels)
+    return [
+        ContactRow(kind, size * radius, size * offset, 0.0, _numbers(errors[:, i]))
+        for i, (radius, offset) in enumerate(sizes)
     ]
-    return (*rows, *(ContactRow(None, 0.0, tilt, _numbers(plates[:, i])) for i, tilt in enumerate(_TILTS_DEG)))
 
 
 def _numbers(errors: Array) -> tuple[tuple[float | None, ...], ...]:

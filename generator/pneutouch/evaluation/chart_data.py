@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from pneutouch.arrays import Array
     from pneutouch.mechanics.prediction import SensorState
     from pneutouch.selection.front import TradeOffFront
+    from pneutouch.spec.contact import ContactKind
 
 
 class ResinCurve(NamedTuple):
@@ -105,9 +106,10 @@ class ErrorCurves(NamedTuple):
 
 
 class ContactRow(NamedTuple):
-    """A contact: radius of a ball (None: a plate) and offset in mm, tilt in degrees; errors of the force read in
-    percent by driving pressure and reading, None where the reading is not reached."""
+    """A contact: object (plate, ball or edge), its radius (None: a plate) and offset in mm, tilt in degrees; errors of
+    the force read in percent by driving pressure and reading, None where the reading is not reached."""
 
+    kind: ContactKind
     radius: float | None
     offset: float
     tilt_deg: float
@@ -122,8 +124,8 @@ class ContactChart:
         driving_pressures_kPa: The lowest and the highest of the design, kPa.
         rises_kPa: Pressure rises of the rows at each of them, kPa; the curves are at the first.
         forces: Contact forces of the central plate at these, N.
-        by_radius: Central balls over their radius, mm.
-        by_offset: The ball of ``ball_radius`` over its offset, mm.
+        by_radius: Central balls over their radius, mm; ``edges_by_radius``: edges of bars across the pole.
+        by_offset: The ball of ``ball_radius`` over its offset, mm; ``edges_by_offset``: the edge of that radius.
         by_tilt: A leaning plate over its tilt, degrees.
         ball_radius: mm.
         rows: The table.
@@ -138,6 +140,8 @@ class ContactChart:
     by_radius: ErrorCurves
     by_offset: ErrorCurves
     by_tilt: ErrorCurves
+    edges_by_radius: ErrorCurves
+    edges_by_offset: ErrorCurves
     ball_radius: float
     rows: tuple[ContactRow, ...]
     standard_uncertainties: tuple[float, ...]

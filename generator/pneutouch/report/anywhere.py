@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.evaluation.chart_data import ContactChart, ContactRow, ErrorCurves
-from pneutouch.report.style import ACCENT, INK, LINES, figure, legend_above, plain_ticks, svg
+from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, figure, legend_above, note, plain_ticks, svg
 
 SIZE = (57.0, 58.0)
 """Width and height of a chart in mm: a third of the width of the text on A4."""
@@ -16,30 +16,49 @@ DASH = "–"
 
 _LOGARITHMIC = "contact-radius"
 
+_LOOKS: tuple[dict[str, Any], ...] = ({"color": INK, "ls": LINES[0]}, {"color": ACCENT, "ls": LINES[1]})
+"""Of the lowest and the highest driving pressure."""
+
+_MARKED = 5
+"""Points of a curve to one mark."""
+
 
 def contact_figures(chart: ContactChart) -> dict[str, str]:
-    """Error of the force read over the radius of a ball, its offset, and the tilt of a plate, as SVG by name; their
-    vertical axes are the same."""
+    """Error of the force read over the radius of a ball or an edge, their offset, and the tilt of a plate, as SVG by
+    name; their vertical axes are the same."""
     charts = {
-        "contact-radius": (chart.by_radius, "radius of a central ball  (mm)"),
-        "contact-offset": (chart.by_offset, "offset of a ball from the axis  (mm)"),
-        "contact-tilt": (chart.by_tilt, "tilt of a plate  (degrees)"),
+        "contact-radius": (chart.by_radius, chart.edges_by_radius, "radius, contact central  (mm)"),
+        "contact-offset": (chart.by_offset, chart.edges_by_offset, "offset from the axis  (mm)"),
+        "contact-tilt": (chart.by_tilt, None, "tilt of a plate  (degrees)"),
     }
-    errors = np.concatenate([np.ravel(curves.errors_percent) for curves, _ in charts.values()])
+    drawn = [curves for *both, _ in charts.values() for curves in both if curves is not None]
+    errors = np.concatenate([np.ravel(curves.errors_percent) for curves in drawn])
     low, high = (float(f(errors, initial=0.0, where=np.isfinite(errors))) for f in (np.min, np.max))
     margin = 0.05 * (high - low)
     return {
-        name: _chart(curves, chart, xlabel=across, ylim=(low - margin, high + margin), logarithmic=name == _LOGARITHMIC)
-        for name, (curves, across) in charts.items()
+        name: _chart(
+            curves, edges, chart, xlabel=across, ylim=(low - margin, high + margin), logarithmic=name == _LOGARITHMIC
+        )
+        for name, (curves, edges, across) in charts.items()
     }
 
 
 def _chart(
-    curves: ErrorCurves, chart: ContactChart, *, xlabel: str, ylim: tuple[float, float], logarithmic: bool
+    curves: ErrorCurves,
+    edges: ErrorCurves | None,
+    chart: ContactChart,
+    *,
+    xlabel: str,
+    ylim: tuple[float, float],
+    logarithmic: bool,
 ) -> str:
     with figure(*SIZE) as drawn:
         ax = drawn.subplots()
         _curves(ax, curves, chart)
+        if edges is not None:
+            _edges(ax, edges)
+            _named(ax, curves, "ball")
+            _named(ax, edges, "edge")
         ax.set(
             xlabel=xlabel, ylabel="error of the force read  (%)", xlim=(curves.along[0], curves.along[-1]), ylim=ylim
         )
@@ -53,11 +72,26 @@ def _chart(
 def _curves(ax: Any, curves: ErrorCurves, chart: ContactChart) -> None:
     """One curve a driving pressure, and the line of no error."""
     ax.axhline(0.0, color=INK, lw=0.6, zorder=1)
-    looks: tuple[dict[str, Any], ...] = ({"color": INK, "ls": LINES[0]}, {"color": ACCENT, "ls": LINES[1]})
-    states = zip(chart.driving_pressures_kPa, chart.rises_kPa, curves.errors_percent, looks, strict=False)
+    states = zip(chart.driving_pressures_kPa, chart.rises_kPa, curves.errors_percent, _LOOKS, strict=False)
     for pressure_kPa, rises_kPa, errors_percent, look in states:
         label = f"driven at {pressure_kPa:g} kPa, pressure rise {rises_kPa[0]:.3g} kPa"
         ax.plot(curves.along, errors_percent, lw=1.6, label=label, **look)
+
+
+def _edges(ax: Any, curves: ErrorCurves) -> None:
+    """The same curves of edges, marked."""
+    for errors_percent, look in zip(curves.errors_percent, _LOOKS, strict=False):
+        marks: dict[str, Any] = {"marker": MARKERS[0], "ms": 3.2, "mfc": "white", "mew": 0.8, "markevery": _MARKED}
+        ax.plot(curves.along, errors_percent, lw=0.9, **marks, **look)
+
+
+def _named(ax: Any, curves: ErrorCurves, name: str) -> None:
+    """What presses, next to the curve of the lowest driving pressure."""
+    errors_percent = curves.errors_percent[0]
+    known = np.flatnonzero(np.isfinite(errors_percent))
+    if known.size:
+        at = known[known.size // 3]
+        note(ax, name, (float(curves.along[at]), float(errors_percent[at])), (0.5, 1.0))
 
 
 def contact_section(chart: ContactChart | str | None) -> dict[str, Any]:
@@ -74,8 +108,9 @@ def contact_section(chart: ContactChart | str | None) -> dict[str, Any]:
 def _label(row: ContactRow) -> str:
     if row.radius is None:
         return f"plate, tilted by {row.tilt_deg:g}°"
-    place = f"{row.offset:.3g} mm off the axis" if row.offset else "central"
-    return f"ball of {row.radius:.3g} mm radius, {place}"
+    middle = "across the pole" if row.kind == "edge" else "central"
+    place = f"{row.offset:.3g} mm off the axis" if row.offset else middle
+    return f"{row.kind} of {row.radius:.3g} mm radius, {place}"
 
 
 def _cell(error_percent: float | None) -> str:
@@ -86,8 +121,9 @@ def _caption(chart: ContactChart) -> str:
     return (
         "Error of the force that is read from the pressure rise by the curve of the central plate, without friction: "
         "positive where the reading states more than the true force. The charts are at the first pressure rise of the "
-        f"table, the middle one for a ball of {chart.ball_radius:.3g} mm radius. {DASH}: within 0.75 R0 of travel, or "
-        "before an event, the object does not reach that reading."
+        f"table; lines without marks are for a ball, lines with marks for the edge of a bar rounded to the radius, the "
+        f"middle chart for a radius of {chart.ball_radius:.3g} mm. {DASH}: within 0.75 R0 of travel, or before an "
+        "event, the object does not reach that reading."
     )
 
 
@@ -100,7 +136,7 @@ def _notes(chart: ContactChart) -> list[str]:
         f"Where object and place of contact are not known they add a standard uncertainty of {shares} to the "
         "sensitivity. It is part of the interval only where the design states contact.anywhere.",
         "Assumed for it: a ball of 0.3 R0 radius or more (curvature even), its axis anywhere in the disc of 0.6 R0; a "
-        "plate tilted by up to 20°.",
+        "plate tilted by up to 20°. An edge of the same radius and place is off by less than the ball.",
         f"A level plate may stand {chart.free_offset:.1f} mm off the axis without effect: the contact stays inside its "
         "edge.",
     ]

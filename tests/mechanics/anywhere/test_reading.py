@@ -7,7 +7,7 @@ import pytest
 from benchmarks.contact_table_build.press import DomeState, at_equal_reading, pressed
 
 from pneutouch.mechanics.anywhere.conditions import batch_conditions, covered, outside, state_conditions
-from pneutouch.mechanics.anywhere.reading import ball_places, force_logs, place_uncertainty, plate_places
+from pneutouch.mechanics.anywhere.reading import ball_places, edge_places, force_logs, place_uncertainty, plate_places
 from pneutouch.mechanics.anywhere.recipe import RECIPE
 from pneutouch.mechanics.anywhere.table import DomeConditions
 from pneutouch.mechanics.atlas.respond import respond
@@ -44,6 +44,21 @@ def test_the_uncertainty_is_that_of_samples_of_what_it_assumes():
         )
     ]
     np.testing.assert_allclose(place_uncertainty(PAPER, ends), np.sqrt(sum(squares)), rtol=0.05)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.9])
+@pytest.mark.parametrize("wall", [0.06, 0.15, 0.35])
+def test_edges_are_off_by_less_than_the_balls_that_are_assumed(wall, share):
+    """So the uncertainty of an unknown ball covers an unknown edge of the same radii and places."""
+    domes = DomeConditions(np.array([wall]), np.array([share]), np.array([0.1]))
+    draw = np.random.default_rng(5)
+    radius, offset = 1.0 / draw.uniform(0, 1 / 0.3, 300), 0.6 * np.sqrt(draw.uniform(0, 1, 300))
+    levels = np.linspace(0.05, 0.75, 8)[None]
+    edges, balls = (
+        float(np.nanmean(force_logs(domes, places(domes.wall_ratio, radius, offset), levels) ** 2))
+        for places in (edge_places, ball_places)
+    )
+    assert edges < balls
 
 
 def test_outside_the_table_it_is_not_known():

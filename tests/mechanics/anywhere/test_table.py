@@ -4,23 +4,32 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from benchmarks.contact_table_build.build import central
+from benchmarks.contact_table_build.build import central, edges
 from benchmarks.contact_table_build.fingerprint import model_answers
 from benchmarks.contact_table_build.held_out import compared, drawn
-from benchmarks.contact_table_build.press import DomeState
+from benchmarks.contact_table_build.press import DomeState, at_equal_reading, pressed
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.interpolate import CubicHermiteSpline
 
 from pneutouch.mechanics.anywhere.reading import TABLE_ERROR
 from pneutouch.mechanics.anywhere.recipe import RECIPE, NodeAxis, PlaceTableRecipe
 from pneutouch.mechanics.anywhere.table import SHIPPED, ContactPlaces, DomeConditions, digest, shipped
 
+EDGES = [*((seed, False) for seed in range(3)), *((seed, True) for seed in range(2))]
+"""Seeds of presses by edges that the table was not made from, and whether they stand next to the pole."""
+
 
 def domes(wall=0.162, share=0.0, gas=0.18):
     return DomeConditions(*(np.atleast_1d(np.array(value, dtype=float)) for value in (wall, share, gas)))
 
 
-def place(curvature, lean=0.0):
-    return ContactPlaces(np.atleast_2d(float(curvature)), np.atleast_2d(float(lean)))
+def place(curvature, lean=0.0, lying=False):
+    return ContactPlaces(np.atleast_2d(float(curvature)), np.atleast_2d(float(lean)), lying)
+
+
+def edge(curvature, lean=0.0):
+    return place(curvature, lean, lying=True)
 
 
 def test_the_shipped_file_is_whole_small_and_of_todays_recipe():
@@ -32,6 +41,9 @@ def test_the_shipped_file_is_whole_small_and_of_todays_recipe():
     assert all(np.isfinite(table).all() for table in tables.values())
     assert tables["central"].shape == tuple(
         len(axis) for axis in (RECIPE.walls, RECIPE.shares, RECIPE.gases, RECIPE.curvatures, RECIPE.levels)
+    )
+    assert tables["edge"].shape == (
+        *(len(axis) for axis in (RECIPE.leaning_walls, RECIPE.leaning_shares, RECIPE.edge_curvatures, RECIPE.levels)),
     )
     assert SHIPPED.stat().st_size < 100_000
 
@@ -55,6 +67,49 @@ def test_a_node_recomputes():
     with np.load(SHIPPED) as file:
         np.testing.assert_allclose(logs, file["central"][2, 2, 1], atol=2e-3)
         np.testing.assert_allclose(reach, file["central_reach"][2, 2, 1], atol=2e-3)
+
+
+@pytest.mark.slow
+def test_an_edge_across_the_pole_recomputes():
+    wall, share = RECIPE.leaning_walls[1], RECIPE.leaning_shares[2]
+    logs, reach = edges(RECIPE, DomeState(wall, share, RECIPE.leaning_gas), (0.0,))
+    known = np.array(RECIPE.levels) < 0.5
+    for row, highest, bend in zip(logs[:, 0], reach[:, 0], RECIPE.edge_curvatures, strict=True):
+        at = domes(wall, share, RECIPE.leaning_gas)
+        np.testing.assert_allclose(shipped().logs(at, edge(bend))[0, 0][known], row[known], atol=2e-3)
+        assert shipped().reach(at, edge(bend))[0, 0] == pytest.approx(highest, abs=2e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("seed", "leaning"), EDGES)
+def test_presses_by_edges_that_the_table_was_not_made_from(seed, leaning):
+    press = compared(shipped(), *drawn(RECIPE, seed, leaning=leaning, lying=True), lying=True)
+    known = np.isfinite(press.model)
+    assert known.sum() >= 4 and press.reach[0] == pytest.approx(press.reach[1], abs=0.05)
+    assert np.abs(press.table - press.model)[known].max() < TABLE_ERROR
+
+
+@pytest.mark.slow
+def test_the_press_in_which_the_table_of_edges_is_off_most():
+    """Narrow and far from the pole, between all walls and driving pressures of the presses by edges next to it."""
+    press = compared(shipped(), DomeState(0.15, 0.25, 0.1), RECIPE.edge_curvatures[-1], RECIPE.leans[-1], lying=True)
+    known = np.isfinite(press.model)
+    assert known.sum() == 4
+    assert 0.02 < np.abs(press.table - press.model)[known].max() < TABLE_ERROR
+
+
+@pytest.mark.slow
+def test_a_slightly_curved_edge_presses_as_the_ball_of_its_mean_curvature():
+    """The model has it by itself; the table is built on it."""
+    state = DomeState(0.15, 0.0, 0.1)
+    plate = pressed(RECIPE, state, 0.0, 0.0, cells=RECIPE.cells)
+    ball, bar = (
+        at_equal_reading(RECIPE, plate, pressed(RECIPE, state, bend, 0.0, lying=lying, cells=RECIPE.cells))[0]
+        for bend, lying in ((0.05, False), (0.1, True))
+    )
+    level = RECIPE.levels.index(0.3)
+    assert ball[level] < -0.02
+    assert bar[level] / ball[level] == pytest.approx(1.0, abs=0.1)
 
 
 @pytest.mark.slow
@@ -89,6 +144,37 @@ def test_a_smaller_ball_takes_less_force_for_a_reading():
     level = RECIPE.levels.index(0.3)
     logs = [shipped().logs(domes(), place(curvature))[0, 0, level] for curvature in (0.0, 0.5, 1.0, 2.0, 10 / 3)]
     assert np.all(np.diff(logs) < -0.01)
+
+
+@pytest.mark.parametrize("lean", [0.0, 0.3])
+def test_an_edge_without_curvature_is_the_plate_that_leans_as_much(lean):
+    np.testing.assert_allclose(shipped().logs(domes(), edge(0.0, lean)), shipped().logs(domes(), place(0.0, lean)))
+
+
+def test_a_slight_curvature_of_an_edge_acts_by_its_mean():
+    ball, bar = shipped().logs(domes(), place(5e-4))[0, 0], shipped().logs(domes(), edge(1e-3))[0, 0]
+    np.testing.assert_allclose(bar, ball, rtol=2e-3)
+
+
+@given(
+    wall=st.floats(RECIPE.walls[0], RECIPE.walls[-1]),
+    share=st.floats(RECIPE.shares[0], RECIPE.shares[-1]),
+    gas=st.floats(RECIPE.gases[0], RECIPE.gases[-1]),
+    curvature=st.floats(0.1, RECIPE.curvatures[-1]),
+)
+def test_an_edge_across_the_pole_is_between_the_plate_and_the_ball_of_its_radius(wall, share, gas, curvature):
+    at = domes(wall, share, gas)
+    reach = shipped().reach(at, place(curvature))[0, 0]
+    known = np.array(RECIPE.levels) <= reach
+    ball, bar = (shipped().logs(at, kind(curvature))[0, 0][known] for kind in (place, edge))
+    assert ((ball - 0.005 <= bar) & (bar <= 0.005)).all()
+    assert reach <= shipped().reach(at, edge(curvature))[0, 0]
+
+
+def test_the_mirrored_edge_has_the_same_force():
+    there, mirrored = (shipped().logs(domes(), edge(1.0, lean)) for lean in (0.3, -0.3))
+    assert np.abs(there - shipped().logs(domes(), edge(1.0))).max() > 0.01
+    np.testing.assert_array_equal(there, mirrored)
 
 
 def test_driving_pressure_makes_the_reading_depend_less_on_the_object():

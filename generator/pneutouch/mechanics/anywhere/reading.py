@@ -28,6 +28,12 @@ def ball_places(wall_ratio: Array, radius: Array, offset: Array) -> ContactPlace
     return ContactPlaces(curvature, lean)
 
 
+def edge_places(wall_ratio: Array, radius: Array, offset: Array) -> ContactPlaces:
+    """Edges of bars with noses of radii (m,) whose middle planes stand at offsets (m,), both in R0, on domes of wall
+    ratios (n,); a radius may be infinite. A section across a bar is that of a ball."""
+    return ball_places(wall_ratio, radius, offset)._replace(lying=True)
+
+
 def plate_places(wall_ratio: Array, tilt: Array) -> ContactPlaces:
     """Plates that lean by angles (m,), rad, on domes of wall ratios (n,)."""
     lean = np.broadcast_to(np.sin(tilt), (wall_ratio.size, tilt.size))

@@ -24,6 +24,13 @@ class PlaceTableRecipe(StoredRecipe):
     lean, by the solid with harmonics to ``order`` on ``cells`` cells along the arc: every combination of leaning_walls,
     leaning_shares, leaning_curvatures and leans, at ``leaning_gas``; of these the table has the difference from the
     central press on the same mesh.
+
+    Presses by the edge of a bar, whose curvature is that of its round nose and whose lean is a ball's, at
+    ``leaning_gas`` on ``cells`` cells, with harmonics to ``edge_order``. Across the pole, with even harmonics: every
+    combination of leaning_walls, leaning_shares and edge_curvatures; of these the table has the logarithm as a share of
+    that of the central ball of half the curvature, which has the same mean curvature, and the highest level as a
+    difference from that of the ball of the same. With a lean: every combination of edge_walls, edge_shares,
+    edge_curvatures and leans; of these it has what the lean changes, less what it changes under a plate.
     """
 
     poisson_ratio: float = 0.49
@@ -38,6 +45,10 @@ class PlaceTableRecipe(StoredRecipe):
     leans: tuple[float, ...] = (0.44,)
     leaning_gas: float = 0.1
     order: int = 6
+    edge_walls: tuple[float, ...] = (0.06, 0.35)
+    edge_shares: tuple[float, ...] = (0.0, 0.9)
+    edge_curvatures: tuple[float, ...] = (1.0, 10.0 / 3.0)
+    edge_order: int = 8
     cells: int = 16
     depth: float = 0.75
     steps: int = 15

@@ -15,6 +15,11 @@ from pneutouch.mechanics.anywhere.recipe import NodeAxis, PlaceTableRecipe
 
 SHIPPED = Path(__file__).with_name("contact.npz")
 
+NodeWeights = Callable[[NodeAxis, Array], Array]
+
+_PLATE_FIRST = ((0, 0), (1, 0), (0, 0))
+"""Puts the plate before the curvatures of a table (n, curvatures, k)."""
+
 
 class DomeConditions(NamedTuple):
     """Domes before contact, (n,) each: wall ratio t0/R0, share of the limit pressure, and stiffness of the gas in
@@ -26,10 +31,13 @@ class DomeConditions(NamedTuple):
 
 
 class ContactPlaces(NamedTuple):
-    """Objects and where they touch n domes, (n, m) each: curvature R0/a and lean, see `recipe.PlaceTableRecipe`."""
+    """Objects and where they touch n domes, (n, m) each: curvature R0/a and lean, see `recipe.PlaceTableRecipe`.
+
+    They are balls and plates, or edges of bars that lie across the plane of their lean."""
 
     curvature: Array
     lean: Array
+    lying: bool = False
 
 
 class PlaceTable:
@@ -40,45 +48,85 @@ class PlaceTable:
 
     def logs(self, domes: DomeConditions, places: ContactPlaces) -> Array:
         """At every level of the recipe, (n, m, levels); beyond the nodes as at the last ones."""
-        central, leaning = self._of_domes(domes, "central", "leaning")
-        return self._at(places, np.pad(central, ((0, 0), (1, 0), (0, 0))), leaning, NodeAxis.weights)
+        r = self.recipe
+        central = np.pad(self._of_central(domes, "central"), _PLATE_FIRST)
+        if not places.lying:
+            middle = _at((0.0, *r.curvatures), places.curvature) @ central
+        else:
+            # A slight curvature acts by its mean around the axis alone: its deviation from that of a body of
+            # revolution has no effect to first order. The share of the ball of this mean curvature begins at 1.
+            shares = np.pad(self._of_leaning(domes, "edge"), _PLATE_FIRST, constant_values=1.0)
+            nodes = tuple(float(_narrow(bend)) for bend in (0.0, *r.edge_curvatures))
+            middle = _at((0.0, *r.curvatures), 0.5 * places.curvature) @ central
+            middle = middle * (_at(nodes, _narrow(places.curvature)) @ shares)
+        return np.asarray(middle + self._off_axis(domes, places, ("leaning", "edge_leaning"), NodeAxis.weights))
 
     def reach(self, domes: DomeConditions, places: ContactPlaces) -> Array:
         """Highest level that the object reaches within the recipe's depth, (n, m)."""
-        central, leaning = self._of_domes(domes, "central_reach", "leaning_reach")
-        plate = np.full((len(central), 1), self.recipe.depth)
-        values = self._at(places, np.hstack([plate, central])[..., None], leaning[..., None], NodeAxis.straight)
-        return np.asarray(np.minimum(values[..., 0], self.recipe.depth))
+        r, straight = self.recipe, NodeAxis.straight
+        central = np.pad(self._of_central(domes, "central_reach")[..., None], _PLATE_FIRST, constant_values=r.depth)
+        values = _at((0.0, *r.curvatures), places.curvature, straight) @ central
+        if places.lying:
+            more = np.pad(self._of_leaning(domes, "edge_reach")[..., None], _PLATE_FIRST)
+            values = values + _at((0.0, *r.edge_curvatures), places.curvature, straight) @ more
+        values = values + self._off_axis(domes, places, ("leaning_reach", "edge_leaning_reach"), straight)
+        return np.asarray(np.minimum(values[..., 0], r.depth))
 
-    def _of_domes(self, domes: DomeConditions, central: str, leaning: str) -> tuple[Array, Array]:
-        """Both tables at domes: (n, curvatures, ...) and (n, leaning_curvatures, leans, ...)."""
-        r, wall, share = self.recipe, np.log(domes.wall_ratio), np.sqrt(domes.share)
-        walls = [NodeAxis(np.log(nodes)).weights(wall) for nodes in (r.walls, r.leaning_walls)]
-        shares = [NodeAxis(np.sqrt(nodes)).weights(share) for nodes in (r.shares, r.leaning_shares)]
-        gases = NodeAxis(np.log(r.gases)).weights(np.log(domes.gas))
-        first, second = self._tables[central], self._tables[leaning]
-        return (
-            np.einsum("nw,ns,ng,wsg...->n...", walls[0], shares[0], gases, first, optimize=True),
-            np.einsum("nw,ns,ws...->n...", walls[1], shares[1], second, optimize=True),
-        )
-
-    def _at(
-        self, places: ContactPlaces, central: Array, leaning: Array, weights: Callable[[NodeAxis, Array], Array]
-    ) -> Array:
-        """Tables of domes (n, 1 + curvatures, k) and (n, leaning_curvatures, leans, k) at places, (n, m, k).
-
-        The scene with a negative lean is the mirrored one: the lean enters by its square.
-        """
+    def _of_central(self, domes: DomeConditions, name: str) -> Array:
+        """A table of central presses by plates and balls at domes, (n, curvatures, ...)."""
         r = self.recipe
+        walls, shares = _dome_weights(r.walls, r.shares, domes)
+        gases = NodeAxis(np.log(r.gases)).weights(np.log(domes.gas))
+        table = self._tables[name]
+        return np.asarray(np.einsum("nw,ns,ng,wsg...->n...", walls, shares, gases, table, optimize=True))
 
-        def along(nodes: Sequence[float], at: Array) -> Array:
-            return weights(NodeAxis(np.array(nodes)), at.ravel()).reshape(*at.shape, -1)
+    def _of_leaning(self, domes: DomeConditions, name: str) -> Array:
+        """A table over leaning walls and shares at domes, (n, ...)."""
+        return self._over(self.recipe.leaning_walls, self.recipe.leaning_shares, domes, name)
 
-        bends = along((0.0, *r.curvatures), places.curvature)
-        bends_leaning = along(r.leaning_curvatures, places.curvature)
-        leans = along([0.0, *(lean**2 for lean in r.leans)], places.lean**2)[..., 1:]
-        pairs = (bends_leaning[..., None] * leans[..., None, :]).reshape(*places.lean.shape, -1)
-        return bends @ central + pairs @ leaning.reshape(len(leaning), pairs.shape[-1], -1)
+    def _over(self, walls: Sequence[float], shares: Sequence[float], domes: DomeConditions, name: str) -> Array:
+        """A table over walls and shares at domes, (n, ...)."""
+        by_wall, by_share = _dome_weights(walls, shares, domes)
+        return np.asarray(np.einsum("nw,ns,ws...->n...", by_wall, by_share, self._tables[name], optimize=True))
+
+    def _off_axis(
+        self, domes: DomeConditions, places: ContactPlaces, names: tuple[str, str], weights: NodeWeights
+    ) -> Array:
+        """What a lean changes, (n, m, levels), from the tables of balls and of edges; (n, m, 1) of highest levels.
+
+        The scene with a negative lean is the mirrored one: the lean enters by its square. A range by an edge mostly
+        ends where the wall has come to the end of its nose, on the side of the offset: there it enters by its size.
+        """
+        r, balls = self.recipe, self._of_leaning(domes, names[0])
+        table, nodes = balls, r.leaning_curvatures
+        if places.lying:
+            # The first of the balls is the tilted plate, which is an edge without curvature, too.
+            plate = balls[:, :1]
+            more = self._over(r.edge_walls, r.edge_shares, domes, names[1])
+            table, nodes = np.hstack([plate, plate + more]), (0.0, *r.edge_curvatures)
+        bends = _at(nodes, places.curvature, weights)
+        power = 1 if places.lying and names[1].endswith("_reach") else 2
+        leans = _at([0.0, *(lean**power for lean in r.leans)], np.abs(places.lean) ** power, weights)[..., 1:]
+        pairs = (bends[..., None] * leans[..., None, :]).reshape(*places.lean.shape, -1)
+        return np.asarray(pairs @ table.reshape(len(table), pairs.shape[-1], -1))
+
+
+def _dome_weights(walls: Sequence[float], shares: Sequence[float], domes: DomeConditions) -> tuple[Array, Array]:
+    """Weights of wall ratios and of shares of the limit pressure for n domes."""
+    return (
+        NodeAxis(np.log(walls)).weights(np.log(domes.wall_ratio)),
+        NodeAxis(np.sqrt(shares)).weights(np.sqrt(domes.share)),
+    )
+
+
+def _at(nodes: Sequence[float], at: Array, weights: NodeWeights = NodeAxis.weights) -> Array:
+    """Weights of nodes for values of any one shape, (..., nodes)."""
+    return weights(NodeAxis(np.array(nodes)), at.ravel()).reshape(*at.shape, -1)
+
+
+def _narrow(curvature: float | Array) -> Array:
+    """R0/(R0 + a) of an object of a curvature R0/a: 0 for a plate, 1 for a sharp edge."""
+    return np.asarray(curvature / (1.0 + np.asarray(curvature)))
 
 
 def digest(tables: Mapping[str, Array]) -> str:
