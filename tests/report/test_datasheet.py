@@ -196,7 +196,7 @@ def test_a_sensor_outside_the_atlas_says_so_on_its_sheet(page):
 
 def test_zero_drift_is_that_of_the_gas_in_a_dome_that_yields(evaluated):
     """By brute force: the volume at which the warmed gas and the dome's own curve balance."""
-    from pneutouch.evaluation.sheet import zero_drift_kPa_per_K
+    from pneutouch.evaluation.gauge import zero_drift_kPa_per_K
 
     evaluation = evaluated("paper-dome")
     state, curve = evaluation.prediction.states[3], evaluation.prediction.inflation

@@ -62,7 +62,7 @@ def volume(
         key = f"volume-plug.{name}.pressure_kPa"
         raise InputError(f"mean {over_plug_kPa.value:g} kPa", file=source.where, key=key, remedy=must) from None
     assembly = assemble(scene)
-    drawn_mL = (assembly.internal_volume + assembly.tube_volume) / ML
+    drawn_mL = assembly.drawn_volume / ML
     results.figure(name, "dead volume, mL", dead.value, dead.spread)
     results.figure(name, "dead volume as drawn, mL", drawn_mL)
     results.figure(name, "air in the syringe, mL", dead.value * over_cap_kPa.value / cap.ambient_pressure_kPa)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NotRequired, TypedDict, cast
 
 from pneutouch.evaluation.anywhere import contact_anywhere_document
 from pneutouch.evaluation.contact_object import contact_document
+from pneutouch.evaluation.gauge import gauge_document
 from pneutouch.evaluation.uncertainty import documents
 from pneutouch.mechanics.prediction import SensorRecord, StateRecord
 from pneutouch.mechanics.viscous.known import AGED, ageing_ratio
@@ -41,6 +42,7 @@ class PredictionRecord(SensorRecord):
     dead_volume_note: NotRequired[str]
     rating: RatingRecord
     states: list[UncertainStateRecord]
+    gauge: NotRequired[dict[str, Any]]
     viscous: NotRequired[dict[str, Any]]
     calibration: NotRequired[dict[str, Any]]
     aged: NotRequired[AgedRecord]
@@ -83,9 +85,10 @@ def prediction_document(evaluation: Evaluation, samples: int = 0) -> PredictionR
 
 
 def full_document(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
-    """`prediction_document` with ``viscous``, and ``aged`` where the prediction is of an aged sensor."""
+    """`prediction_document` with ``viscous`` and ``gauge``, and ``aged`` where the prediction is of an aged sensor."""
     content = prediction_document(evaluation, samples)
     content["viscous"] = viscous(evaluation)
+    content["gauge"] = gauge_document(evaluation)
     calibration = evaluation.scene.calibration
     if calibration is not None:
         content["calibration"] = {

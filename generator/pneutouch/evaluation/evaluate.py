@@ -16,6 +16,7 @@ from pneutouch.evaluation.calibrated import assumption, calibrated_error, calibr
 from pneutouch.evaluation.contact_object import check_first_touch, check_object, contact_object, rigid_base
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
+from pneutouch.mechanics.gauge_reading import gauge_reading
 from pneutouch.mechanics.models import DEFAULT_TOLERANCE, USUAL
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.prediction import ErrorEstimate
@@ -83,7 +84,7 @@ class Evaluation:
         # What is printed is the wall as drawn, whatever wall a calibration gives the model.
         drawn = self.sensor.replace(wall_thickness=self.assembly.layout.wall)
         calibrated = self.scene.calibration is not None
-        context = SensorContext(self.prediction, drawn, self.rating, calibrated=calibrated)
+        context = SensorContext(self.prediction, drawn, self.rating, calibrated=calibrated, gauge=self.scene.gauge)
         return check(subject_of(self.assembly), context)
 
     @cached_property
@@ -216,6 +217,7 @@ def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
         wall_thickness=layout.wall,
         ambient_pressure=design.pneumatics.ambient_pressure_kPa * KPA,
         dead_volume=assembly.dead_volume,
+        gauge_limit=gauge_reading(assembly.scene.gauge, design.pneumatics.ambient_pressure_kPa * KPA).limit,
         plate_radius=0.5 * design.indentation.plate_diameter_mm,
         depth=design.depth_mm,
         steps=design.indentation.steps,

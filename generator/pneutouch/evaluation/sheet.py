@@ -4,22 +4,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import ComputationError
 from pneutouch.evaluation.anywhere import contact_chart
 from pneutouch.evaluation.chart_data import ComparedMembrane
 from pneutouch.evaluation.charts import air, tradeoff, tuning
 from pneutouch.evaluation.contact_object import object_section
 from pneutouch.evaluation.evaluate import Evaluation
+from pneutouch.evaluation.gauge import detectable_forces, zero_drift_kPa_per_K
 from pneutouch.evaluation.pressed import pressed_view
 from pneutouch.evaluation.relaxation import ageing_data, viscous_data
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.evaluation.uncertainty import unknown
 from pneutouch.evaluation.variants import resin_curves
-from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
+from pneutouch.mechanics import Sensor, SensorPrediction
 from pneutouch.mechanics.models import stated_error
-from pneutouch.mechanics.uncertainty.gas_notes import REFERENCE_TEMPERATURE
 from pneutouch.units import KPA
 
 _LEAST_SPAN = 22 * KPA
@@ -43,6 +42,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         rating=evaluation.rating,
         numerical_error=stated_error(prediction.model, sensor),
         zero_drift_kPa_per_K=zero_drift_kPa_per_K(scene, prediction, states[0]),
+        detectable=detectable_forces(scene, prediction),
         resin_curves=resin_curves(sensor, evaluation.resins, highest, prediction.model, prediction.closure, states),
         viscous=viscous_data(evaluation.viscous_runs),
         ageing=ageing_data(prediction, material, sensor),
@@ -60,18 +60,6 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
     if tuned is not None:
         tuned = replace(tuned, published_kPa_per_N=tuple(published.items()))
     return replace(sheet, gas=air(evaluation), tradeoff=tradeoff(evaluation), tuning=tuned)
-
-
-def zero_drift_kPa_per_K(scene: ResolvedDesign, prediction: SensorPrediction, state: SensorState) -> float:
-    """Pressure change of the shut-in gas by temperature without contact, kPa/K.
-
-    The dome yields as the gas warms: dp/dT = (p_abs/T) k/(k + p_abs/V), k = dp/dV of the dome and V the gas.
-    """
-    curve = prediction.inflation
-    slope = float(np.interp(state.cavity_volume, curve.volume, np.gradient(curve.pressure, curve.volume)))
-    absolute = scene.design.pneumatics.ambient_pressure_kPa * KPA + state.driving_pressure
-    gas = absolute / (state.cavity_volume + prediction.dead_volume)
-    return absolute / REFERENCE_TEMPERATURE * slope / (slope + gas) / KPA
 
 
 def constant_membranes(sensor: Sensor, prediction: SensorPrediction) -> tuple[ComparedMembrane, ...]:

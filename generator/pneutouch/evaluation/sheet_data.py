@@ -17,6 +17,7 @@ if TYPE_CHECKING:
         TradeOff,
         TuningChart,
     )
+    from pneutouch.evaluation.gauge import DetectableForce
     from pneutouch.mechanics.prediction import SensorPrediction
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.uncertainty import GasNotes
@@ -109,6 +110,7 @@ class SheetData:
         rating: The rated driving pressure and what it follows from.
         numerical_error: Stated relative error in sensitivity of the model.
         zero_drift_kPa_per_K: Drift of the sealed gas without contact, at the lowest driving pressure.
+        detectable: The smallest force at each driving pressure.
         resin_curves: The same sensor in every resin, by title.
         viscous: Relaxation and hysteresis, or why they are not predicted.
         ageing: Change after a year, or why it is unknown.
@@ -134,6 +136,7 @@ class SheetData:
     rating: Rating
     numerical_error: float
     zero_drift_kPa_per_K: float
+    detectable: tuple[DetectableForce, ...]
     resin_curves: dict[str, ResinCurve]
     viscous: ViscousData | str
     ageing: AgeingData | str

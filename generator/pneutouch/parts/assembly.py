@@ -101,9 +101,20 @@ class Assembly:
 
     @property
     def dead_volume(self) -> float:
-        """Gas behind the cavity in mm3: as the design states it, else connector and tube."""
+        """Gas behind the cavity in mm3: as the design states it, else as drawn."""
         stated_mL = self.scene.design.pneumatics.dead_volume_mL
-        return self.internal_volume + self.tube_volume if stated_mL is None else stated_mL * ML
+        return self.drawn_volume if stated_mL is None else stated_mL * ML
+
+    @property
+    def gauge_volume_mL(self) -> float:
+        """Gas inside the gauge, mL; 0 where the design names none or its volume is not known."""
+        gauge = self.scene.gauge
+        return 0.0 if gauge is None or gauge.inner_volume_mL is None else gauge.inner_volume_mL.nominal
+
+    @property
+    def drawn_volume(self) -> float:
+        """Gas in connector, tube and gauge, mm3, whatever the design states."""
+        return self.internal_volume + self.tube_volume + self.gauge_volume_mL * ML
 
     @property
     def dead_volume_note(self) -> str:
@@ -111,7 +122,7 @@ class Assembly:
         pneumatics = self.scene.design.pneumatics
         if pneumatics.dead_volume_mL != 0 or pneumatics.tube_length_mm == 0:
             return ""
-        drawn_mL = (self.internal_volume + self.tube_volume) / ML
+        drawn_mL = self.drawn_volume / ML
         return f"the paper's idealisation: connector and tube as drawn hold {drawn_mL:.2f} mL"
 
 

@@ -23,6 +23,7 @@ from pneutouch.spec.printer import FeatureSize, Printer
 if TYPE_CHECKING:
     from pneutouch.mechanics import Sensor, SensorPrediction
     from pneutouch.mechanics.rating import Rating
+    from pneutouch.spec.gauge import Gauge
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,7 @@ class SensorContext:
     """What the rules on the sensor's working need: its prediction, the mechanics' view of it, and its rating.
 
     ``membrane`` is the name of the item whose wall the sensor presses; ``calibrated``: the sensor is a printed one.
+    ``gauge`` is the one that the design names; None stands for the paper's.
     """
 
     prediction: SensorPrediction
@@ -37,6 +39,7 @@ class SensorContext:
     rating: Rating
     membrane: str = "membrane"
     calibrated: bool = False
+    gauge: Gauge | None = None
 
 
 NARROW = 3.0

@@ -3,12 +3,14 @@
 from typing import Any
 
 from pneutouch import __version__
+from pneutouch.evaluation.gauge import reading_of
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report import ordering, prose
 from pneutouch.report.anywhere import contact_section
 from pneutouch.report.certainty import interval, uncertainty_section
 from pneutouch.report.environment import NOT_TESTED, environment
+from pneutouch.report.gauge import detection, gauge_range, gauge_volume
 from pneutouch.report.off_axis import CAPTION, OFF_AXIS, SHEAR, SHEAR_CAPTION, off_axis_rows, shear_rows
 from pneutouch.units import KPA, ML
 from pneutouch.wording import SIMULATED, counted
@@ -60,7 +62,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "uncertainty": uncertainty_section(sheet),
         "captions": _captions(sheet),
         "limits": _limits(sheet),
-        "environment": environment(sheet),
+        "environment": [*detection(sheet), *environment(sheet)],
         "reliability": [[what, NOT_TESTED] for what in prose.RELIABILITY],
         "bodies": _bodies(sheet),
         "printing": prose.printing(sheet.scene),
@@ -151,7 +153,8 @@ def _shapes(state: SensorState) -> str:
 def _ratings(sheet: SheetData) -> list[list[str]]:
     """Absolute maximum ratings: quantity, value, unit, basis."""
     basis = f"{sheet.rating.summary} (model {sheet.prediction.model})"
-    gauge = f"{NOT_TESTED}; the pressure sensor (SMC PSE543-R06) reads to 100 kPa"
+    reading = reading_of(sheet.scene)
+    gauge = f"{NOT_TESTED}; the pressure gauge ({reading.title}) reads to {reading.limit / KPA:.4g} kPa"
     return [
         ["Driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa gauge", basis],
         ["Cavity pressure while pressed", DASH, "kPa gauge", gauge],
@@ -181,11 +184,13 @@ def _operating(sheet: SheetData) -> list[list[str]]:
         tube = f"{sheet.scene.tube.outer_diameter:g} x {sheet.scene.tube.inner_diameter:g} mm tube"
         length = f"{design.pneumatics.tube_length_mm:g} mm of {tube}"
         stated = f"connector {sheet.assembly.internal_volume / ML:.3f} mL and {length}"
+        stated += gauge_volume(sheet)
     return [
         ["Driving pressure", pressures, "kPa gauge", "before contact"],
         ["Medium", "air", "", "trapped, isothermal"],
         ["Ambient pressure", f"{design.pneumatics.ambient_pressure_kPa:g}", "kPa", "absolute"],
         ["Dead volume", f"{sheet.prediction.dead_volume / ML:.3f}", "mL", stated],
+        ["Pressure gauge", *gauge_range(sheet)],
         ["Contact object", *prose.contact_body(sheet.scene)],
         ["Indentation", f"0 to {design.depth_mm:.2f}", "mm", f"{design.indentation.steps} steps from first contact"],
     ]
@@ -233,7 +238,7 @@ def _limits(sheet: SheetData) -> list[list[str]]:
     rows = [
         ["limit point", peak, reach],
         ["break strain", broken, where],
-        ["gauge range", f"{limits.gauge / KPA:g}", "pressure sensor of ±100 kPa"],
+        ["gauge range", f"{limits.gauge / KPA:.4g}", " ".join(gauge_range(sheet)[2:])],
     ]
     spread = {limit.name: limit for limit in sheet.rating.limits if limit.low < limit.nominal}
     for row in rows:

@@ -16,6 +16,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
+from pneutouch.mechanics.gauge_reading import PAPER_NOISE, PAPER_STEP, RECORDER_RATE_HZ
 from pneutouch.texture.contact import PreloadContact
 from pneutouch.texture.signal import Signal
 from pneutouch.texture.substrate import BarRow, Substrate
@@ -27,15 +28,11 @@ CONTROLS: tuple[Control, ...] = ("height", "force")
 PRELOAD = 0.5
 """N; paper, section 5."""
 
-RATE = 10_000.0
+RATE = RECORDER_RATE_HZ
 """Samples a second, Hz; paper, Supplement C."""
 
-STEP = 20.0 / 2**16 * 50.0 * KPA
-"""Step of the recorder, MPa: 16 bits over +-10 V (NI's USB-6341, paper, Supplement C; range as NI's manuals give it)
-times 50 kPa/V (+-100 kPa on 1 to 5 V, SMC's usual output; assumed, the PSE543's sheet was not read)."""
-
-NOISE = 0.015 * KPA
-"""White noise of a sample, MPa rms: one step of the recorder. An assumption; the paper states no noise."""
+STEP, NOISE = PAPER_STEP, PAPER_NOISE
+"""Step of the recorder and white noise of a sample, MPa rms, of the paper's gauge."""
 
 _NODES = 2**14
 _NEWTON = 6

@@ -1,0 +1,130 @@
+"""The smallest force that a sensor with its gauge detects, and what limits it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.mechanics import SensorPrediction, SensorState
+from pneutouch.mechanics.gauge_reading import SIGMAS, GaugeReading, gauge_reading
+from pneutouch.mechanics.uncertainty.gas_notes import REFERENCE_TEMPERATURE
+from pneutouch.rounding import rounded
+from pneutouch.units import KPA
+
+if TYPE_CHECKING:
+    from pneutouch.evaluation.evaluate import Evaluation
+
+_DIGITS = 6
+
+CRITERION = f"{SIGMAS:g} standard deviations of the difference of two readings"
+
+
+@dataclass(frozen=True, slots=True)
+class DetectableForce:
+    """The smallest force at one driving pressure (MPa); None where it is not known.
+
+    Attributes:
+        driving_pressure: MPa.
+        force: Smallest change of a force within the range, N: the threshold over the fitted sensitivity.
+        at_first_contact: Smallest force on the untouched dome, N, by a power law through the curve's first points.
+        drift_kPa_per_K: Pressure change of the sealed gas by temperature.
+        drift_N_per_K: The force that reads the same.
+        warming: Change of temperature, K, that reads as ``force`` does.
+    """
+
+    driving_pressure: float
+    force: float | None
+    at_first_contact: float | None
+    drift_kPa_per_K: float
+    drift_N_per_K: float | None
+    warming: float | None
+
+
+def reading_of(scene: ResolvedDesign) -> GaugeReading:
+    """The gauge of a design at its ambient pressure; that of the paper's rig where it names none."""
+    return gauge_reading(scene.gauge, scene.design.pneumatics.ambient_pressure_kPa * KPA)
+
+
+def detectable_forces(scene: ResolvedDesign, prediction: SensorPrediction) -> tuple[DetectableForce, ...]:
+    """The smallest force at each driving pressure, by the design's gauge."""
+    threshold = reading_of(scene).threshold
+    return tuple(_detectable(threshold, zero_drift_kPa_per_K(scene, prediction, s), s) for s in prediction.states)
+
+
+def _detectable(threshold: float | None, drift_kPa_per_K: float, state: SensorState) -> DetectableForce:
+    if state.figures is None:
+        return DetectableForce(state.driving_pressure, None, None, drift_kPa_per_K, None, None)
+    slope = state.figures.sensitivity_kPa_per_N * KPA
+    force = None if threshold is None else threshold / slope
+    first = None if threshold is None else force_at_rise(state.force, state.pressure_rise, threshold)
+    warming = None if threshold is None or drift_kPa_per_K <= 0 else threshold / (drift_kPa_per_K * KPA)
+    return DetectableForce(
+        state.driving_pressure, force, first, drift_kPa_per_K, drift_kPa_per_K * KPA / slope, warming
+    )
+
+
+def force_at_rise(force: np.ndarray, rise: np.ndarray, threshold: float) -> float | None:
+    """The force (N) at which a curve, (n,) each and from 0, reaches a pressure rise; None where it does not.
+
+    Below the first loaded point the rise is a power of the force, through that point and the next: an inflated dome
+    gives way in proportion to the force, and its gas to the square of the travel.
+    """
+    loaded = (force > 0) & (rise > 0)
+    force, rise = force[loaded], rise[loaded]
+    if rise.size < 2 or threshold > rise.max():
+        return None
+    if threshold >= rise[0]:
+        above = int(np.argmax(rise >= threshold))
+        return float(np.interp(threshold, rise[max(above - 1, 0) : above + 1], force[max(above - 1, 0) : above + 1]))
+    power = np.log(rise[1] / rise[0]) / np.log(force[1] / force[0])
+    return float(force[0] * (threshold / rise[0]) ** (1.0 / power)) if power > 0 else None
+
+
+def zero_drift_kPa_per_K(scene: ResolvedDesign, prediction: SensorPrediction, state: SensorState) -> float:
+    """Pressure change of the shut-in gas by temperature without contact, kPa/K.
+
+    The dome yields as the gas warms: dp/dT = (p_abs/T) k/(k + p_abs/V), k = dp/dV of the dome and V the gas.
+    """
+    curve = prediction.inflation
+    slope = float(np.interp(state.cavity_volume, curve.volume, np.gradient(curve.pressure, curve.volume)))
+    absolute = scene.design.pneumatics.ambient_pressure_kPa * KPA + state.driving_pressure
+    gas = absolute / (state.cavity_volume + prediction.dead_volume)
+    return absolute / REFERENCE_TEMPERATURE * slope / (slope + gas) / KPA
+
+
+def gauge_document(evaluation: Evaluation) -> dict[str, Any]:
+    """The gauge and the smallest forces in boundary units; ``name`` is None where the paper's is assumed."""
+    scene, reading = evaluation.scene, reading_of(evaluation.scene)
+    pressures = {
+        "reads_from_kPa": reading.low,
+        "reads_to_kPa": reading.limit,
+        "noise_kPa": reading.noise,
+        "step_kPa": reading.step,
+        "threshold_kPa": reading.threshold,
+    }
+    content = {
+        "name": scene.design.pneumatics.gauge,
+        "title": reading.title,
+        "reference": "absolute" if reading.absolute else "gauge",
+        **{key: None if value is None else value / KPA for key, value in pressures.items()},
+        "rate_Hz": reading.rate_Hz,
+        "bandwidth_Hz": None if reading.rate_Hz is None else reading.rate_Hz / 2,
+        "criterion": CRITERION,
+        "limited_by": reading.limited_by,
+        "inner_volume_counted_mL": evaluation.assembly.gauge_volume_mL,
+        "states": [
+            {
+                "driving_pressure_kPa": one.driving_pressure / KPA,
+                "smallest_force_N": one.force,
+                "smallest_force_at_first_contact_N": one.at_first_contact,
+                "zero_drift_kPa_per_K": one.drift_kPa_per_K,
+                "zero_drift_N_per_K": one.drift_N_per_K,
+                "warming_that_reads_as_smallest_force_K": one.warming,
+            }
+            for one in detectable_forces(scene, evaluation.prediction)
+        ],
+    }
+    return rounded(content, _DIGITS)

@@ -1,0 +1,104 @@
+"""What a pressure gauge makes of a pressure: range, noise, steps and rate, as the mechanics takes them."""
+
+import math
+from dataclasses import dataclass
+
+from pneutouch.spec.gauge import Gauge
+from pneutouch.units import GAUGE_LIMIT, KPA
+
+RECORDER_STEP_V = 20.0 / 2**16
+"""Step of the recorder of an analog gauge, V: 16 bits over +-10 V (NI's USB-6341, paper, Supplement C; range as NI's
+manuals give it)."""
+
+RECORDER_RATE_HZ = 10_000.0
+"""Samples a second of that recorder (paper, Supplement C)."""
+
+PAPER_STEP = RECORDER_STEP_V * 50.0 * KPA
+"""Step of the paper's recorder, MPa: `RECORDER_STEP_V` at 50 kPa/V (+-100 kPa on 1 to 5 V, SMC's usual output; assumed,
+the PSE543's sheet was not read)."""
+
+PAPER_NOISE = 0.015 * KPA
+"""White noise of a reading, MPa rms: one step of the recorder. An assumption; the paper states no noise."""
+
+PAPER_GAUGE = "SMC PSE543-R06"
+
+SIGMAS = 3.0
+"""A force is detected where it moves the reading by this many standard deviations of the difference of two readings:
+our choice, the usual limit of detection (IUPAC, Pure Appl. Chem. 67, 1699, 1995)."""
+
+
+@dataclass(frozen=True, slots=True)
+class GaugeReading:
+    """A gauge on a sensor; pressures in MPa.
+
+    Attributes:
+        title: Its name.
+        low, limit: Least and greatest gauge pressure that it reads.
+        noise: Standard deviation of one reading; None where it is not known.
+        step: Smallest step of a reading, of an analog gauge the recorder's; None where it is not known.
+        rate_Hz: Readings a second, of an analog gauge the recorder's; None where it is not known.
+        absolute: Whether it reads ambient plus gauge pressure.
+        error: Greatest error over its span; None where it is not known.
+    """
+
+    title: str
+    low: float
+    limit: float
+    noise: float | None
+    step: float | None
+    rate_Hz: float | None
+    absolute: bool = False
+    error: float | None = None
+
+    @property
+    def scatter(self) -> float | None:
+        """Standard deviation of a reading with its steps, which add step^2/12 (Sheppard); None without the noise."""
+        return None if self.noise is None else math.hypot(self.noise, (self.step or 0.0) / math.sqrt(12.0))
+
+    @property
+    def threshold(self) -> float | None:
+        """Smallest change of pressure that two readings distinguish, at least one step; None where it is not known."""
+        scatter = self.scatter
+        return None if scatter is None else max(SIGMAS * math.sqrt(2.0) * scatter, self.step or 0.0)
+
+    @property
+    def limited_by(self) -> str:
+        """What the threshold follows from."""
+        if self.noise is None:
+            return "not known: the gauge's noise is not stated"
+        return "gauge noise" if self.noise >= (self.step or 0.0) / math.sqrt(12.0) else "gauge resolution"
+
+
+def gauge_reading(gauge: Gauge | None, ambient_pressure: float) -> GaugeReading:
+    """A gauge at an ambient pressure, MPa; without one that of the paper's rig."""
+    if gauge is None:
+        return GaugeReading(
+            PAPER_GAUGE, -GAUGE_LIMIT, GAUGE_LIMIT, PAPER_NOISE, PAPER_STEP, RECORDER_RATE_HZ, error=4.0 * KPA
+        )
+    low_kPa, high_kPa = gauge.gauge_pressures_kPa(ambient_pressure / KPA)
+    noise, error = (
+        None if quantity is None else quantity.nominal * KPA for quantity in (gauge.noise_kPa, gauge.error_kPa)
+    )
+    return GaugeReading(
+        gauge.title, low_kPa * KPA, high_kPa * KPA, noise, _step(gauge), _rate_Hz(gauge), gauge.is_absolute, error
+    )
+
+
+def _step(gauge: Gauge) -> float | None:
+    if gauge.resolution_kPa is not None:
+        return gauge.resolution_kPa.nominal * KPA
+    transfer = gauge.transfer
+    if transfer.at_low is None or transfer.at_high is None or transfer.output not in ("V", "share of supply"):
+        return None
+    volts = abs(transfer.at_high - transfer.at_low)
+    if transfer.output == "share of supply":
+        if gauge.supply_V is None:
+            return None
+        volts *= gauge.supply_V.nominal
+    return RECORDER_STEP_V * gauge.range_kPa.span / volts * KPA
+
+
+def _rate_Hz(gauge: Gauge) -> float | None:
+    if gauge.rate_Hz is not None:
+        return gauge.rate_Hz.nominal
+    return RECORDER_RATE_HZ if "analog" in gauge.interfaces else None

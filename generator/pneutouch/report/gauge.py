@@ -1,0 +1,57 @@
+"""The gauge on a datasheet: what it reads, and the smallest force that it detects."""
+
+from pneutouch.evaluation.gauge import CRITERION, DetectableForce, reading_of
+from pneutouch.evaluation.sheet_data import SheetData
+from pneutouch.units import KPA
+
+
+def gauge_range(sheet: SheetData) -> list[str]:
+    """Range, unit and note of the gauge."""
+    gauge, reading = sheet.scene.gauge, reading_of(sheet.scene)
+    note = f"{reading.title}, the paper's, assumed" if gauge is None else f"{reading.title} ({gauge.order_code})"
+    if gauge is not None and gauge.is_absolute:
+        note += (
+            f"; absolute, {gauge.range_kPa.low:g} to {gauge.range_kPa.high:g} kPa: it reads the ambient pressure too, "
+            "which must be subtracted"
+        )
+    return [f"{reading.low / KPA:.4g} to {reading.limit / KPA:.4g}", "kPa gauge", note]
+
+
+def gauge_volume(sheet: SheetData) -> str:
+    """What the gauge adds to the dead volume, in words; nothing where the design names none."""
+    gauge = sheet.scene.gauge
+    if gauge is None:
+        return ""
+    if gauge.inner_volume_mL is None:
+        return "; the gauge's own volume is not known and not counted"
+    return f" and gauge {sheet.assembly.gauge_volume_mL:.3f} mL"
+
+
+def detection(sheet: SheetData) -> list[list[str]]:
+    """Rows of quantity, value and basis: the smallest force, and the warming that reads the same."""
+    reading = reading_of(sheet.scene)
+    ends = sheet.detectable if len(sheet.detectable) < 2 else (sheet.detectable[0], sheet.detectable[-1])
+    at = " and ".join(f"{one.driving_pressure / KPA:g}" for one in ends) + " kPa"
+    if reading.threshold is None:
+        return [["Smallest force detected", "not known", f"{reading.limited_by} ({reading.title})"]]
+    band = (
+        "" if reading.rate_Hz is None else f", 0 to {reading.rate_Hz / 2:g} Hz ({reading.rate_Hz:g} readings a second)"
+    )
+    basis = f"{CRITERION}{band}, {reading.threshold / KPA:.2g} kPa of the {reading.title}, over the sensitivity at {at}"
+    return [
+        ["Smallest force detected", _both([one.force for one in ends], "N"), basis],
+        [
+            "the same at first contact",
+            _both([one.at_first_contact for one in ends], "N"),
+            "the untouched dome gives less pressure: power law through the curve's first points",
+        ],
+        ["it is limited by", reading.limited_by, _drift(ends)],
+    ]
+
+
+def _drift(ends: tuple[DetectableForce, ...]) -> str:
+    return f"unless the sealed gas warms by {_both([one.warming for one in ends], 'K')}: that reads the same"
+
+
+def _both(values: list[float | None], unit: str) -> str:
+    return " and ".join("–" if value is None else f"{value:.2g}" for value in values) + f" {unit}"
