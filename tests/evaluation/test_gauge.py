@@ -66,7 +66,7 @@ def test_without_a_stated_noise_the_smallest_force_is_not_known(narrow):
 def test_an_absolute_gauge_ends_the_range_at_its_own_less_the_ambient_pressure(narrow):
     assert narrow.sensor.gas.gauge_limit == pytest.approx((125 - 101.325) * KPA)
     highest = narrow.prediction.states[-1]
-    assert [event.kind for event in highest.events if event.ends_range][0] == "gauge range"
+    assert next(event.kind for event in highest.events if event.ends_range) == "gauge range"
     top = highest.driving_pressure + float(np.interp(highest.range_end, highest.indentation, highest.pressure_rise))
     assert top == pytest.approx(narrow.sensor.gas.gauge_limit, rel=0.02)
 

@@ -16,10 +16,10 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, read_toml, validate
 from pneutouch.spec.target import Target
 from pneutouch.workflows.select.document import document
+from pneutouch.workflows.select.gauged import select as run_select
 from pneutouch.workflows.select.graded import select_graded
 from pneutouch.workflows.select.graded_document import graded_document
 from pneutouch.workflows.select.passing import assigned
-from pneutouch.workflows.select.run import select as run_select
 
 if TYPE_CHECKING:
     import xarray

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pneutouch.catalogue.gauge import named_gauge
 from pneutouch.catalogue.library import Library
 from pneutouch.catalogue.mixture import mixed_material
 from pneutouch.errors import InputError, shown
@@ -148,7 +149,7 @@ def _resolved(name: str, where: str, design: DesignFile, library: Library) -> Re
         seat=find("seats", "connector", "seat"),
         mount=_mount(design, where, library),
         calibration=_calibration(design, where, library),
-        gauge=_gauge(design, where, library),
+        gauge=named_gauge(design, where, library),
     )
     check_scene(scene)
     return scene
@@ -172,15 +173,6 @@ def _calibration(design: DesignFile, where: str, library: Library) -> SensorCali
     return calibration
 
 
-def _gauge(design: DesignFile, where: str, library: Library) -> Gauge | None:
-    """The gauge that the design names; None without one."""
-    name = design.pneumatics.gauge
-    if name is None:
-        return None
-    gauge: Gauge = library.load("gauges", name, file=where, key="pneumatics.gauge")
-    return gauge
-
-
 def check_scene(scene: ResolvedDesign) -> None:
     """What must hold between the parts of a scene. Raises InputError that names ``scene.where`` and the key."""
     _check_kind(scene, "membrane.material", scene.membrane_material, "elastomer")
@@ -189,7 +181,6 @@ def check_scene(scene: ResolvedDesign) -> None:
     _check_runs(scene, "print.connector_profile", scene.connector_printer, scene.connector_material)
     _check_one_piece(scene)
     _check_calibration(scene)
-    _check_gauge(scene)
 
 
 def _tube(design: DesignFile, where: str, library: Library) -> Tube:
@@ -208,20 +199,6 @@ def _tube(design: DesignFile, where: str, library: Library) -> Tube:
             )
     tube: Tube = library.load("tubes", name or port.tubes[0], file=where, key="tubes of connector.port")
     return tube
-
-
-def _check_gauge(scene: ResolvedDesign) -> None:
-    """A gauge must read above the ambient pressure."""
-    gauge, ambient_kPa = scene.gauge, scene.design.pneumatics.ambient_pressure_kPa
-    if gauge is not None and gauge.gauge_pressures_kPa(ambient_kPa)[1] <= 0:
-        raise InputError(
-            f"the {gauge.title} reads to {gauge.range_kPa.high:g} kPa absolute, not above the ambient "
-            f"{ambient_kPa:g} kPa",
-            file=scene.where,
-            key="pneumatics.gauge",
-            value=scene.design.pneumatics.gauge,
-            remedy="take another gauge",
-        )
 
 
 def _mount(design: DesignFile, where: str, library: Library) -> AnyMount:

@@ -76,8 +76,8 @@ def select(
 
 def _run(request: Target, where: str, written: int | None) -> SelectionRun:
     """The selection, with a bar over its steps on a terminal."""
+    from pneutouch.workflows.select.gauged import select as run
     from pneutouch.workflows.select.run import STEPS
-    from pneutouch.workflows.select.run import select as run
 
     with bar("") as report:
         return run(request, where, written=written, progress=lambda step: report(STEPS.index(step), len(STEPS), step))

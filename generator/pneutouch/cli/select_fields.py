@@ -45,6 +45,7 @@ SELECT_FIELDS = {
     "profile": FieldOption("setting", "profile"),
     "tube_length": FieldOption("setting", "tube_length_mm"),
     "dead_volume": FieldOption("setting", "dead_volume_mL"),
+    "gauge": FieldOption("setting", "gauge", metavar="NAME|any"),
     "robustness": FieldOption("weights", "robustness"),
     "tunability": FieldOption("weights", "tunability"),
     "contact_anywhere": FieldOption("weights", "contact_anywhere"),

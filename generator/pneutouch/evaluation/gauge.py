@@ -70,7 +70,7 @@ def force_at_rise(force: np.ndarray, rise: np.ndarray, threshold: float) -> floa
     """The force (N) at which a curve, (n,) each and from 0, reaches a pressure rise; None where it does not.
 
     Below the first loaded point the rise is a power of the force, through that point and the next: an inflated dome
-    gives way in proportion to the force, and its gas to the square of the travel.
+    yields in proportion to the force, and the volume that it displaces grows with the square of the travel.
     """
     loaded = (force > 0) & (rise > 0)
     force, rise = force[loaded], rise[loaded]

@@ -9,6 +9,7 @@ from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.evaluation.evaluate import elastomers, sensor_of
+from pneutouch.evaluation.gauge import reading_of
 from pneutouch.mechanics import Sensor, predict
 from pneutouch.mechanics.rating import Rating, rating
 from pneutouch.mechanics.uncertainty.hardness import logarithmic_change
@@ -79,7 +80,9 @@ def resins_of(
         new, old = material.shore_a, material.shore_a_one_year
         ageing = 0.0 if new is None or old is None else logarithmic_change(new.nominal, old.nominal)
         scatter = replace(truth.scatter, wall=scene.printer.accuracy_mm.nominal, ageing=ageing)
-        simulated.append(SimulatedResin(name, scene, sensor_of(assemble(scene)), replace(truth, scatter=scatter)))
+        rig = truth.rig if scene.gauge is None else truth.rig.with_gauge(reading_of(scene))
+        read = replace(truth, scatter=scatter, rig=rig)
+        simulated.append(SimulatedResin(name, scene, sensor_of(assemble(scene)), read))
     return simulated
 
 

@@ -149,6 +149,12 @@ class Setting(Table):
     dead_volume_mL: float | None = number(
         None, unit="mL", low=0, high=1000, help="Total gas volume behind the cavity; left out: computed."
     )
+    gauge: str | None = Field(
+        default=None,
+        min_length=1,
+        description="Pressure gauge, or any: the one that covers the range and detects the smallest force.",
+        json_schema_extra={"registry": "gauges"},
+    )
 
 
 class Weights(Table):
@@ -195,6 +201,8 @@ class Target(Table):
             raise ValueError("given.graded needs target.sensitivity_kPa_per_N")
         if graded and (target.stiffness_least_N_per_mm, target.stiffness_most_N_per_mm) != (None, None):
             raise ValueError("the search for a grade takes no bounds on the stiffness; leave them out")
+        if graded and self.setting.gauge == "any":
+            raise ValueError("the search for a grade does not choose the gauge; give setting.gauge by name")
         if graded and self.weights.contact_anywhere:
             raise ValueError("contact_anywhere ranks resins and mixes; the search for a grade does not take it")
         return self

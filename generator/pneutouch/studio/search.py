@@ -20,10 +20,11 @@ from pneutouch.studio.target import at_its_fields, target_of
 from pneutouch.workflows.select import words
 from pneutouch.workflows.select.charts import tradeoff
 from pneutouch.workflows.select.document import document
+from pneutouch.workflows.select.gauged import select
 from pneutouch.workflows.select.graded import select_graded
 from pneutouch.workflows.select.graded_document import graded_document
 from pneutouch.workflows.select.passing import assigned
-from pneutouch.workflows.select.run import STEPS, SelectionRun, select
+from pneutouch.workflows.select.run import STEPS, SelectionRun
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

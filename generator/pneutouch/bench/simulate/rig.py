@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.simulate.parameter import parameter
+from pneutouch.mechanics.gauge_reading import GaugeReading
 from pneutouch.texture.scan import NOISE, STEP
 from pneutouch.units import GAUGE_LIMIT, KPA
 
@@ -66,6 +67,20 @@ class RigModel:
         """A rig that reads the true values."""
         unlimited = dict.fromkeys(("cutoff", "force_range", "pressure_range"), np.inf)
         return cls(**{one.name: unlimited.get(one.name, 0.0) for one in fields(cls)})
+
+    def with_gauge(self, reading: GaugeReading) -> RigModel:
+        """The rig with a gauge: its noise, step and range in place of those that are the paper's.
+
+        An unknown noise or step stays the paper's.
+        """
+        paper = RigModel()
+        gauge = {"pressure_noise": reading.noise, "pressure_step": reading.step, "pressure_range": reading.limit}
+        changed = {
+            key: value
+            for key, value in gauge.items()
+            if value is not None and getattr(self, key) == getattr(paper, key)
+        }
+        return replace(self, **changed)
 
     def share(self, rate: float) -> float:
         """Weight of the new sample in the low pass at ``rate`` Hz."""

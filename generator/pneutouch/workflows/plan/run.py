@@ -7,9 +7,10 @@ from typing import Any
 
 from pneutouch.bench.protocol import CLEARANCE, REPETITIONS, RunProtocol, protocol
 from pneutouch.bench.simulate.curve import PressCurves
-from pneutouch.catalogue import DesignSource, Library
+from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.contact_object import contact_document
+from pneutouch.evaluation.gauge import reading_of
 from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
 from pneutouch.output.files import check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import with_manifest
@@ -62,6 +63,18 @@ def rig_of(file: Path | None) -> Rig:
     return validate(Rig, content["rig"], f"{file}: rig")
 
 
+def paper_rig(scene: ResolvedDesign) -> Rig:
+    """The paper's rig, with the gauge that the design names in place of its own."""
+    if scene.gauge is None:
+        return PAPER
+    reading = reading_of(scene)
+    return Rig(
+        name=f"the paper's rig with the gauge {reading.title}"[:120],
+        pressure_range_kPa=reading.limit / KPA,
+        rate_Hz=min(PAPER.rate_Hz, reading.rate_Hz or PAPER.rate_Hz),
+    )
+
+
 def make_plan(
     design: str | DesignSource,
     changes: Changes | None = None,
@@ -79,6 +92,8 @@ def make_plan(
     subjects = resins_of(design, changes, resins, library=library)
     named, copied = named_design(design, library)
     scene = subjects[0].scene
+    if rig == PAPER and not rig_name:
+        rig = paper_rig(scene)
     for subject in subjects:
         refuse_above_limits(subject.name, subject.rating, scene)
     tests = plated_tests(subjects[0], min(s.rating.pressure_kPa for s in subjects))

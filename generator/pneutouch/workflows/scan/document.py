@@ -14,7 +14,7 @@ from pneutouch.texture.scan import NOISE, RATE, STEP, pressure_amplitude
 from pneutouch.texture.separate import noise_amplitude
 from pneutouch.texture.signal import Signal, decimated
 from pneutouch.texture.substrate import FIRST_ZERO, BarRow, patch_filter
-from pneutouch.units import GAUGE_LIMIT, KPA
+from pneutouch.units import KPA
 from pneutouch.workflows.scan.run import AnalysedSignal, ScanRun
 from pneutouch.workflows.specimen import inputs as specimen_inputs
 
@@ -46,7 +46,7 @@ def document(run: ScanRun) -> dict[str, Any]:
         "kept_Hz": 5 * run.kept,
         "noise_kPa": run.options.noise / KPA,
         "seed": run.options.seed,
-        "range_kPa": GAUGE_LIMIT / KPA,
+        "range_kPa": run.sensor.gas.gauge_limit / KPA,
         "patterns": [_pattern(run, row) for row in run.bars],
         "states": [_state(run, number, seen) for number, seen in enumerate(run.seen)],
         "assumptions": list(ASSUMPTIONS),
@@ -129,7 +129,7 @@ def _state(run: ScanRun, number: int, seen: AnalysedSignal) -> dict[str, Any]:
             "pressure_kPa": at.pressure / KPA,
             "model": at.model,
             "specimen_compliance_mm_per_N": float(seen.substrate.compliance(4096).mean()),
-            "clipped": bool(abs(seen.signal.pressure).max() >= GAUGE_LIMIT),
+            "clipped": bool(abs(seen.signal.pressure).max() >= run.sensor.gas.gauge_limit),
             "notes": _notes(run.bars, at.contact_radius),
         }
     detections: Sequence[Detection | None] = seen.detections or [None] * len(run.bars)

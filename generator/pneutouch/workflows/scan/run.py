@@ -10,6 +10,7 @@ import numpy as np
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.errors import InputError, nearest
 from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.evaluation.gauge import reading_of
 from pneutouch.mechanics import Sensor
 from pneutouch.parts import assemble
 from pneutouch.parts.specimen.bars import places
@@ -103,6 +104,10 @@ def run_scan(
     context, scene, sensor = load_both(specimen, design, changes, library)
     if options.speed is not None:
         context = replace(context, specimen=_at_speed(context, options.speed))
+    reading = reading_of(scene)
+    if scene.gauge is not None and options.noise == NOISE and reading.noise is not None:
+        options = replace(options, noise=reading.noise)
+    recorder = Recorder(noise=options.noise, step=reading.step or 0.0, limit=reading.limit, seed=options.seed)
     speed = context.specimen.scan.speed_mm_per_s
     bars, matrix = bars_of(context), matrix_of(context)
     states = [touch(sensor, pressure, options.preload) for pressure in options.pressures]
@@ -112,7 +117,7 @@ def run_scan(
     frequencies = {row.name: speed / row.pitch for row in bars}
     _check_length(context, scan_path, frequencies)
     simulated = [
-        _simulated(state, Substrate(matrix, bars, length, state.contact_radius), scan_path, options, frequencies)
+        _simulated(state, Substrate(matrix, bars, length, state.contact_radius), scan_path, recorder, frequencies)
         for state in states
     ]
     measured = [_measured(path, frequencies) for path in options.data]
@@ -234,13 +239,9 @@ def _detected(signal: Signal, frequencies: dict[str, float], where: str) -> tupl
 
 
 def _simulated(
-    state: PreloadContact,
-    substrate: Substrate,
-    scan_path: ScanPath,
-    options: ScanOptions,
-    frequencies: dict[str, float],
+    state: PreloadContact, substrate: Substrate, scan_path: ScanPath, recorder: Recorder, frequencies: dict[str, float]
 ) -> AnalysedSignal:
-    simulated = scan(state, substrate, scan_path, Recorder(noise=options.noise, seed=options.seed))
+    simulated = scan(state, substrate, scan_path, recorder)
     label = f"{state.driving_pressure / KPA:g} kPa"
     return AnalysedSignal(
         label, simulated.signal, _detected(simulated.signal, frequencies, label), state, substrate, simulated

@@ -40,6 +40,7 @@ def setting_changes(target: Target, library: Library) -> dict[str, Any]:
         "print.profile": setting.profile,
         "pneumatics.tube_length_mm": setting.tube_length_mm,
         "pneumatics.dead_volume_mL": setting.dead_volume_mL,
+        "pneumatics.gauge": setting.gauge,
     }
     changes |= {key: value for key, value in values.items() if value is not None}
     finger_mm = target.target.finger_diameter_mm

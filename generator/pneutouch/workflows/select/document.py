@@ -46,6 +46,7 @@ def document(selection: SelectionRun) -> dict[str, Any]:
         "dropped_requirements": [_dropped(selection, dropped) for dropped in answer.dropped],
         "rejected": [_rejected(selection, rejected) for rejected in selection.rejected],
         "left_out": selection.left_out,
+        **({"gauges": [trial.document() for trial in selection.gauges]} if selection.gauges else {}),
     }
 
 

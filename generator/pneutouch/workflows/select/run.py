@@ -34,6 +34,7 @@ from pneutouch.workflows.select.base import base_scene, prints, requested_pair, 
 from pneutouch.workflows.select.candidate_uncertainty import sensitivity_uncertainties, sized_as
 from pneutouch.workflows.select.connector import base_around, base_sensor, connector_fit, dead_volume
 from pneutouch.workflows.select.contact import CandidateSolver, other_contact, without_plate
+from pneutouch.workflows.select.gauge_trial import GaugeTrial
 from pneutouch.workflows.select.mix import ResinPair, mix_resins
 from pneutouch.workflows.select.passing import RejectedDesign, judge, source_of
 
@@ -58,6 +59,7 @@ class SelectionRun:
 
     changes: what the target changes in its base, by ``table.key``. left_out: resins and why. rejected: designs that
     ``check`` would reject, best first. judged: designs of the answer that pass ``check``, as it predicts them, by rank.
+    gauges: those considered, where the target leaves the gauge open.
     by_solid: how the search went where the solid answers the base's contact and the atlas does not.
     """
 
@@ -72,6 +74,7 @@ class SelectionRun:
     judged: Mapping[int, Evaluation] = field(default_factory=dict)
     confirmed: tuple[Confirmation, ...] = ()
     by_solid: ContactSelection | None = None
+    gauges: tuple[GaugeTrial, ...] = ()
 
     def assignments(self, choice: Candidate) -> list[str]:
         """What turns the base design into a choice, as ``table.key=value``."""

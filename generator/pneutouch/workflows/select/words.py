@@ -51,6 +51,7 @@ def remarks(selection: SelectionRun) -> list[str]:
     """The mount for a finger, designs that the check rejects, and resins that were left out."""
     return [
         *mount_note(selection.target, selection.base),
+        *(f"gauge {'chosen' if one.chosen else 'out'}: {one.name}: {one.why}" for one in selection.gauges),
         *(_rejected(one) for one in selection.rejected),
         *(f"left out: {name}: {why}" for name, why in selection.left_out.items()),
     ]

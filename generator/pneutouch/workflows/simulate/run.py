@@ -24,7 +24,9 @@ from pneutouch.bench.simulate.encode import LEAK_SECONDS, MARK, encoded
 from pneutouch.bench.simulate.inject import sensor_pressure
 from pneutouch.bench.simulate.parameter import parameters
 from pneutouch.bench.simulate.truth import aged
-from pneutouch.catalogue import DesignSource, Library
+from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
+from pneutouch.errors import InputError
+from pneutouch.evaluation.gauge import reading_of
 from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.models import USUAL, usual_model
@@ -68,6 +70,7 @@ def simulate(
     check_options(options)
     library = library or Library.default()
     subjects = resins_of(design, changes, options.resins, options.truth, library)
+    _check_rate(subjects[0].scene, options.rate)
     if options.model == USUAL:
         options = replace(options, model=usual_model(subjects[0].sensor))
     named, copied = named_design(design, library)
@@ -125,7 +128,7 @@ def _write_all(
         assignments=named[1],
         simulated=True,
         ambient_pressure_kPa=scene.design.pneumatics.ambient_pressure_kPa,
-        rig=Rig(name="simulated: the paper's instruments", rate_Hz=options.rate),
+        rig=_rig(scene, options.rate),
         runs=runs,
     )
     writer.put("campaign.toml", campaign_toml(campaign, MARK))
@@ -133,6 +136,27 @@ def _write_all(
     truth |= {"model": options.model, "seed": options.seed, "rate_Hz": options.rate}
     truth["parameters"] = {subject.name: _parameters(subject) for subject in subjects}
     writer.put("truth.json", json_bytes(truth))
+
+
+def _rig(scene: ResolvedDesign, rate_Hz: float) -> Rig:
+    """The simulated rig with the gauge that the design names; without one the paper's."""
+    if scene.gauge is None:
+        return Rig(name="simulated: the paper's instruments", rate_Hz=rate_Hz)
+    reading = reading_of(scene)
+    name = f"simulated: the paper's instruments with the gauge {reading.title}"
+    return Rig(name=name[:120], pressure_range_kPa=reading.limit / KPA, rate_Hz=rate_Hz)
+
+
+def _check_rate(scene: ResolvedDesign, rate_Hz: float) -> None:
+    """Raise InputError for a rate that the gauge does not reach."""
+    most_Hz = reading_of(scene).rate_Hz
+    if scene.gauge is not None and most_Hz is not None and rate_Hz > most_Hz:
+        raise InputError(
+            f"the {scene.gauge.title} gives {most_Hz:g} readings a second",
+            key="rate_Hz",
+            value=rate_Hz,
+            remedy="give at most that",
+        )
 
 
 def _parameters(subject: SimulatedResin) -> dict[str, Any]:
