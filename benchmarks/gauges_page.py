@@ -26,12 +26,12 @@ def page() -> str:
     return text.replace("{table}", table(gauges())).replace("{sources}", "\n\n".join(map(sources, gauges().values())))
 
 
-def table(found: dict[str, Gauge]) -> str:
+def table(listed: dict[str, Gauge]) -> str:
     """One row a gauge, unknown figures marked."""
     columns = ("noise_kPa", "resolution_kPa", "rate_Hz", "error_kPa", "inner_volume_mL", "overload_kPa", "supply_V")
     heads = [f"{key.rpartition('_')[0].replace('_', ' ')}, {declaration(Gauge, key).unit}" for key in columns]
     rows = [["name", "part", "reads, kPa", *heads, "output"], ["---"] * (len(columns) + 4)]
-    for name, gauge in found.items():
+    for name, gauge in listed.items():
         reads = f"{gauge.range_kPa.low:g} to {gauge.range_kPa.high:g} {gauge.reference}"
         output = f"{', '.join(gauge.interfaces)}; {gauge.transfer.output}"
         rows.append([f"`{name}`", gauge.title, reads, *(_value(gauge, key) for key in columns), output])

@@ -238,7 +238,7 @@ def _limits(sheet: SheetData) -> list[list[str]]:
     rows = [
         ["limit point", peak, reach],
         ["break strain", broken, where],
-        ["gauge range", f"{limits.gauge / KPA:.4g}", " ".join(gauge_range(sheet)[2:])],
+        ["gauge range", f"{limits.gauge / KPA:.4g}", f"what the {reading_of(sheet.scene).title} reads"],
     ]
     spread = {limit.name: limit for limit in sheet.rating.limits if limit.low < limit.nominal}
     for row in rows:

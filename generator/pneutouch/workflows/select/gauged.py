@@ -125,6 +125,6 @@ def _judged(chosen: _Part, parts: list[_Part], slope: float, target: Target) -> 
         if part is chosen:
             continue
         other = None if part.reading.threshold is None else part.reading.threshold / slope
-        why = _below_driving(part, target) or (_UNKNOWN if other is None else f"detects {other:.2g} N alone")
+        why = _below_driving(part, target) or (_UNKNOWN if other is None else f"detects no less than {other:.2g} N")
         trials.append(part.trial(why, force=other))
     return trials
