@@ -13,8 +13,8 @@ from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 from pneutouch.workflows.plan.run import PAPER, paper_rig
 from pneutouch.workflows.select.gauged import select
-from pneutouch.workflows.simulate.run import simulate
 from pneutouch.workflows.simulate.options import SimulationOptions
+from pneutouch.workflows.simulate.run import simulate
 
 AMBIENT = 101.325 * KPA
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
+from pneutouch.evaluation.sheet_data import DetectableForce, SheetGauge
 from pneutouch.mechanics import SensorPrediction, SensorState
 from pneutouch.mechanics.gauge_reading import SIGMAS, GaugeReading, gauge_reading
 from pneutouch.mechanics.uncertainty.gas_notes import REFERENCE_TEMPERATURE
@@ -22,27 +22,6 @@ _DIGITS = 6
 CRITERION = f"{SIGMAS:g} standard deviations of the difference of two readings"
 
 
-@dataclass(frozen=True, slots=True)
-class DetectableForce:
-    """The smallest force at one driving pressure (MPa); None where it is not known.
-
-    Attributes:
-        driving_pressure: MPa.
-        force: Smallest change of a force within the range, N: the threshold over the fitted sensitivity.
-        at_first_contact: Smallest force on the untouched dome, N, by a power law through the curve's first points.
-        drift_kPa_per_K: Pressure change of the sealed gas by temperature.
-        drift_N_per_K: The force that reads the same.
-        warming: Change of temperature, K, that reads as ``force`` does.
-    """
-
-    driving_pressure: float
-    force: float | None
-    at_first_contact: float | None
-    drift_kPa_per_K: float
-    drift_N_per_K: float | None
-    warming: float | None
-
-
 def reading_of(scene: ResolvedDesign) -> GaugeReading:
     """The gauge of a design at its ambient pressure; that of the paper's rig where it names none."""
     return gauge_reading(scene.gauge, scene.design.pneumatics.ambient_pressure_kPa * KPA)
@@ -52,6 +31,21 @@ def detectable_forces(scene: ResolvedDesign, prediction: SensorPrediction) -> tu
     """The smallest force at each driving pressure, by the design's gauge."""
     threshold = reading_of(scene).threshold
     return tuple(_detectable(threshold, zero_drift_kPa_per_K(scene, prediction, s), s) for s in prediction.states)
+
+
+def sheet_gauge(scene: ResolvedDesign, prediction: SensorPrediction) -> SheetGauge:
+    """The gauge and its smallest forces as a datasheet shows them."""
+    reading = reading_of(scene)
+    return SheetGauge(
+        reading.title,
+        reading.low / KPA,
+        reading.limit / KPA,
+        None if reading.threshold is None else reading.threshold / KPA,
+        reading.rate_Hz,
+        reading.limited_by,
+        CRITERION,
+        detectable_forces(scene, prediction),
+    )
 
 
 def _detectable(threshold: float | None, drift_kPa_per_K: float, state: SensorState) -> DetectableForce:

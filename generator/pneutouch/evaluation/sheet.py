@@ -10,7 +10,7 @@ from pneutouch.evaluation.chart_data import ComparedMembrane
 from pneutouch.evaluation.charts import air, tradeoff, tuning
 from pneutouch.evaluation.contact_object import object_section
 from pneutouch.evaluation.evaluate import Evaluation
-from pneutouch.evaluation.gauge import detectable_forces, zero_drift_kPa_per_K
+from pneutouch.evaluation.gauge import sheet_gauge, zero_drift_kPa_per_K
 from pneutouch.evaluation.pressed import pressed_view
 from pneutouch.evaluation.relaxation import ageing_data, viscous_data
 from pneutouch.evaluation.sheet_data import SheetData
@@ -42,7 +42,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         rating=evaluation.rating,
         numerical_error=stated_error(prediction.model, sensor),
         zero_drift_kPa_per_K=zero_drift_kPa_per_K(scene, prediction, states[0]),
-        detectable=detectable_forces(scene, prediction),
+        gauge=sheet_gauge(scene, prediction),
         resin_curves=resin_curves(sensor, evaluation.resins, highest, prediction.model, prediction.closure, states),
         viscous=viscous_data(evaluation.viscous_runs),
         ageing=ageing_data(prediction, material, sensor),

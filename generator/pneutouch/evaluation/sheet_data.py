@@ -17,7 +17,6 @@ if TYPE_CHECKING:
         TradeOff,
         TuningChart,
     )
-    from pneutouch.evaluation.gauge import DetectableForce
     from pneutouch.mechanics.prediction import SensorPrediction
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.uncertainty import GasNotes
@@ -95,6 +94,49 @@ class AgeingData(NamedTuple):
     sensitivity_change: tuple[tuple[float, float], ...]
 
 
+class DetectableForce(NamedTuple):
+    """The smallest force at one driving pressure (MPa); None where it is not known.
+
+    Attributes:
+        driving_pressure: MPa.
+        force: Smallest change of a force within the range, N: the threshold over the fitted sensitivity.
+        at_first_contact: Smallest force on the untouched dome, N, by a power law through the curve's first points.
+        drift_kPa_per_K: Pressure change of the sealed gas by temperature.
+        drift_N_per_K: The force that reads the same.
+        warming: Change of temperature, K, that reads as ``force`` does.
+    """
+
+    driving_pressure: float
+    force: float | None
+    at_first_contact: float | None
+    drift_kPa_per_K: float
+    drift_N_per_K: float | None
+    warming: float | None
+
+
+class SheetGauge(NamedTuple):
+    """What the gauge reads (gauge pressures, kPa) and detects.
+
+    Attributes:
+        title: Its name.
+        low_kPa, limit_kPa: Least and greatest pressure read.
+        threshold_kPa: Smallest change of pressure detected; None where it is not known.
+        rate_Hz: Readings a second; None where it is not known.
+        limited_by: What the threshold follows from.
+        criterion: When a change counts as detected.
+        forces: The smallest force at each driving pressure.
+    """
+
+    title: str
+    low_kPa: float
+    limit_kPa: float
+    threshold_kPa: float | None
+    rate_Hz: float | None
+    limited_by: str
+    criterion: str
+    forces: tuple[DetectableForce, ...]
+
+
 @dataclass(frozen=True)
 class SheetData:
     """Everything a datasheet is drawn from.
@@ -110,7 +152,7 @@ class SheetData:
         rating: The rated driving pressure and what it follows from.
         numerical_error: Stated relative error in sensitivity of the model.
         zero_drift_kPa_per_K: Drift of the sealed gas without contact, at the lowest driving pressure.
-        detectable: The smallest force at each driving pressure.
+        gauge: What its gauge reads, and the smallest force at each driving pressure.
         resin_curves: The same sensor in every resin, by title.
         viscous: Relaxation and hysteresis, or why they are not predicted.
         ageing: Change after a year, or why it is unknown.
@@ -136,7 +178,7 @@ class SheetData:
     rating: Rating
     numerical_error: float
     zero_drift_kPa_per_K: float
-    detectable: tuple[DetectableForce, ...]
+    gauge: SheetGauge
     resin_curves: dict[str, ResinCurve]
     viscous: ViscousData | str
     ageing: AgeingData | str

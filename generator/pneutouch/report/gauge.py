@@ -1,20 +1,19 @@
 """The gauge on a datasheet: what it reads, and the smallest force that it detects."""
 
-from pneutouch.evaluation.gauge import CRITERION, DetectableForce, reading_of
-from pneutouch.evaluation.sheet_data import SheetData
+from pneutouch.evaluation.sheet_data import DetectableForce, SheetData
 from pneutouch.units import KPA
 
 
 def gauge_range(sheet: SheetData) -> list[str]:
     """Range, unit and note of the gauge."""
-    gauge, reading = sheet.scene.gauge, reading_of(sheet.scene)
+    gauge, reading = sheet.scene.gauge, sheet.gauge
     note = f"{reading.title}, the paper's, assumed" if gauge is None else f"{reading.title} ({gauge.order_code})"
     if gauge is not None and gauge.is_absolute:
         note += (
             f"; absolute, {gauge.range_kPa.low:g} to {gauge.range_kPa.high:g} kPa: it reads the ambient pressure too, "
             "which must be subtracted"
         )
-    return [f"{reading.low / KPA:.4g} to {reading.limit / KPA:.4g}", "kPa gauge", note]
+    return [f"{reading.low_kPa:.4g} to {reading.limit_kPa:.4g}", "kPa gauge", note]
 
 
 def gauge_volume(sheet: SheetData) -> str:
@@ -29,15 +28,16 @@ def gauge_volume(sheet: SheetData) -> str:
 
 def detection(sheet: SheetData) -> list[list[str]]:
     """Rows of quantity, value and basis: the smallest force, and the warming that reads the same."""
-    reading = reading_of(sheet.scene)
-    ends = sheet.detectable if len(sheet.detectable) < 2 else (sheet.detectable[0], sheet.detectable[-1])
+    reading, forces = sheet.gauge, sheet.gauge.forces
+    ends = forces if len(forces) < 2 else (forces[0], forces[-1])
     at = " and ".join(f"{one.driving_pressure / KPA:g}" for one in ends) + " kPa"
-    if reading.threshold is None:
+    if reading.threshold_kPa is None:
         return [["Smallest force detected", "not known", f"{reading.limited_by} ({reading.title})"]]
     band = (
         "" if reading.rate_Hz is None else f", 0 to {reading.rate_Hz / 2:g} Hz ({reading.rate_Hz:g} readings a second)"
     )
-    basis = f"{CRITERION}{band}, {reading.threshold / KPA:.2g} kPa of the {reading.title}, over the sensitivity at {at}"
+    detected = f"{reading.threshold_kPa:.2g} kPa of the {reading.title}"
+    basis = f"{reading.criterion}{band}, {detected}, over the sensitivity at {at}"
     return [
         ["Smallest force detected", _both([one.force for one in ends], "N"), basis],
         [

@@ -3,7 +3,6 @@
 from typing import Any
 
 from pneutouch import __version__
-from pneutouch.evaluation.gauge import reading_of
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report import ordering, prose
@@ -153,8 +152,7 @@ def _shapes(state: SensorState) -> str:
 def _ratings(sheet: SheetData) -> list[list[str]]:
     """Absolute maximum ratings: quantity, value, unit, basis."""
     basis = f"{sheet.rating.summary} (model {sheet.prediction.model})"
-    reading = reading_of(sheet.scene)
-    gauge = f"{NOT_TESTED}; the pressure gauge ({reading.title}) reads to {reading.limit / KPA:.4g} kPa"
+    gauge = f"{NOT_TESTED}; the pressure gauge ({sheet.gauge.title}) reads to {sheet.gauge.limit_kPa:.4g} kPa"
     return [
         ["Driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa gauge", basis],
         ["Cavity pressure while pressed", DASH, "kPa gauge", gauge],
@@ -238,7 +236,7 @@ def _limits(sheet: SheetData) -> list[list[str]]:
     rows = [
         ["limit point", peak, reach],
         ["break strain", broken, where],
-        ["gauge range", f"{limits.gauge / KPA:.4g}", f"what the {reading_of(sheet.scene).title} reads"],
+        ["gauge range", f"{limits.gauge / KPA:.4g}", f"what the {sheet.gauge.title} reads"],
     ]
     spread = {limit.name: limit for limit in sheet.rating.limits if limit.low < limit.nominal}
     for row in rows:

@@ -17,8 +17,6 @@ from pneutouch.workflows.select.gauge_trial import ANY, GaugeTrial
 from pneutouch.workflows.select.run import SelectionRun
 from pneutouch.workflows.select.run import select as select_by_target
 
-Progress = Callable[[str], None]
-
 _UNKNOWN = "its noise is not stated, so the smallest force is not known"
 
 
@@ -43,7 +41,7 @@ def select(
     library: Library | None = None,
     *,
     written: int | None = None,
-    progress: Progress = lambda step: None,
+    progress: Callable[[str], None] = lambda step: None,
 ) -> SelectionRun:
     """Answer a target as `run.select` does; with ``setting.gauge`` "any" also choose the gauge.
 
