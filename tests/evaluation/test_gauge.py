@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.evaluation import evaluate
+from pneutouch.evaluation.document import full_document
 from pneutouch.evaluation.gauge import force_at_rise, gauge_document
 from pneutouch.mechanics.gauge_reading import gauge_reading
 from pneutouch.parts import assemble
@@ -107,3 +108,8 @@ def test_the_force_at_a_rise_is_exact_for_a_power_law_below_the_first_point(powe
     rise = scale * force**power
     assert force_at_rise(force, rise, threshold * scale) == pytest.approx(threshold ** (1 / power), rel=1e-9)
     assert force_at_rise(force, rise, 2 * rise[-1]) is None
+
+
+def test_the_document_of_a_prediction_holds_the_gauge_that_a_design_names(narrow, bare):
+    assert full_document(narrow)["gauge"] == gauge_document(narrow)
+    assert "gauge" not in full_document(bare)

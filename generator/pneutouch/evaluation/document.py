@@ -85,10 +85,12 @@ def prediction_document(evaluation: Evaluation, samples: int = 0) -> PredictionR
 
 
 def full_document(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
-    """`prediction_document` with ``viscous`` and ``gauge``, and ``aged`` where the prediction is of an aged sensor."""
+    """`prediction_document` with ``viscous``; with ``gauge`` where the design names one, and ``aged`` where the
+    prediction is of an aged sensor."""
     content = prediction_document(evaluation, samples)
     content["viscous"] = viscous(evaluation)
-    content["gauge"] = gauge_document(evaluation)
+    if evaluation.scene.gauge is not None:
+        content["gauge"] = gauge_document(evaluation)
     calibration = evaluation.scene.calibration
     if calibration is not None:
         content["calibration"] = {

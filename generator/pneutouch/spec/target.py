@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import Field, model_validator
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from pneutouch.spec.fields import Table, number
 
@@ -155,6 +155,13 @@ class Setting(Table):
         description="Pressure gauge, or any: the one that covers the range and detects the smallest force.",
         json_schema_extra={"registry": "gauges"},
     )
+
+    @model_serializer(mode="wrap")
+    def _without_no_gauge(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        content: dict[str, Any] = handler(self)
+        if content.get("gauge") is None:
+            content.pop("gauge", None)
+        return content
 
 
 class Weights(Table):
