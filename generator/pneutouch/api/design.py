@@ -143,6 +143,19 @@ class Design(show.Shown):
         with named_by_keyword():
             return build(self._evaluated, Path(out))
 
+    def export_reader(
+        self, out: str | Path = "outputs", *, model: str | None = None, tolerance: float | str | None = None
+    ) -> Path:
+        """Write the pressure-to-force model in C, Python and JSON into ``out/<name>-reader/``; returns that folder.
+
+        ``model`` as for `predict`, but None is "auto".
+        """
+        from pneutouch.workflows.reader import make_reader, write_reader
+
+        options = model_options(model or (None if tolerance else "auto"), tolerance)
+        with named_by_keyword():
+            return write_reader(make_reader(evaluate(self.source, **options)), Path(out))
+
     @cached_property
     def _evaluated(self) -> Evaluation:
         with named_by_keyword():

@@ -1,4 +1,4 @@
-"""``pneutouch export-reader``: the sensor's force over pressure as a table and as a Python module."""
+"""``pneutouch export-reader``: the sensor's force over pressure, for microcontrollers, for Python and as data."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from pneutouch.cli.app import (
     print_json,
     reporting,
 )
-from pneutouch.cli.terminal import echo
+from pneutouch.cli.terminal import echo, notify
 
 
 @app.command("export-reader")
@@ -28,7 +28,7 @@ def export_reader(
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
 ) -> None:
-    """Write the sensor's pressure-to-force model: a table with its schema, and a Python module that reads it."""
+    """Write the sensor's pressure-to-force model: a table, a C header, a Python module, an Arduino sketch."""
     with reporting():
         from pneutouch.cli.progress import bar
         from pneutouch.evaluation.evaluate import evaluate
@@ -39,6 +39,8 @@ def export_reader(
             options = model_options(model or (None if tolerance else "auto"), tolerance)
             result = make_reader(evaluate(design, changes(set_, calibration), **options))
             folder = write_reader(result, out)
+        if result.note is not None:
+            notify(result.note)
         if json:
             print_json({**result.document, "folder": str(folder)})
         else:

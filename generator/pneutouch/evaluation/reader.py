@@ -26,12 +26,12 @@ GAS_ROWS = 65
 """Driving pressures at which the gas volume without contact is tabulated."""
 
 CHANGE_K = 5.0
-"""Change of the gas temperature since the tare, up and down, that a reader corrects: our choice, a room in a day."""
+"""Change of the gas temperature since the tare, up and down, that a reader corrects: our choice, indoor air in a day."""
 
 CHANGE_KPA = 3.0
 """Ambient pressure, up and down from the design's, that a reader corrects: our choice, the weather of most days."""
 
-ROOM_K = 293.15
+REFERENCE_K = 293.15
 """Temperature at which a change by a kelvin is counted."""
 
 _LIMIT_SHARE = 0.97
@@ -139,16 +139,16 @@ def _driving_pressures(evaluation: Evaluation, lowest: float, highest: float) ->
     ambient = evaluation.sensor.gas.ambient_pressure
     limits = evaluation.prediction.limits
     cap = np.inf if limits.limit_point is None else _LIMIT_SHARE * limits.limit_point
-    high = max(min(highest + (highest + ambient) * CHANGE_K / ROOM_K, cap), highest)
-    low = max(lowest - (lowest + ambient) * CHANGE_K / ROOM_K, 0.0)
-    margin = ambient * CHANGE_K / ROOM_K + CHANGE_KPA * KPA
+    high = max(min(highest + (highest + ambient) * CHANGE_K / REFERENCE_K, cap), highest)
+    low = max(lowest - (lowest + ambient) * CHANGE_K / REFERENCE_K, 0.0)
+    margin = ambient * CHANGE_K / REFERENCE_K + CHANGE_KPA * KPA
     steps = ROWS[evaluation.prediction.model] - 1
     bottom = low - margin
     if bottom >= 0.0:
         return np.linspace(bottom, high, steps + 1), 0, low, high
     below = max(1, round(steps * -bottom / (high - bottom)))
     step = high / (steps - below)
-    return step * np.arange(-below, steps - below + 1), below, low, high
+    return np.asarray(step * np.arange(-below, steps - below + 1)), below, low, high
 
 
 def curve_of(state: SensorState, sensor: Sensor, deepest: float = np.inf) -> PressCurve:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, ROOM_K, PressCurve, ReaderGrid, curve_of, fine
+from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, PressCurve, ReaderGrid, curve_of, fine
 from pneutouch.export.reader.reading import CELSIUS, ForceReader, Status
 from pneutouch.mechanics import Sensor, predict
 from pneutouch.units import KPA
@@ -75,13 +75,13 @@ def _tared(
     """Tare so that the gas, warmer or colder since, has the driving pressure of a curve (MPa); conditions then."""
     ambient = sensor.gas.ambient_pressure
     for change in (-CHANGE_K, CHANGE_K):
-        ratio = 1.0 + change / ROOM_K
-        wanted = (pressure + ambient) * curve.gas_volume / ratio
+        ratio = 1.0 + change / REFERENCE_K
+        content_before = (pressure + ambient) * curve.gas_volume / ratio
         content = (grid.gas_pressure + ambient) * grid.gas_volume
-        before = float(np.interp(wanted, content, grid.gas_pressure))
-        status = reader.tare([before / KPA], ROOM_K - CELSIUS, ambient / KPA)
+        before = float(np.interp(content_before, content, grid.gas_pressure))
+        status = reader.tare([before / KPA], REFERENCE_K - CELSIUS, ambient / KPA)
         if status in _READ:
-            yield {"temperature_C": ROOM_K * ratio - CELSIUS, "ambient_pressure_kPa": ambient / KPA}
+            yield {"temperature_C": REFERENCE_K * ratio - CELSIUS, "ambient_pressure_kPa": ambient / KPA}
 
 
 def _differences(

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, ReaderGrid
+from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, ReaderGrid
 from pneutouch.evaluation.reader_uncertainty import force_uncertainty, why_unknown
 from pneutouch.units import KPA, ML
 
@@ -19,6 +20,13 @@ FORMAT = 1
 
 _DRIFT_SHARE = 0.001
 """Share of full scale that a driving pressure just below its box may be off by without a status."""
+
+AIR_K_PER_H = 2.2
+"""Fastest change of the air's temperature whose drift is followed, K/h: the ramp that ANSI/ASHRAE 55 allows within an hour (its
+table of drifts and ramps; the standard itself was not within reach, so that the number is unverified)."""
+
+FILTER_S = 1.0
+"""Time constant of the mean by which a touch is distinguished from the zero: our choice."""
 
 
 def reader_record(evaluation: Evaluation, grid: ReaderGrid) -> dict[str, Any]:
@@ -52,7 +60,8 @@ def reader_record(evaluation: Evaluation, grid: ReaderGrid) -> dict[str, Any]:
             "temperature_change_K": CHANGE_K,
         },
         "rating": {"driving_pressure_kPa": _one(evaluation.rating.pressure_kPa), "basis": evaluation.rating.basis},
-        "gauge": {"range_kPa": _single(np.array([-ambient_kPa, sensor.gas.gauge_limit / KPA]))},
+        "gauge": _gauge(evaluation),
+        "zero": _zero(evaluation, grid),
         "conditions": {
             "driving_pressures_kPa": scene.design.pneumatics.driving_pressures_kPa,
             "ambient_pressure_kPa": _one(ambient_kPa),
@@ -60,6 +69,43 @@ def reader_record(evaluation: Evaluation, grid: ReaderGrid) -> dict[str, Any]:
             "assumptions": list(evaluation.prediction.assumptions),
         },
     }
+
+
+def _gauge(evaluation: Evaluation) -> dict[str, Any]:
+    """The gauge of the design and the gauge pressures that it reads; without one the sensor's limit."""
+    gauge, gas = evaluation.scene.gauge, evaluation.sensor.gas
+    ambient_kPa = gas.ambient_pressure / KPA
+    if gauge is None:
+        return {"name": None, "range_kPa": _single(np.array([-ambient_kPa, gas.gauge_limit / KPA]))}
+    low, high = gauge.gauge_pressures_kPa(ambient_kPa)
+    # A gauge at rest may read below its range by its error.
+    below = 0.0 if gauge.error_kPa is None else gauge.error_kPa.nominal
+    return {"name": evaluation.scene.design.pneumatics.gauge, "range_kPa": _single(np.array([low - below, high]))}
+
+
+def _zero(evaluation: Evaluation, grid: ReaderGrid) -> dict[str, float]:
+    """Bounds of the drift that a reader follows: what the air's temperature makes of the sealed gas, and the gauge's noise."""
+    ambient = evaluation.sensor.gas.ambient_pressure
+    content = (grid.gas_pressure + ambient) * grid.gas_volume
+    inside = grid.gas_pressure >= min(grid.low, grid.gas_pressure[-2])
+    per_kelvin = float((content / np.gradient(content, grid.gas_pressure))[inside].max()) / REFERENCE_K / KPA
+    return {
+        "drift_kPa_per_K": _one(per_kelvin),
+        "temperature_rate_K_per_h": AIR_K_PER_H,
+        "drift_rate_kPa_per_s": _one(per_kelvin * AIR_K_PER_H / 3600.0),
+        "drift_most_kPa": _one(per_kelvin * CHANGE_K),
+        "noise_least_kPa": _one(_noise_kPa(evaluation, grid)),
+        "filter_s": FILTER_S,
+    }
+
+
+def _noise_kPa(evaluation: Evaluation, grid: ReaderGrid) -> float:
+    """Noise of the gauge as far as it is known, kPa: at least that of float32 numbers of its pressures."""
+    gauge = evaluation.scene.gauge
+    noise = 0.0 if gauge is None or gauge.noise_kPa is None else gauge.noise_kPa.nominal
+    step = 0.0 if gauge is None or gauge.resolution_kPa is None else gauge.resolution_kPa.nominal
+    rounding = float(np.finfo(np.float32).eps) * float(grid.driving_pressure[-1] + grid.rise.max()) / KPA
+    return max(noise, step / math.sqrt(12.0), rounding)
 
 
 def _margin(grid: ReaderGrid) -> float:

@@ -5,10 +5,17 @@ Pressures are kPa, gauge pressures unless absolute is stated; temperatures are t
 
 import math
 from bisect import bisect_right
+from collections.abc import Sequence
 from enum import IntEnum
 from typing import Any, NamedTuple
 
 CELSIUS = 273.15
+
+NOISES = 5.0
+"""Standard deviations of the gauge's noise by which a reading is distinguished from its zero."""
+
+QUIET = 0.001
+"""Share of the greatest pressure rise that counts as noise at least, where a reading is below zero."""
 
 
 class Status(IntEnum):
@@ -34,6 +41,14 @@ class Reading(NamedTuple):
     rise_kPa: float
 
 
+class _Free(NamedTuple):
+    """The sensor without contact now: status, gas content (kPa mL) and gauge pressure (kPa)."""
+
+    status: Status
+    content: float = math.nan
+    pressure: float = math.nan
+
+
 class ForceReader:
     """The force of one sensor. ``table`` is the content of its ``reader.json``; tare it before the first reading."""
 
@@ -47,17 +62,20 @@ class ForceReader:
         self._gas: list[float] = table["gas"]["volume_mL"]
         self._gas_rows: list[float] = table["gas"]["driving_pressure_kPa"]
         self._box: dict[str, Any] = box
-        self._margin: float = box["driving_pressure_margin_kPa"]
+        self._zero: dict[str, float] = table["zero"]
+        low, high = box["driving_pressure_kPa"]
+        self._driving = (low - box["driving_pressure_margin_kPa"], high)
         self._rated: float = table["rating"]["driving_pressure_kPa"]
         self._gauge: list[float] = table["gauge"]["range_kPa"]
         self._nominal: float = table["conditions"]["ambient_pressure_kPa"]
         self.driving_pressure_kPa = math.nan
-        self.noise_kPa = 0.0
-        self._zero_variance = 0.0
+        self.noise_kPa = self.drift_kPa = 0.0
+        self.touched = False
+        self._zero_variance = self._deviation = 0.0
         self._kelvin = self._ambient = math.nan
 
     def tare(
-        self, gauge_kPa: list[float], temperature_C: float = 20.0, ambient_pressure_kPa: float | None = None
+        self, gauge_kPa: Sequence[float], temperature_C: float = 20.0, ambient_pressure_kPa: float | None = None
     ) -> Status:
         """Take readings without contact as the driving pressure, and their scatter as the gauge's noise."""
         ambient = self._nominal if ambient_pressure_kPa is None else ambient_pressure_kPa
@@ -71,73 +89,102 @@ class ForceReader:
         low, high = self._box["ambient_pressure_kPa"]
         if not (low <= ambient <= high and temperature_C > -CELSIUS):
             return Status.CONDITIONS
-        low, high = self._box["driving_pressure_kPa"]
-        if not low - self._margin <= mean <= high:
+        if not self._driving[0] <= mean <= self._driving[1]:
             return Status.DRIVING_PRESSURE
         variance = math.fsum((one - mean) ** 2 for one in gauge_kPa) / max(count - 1, 1)
-        self.noise_kPa, self._zero_variance = math.sqrt(variance), variance / count
+        self.noise_kPa = max(math.sqrt(variance), self._zero["noise_least_kPa"])
+        self._zero_variance = self.noise_kPa**2 / count
         self._kelvin, self._ambient, self.driving_pressure_kPa = temperature_C + CELSIUS, ambient, mean
-        return Status.ABOVE_RATING if mean > self._rated else Status.OK
+        self._deviation, self.drift_kPa, self.touched = 0.0, 0.0, False
+        return self._rating(mean)
 
     def read(
         self, gauge_kPa: float, temperature_C: float | None = None, ambient_pressure_kPa: float | None = None
     ) -> Reading:
         """The force at a gauge pressure. Temperature and ambient pressure left out: those of the tare."""
-        kelvin = self._kelvin if temperature_C is None else temperature_C + CELSIUS
         ambient = self._ambient if ambient_pressure_kPa is None else ambient_pressure_kPa
+        status, content, free = self._without_contact(gauge_kPa, temperature_C, ambient)
+        if status > Status.ABOVE_RATING:
+            return _nothing(status)
+        rise = gauge_kPa - free
+        true = rise / _between(self._factor, *self._row(free))
+        same = free
+        if ambient != self._nominal:
+            # The same wall, cavity and gauge pressure at the ambient pressure of the table.
+            absolute = free + true
+            same = self._pressure(content * (absolute + self._nominal) / (absolute + ambient), self._nominal)
+        if not self._rows[0] <= same <= self._rows[-1]:
+            return _nothing(Status.CONDITIONS)
+        row, part = self._row(same)
+        return self._looked_up(row, part, (true - (same - free)) * _between(self._factor, row, part), rise, status)
+
+    def track(
+        self,
+        gauge_kPa: float,
+        seconds: float,
+        temperature_C: float | None = None,
+        ambient_pressure_kPa: float | None = None,
+    ) -> bool:
+        """Follow a slow drift of the zero; for every reading, ``seconds`` after the one before. Whether it is touched.
+
+        While it is, and where the pressure moves faster than a drift may, nothing is learnt.
+        """
+        ambient = self._ambient if ambient_pressure_kPa is None else ambient_pressure_kPa
+        status, _, free = self._without_contact(gauge_kPa, temperature_C, ambient)
+        if status > Status.ABOVE_RATING or not 0.0 < seconds < math.inf:
+            return self.touched
+        threshold = NOISES * self.noise_kPa
+        share = seconds / (seconds + self._zero["filter_s"])
+        self._deviation += share * (gauge_kPa - free - self._deviation)
+        if self._deviation > threshold or gauge_kPa - free > 2.0 * threshold:
+            self.touched = True
+        elif self._deviation < 0.5 * threshold:
+            self.touched = False
+        most = self._zero["drift_rate_kPa_per_s"] * seconds
+        step = min(max(share * self._deviation, -most), most)
+        idle = not self.touched and self._deviation >= -threshold
+        if idle and abs(self.drift_kPa + step) <= self._zero["drift_most_kPa"]:
+            self.driving_pressure_kPa += step
+            self.drift_kPa += step
+            self._deviation -= step
+        return self.touched
+
+    def _without_contact(self, gauge_kPa: float, temperature_C: float | None, ambient: float) -> _Free:
+        """The pressure that the gauge has without contact now; a status where the conditions allow no reading."""
+        kelvin = self._kelvin if temperature_C is None else temperature_C + CELSIUS
         if math.isnan(self.driving_pressure_kPa):
-            return _nothing(Status.NOT_TARED)
+            return _Free(Status.NOT_TARED)
         if not (math.isfinite(gauge_kPa) and math.isfinite(kelvin) and math.isfinite(ambient)):
-            return _nothing(Status.NOT_A_NUMBER)
+            return _Free(Status.NOT_A_NUMBER)
         if not self._gauge[0] < gauge_kPa < self._gauge[1]:
-            return _nothing(Status.GAUGE_SATURATED)
+            return _Free(Status.GAUGE_SATURATED)
         low, high = self._box["ambient_pressure_kPa"]
         if not (low <= ambient <= high and abs(kelvin - self._kelvin) <= self._box["temperature_change_K"]):
-            return _nothing(Status.CONDITIONS)
+            return _Free(Status.CONDITIONS)
         content = self._content(self.driving_pressure_kPa, self._ambient) * (kelvin / self._kelvin)
         free = self.driving_pressure_kPa
         if kelvin != self._kelvin or ambient != self._ambient:
             free = self._pressure(content, ambient)
-        low, high = self._box["driving_pressure_kPa"]
-        if not low - self._margin <= free <= high:
-            return _nothing(Status.DRIVING_PRESSURE)
-        rise = gauge_kPa - free
-        row, part = self._row(free)
-        true = free + rise / _between(self._factor, row, part)
-        same = free
-        if ambient != self._nominal:
-            # The same wall, cavity and gauge pressure at the ambient pressure of the table.
-            same = self._pressure(content * (true + self._nominal) / (true + ambient), self._nominal)
-            if not self._rows[0] <= same <= self._rows[-1]:
-                return _nothing(Status.CONDITIONS)
-        row, part = self._row(same)
-        return self._looked_up(row, part, (true - same) * _between(self._factor, row, part), rise, free)
+        if not self._driving[0] <= free <= self._driving[1]:
+            return _Free(Status.DRIVING_PRESSURE)
+        return _Free(self._rating(free), content, free)
 
-    def _looked_up(self, row: int, part: float, at: float, rise: float, free: float) -> Reading:
+    def _looked_up(self, row: int, part: float, at: float, rise: float, status: Status) -> Reading:
         """The reading at a rise ``at`` of the table and a measured ``rise``, both kPa."""
         rises = [a + part * (b - a) for a, b in zip(self._rise[row], self._rise[row + 1], strict=True)]
         forces = [a + part * (b - a) for a, b in zip(self._force[row], self._force[row + 1], strict=True)]
-        slope = forces[1] / rises[1]
+        noise = math.sqrt(self.noise_kPa**2 + self._zero_variance)
         if rise <= 0.0:
-            far = rise < -self._below * max(self.noise_kPa, 0.001 * rises[-1])
-            status = Status.BELOW_ZERO if far else self._rating_status(free)
-            return _nothing(status) if far else Reading(status, 0.0, slope * self._noise, rise)
+            if rise < -NOISES * max(self.noise_kPa, QUIET * rises[-1]):
+                return _nothing(Status.BELOW_ZERO)
+            return Reading(status, 0.0, forces[1] / rises[1] * noise, rise)
         if at > rises[-1]:
             return _nothing(Status.BEYOND_RANGE)
-        k = min(bisect_right(rises, at), len(rises) - 1) - 1
-        slope = (forces[k + 1] - forces[k]) / (rises[k + 1] - rises[k])
-        beyond = (at - rises[k]) / (rises[k + 1] - rises[k])
+        k = min(max(bisect_right(rises, at), 1), len(rises) - 1) - 1
+        beyond = max((at - rises[k]) / (rises[k + 1] - rises[k]), 0.0)
         force = forces[k] + beyond * (forces[k + 1] - forces[k])
-        uncertainty = math.hypot(self._share(row, part, k + beyond) * force, slope * self._noise)
-        return Reading(self._rating_status(free), force, uncertainty, rise)
-
-    _below = 5.0
-    """Noises below zero at which a reading cannot be one without contact."""
-
-    @property
-    def _noise(self) -> float:
-        """Standard uncertainty of a pressure rise by the gauge's noise, that of the zero included, kPa."""
-        return math.sqrt(self.noise_kPa**2 + self._zero_variance)
+        slope = (forces[k + 1] - forces[k]) / (rises[k + 1] - rises[k])
+        return Reading(status, force, math.hypot(self._share(row, part, k + beyond) * force, slope * noise), rise)
 
     def _share(self, row: int, part: float, column: float) -> float:
         """Relative standard uncertainty of the force at a column of the grid; NaN where it is unknown."""
@@ -148,23 +195,18 @@ class ForceReader:
         low, high = (_between(self._relative[row + i], k, place - k) for i in (0, 1))
         return low + part * (high - low)
 
-    def _rating_status(self, driving_pressure_kPa: float) -> Status:
+    def _rating(self, driving_pressure_kPa: float) -> Status:
         return Status.ABOVE_RATING if driving_pressure_kPa > self._rated else Status.OK
 
     def _row(self, driving_pressure_kPa: float) -> tuple[int, float]:
         """Row of the grid below a driving pressure, and the share of the step beyond it."""
-        first, step = self._rows[0], self._rows[1] - self._rows[0]
-        place = min(max((driving_pressure_kPa - first) / step, 0.0), len(self._rows) - 1.0)
-        row = min(int(place), len(self._rows) - 2)
-        return row, place - row
+        return _place(driving_pressure_kPa, self._rows)
 
     def _content(self, driving_pressure_kPa: float, ambient_kPa: float) -> float:
         """Absolute pressure times volume of the gas without contact, linear between the rows of the gas."""
-        first, step = self._gas_rows[0], self._gas_rows[1] - self._gas_rows[0]
-        place = min(max((driving_pressure_kPa - first) / step, 0.0), len(self._gas) - 1.0)
-        row = min(int(place), len(self._gas) - 2)
+        row, part = _place(driving_pressure_kPa, self._gas_rows)
         low, high = (self._gas[k] * (self._gas_rows[k] + ambient_kPa) for k in (row, row + 1))
-        return low + (place - row) * (high - low)
+        return low + part * (high - low)
 
     def _pressure(self, content: float, ambient_kPa: float) -> float:
         """The driving pressure with that content, at an ambient pressure; beyond the ends by the last step."""
@@ -174,7 +216,15 @@ class ForceReader:
         return self._gas_rows[k] + share * (self._gas_rows[k + 1] - self._gas_rows[k])
 
 
-def _between(values: list[float], row: int, part: float) -> float:
+def _place(value: float, rows: Sequence[float]) -> tuple[int, float]:
+    """Place among rows of equal steps: the row below, and the share of the step beyond it."""
+    step = (rows[-1] - rows[0]) / (len(rows) - 1)
+    place = min(max((value - rows[0]) / step, 0.0), len(rows) - 1.0)
+    row = min(int(place), len(rows) - 2)
+    return row, place - row
+
+
+def _between(values: Sequence[float], row: int, part: float) -> float:
     return values[row] + part * (values[row + 1] - values[row])
 
 

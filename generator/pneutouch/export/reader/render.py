@@ -2,23 +2,78 @@
 
 from __future__ import annotations
 
-import json
 import pprint
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+
+from pneutouch.export.reader.arduino import NO_GAUGE, arduino_gauge
+from pneutouch.export.reader.reading import NOISES, QUIET, Status
+from pneutouch.spec.gauge import Gauge
 
 HERE = Path(__file__).parent
 TEMPLATES = HERE / "templates"
 SCHEMA = HERE / "reader.schema.json"
 
+MOST_TABLES = 8192
+"""Bytes that the tables of a header may take."""
 
-def reader_files(record: Mapping[str, Any]) -> dict[str, bytes]:
-    """All files of a reader but ``reader.json`` itself, by their names in its folder."""
-    return {
+WORDS = {
+    Status.OK: "force and uncertainty hold",
+    Status.ABOVE_RATING: "they hold, but the driving pressure is above the rated pressure",
+    Status.NOT_TARED: "tare the reader first",
+    Status.NOT_A_NUMBER: "an input is not a finite number, or nothing was read for the tare",
+    Status.GAUGE_SATURATED: "the pressure is at the end of the gauge's range or beyond",
+    Status.CONDITIONS: "temperature or ambient pressure is outside the box",
+    Status.DRIVING_PRESSURE: "the driving pressure is outside the box",
+    Status.BELOW_ZERO: "the pressure is below that without contact: leak or cooling; tare again",
+    Status.BEYOND_RANGE: "the force is beyond the box",
+}
+"""What each status means."""
+
+_PARTS = ("grid", "gas", "box", "rating", "gauge", "zero", "conditions")
+
+
+def reader_files(record: Mapping[str, Any], name: str, gauge: Gauge | None = None) -> dict[str, bytes]:
+    """All files of a reader but ``reader.json``, by their names; ``name`` becomes the prefix of files and of C.
+
+    The sketch is there where it can read the gauge: see `sketch_note`.
+    """
+    c = c_name(name)
+    header = _rendered("reader.h.j2", record, c=c, **_header(record))
+    files = {
         "reader.schema.json": SCHEMA.read_bytes(),
-        "pressure_reader.py": _rendered("pressure_reader.py.j2", record, source=_module(), table=_table(record)),
+        f"{c}_reader.h": header,
+        f"{c}_reader.py": _rendered("reader.py.j2", record, c=c, source=_module(), table=_table(record)),
     }
+    known = None if gauge is None else arduino_gauge(gauge)
+    if isinstance(known, dict):
+        numbers = {key: f32(known[key]) for key in ("low", "at_low", "slope")}
+        # The compiler of a sketch looks for headers in the sketch's own folder.
+        files[f"arduino/{c}_sketch/{c}_sketch.ino"] = _rendered(
+            "reader.ino.j2", record, c=c, gauge={**known, **numbers}
+        )
+        files[f"arduino/{c}_sketch/{c}_reader.h"] = header
+    return files
+
+
+def sketch_note(gauge: Gauge | None) -> str | None:
+    """Why there is no sketch, or None where there is one."""
+    known = NO_GAUGE if gauge is None else arduino_gauge(gauge)
+    return known if isinstance(known, str) else None
+
+
+def c_name(name: str) -> str:
+    """An identifier of C from a name: other characters become underscores, a digit in front gets a letter."""
+    plain = re.sub(r"\W", "_", name, flags=re.ASCII).lower()
+    return f"sensor_{plain}" if not plain[:1].isalpha() else plain
+
+
+def f32(value: float) -> str:
+    """A float32 literal of C."""
+    text = f"{value:.9g}"
+    return f"{text}f" if "." in text or "e" in text else f"{text}.0f"
 
 
 def _rendered(template: str, record: Mapping[str, Any], **more: Any) -> bytes:
@@ -30,16 +85,74 @@ def _rendered(template: str, record: Mapping[str, Any], **more: Any) -> bytes:
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
-        autoescape=False,  # program text, and every text in it is written as a literal of its language
+        autoescape=False,  # program text; the names in it are those of files, which hold no markup
     )
-    environment.filters["literal"] = json.dumps
+    environment.filters["f32"] = f32
     return environment.get_template(template).render(record=record, **more).encode()
+
+
+def _header(record: Mapping[str, Any]) -> dict[str, Any]:
+    """Sizes and constants of the header, as C writes them."""
+    grid, box, zero = record["grid"], record["box"], record["zero"]
+    rows, gas, relative = (
+        grid["driving_pressure_kPa"],
+        record["gas"]["driving_pressure_kPa"],
+        grid["force_uncertainty_relative"],
+    )
+    columns = len(grid["contact_force_N"][0])
+    shares = len(relative[0]) if relative else 2
+    low, high = box["driving_pressure_kPa"]
+    numbers = {
+        "first": rows[0],
+        "last": rows[-1],
+        "step": (rows[-1] - rows[0]) / (len(rows) - 1),
+        "gas_first": gas[0],
+        "gas_step": (gas[-1] - gas[0]) / (len(gas) - 1),
+        "gauge_low": record["gauge"]["range_kPa"][0],
+        "gauge_high": record["gauge"]["range_kPa"][1],
+        "ambient_low": box["ambient_pressure_kPa"][0],
+        "ambient_high": box["ambient_pressure_kPa"][1],
+        "driving_least": low - box["driving_pressure_margin_kPa"],
+        "driving_most": high,
+        "change": box["temperature_change_K"],
+        "rated": record["rating"]["driving_pressure_kPa"],
+        "below": NOISES,
+        "quiet": QUIET,
+        "noise_least": zero["noise_least_kPa"],
+        "filter": zero["filter_s"],
+        "drift_rate": zero["drift_rate_kPa_per_s"],
+        "drift_most": zero["drift_most_kPa"],
+    }
+    return {
+        **{key: f32(value) for key, value in numbers.items()},
+        "rows": len(rows),
+        "columns": columns,
+        "shares": shares,
+        "gas": len(gas),
+        "half": _half(columns - 1),
+        "gas_half": _half(len(gas) - 1),
+        "bytes": table_bytes(record),
+        "statuses": [{"name": one.name, "value": int(one), "words": WORDS[one]} for one in Status],
+    }
+
+
+def table_bytes(record: Mapping[str, Any]) -> int:
+    """Size of the tables of the header."""
+    grid = record["grid"]
+    rows, columns = len(grid["contact_force_N"]), len(grid["contact_force_N"][0])
+    relative = grid["force_uncertainty_relative"]
+    shares = len(relative[0]) if relative else 0
+    return 4 * (rows * (2 * columns + shares + 1) + len(record["gas"]["volume_mL"]))
+
+
+def _half(intervals: int) -> int:
+    """The first step of a search by halves among so many intervals: a power of two."""
+    return 1 << max((intervals - 1).bit_length() - 1, 0)
 
 
 def _table(record: Mapping[str, Any]) -> str:
     """The part of the document that `reading.ForceReader` reads, as a literal of Python."""
-    parts = {key: record[key] for key in ("grid", "gas", "box", "rating", "gauge", "conditions")}
-    return pprint.pformat(parts, width=118, compact=True)
+    return pprint.pformat({key: record[key] for key in _PARTS}, width=118, compact=True)
 
 
 def _module() -> str:

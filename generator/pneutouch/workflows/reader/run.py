@@ -11,7 +11,7 @@ from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.reader import reader_grid
 from pneutouch.evaluation.reader_check import reader_difference
 from pneutouch.evaluation.reader_record import reader_record
-from pneutouch.export.reader.render import reader_files
+from pneutouch.export.reader.render import reader_files, sketch_note
 from pneutouch.output.files import check_writable, digest, json_bytes, write_folder
 from pneutouch.output.manifest import with_manifest
 from pneutouch.output.recipe import BuildRecipe
@@ -19,11 +19,12 @@ from pneutouch.output.recipe import BuildRecipe
 
 @dataclass(frozen=True)
 class ReaderResult:
-    """A reader: the name of its folder, its document, and its other files by name."""
+    """A reader: the name of its folder, its document, its other files by name, and why there is no sketch."""
 
     name: str
     document: dict[str, Any]
     files: dict[str, bytes]
+    note: str | None
 
 
 def make_reader(evaluation: Evaluation) -> ReaderResult:
@@ -40,11 +41,9 @@ def make_reader(evaluation: Evaluation) -> ReaderResult:
         "states": known.states,
     }
     record["source"] = {"sha256": _source(evaluation), "version": __version__}
-    calibration = evaluation.scene.design.calibration_name
-    name = (
-        f"{evaluation.scene.name}-reader" if calibration is None else f"{_calibrated(evaluation, calibration)}-reader"
-    )
-    return ReaderResult(name, record, reader_files(record))
+    calibration, gauge = evaluation.scene.design.calibration_name, evaluation.scene.gauge
+    name = evaluation.scene.name if calibration is None else _calibrated(evaluation, calibration)
+    return ReaderResult(f"{name}-reader", record, reader_files(record, name, gauge), sketch_note(gauge))
 
 
 def _calibrated(evaluation: Evaluation, calibration: str) -> str:
