@@ -26,7 +26,7 @@ GAS_ROWS = 65
 """Driving pressures at which the gas volume without contact is tabulated."""
 
 CHANGE_K = 5.0
-"""Change of the gas temperature since the tare, up and down, that a reader corrects: our choice, indoor air in a day."""
+"""Change of the gas temperature since the tare, up and down, that a reader corrects: our choice."""
 
 CHANGE_KPA = 3.0
 """Ambient pressure, up and down from the design's, that a reader corrects: our choice, the weather of most days."""
@@ -38,7 +38,7 @@ _LIMIT_SHARE = 0.97
 """Share of the limit point up to which the grid goes beyond the highest driving pressure of the design."""
 
 
-class PressCurve(NamedTuple):
+class ReaderCurve(NamedTuple):
     """A press at one driving pressure within its range: indentation (mm), force (N), pressure rise (MPa), of one
     length and ascending, and the gas volume before contact (cavity and dead volume, mm3)."""
 
@@ -151,7 +151,7 @@ def _driving_pressures(evaluation: Evaluation, lowest: float, highest: float) ->
     return np.asarray(step * np.arange(-below, steps - below + 1)), below, low, high
 
 
-def curve_of(state: SensorState, sensor: Sensor, deepest: float = np.inf) -> PressCurve:
+def curve_of(state: SensorState, sensor: Sensor, deepest: float = np.inf) -> ReaderCurve:
     """The part of a press that a reader may use: up to its range's end, ``deepest`` (mm), or where it turns back.
 
     Raises ComputationError where nothing is left.
@@ -174,7 +174,7 @@ def curve_of(state: SensorState, sensor: Sensor, deepest: float = np.inf) -> Pre
             _at(state.indentation - state.indentation[0], a - a[0], last) for a in (state.force, state.pressure_rise)
         )
         depth = last
-    return PressCurve(depth, force, rise, state.cavity_volume + sensor.gas.dead_volume)
+    return ReaderCurve(depth, force, rise, state.cavity_volume + sensor.gas.dead_volume)
 
 
 def _at(x: Array, y: Array, at: Array) -> Array:

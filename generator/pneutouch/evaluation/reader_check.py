@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, PressCurve, ReaderGrid, curve_of, fine
+from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, ReaderCurve, ReaderGrid, curve_of, fine
 from pneutouch.export.reader.reading import CELSIUS, ForceReader, Status
 from pneutouch.mechanics import Sensor, predict
 from pneutouch.units import KPA
@@ -49,8 +49,8 @@ def reader_difference(evaluation: Evaluation, grid: ReaderGrid, record: dict[str
         reader.tare([float(pressure) / KPA])
         differences += _differences(reader, float(pressure), curve, draw.uniform(0.0, 1.0, each), {})
     others = [0.0]
-    for ambient in (-CHANGE_KPA, CHANGE_KPA):
-        changed = sensor.replace(ambient_pressure=sensor.gas.ambient_pressure + ambient * KPA)
+    for change_kPa in (-CHANGE_KPA, CHANGE_KPA):
+        changed = sensor.replace(ambient_pressure=sensor.gas.ambient_pressure + change_kPa * KPA)
         some = pressures[:: max(1, presses // 10)]
         for pressure, curve in zip(some, _curves(evaluation, changed, grid, some), strict=True):
             for conditions in _tared(reader, changed, float(pressure), curve, grid):
@@ -58,7 +58,7 @@ def reader_difference(evaluation: Evaluation, grid: ReaderGrid, record: dict[str
     return ReaderDifference(max(differences), max(others), presses * each)
 
 
-def _curves(evaluation: Evaluation, sensor: Sensor, grid: ReaderGrid, pressures: Any) -> list[PressCurve]:
+def _curves(evaluation: Evaluation, sensor: Sensor, grid: ReaderGrid, pressures: Any) -> list[ReaderCurve]:
     prediction = predict(
         evaluation.scene.name,
         fine(sensor).replace(steps=97),
@@ -70,7 +70,7 @@ def _curves(evaluation: Evaluation, sensor: Sensor, grid: ReaderGrid, pressures:
 
 
 def _tared(
-    reader: ForceReader, sensor: Sensor, pressure: float, curve: PressCurve, grid: ReaderGrid
+    reader: ForceReader, sensor: Sensor, pressure: float, curve: ReaderCurve, grid: ReaderGrid
 ) -> Iterator[dict[str, float]]:
     """Tare so that the gas, warmer or colder since, has the driving pressure of a curve (MPa); conditions then."""
     ambient = sensor.gas.ambient_pressure
@@ -85,7 +85,7 @@ def _tared(
 
 
 def _differences(
-    reader: ForceReader, pressure: float, curve: PressCurve, shares: Any, conditions: dict[str, float]
+    reader: ForceReader, pressure: float, curve: ReaderCurve, shares: Any, conditions: dict[str, float]
 ) -> list[float]:
     depths = shares * curve.indentation[-1]
     forces, rises = (np.interp(depths, curve.indentation, column) for column in (curve.force, curve.rise))

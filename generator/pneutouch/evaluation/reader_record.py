@@ -22,8 +22,8 @@ _DRIFT_SHARE = 0.001
 """Share of full scale that a driving pressure just below its box may be off by without a status."""
 
 AIR_K_PER_H = 2.2
-"""Fastest change of the air's temperature whose drift is followed, K/h: the ramp that ANSI/ASHRAE 55 allows within an hour (its
-table of drifts and ramps; the standard itself was not within reach, so that the number is unverified)."""
+"""Fastest change of the air's temperature whose drift is followed, K/h: the ramp that ANSI/ASHRAE 55 allows within an
+hour (its table of drifts and ramps; the standard itself was not within reach, so that the number is unverified)."""
 
 FILTER_S = 1.0
 """Time constant of the mean by which a touch is distinguished from the zero: our choice."""
@@ -84,16 +84,16 @@ def _gauge(evaluation: Evaluation) -> dict[str, Any]:
 
 
 def _zero(evaluation: Evaluation, grid: ReaderGrid) -> dict[str, float]:
-    """Bounds of the drift that a reader follows: what the air's temperature makes of the sealed gas, and the gauge's noise."""
+    """Bounds of the drift that a reader follows: what warmer air makes of the sealed gas, and the gauge's noise."""
     ambient = evaluation.sensor.gas.ambient_pressure
     content = (grid.gas_pressure + ambient) * grid.gas_volume
     inside = grid.gas_pressure >= min(grid.low, grid.gas_pressure[-2])
-    per_kelvin = float((content / np.gradient(content, grid.gas_pressure))[inside].max()) / REFERENCE_K / KPA
+    per_kelvin_kPa = float((content / np.gradient(content, grid.gas_pressure))[inside].max()) / REFERENCE_K / KPA
     return {
-        "drift_kPa_per_K": _one(per_kelvin),
+        "drift_kPa_per_K": _one(per_kelvin_kPa),
         "temperature_rate_K_per_h": AIR_K_PER_H,
-        "drift_rate_kPa_per_s": _one(per_kelvin * AIR_K_PER_H / 3600.0),
-        "drift_most_kPa": _one(per_kelvin * CHANGE_K),
+        "drift_rate_kPa_per_s": _one(per_kelvin_kPa * AIR_K_PER_H / 3600.0),
+        "drift_most_kPa": _one(per_kelvin_kPa * CHANGE_K),
         "noise_least_kPa": _one(_noise_kPa(evaluation, grid)),
         "filter_s": FILTER_S,
     }
@@ -102,10 +102,10 @@ def _zero(evaluation: Evaluation, grid: ReaderGrid) -> dict[str, float]:
 def _noise_kPa(evaluation: Evaluation, grid: ReaderGrid) -> float:
     """Noise of the gauge as far as it is known, kPa: at least that of float32 numbers of its pressures."""
     gauge = evaluation.scene.gauge
-    noise = 0.0 if gauge is None or gauge.noise_kPa is None else gauge.noise_kPa.nominal
-    step = 0.0 if gauge is None or gauge.resolution_kPa is None else gauge.resolution_kPa.nominal
-    rounding = float(np.finfo(np.float32).eps) * float(grid.driving_pressure[-1] + grid.rise.max()) / KPA
-    return max(noise, step / math.sqrt(12.0), rounding)
+    noise_kPa = 0.0 if gauge is None or gauge.noise_kPa is None else gauge.noise_kPa.nominal
+    step_kPa = 0.0 if gauge is None or gauge.resolution_kPa is None else gauge.resolution_kPa.nominal
+    rounding_kPa = float(np.finfo(np.float32).eps) * float(grid.driving_pressure[-1] + grid.rise.max()) / KPA
+    return max(noise_kPa, step_kPa / math.sqrt(12.0), rounding_kPa)
 
 
 def _margin(grid: ReaderGrid) -> float:

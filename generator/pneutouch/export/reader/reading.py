@@ -32,7 +32,7 @@ class Status(IntEnum):
     BEYOND_RANGE = 8
 
 
-class Reading(NamedTuple):
+class ForceReading(NamedTuple):
     """Status, contact force and its standard uncertainty (N), and pressure rise (kPa)."""
 
     status: Status
@@ -46,7 +46,7 @@ class _Free(NamedTuple):
 
     status: Status
     content: float = math.nan
-    pressure: float = math.nan
+    pressure_kPa: float = math.nan
 
 
 class ForceReader:
@@ -65,58 +65,62 @@ class ForceReader:
         self._zero: dict[str, float] = table["zero"]
         low, high = box["driving_pressure_kPa"]
         self._driving = (low - box["driving_pressure_margin_kPa"], high)
-        self._rated: float = table["rating"]["driving_pressure_kPa"]
+        self._rated_kPa: float = table["rating"]["driving_pressure_kPa"]
         self._gauge: list[float] = table["gauge"]["range_kPa"]
-        self._nominal: float = table["conditions"]["ambient_pressure_kPa"]
+        self._nominal_kPa: float = table["conditions"]["ambient_pressure_kPa"]
         self.driving_pressure_kPa = math.nan
         self.noise_kPa = self.drift_kPa = 0.0
         self.touched = False
         self._zero_variance = self._deviation = 0.0
-        self._kelvin = self._ambient = math.nan
+        self._kelvin = self._ambient_kPa = math.nan
 
     def tare(
         self, gauge_kPa: Sequence[float], temperature_C: float = 20.0, ambient_pressure_kPa: float | None = None
     ) -> Status:
         """Take readings without contact as the driving pressure, and their scatter as the gauge's noise."""
-        ambient = self._nominal if ambient_pressure_kPa is None else ambient_pressure_kPa
+        ambient_kPa = self._nominal_kPa if ambient_pressure_kPa is None else ambient_pressure_kPa
         count = len(gauge_kPa)
         self.driving_pressure_kPa = math.nan
-        if not count or not all(map(math.isfinite, [*gauge_kPa, temperature_C, ambient])):
+        if not count or not all(map(math.isfinite, [*gauge_kPa, temperature_C, ambient_kPa])):
             return Status.NOT_A_NUMBER
         mean = math.fsum(gauge_kPa) / count
         if not self._gauge[0] < min(gauge_kPa) <= max(gauge_kPa) < self._gauge[1]:
             return Status.GAUGE_SATURATED
         low, high = self._box["ambient_pressure_kPa"]
-        if not (low <= ambient <= high and temperature_C > -CELSIUS):
+        if not (low <= ambient_kPa <= high and temperature_C > -CELSIUS):
             return Status.CONDITIONS
         if not self._driving[0] <= mean <= self._driving[1]:
             return Status.DRIVING_PRESSURE
-        variance = math.fsum((one - mean) ** 2 for one in gauge_kPa) / max(count - 1, 1)
+        variance = math.fsum((one_kPa - mean) ** 2 for one_kPa in gauge_kPa) / max(count - 1, 1)
         self.noise_kPa = max(math.sqrt(variance), self._zero["noise_least_kPa"])
         self._zero_variance = self.noise_kPa**2 / count
-        self._kelvin, self._ambient, self.driving_pressure_kPa = temperature_C + CELSIUS, ambient, mean
+        self._kelvin, self._ambient_kPa, self.driving_pressure_kPa = temperature_C + CELSIUS, ambient_kPa, mean
         self._deviation, self.drift_kPa, self.touched = 0.0, 0.0, False
         return self._rating(mean)
 
     def read(
         self, gauge_kPa: float, temperature_C: float | None = None, ambient_pressure_kPa: float | None = None
-    ) -> Reading:
+    ) -> ForceReading:
         """The force at a gauge pressure. Temperature and ambient pressure left out: those of the tare."""
-        ambient = self._ambient if ambient_pressure_kPa is None else ambient_pressure_kPa
-        status, content, free = self._without_contact(gauge_kPa, temperature_C, ambient)
+        ambient_kPa = self._ambient_kPa if ambient_pressure_kPa is None else ambient_pressure_kPa
+        status, content, free_kPa = self._without_contact(gauge_kPa, temperature_C, ambient_kPa)
         if status > Status.ABOVE_RATING:
             return _nothing(status)
-        rise = gauge_kPa - free
-        true = rise / _between(self._factor, *self._row(free))
-        same = free
-        if ambient != self._nominal:
+        rise_kPa = gauge_kPa - free_kPa
+        true = rise_kPa / _between(self._factor, *self._row(free_kPa))
+        same_kPa = free_kPa
+        if ambient_kPa != self._nominal_kPa:
             # The same wall, cavity and gauge pressure at the ambient pressure of the table.
-            absolute = free + true
-            same = self._pressure(content * (absolute + self._nominal) / (absolute + ambient), self._nominal)
-        if not self._rows[0] <= same <= self._rows[-1]:
+            absolute_kPa = free_kPa + true
+            same_kPa = self._pressure(
+                content * (absolute_kPa + self._nominal_kPa) / (absolute_kPa + ambient_kPa), self._nominal_kPa
+            )
+        if not self._rows[0] <= same_kPa <= self._rows[-1]:
             return _nothing(Status.CONDITIONS)
-        row, part = self._row(same)
-        return self._looked_up(row, part, (true - (same - free)) * _between(self._factor, row, part), rise, status)
+        row, part = self._row(same_kPa)
+        return self._looked_up(
+            row, part, (true - (same_kPa - free_kPa)) * _between(self._factor, row, part), rise_kPa, status
+        )
 
     def track(
         self,
@@ -129,14 +133,14 @@ class ForceReader:
 
         While it is, and where the pressure moves faster than a drift may, nothing is learnt.
         """
-        ambient = self._ambient if ambient_pressure_kPa is None else ambient_pressure_kPa
-        status, _, free = self._without_contact(gauge_kPa, temperature_C, ambient)
+        ambient_kPa = self._ambient_kPa if ambient_pressure_kPa is None else ambient_pressure_kPa
+        status, _, free_kPa = self._without_contact(gauge_kPa, temperature_C, ambient_kPa)
         if status > Status.ABOVE_RATING or not 0.0 < seconds < math.inf:
             return self.touched
         threshold = NOISES * self.noise_kPa
         share = seconds / (seconds + self._zero["filter_s"])
-        self._deviation += share * (gauge_kPa - free - self._deviation)
-        if self._deviation > threshold or gauge_kPa - free > 2.0 * threshold:
+        self._deviation += share * (gauge_kPa - free_kPa - self._deviation)
+        if self._deviation > threshold or gauge_kPa - free_kPa > 2.0 * threshold:
             self.touched = True
         elif self._deviation < 0.5 * threshold:
             self.touched = False
@@ -149,42 +153,44 @@ class ForceReader:
             self._deviation -= step
         return self.touched
 
-    def _without_contact(self, gauge_kPa: float, temperature_C: float | None, ambient: float) -> _Free:
+    def _without_contact(self, gauge_kPa: float, temperature_C: float | None, ambient_kPa: float) -> _Free:
         """The pressure that the gauge has without contact now; a status where the conditions allow no reading."""
         kelvin = self._kelvin if temperature_C is None else temperature_C + CELSIUS
         if math.isnan(self.driving_pressure_kPa):
             return _Free(Status.NOT_TARED)
-        if not (math.isfinite(gauge_kPa) and math.isfinite(kelvin) and math.isfinite(ambient)):
+        if not (math.isfinite(gauge_kPa) and math.isfinite(kelvin) and math.isfinite(ambient_kPa)):
             return _Free(Status.NOT_A_NUMBER)
         if not self._gauge[0] < gauge_kPa < self._gauge[1]:
             return _Free(Status.GAUGE_SATURATED)
         low, high = self._box["ambient_pressure_kPa"]
-        if not (low <= ambient <= high and abs(kelvin - self._kelvin) <= self._box["temperature_change_K"]):
+        if not (low <= ambient_kPa <= high and abs(kelvin - self._kelvin) <= self._box["temperature_change_K"]):
             return _Free(Status.CONDITIONS)
-        content = self._content(self.driving_pressure_kPa, self._ambient) * (kelvin / self._kelvin)
-        free = self.driving_pressure_kPa
-        if kelvin != self._kelvin or ambient != self._ambient:
-            free = self._pressure(content, ambient)
-        if not self._driving[0] <= free <= self._driving[1]:
+        content = self._content(self.driving_pressure_kPa, self._ambient_kPa) * (kelvin / self._kelvin)
+        free_kPa = self.driving_pressure_kPa
+        if kelvin != self._kelvin or ambient_kPa != self._ambient_kPa:
+            free_kPa = self._pressure(content, ambient_kPa)
+        if not self._driving[0] <= free_kPa <= self._driving[1]:
             return _Free(Status.DRIVING_PRESSURE)
-        return _Free(self._rating(free), content, free)
+        return _Free(self._rating(free_kPa), content, free_kPa)
 
-    def _looked_up(self, row: int, part: float, at: float, rise: float, status: Status) -> Reading:
-        """The reading at a rise ``at`` of the table and a measured ``rise``, both kPa."""
+    def _looked_up(self, row: int, part: float, at: float, rise_kPa: float, status: Status) -> ForceReading:
+        """The reading at a rise ``at`` of the table and a measured ``rise_kPa``, both kPa."""
         rises = [a + part * (b - a) for a, b in zip(self._rise[row], self._rise[row + 1], strict=True)]
         forces = [a + part * (b - a) for a, b in zip(self._force[row], self._force[row + 1], strict=True)]
         noise = math.sqrt(self.noise_kPa**2 + self._zero_variance)
-        if rise <= 0.0:
-            if rise < -NOISES * max(self.noise_kPa, QUIET * rises[-1]):
+        if rise_kPa <= 0.0:
+            if rise_kPa < -NOISES * max(self.noise_kPa, QUIET * rises[-1]):
                 return _nothing(Status.BELOW_ZERO)
-            return Reading(status, 0.0, forces[1] / rises[1] * noise, rise)
+            return ForceReading(status, 0.0, forces[1] / rises[1] * noise, rise_kPa)
         if at > rises[-1]:
             return _nothing(Status.BEYOND_RANGE)
         k = min(max(bisect_right(rises, at), 1), len(rises) - 1) - 1
         beyond = max((at - rises[k]) / (rises[k + 1] - rises[k]), 0.0)
         force = forces[k] + beyond * (forces[k + 1] - forces[k])
         slope = (forces[k + 1] - forces[k]) / (rises[k + 1] - rises[k])
-        return Reading(status, force, math.hypot(self._share(row, part, k + beyond) * force, slope * noise), rise)
+        return ForceReading(
+            status, force, math.hypot(self._share(row, part, k + beyond) * force, slope * noise), rise_kPa
+        )
 
     def _share(self, row: int, part: float, column: float) -> float:
         """Relative standard uncertainty of the force at a column of the grid; NaN where it is unknown."""
@@ -196,7 +202,7 @@ class ForceReader:
         return low + part * (high - low)
 
     def _rating(self, driving_pressure_kPa: float) -> Status:
-        return Status.ABOVE_RATING if driving_pressure_kPa > self._rated else Status.OK
+        return Status.ABOVE_RATING if driving_pressure_kPa > self._rated_kPa else Status.OK
 
     def _row(self, driving_pressure_kPa: float) -> tuple[int, float]:
         """Row of the grid below a driving pressure, and the share of the step beyond it."""
@@ -228,5 +234,5 @@ def _between(values: Sequence[float], row: int, part: float) -> float:
     return values[row] + part * (values[row + 1] - values[row])
 
 
-def _nothing(status: Status) -> Reading:
-    return Reading(status, math.nan, math.nan, math.nan)
+def _nothing(status: Status) -> ForceReading:
+    return ForceReading(status, math.nan, math.nan, math.nan)
