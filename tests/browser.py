@@ -24,7 +24,7 @@ WITH_WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 WITHOUT_WEBGL = ("--disable-gpu", "--disable-3d-apis")
 
 _LONGEST = 300
-"""Seconds that `until` waits at most: a hung page fails its test, a slow machine does not."""
+"""Seconds that anything is waited for at most: a hung page fails its test, a slow machine does not."""
 
 
 def leave_out_or_fail(found: str | None, environment: Mapping[str, str]) -> None:
@@ -81,6 +81,7 @@ class Pages:
         profile = self._browser.new_context(
             viewport={"width": width, "height": height}, color_scheme="dark" if dark else "light", **context
         )
+        profile.set_default_timeout(1000 * _LONGEST)
         page = profile.new_page()
         page.on("request", lambda request: self.requested.append(request.url))
         page.on("pageerror", lambda error: self.errors.append(str(error)))

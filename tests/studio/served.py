@@ -21,12 +21,19 @@ SOLVED = "document.getElementById('status').textContent.startsWith('Answered by 
 PAINTED = "document.body.dataset.painted"
 
 
+def hears_interrupts() -> None:
+    """For a process that is to hear Ctrl-C: the background jobs of a shell ignore it, and so would all that they start."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @contextmanager
 def served(*words: str) -> Iterator[tuple[str, subprocess.Popen[str]]]:
     """The address that ``pneutouch studio`` prints, and its process, which is stopped by Ctrl-C where it still runs."""
     command = [sys.executable, "-m", "pneutouch", "studio", "--no-browser", *words]
     pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    running = subprocess.Popen(command, env={**os.environ, "PYTHONUNBUFFERED": "1"}, **pipes)
+    running = subprocess.Popen(
+        command, env={**os.environ, "PYTHONUNBUFFERED": "1"}, preexec_fn=hears_interrupts, **pipes
+    )
     try:
         address = running.stdout.readline().strip()
         assert address.startswith("http://127.0.0.1:"), running.stderr.read()

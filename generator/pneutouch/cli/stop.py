@@ -51,7 +51,7 @@ class StopSignals:
 
 
 def _loads_library(frame: FrameType | None) -> bool:
-    """Whether a compiled library is being loaded: manifold3d ends the process where Python raises in the middle of it."""
+    """Whether a compiled library is being loaded; manifold3d ends the process where Python raises in the middle."""
     while frame is not None:
         if isinstance(frame.f_locals.get("self"), ExtensionFileLoader):
             return True

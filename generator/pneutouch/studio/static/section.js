@@ -66,7 +66,7 @@ const pairs = (points) => {
   return text;
 };
 
-/** Width of the section's place in pixels, kept: to ask for it in the middle of changes costs a layout. */
+/** Width of the section's place in pixels, kept: reading it in the middle of changes costs a layout. */
 let width = 0;
 const measured = new ResizeObserver(([entry]) => (width = entry.contentRect.width));
 

@@ -103,8 +103,8 @@ def write_companions(out: Path) -> tuple[list[dict[str, Any]], list[Path]]:
 
 
 def _check_columns(content: xarray.Dataset) -> None:
-    """Raise KeyError for a column that is missing, has text in place of numbers or bytes in place of text, or lacks
-    values that were swept."""
+    """Raise KeyError for a column that is missing, has text in place of numbers or bytes in place of text, or in
+    which swept values are missing."""
     for variable in (*STATE, *POINT):
         _check_column(content, variable.name, texts=variable.text, numbers=not variable.text)
     for name in content.coords:
