@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
+from pathlib import Path
 
 import pytest
 
@@ -82,6 +83,12 @@ def test_a_target_is_typed_in_and_its_third_design_used(open_studio, command, tm
         "[...document.querySelectorAll('#figures tbody tr')].map(e => parseFloat(e.children[1].textContent))"
     )
     assert figures == [float(f"{state['sensitivity_kPa_per_N']:.4g}") for state in predicted["states"]]
+    # It is built by the name that the command gave it.
+    page.get_by_role("tab", name="Files").click()
+    until(page, "document.getElementById('build-name')")
+    assert page.locator("#build-name").get_attribute("placeholder") == Path(written).stem
+    assert page.locator("#build-command").text_content().endswith(f" --name {Path(written).stem}")
+    page.get_by_role("tab", name="Design").click()
     page.get_by_role("button", name="Undo").click()
     solved(page, "#paper-dome")
 

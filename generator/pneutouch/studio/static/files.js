@@ -10,6 +10,12 @@ const labelled = (words, input, ...more) => element("label", { class: "named" },
 const text = (more = {}) => element("input", { type: "text", autocomplete: "off", spellcheck: "false", maxlength: 100, ...more });
 const button = (words, onclick, more = {}) => element("button", { type: "button", onclick, ...more }, words);
 
+/** The name that a state brings along: its title where that was changed, as for a candidate that was chosen; else its base's. */
+function ownName({ base, values }) {
+  const title = values["document.title"] ?? "";
+  return title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "").slice(0, 60) || base;
+}
+
 /** A problem in words; its field is named where the words do not. */
 const worded = ({ message, fields = [] }) => element("p", {}, fields.length && !message.includes(fields[0]) ? `${fields[0]}: ${message}` : message);
 
@@ -102,12 +108,13 @@ class Files {
       if (this.name.value === this.opened.name) this.name.value = "";
       this.opened = null;
     }
-    this.name.placeholder = state.base;
-    this.saveName.placeholder = `my-${state.base}`;
+    const own = ownName(state);
+    this.name.placeholder = own;
+    this.saveName.placeholder = own === state.base ? `my-${own}` : own;
     const base = this.page.words(state.base);
     const left = Object.keys(state.values).filter((key) => state.values[key] === null);
-    const name = this.name.value.trim();
-    this.buildCommand.show(`pneutouch build ${options(state, base)}${name && name !== state.base ? ` --name ${quoted(name)}` : ""}`, left);
+    const name = this.name.value.trim() || own;
+    this.buildCommand.show(`pneutouch build ${options(state, base)}${name !== state.base ? ` --name ${quoted(name)}` : ""}`, left);
     this.saveCommand.show(`pneutouch new ${quoted(this.saveAs())} --from ${options(state, base)}`, left);
     this.left.textContent = left.length ? `No option of the commands leaves out ${left.join(", ")}: save the design, and build it by its name.` : "";
     this.built.compare(written(state));
@@ -126,8 +133,9 @@ class Files {
   }
 
   build() {
-    const name = this.name.value.trim();
-    this.watch(new Job("build", { question: this.page.state(), ...(name ? { name } : {}) }, (progress) => this.moved(progress)));
+    const question = this.page.state();
+    const name = this.name.value.trim() || ownName(question);
+    this.watch(new Job("build", { question, ...(name === question.base ? {} : { name }) }, (progress) => this.moved(progress)));
   }
 
   /** A build that was begun before this page was opened, or on another one. */
