@@ -48,9 +48,12 @@ def select(
     Gauges are tried in the order of the smallest force that they detect; the first one whose range no selected design
     leaves is taken. Those whose noise is not stated come last. Without one the answer has no design.
     """
-    if target.setting.gauge != ANY:
-        return select_by_target(target, where, library, written=written, progress=progress)
     library = CachedLibrary((library or Library.default()).folders)
+    named = target.setting.gauge
+    if named != ANY:
+        if named is not None:
+            library.load("gauges", named, file=where, key="setting.gauge")
+        return select_by_target(target, where, library, written=written, progress=progress)
     trials: list[GaugeTrial] = []
     last: SelectionRun | None = None
     for part in (parts := _parts(target, where, library)):
