@@ -153,7 +153,7 @@ def test_edges_have_rows_next_to_those_of_balls(plain):
     assert all(0.0 < e < b for e, b in zip(np.ravel(edge), np.ravel(ball), strict=True))
     labels = [row[0] for row in contact_section(chart)["rows"]]
     assert f"edge of {size:.3g} mm radius, across the pole" in labels
-    assert f"edge of {0.3 * size:.3g} mm radius, {0.6 * size:.3g} mm off the axis" in labels
+    assert f"edge of {0.3 * size:.3g} mm radius, {0.3 * size:.3g} mm off the axis" in labels
     contacts = contact_anywhere_document(plain.prediction, plain.sensor)["contacts"]
     assert [one["object"] for one in contacts] == [row.kind for row in chart.rows]
     assert {one["object"] for one in contacts} == {"ball", "edge", "plate"}

@@ -121,9 +121,8 @@ def _caption(chart: ContactChart) -> str:
     return (
         "Error of the force that is read from the pressure rise by the curve of the central plate, without friction: "
         "positive where the reading states more than the true force. The charts are at the first pressure rise of the "
-        f"table; lines without marks are for a ball, lines with marks for the edge of a bar rounded to the radius, the "
-        f"middle chart for a radius of {chart.ball_radius:.3g} mm. {DASH}: within 0.75 R0 of travel, or before an "
-        "event, the object does not reach that reading."
+        f"table; with marks: the edge of a bar rounded to the radius; middle chart: radius {chart.ball_radius:.3g} mm. "
+        f"{DASH}: within 0.75 R0 of travel, or before an event, the object does not reach that reading."
     )
 
 
@@ -136,7 +135,7 @@ def _notes(chart: ContactChart) -> list[str]:
         f"Where object and place of contact are not known they add a standard uncertainty of {shares} to the "
         "sensitivity. It is part of the interval only where the design states contact.anywhere.",
         "Assumed for it: a ball of 0.3 R0 radius or more (curvature even), its axis anywhere in the disc of 0.6 R0; a "
-        "plate tilted by up to 20°. An edge of the same radius and place is off by less than the ball.",
+        "plate tilted by up to 20°. Edges are off by less.",
         f"A level plate may stand {chart.free_offset:.1f} mm off the axis without effect: the contact stays inside its "
         "edge.",
     ]
