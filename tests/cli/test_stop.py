@@ -24,6 +24,7 @@ LINES = [
     "list",
     "new mine --out made",
     "predict paper-dome",
+    "export-reader paper-dome --out made",
     "check paper-dome",
     "select --sensitivity 2 --at 10 --write found --out made --charts charts",
     "build paper-dome --out made",
