@@ -7,18 +7,13 @@ import numpy as np
 from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.mechanics.line.air import ADIABATIC, REFERENCE_TEMPERATURE
 from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.uncertainty.neighbours import neighbourhood
 from pneutouch.units import KPA
 
-ADIABATIC = 1.4
-"""Heat capacity ratio of air, a diatomic gas with rigid molecules: 7/5."""
-
 _TRAVEL = 0.98
 """Share of the range compared: its end may be the last stable state, which one rounding more would lose."""
-
-REFERENCE_TEMPERATURE = 293.15
-"""K. An assumption: 20 C, within the 18 to 26 C of the paper's tests (Supplement C)."""
 
 _NEWTON, _LONGEST, _CLOSE = 20, 0.05, 1.0e-10
 

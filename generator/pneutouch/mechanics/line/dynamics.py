@@ -1,0 +1,103 @@
+"""A sensor's reading over frequency: wall, gas in the cavity and line, for small changes about a state.
+
+The wall answers a change v of the cavity volume and a force (or a travel) x with the pressure p = k (v/C) + b x, where
+C is the volume that it yields to a pressure at constant x, and k(s) the modulus over the relaxed one: 1 where the wall
+does not relax. The gas and the line take the volume up, v = -p (C_gas + Y/s). So
+
+    p/x = b / (1 + k (C_gas + Y/s)/C),
+
+and the gain is that times the line's transfer, over its value at s = 0, where the gas is isothermal: b, the model of
+the press, drops out. The mass of the wall and of what presses it is not part of this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pneutouch.arrays import Array, Complex
+from pneutouch.mechanics.line.air import ADIABATIC
+from pneutouch.mechanics.line.cascade import GasLine
+from pneutouch.mechanics.line.elements import GasVolume
+
+
+@dataclass(frozen=True, slots=True)
+class SensorDynamics:
+    """A state for small changes.
+
+    Attributes:
+        cavity: The gas under the dome.
+        line: What lies behind it.
+        wall_compliance: Change of the cavity volume over a pressure inside, mm3/MPa; infinite where the source sets the
+            pressure, 0 where it sets the volume.
+        excess, times: Terms of the wall's modulus over the relaxed one and their times in s; none: an elastic wall.
+        stiffening: Factor on the wall's modulus: what it has, at once, over the relaxed one.
+        isothermal: Whether the gas of the cavity keeps its temperature at any frequency.
+        lumped: Whether the line is its isothermal volume alone.
+    """
+
+    cavity: GasVolume
+    line: GasLine
+    wall_compliance: float
+    excess: tuple[float, ...] = ()
+    times: tuple[float, ...] = ()
+    stiffening: float = 1.0
+    isothermal: bool = False
+    lumped: bool = False
+
+    @property
+    def gas_share(self) -> float:
+        """Compliance of all gas, isothermal, over that of the wall."""
+        slow = self.stiffening * (self.cavity.volume + self.line.volume) / self.line.air.pressure
+        return slow / self.wall_compliance if self.wall_compliance else np.inf
+
+    def gain(self, s: Complex) -> Complex:
+        """Pressure at the gauge over that of a slow change, at s (n,) in 1/s with a real part of 0 or more, not 0."""
+        return self.both(s)[1]
+
+    def both(self, s: Complex) -> tuple[Complex, Complex]:
+        """Pressure in the cavity and at the gauge over that of a slow change, (n,) each."""
+        pressure = self.line.air.pressure
+        gas = self.cavity.volume / pressure if self.isothermal else self.cavity.compliance(s, self.line.air)
+        behind, transfer = self.line.volume / pressure + np.zeros_like(s), np.ones_like(s)
+        if not self.lumped:
+            seen = self.line.seen(s)
+            behind, transfer = seen.admittance / s, seen.transfer
+        slow = (self.cavity.volume + self.line.volume) / pressure
+        yielding = self.wall_compliance
+        if np.isinf(yielding):
+            return np.ones_like(s), transfer
+        cavity = (yielding + self.stiffening * slow) / (yielding + self._modulus(s) * (gas + behind))
+        return cavity, cavity * transfer
+
+    def _modulus(self, s: Complex) -> Complex:
+        """The wall's modulus over the relaxed one."""
+        value = self.stiffening + np.zeros_like(s)
+        for excess, time in zip(self.excess, self.times, strict=True):
+            value = value + excess * s * time / (1.0 + s * time)
+        return value
+
+    def at_once(self) -> SensorDynamics:
+        """The same with a wall that does not relax, as stiff as this one is at first; its slow reading is its own."""
+        stiff = self.stiffening + sum(self.excess)
+        return replace(self, excess=(), times=(), stiffening=stiff)
+
+    @property
+    def fast_wall(self) -> float:
+        """The reading over the slow one for what is quick for the wall and slow for the gas."""
+        slow, fast = self.gas_share, self.at_once().gas_share
+        return 1.0 if np.isinf(slow) else (1.0 + slow) / (1.0 + fast)
+
+    @property
+    def fast_gas(self) -> float:
+        """The reading with all gas adiabatic over that with isothermal gas, without the line's inertia and
+        resistance."""
+        share = self.gas_share
+        return ADIABATIC if np.isinf(share) else (1.0 + share) / (1.0 + share / ADIABATIC)
+
+
+def on_axis(frequency: Array | Sequence[float]) -> Complex:
+    """The complex frequencies (1/s) of frequencies in Hz."""
+    return np.asarray(2j * np.pi * np.asarray(frequency, dtype=float))

@@ -1,0 +1,114 @@
+"""Elements of a gas line at a complex frequency s (1/s): ducts with viscous and thermal losses, and volumes.
+
+A duct is a rigid round tube with laminar flow and walls of constant temperature, small against the wavelength: Zwikker
+and Kosten, Sound Absorbing Materials (1949), chapter II; Bergh and Tijdeman, NLR-TR F.238 (1965), equations 1 to 13,
+which has the same Bessel functions. With x = a sqrt(s/nu), a the radius and nu the kinematic viscosity,
+
+    series impedance      Z = s rho/A * I0(x)/I2(x)
+    shunt admittance      Y = s A/(gamma p) * (gamma - (gamma - 1) I2(y)/I0(y)),  y = x sqrt(Pr)
+
+of a length, so that narrow tubes have the resistance of Poiseuille and isothermal gas, and wide ones are free of loss
+and adiabatic. On the imaginary axis |x| is the shear wave number, and sqrt(Pr) its multiple for heat.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import ive
+
+from pneutouch.arrays import Complex
+from pneutouch.mechanics.line.air import ADIABATIC, AirState
+
+_SMALL = 0.05
+"""Below this argument the closed form of a ball has fewer digits than its series to the sixth power."""
+
+
+class LineEnd(NamedTuple):
+    """What lies behind a place of a line: its admittance (mm3/(MPa s)), and the pressure at the far end over that
+    here."""
+
+    admittance: Complex
+    transfer: Complex
+
+
+@dataclass(frozen=True, slots=True)
+class Duct:
+    """A round tube, mm."""
+
+    length: float
+    radius: float
+
+    @property
+    def volume(self) -> float:
+        """Volume, mm3."""
+        return math.pi * self.radius**2 * self.length
+
+    def impedance(self, s: Complex, air: AirState) -> Complex:
+        """Series impedance of a length, MPa s/mm4; Poiseuille's 8 mu/(pi a^4) where s is small."""
+        momentum = _profile(self.radius * np.sqrt(s / air.kinematic_viscosity))
+        return np.asarray(s * air.density / (math.pi * self.radius**2) / momentum)
+
+    def admittance(self, s: Complex, air: AirState) -> Complex:
+        """Shunt admittance of a length, mm2/(MPa s)."""
+        heat = _profile(self.radius * np.sqrt(s / air.thermal_diffusivity))
+        stiffness = ADIABATIC * air.pressure
+        return np.asarray(s * math.pi * self.radius**2 / stiffness * (ADIABATIC - (ADIABATIC - 1.0) * heat))
+
+    def before(self, end: LineEnd, s: Complex, air: AirState) -> LineEnd:
+        """The end as it is felt through this duct."""
+        series, shunt = self.impedance(s, air), self.admittance(s, air)
+        angle, own = np.sqrt(series * shunt) * self.length, np.sqrt(series / shunt)
+        # In decaying exponentials, so that a long line does not overflow.
+        once = np.exp(-angle)
+        twice, load = once**2, own * end.admittance
+        pressure = (1.0 + load) + (1.0 - load) * twice
+        flow = (1.0 + load) - (1.0 - load) * twice
+        return LineEnd(flow / pressure / own, end.transfer * 2.0 * once / pressure)
+
+
+@dataclass(frozen=True, slots=True)
+class GasVolume:
+    """A closed space at one pressure, mm3, that exchanges heat with its walls of an area in mm2.
+
+    The heat is that of a ball of radius 3 V/S, exact for a ball and, whatever the shape, while the layer that exchanges
+    heat is thin. Without a surface given it is a ball of this volume.
+    """
+
+    volume: float
+    surface: float | None = None
+
+    @property
+    def ball_radius(self) -> float:
+        """Radius of the ball that exchanges heat in its place, mm."""
+        if self.surface is None:
+            return float(np.cbrt(3.0 * self.volume / (4.0 * math.pi)))
+        return 3.0 * self.volume / self.surface
+
+    def compliance(self, s: Complex, air: AirState) -> Complex:
+        """Change of volume over pressure, mm3/MPa: V/p while slow, V/(gamma p) while fast."""
+        share = _isothermal_share(self.ball_radius * np.sqrt(s / air.thermal_diffusivity))
+        return np.asarray(self.volume / (ADIABATIC * air.pressure) * (1.0 + (ADIABATIC - 1.0) * share))
+
+    def before(self, end: LineEnd, s: Complex, air: AirState) -> LineEnd:
+        """The end with this volume open to it."""
+        return LineEnd(end.admittance + s * self.compliance(s, air), end.transfer)
+
+
+def _profile(x: Complex) -> Complex:
+    """I2(x)/I0(x): mean over the section of a tube of what diffuses to its wall, 1 where the layer is thin."""
+    return np.asarray(ive(2, x) / ive(0, x))
+
+
+def _isothermal_share(x: Complex) -> Complex:
+    """3 (x coth x - 1)/x^2 of a ball: the share of its gas that keeps the wall's temperature."""
+    near = np.abs(x) < _SMALL
+    safe = np.where(near, 1.0, x)
+    decay = np.exp(-2.0 * safe)
+    far = 3.0 * (safe * (1.0 + decay) / (1.0 - decay) - 1.0) / safe**2
+    squared = np.where(near, x, 0.0) ** 2
+    series = 1.0 - squared / 15.0 + 2.0 * squared**2 / 315.0 - squared**3 / 1575.0
+    return np.asarray(np.where(near, series, far))
