@@ -47,6 +47,7 @@ COMMANDS: dict[str, dict[str, CommandEntry]] = {
         "characterize": CommandEntry("characterize", "Turn measured runs into figures; compare with prediction."),
         "calibrate": CommandEntry("calibrate", "Fit the model to the runs of one sensor."),
         "export-reader": CommandEntry("export_reader", "Write the sensor's pressure-to-force model for a machine."),
+        "respond": CommandEntry("respond", "Simulate a step or a sine of force: signal and bandwidth."),
         "scan": CommandEntry("scan", "Scan a texture with a sensor: signals and their spectrum."),
     },
 }

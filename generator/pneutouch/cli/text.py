@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from pneutouch.cli.dynamics_text import dynamics_lines
 from pneutouch.cli.table import table_text
 from pneutouch.mechanics.events import LOBES, SWAY
 from pneutouch.rounding import tenths_below
@@ -39,6 +40,7 @@ def prediction_text(document: PredictionRecord) -> str:
         *_uncertainty(document["states"]),
         *_anywhere(document.get("contact_anywhere")),
         *_viscous(document["viscous"]),
+        *dynamics_lines(document["dynamics"]),
     ]
     if aged := document.get("aged"):
         ratio = f"{aged['modulus_ratio']:.3f}"

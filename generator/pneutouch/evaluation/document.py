@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NotRequired, TypedDict, cast
 
 from pneutouch.evaluation.anywhere import contact_anywhere_document
 from pneutouch.evaluation.contact_object import contact_document
+from pneutouch.evaluation.dynamics import dynamics_document
 from pneutouch.evaluation.gauge import gauge_document
 from pneutouch.evaluation.uncertainty import documents
 from pneutouch.mechanics.prediction import SensorRecord, StateRecord
@@ -44,6 +45,7 @@ class PredictionRecord(SensorRecord):
     states: list[UncertainStateRecord]
     gauge: NotRequired[dict[str, Any]]
     viscous: NotRequired[dict[str, Any]]
+    dynamics: NotRequired[dict[str, Any]]
     calibration: NotRequired[dict[str, Any]]
     aged: NotRequired[AgedRecord]
 
@@ -85,10 +87,11 @@ def prediction_document(evaluation: Evaluation, samples: int = 0) -> PredictionR
 
 
 def full_document(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
-    """`prediction_document` with ``viscous``; with ``gauge`` where the design names one, and ``aged`` where the
-    prediction is of an aged sensor."""
+    """`prediction_document` with ``viscous`` and ``dynamics``; with ``gauge`` where the design names one, and ``aged``
+    where the prediction is of an aged sensor."""
     content = prediction_document(evaluation, samples)
     content["viscous"] = viscous(evaluation)
+    content["dynamics"] = rounded(dynamics_document(evaluation.bandwidth), _DIGITS)
     if evaluation.scene.gauge is not None:
         content["gauge"] = gauge_document(evaluation)
     calibration = evaluation.scene.calibration

@@ -27,6 +27,7 @@ from pneutouch.spec.read import Changes
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
+    from pneutouch.evaluation.dynamics import SensorBandwidth
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
     from pneutouch.mechanics.viscous.describe import ViscousRuns
@@ -120,6 +121,13 @@ class Evaluation:
         scene = self.scene
         known = (scene.membrane_material, scene.printer, scene.calibration)
         return rating(self.prediction.limits, self.sensor, *known, numerical=error)
+
+    @cached_property
+    def bandwidth(self) -> SensorBandwidth:
+        """How fast the sensor reads; see docs/dynamics.md."""
+        from pneutouch.evaluation.dynamics import sensor_bandwidth
+
+        return sensor_bandwidth(self)
 
     @cached_property
     def viscous_runs(self) -> ViscousRuns | str:

@@ -10,7 +10,7 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.sheet_data import DetectableForce, SheetGauge
 from pneutouch.mechanics import SensorPrediction, SensorState
 from pneutouch.mechanics.gauge_reading import SIGMAS, GaugeReading, gauge_reading
-from pneutouch.mechanics.uncertainty.gas_notes import REFERENCE_TEMPERATURE
+from pneutouch.mechanics.line.air import REFERENCE_TEMPERATURE
 from pneutouch.rounding import rounded
 from pneutouch.units import KPA
 

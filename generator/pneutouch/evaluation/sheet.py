@@ -52,6 +52,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         other_contact=sensor.protocol.other_contact is not None,
         object_section=object_section(sensor),
         pressed=pressed_view(prediction),
+        bandwidth=evaluation.bandwidth,
     )
     if unknown(sensor, prediction.model) is not None:
         return sheet

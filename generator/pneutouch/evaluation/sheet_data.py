@@ -17,6 +17,7 @@ if TYPE_CHECKING:
         TradeOff,
         TuningChart,
     )
+    from pneutouch.evaluation.dynamics import SensorBandwidth
     from pneutouch.mechanics.prediction import SensorPrediction
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.uncertainty import GasNotes
@@ -166,6 +167,7 @@ class SheetData:
         object_section: Section (n, 2) in mm, r and z, of the object that presses it, at first contact with the unloaded
             dome; None for a plate.
         pressed: The pressed dome in three dimensions; None by a model without its surface.
+        bandwidth: How fast the sensor reads; None where that was not computed.
     """
 
     scene: ResolvedDesign
@@ -191,3 +193,4 @@ class SheetData:
     other_contact: bool = False
     object_section: Array | None = None
     pressed: PressedView | None = None
+    bandwidth: SensorBandwidth | None = None

@@ -17,7 +17,7 @@ _NOTHING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class AirPiece:
-    """A round piece of the path, mm: ``name`` is gap, channel, port or tube. A gap is open to the cavity at its edge."""
+    """A round piece of the path, mm: ``name`` is gap, channel, port or tube. A gap is open to the cavity."""
 
     name: str
     length: float

@@ -6,17 +6,17 @@ from pneutouch.mechanics.line.air import AirState
 
 
 class Lossless(AirState):
-    """Layers at the wall are a hundred-millionth of a millimetre."""
+    """Layers at the wall are less than a millionth of a millimetre."""
 
     __slots__ = ()
 
     @property
     def kinematic_viscosity(self):
-        return 1e-13
+        return 4e-13
 
     @property
     def thermal_diffusivity(self):
-        return 1e-13
+        return 4e-13
 
 
 IDEAL = Lossless(0.101325)

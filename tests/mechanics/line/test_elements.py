@@ -10,10 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import solve_banded
-from scipy.special import spherical_jn
+from scipy.special import ive, spherical_jn
 
 from pneutouch.errors import InputError
 from pneutouch.mechanics.line.air import ADIABATIC, AirState
+from pneutouch.mechanics.line.bessel import second_over_zeroth
 from pneutouch.mechanics.line.cascade import GasLine
 from pneutouch.mechanics.line.dynamics import on_axis
 from pneutouch.mechanics.line.elements import Duct, GasVolume
@@ -99,6 +100,13 @@ def test_the_line_is_that_of_finite_differences_over_its_length(frequency):
             flow += 0.5 * cell * shunt * pressure
     assert got.transfer[0] == pytest.approx(1.0 / pressure, rel=1e-2)
     assert got.admittance[0] == pytest.approx(flow / pressure, rel=1e-2)
+
+
+@given(st.floats(-8.0, 8.0), st.floats(-0.25, 0.25))
+def test_the_ratio_of_bessel_functions_is_that_of_scipy(size, turn):
+    x = np.array([10.0**size * np.exp(1j * math.pi * turn)])
+    known = ive(2, x) / ive(0, x) if size > -2 else x**2 / 8 / (1 + x**2 / 6)
+    assert second_over_zeroth(x) == pytest.approx(known, rel=1e-9)
 
 
 @given(DUCTS, FREQUENCIES, st.floats(0.05, 0.95))

@@ -35,7 +35,7 @@ def test_the_quarter_wave_is_the_limit_of_a_volume_that_goes():
 
 @pytest.mark.parametrize("volume", [10.0, 300.0, 3000.0])
 def test_a_tube_with_a_volume_solves_its_tangent_equation(volume):
-    """cos kL = (V k/A) sin kL for a given pressure at the other end."""
+    """The roots of cos kL = (V k/A) sin kL for a given pressure at the other end."""
     k = brentq(lambda k: math.cos(k * 300) - volume * k / AREA * math.sin(k * 300), 1e-9, math.pi / 600)
     assert resonance((TUBE, GasVolume(volume))) == pytest.approx(C * k / (2 * math.pi), rel=1e-6)
 

@@ -55,14 +55,16 @@ class AirState:
     def viscosity(self) -> float:
         """Dynamic viscosity, MPa s."""
         beta, sutherland = _SUTHERLAND
-        return beta * self.temperature**1.5 / (self.temperature + sutherland) * _PASCAL
+        return beta * math.pow(self.temperature, 1.5) / (self.temperature + sutherland) * _PASCAL
 
     @property
     def prandtl(self) -> float:
         """Viscosity times heat capacity over conductivity."""
         factor, first, second = _CONDUCTIVITY
         temperature = self.temperature
-        conductivity = factor * temperature**1.5 / (temperature + first * 10.0 ** (-second / temperature))
+        conductivity = (
+            factor * math.pow(temperature, 1.5) / (temperature + first * math.pow(10.0, -second / temperature))
+        )
         capacity = ADIABATIC / (ADIABATIC - 1.0) * _GAS_CONSTANT
         return self.viscosity / _PASCAL * capacity / conductivity
 

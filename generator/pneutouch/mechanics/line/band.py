@@ -32,7 +32,7 @@ _POINTS_A_DECADE = 60
 _ROUNDING = 1e-10
 """Relative steps of the gain below this are rounding."""
 
-_CLOSE = 1e-8
+_CLOSE = 1e-7
 """Relative width to which a frequency is found."""
 
 
@@ -99,7 +99,7 @@ def _first_peak(dynamics: SensorDynamics, grid: Array, gain: Array) -> float | N
         return None
     low, high = grid[at], grid[at + 2]
     while high - low > _CLOSE * high:
-        near = np.linspace(low, high, 17)
+        near = np.linspace(low, high, 33)
         k = int(np.clip(np.argmax(gain_at(dynamics, near)), 1, near.size - 2))
         low, high = near[k - 1], near[k + 1]
     return float(0.5 * (low + high))
@@ -112,7 +112,7 @@ def _leaves(dynamics: SensorDynamics, grid: Array, excess: Callable[[Array], Arr
         return None
     low, high = grid[max(at - 1, 0)], grid[at]
     while high - low > _CLOSE * high:
-        near = np.linspace(low, high, 17)
+        near = np.linspace(low, high, 33)
         k = max(int(np.argmax(excess(gain_at(dynamics, near)) > 0.0)), 1)
         low, high = near[k - 1], near[k]
     return float(0.5 * (low + high))

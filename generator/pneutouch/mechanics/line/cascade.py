@@ -8,7 +8,7 @@ import numpy as np
 
 from pneutouch.arrays import Complex
 from pneutouch.mechanics.line.air import AirState
-from pneutouch.mechanics.line.elements import Duct, GasVolume, LineEnd
+from pneutouch.mechanics.line.elements import Duct, GasVolume, LineEnd, profiles
 
 LineElement = Duct | GasVolume
 
@@ -33,6 +33,11 @@ class GasLine:
     def seen(self, s: Complex) -> LineEnd:
         """Its admittance at the cavity, and the pressure at the gauge over that in the cavity, at s (n,)."""
         end = LineEnd(np.zeros_like(s), np.ones_like(s))
+        ducts = [element for element in self.elements if isinstance(element, Duct)]
+        rows = list(profiles(ducts, s, self.air))
         for element in reversed(self.elements):
-            end = element.before(end, s, self.air)
+            if isinstance(element, Duct):
+                end = element.before(end, s, self.air, rows.pop())
+            else:
+                end = element.before(end, s, self.air)
         return end

@@ -14,14 +14,15 @@ and adiabatic. On the imaginary axis |x| is the shear wave number, and sqrt(Pr) 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import ive
 
 from pneutouch.arrays import Complex
 from pneutouch.mechanics.line.air import ADIABATIC, AirState
+from pneutouch.mechanics.line.bessel import second_over_zeroth
 
 _SMALL = 0.05
 """Below this argument the closed form of a ball has fewer digits than its series to the sixth power."""
@@ -49,25 +50,36 @@ class Duct:
 
     def impedance(self, s: Complex, air: AirState) -> Complex:
         """Series impedance of a length, MPa s/mm4; Poiseuille's 8 mu/(pi a^4) where s is small."""
-        momentum = _profile(self.radius * np.sqrt(s / air.kinematic_viscosity))
-        return np.asarray(s * air.density / (math.pi * self.radius**2) / momentum)
+        return self._impedance(s, air, profiles([self], s, air)[0, 0])
 
     def admittance(self, s: Complex, air: AirState) -> Complex:
         """Shunt admittance of a length, mm2/(MPa s)."""
-        heat = _profile(self.radius * np.sqrt(s / air.thermal_diffusivity))
+        return self._admittance(s, air, profiles([self], s, air)[0, 1])
+
+    def before(self, end: LineEnd, s: Complex, air: AirState, profile: Complex) -> LineEnd:
+        """The end as it is felt through this duct; ``profile`` is its row of `profiles`."""
+        series, shunt = self._impedance(s, air, profile[0]), self._admittance(s, air, profile[1])
+        angle, wave = np.sqrt(series * shunt) * self.length, np.sqrt(series / shunt)
+        # In decaying exponentials, so that a long line does not overflow.
+        once = np.exp(-angle)
+        twice, load = once**2, wave * end.admittance
+        pressure = (1.0 + load) + (1.0 - load) * twice
+        flow = (1.0 + load) - (1.0 - load) * twice
+        return LineEnd(flow / pressure / wave, end.transfer * 2.0 * once / pressure)
+
+    def _impedance(self, s: Complex, air: AirState, momentum: Complex) -> Complex:
+        return np.asarray(s * air.density / (math.pi * self.radius**2) / momentum)
+
+    def _admittance(self, s: Complex, air: AirState, heat: Complex) -> Complex:
         stiffness = ADIABATIC * air.pressure
         return np.asarray(s * math.pi * self.radius**2 / stiffness * (ADIABATIC - (ADIABATIC - 1.0) * heat))
 
-    def before(self, end: LineEnd, s: Complex, air: AirState) -> LineEnd:
-        """The end as it is felt through this duct."""
-        series, shunt = self.impedance(s, air), self.admittance(s, air)
-        angle, own = np.sqrt(series * shunt) * self.length, np.sqrt(series / shunt)
-        # In decaying exponentials, so that a long line does not overflow.
-        once = np.exp(-angle)
-        twice, load = once**2, own * end.admittance
-        pressure = (1.0 + load) + (1.0 - load) * twice
-        flow = (1.0 + load) - (1.0 - load) * twice
-        return LineEnd(flow / pressure / own, end.transfer * 2.0 * once / pressure)
+
+def profiles(ducts: Sequence[Duct], s: Complex, air: AirState) -> Complex:
+    """Of ducts (k,) at s (n,): I2/I0 of momentum and of heat, (k, 2, n), at once because a call costs the most."""
+    across = np.array([duct.radius for duct in ducts])[:, None, None]
+    diffusivity = np.array([air.kinematic_viscosity, air.thermal_diffusivity])[:, None]
+    return second_over_zeroth(across * np.sqrt(np.asarray(s, dtype=complex) / diffusivity))
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,17 +102,13 @@ class GasVolume:
 
     def compliance(self, s: Complex, air: AirState) -> Complex:
         """Change of volume over pressure, mm3/MPa: V/p while slow, V/(gamma p) while fast."""
-        share = _isothermal_share(self.ball_radius * np.sqrt(s / air.thermal_diffusivity))
+        across = np.asarray(self.ball_radius * np.sqrt(s / air.thermal_diffusivity), dtype=np.complex128)
+        share = _isothermal_share(across)
         return np.asarray(self.volume / (ADIABATIC * air.pressure) * (1.0 + (ADIABATIC - 1.0) * share))
 
     def before(self, end: LineEnd, s: Complex, air: AirState) -> LineEnd:
         """The end with this volume open to it."""
         return LineEnd(end.admittance + s * self.compliance(s, air), end.transfer)
-
-
-def _profile(x: Complex) -> Complex:
-    """I2(x)/I0(x): mean over the section of a tube of what diffuses to its wall, 1 where the layer is thin."""
-    return np.asarray(ive(2, x) / ive(0, x))
 
 
 def _isothermal_share(x: Complex) -> Complex:

@@ -1,4 +1,4 @@
-"""Signals through a gain, by its Laplace transform inverted on a line beside the imaginary axis.
+"""Signals through a gain, by its Laplace transform inverted on a line to the right of the imaginary axis.
 
 With F the transform and a > 0, f(t) = exp(a t) times the inverse Fourier transform of F(a + i w) (Dubner and Abate,
 J. ACM 15(1), 115, 1968). Nothing wraps around the end of the record: what would is damped by exp(-a T). The last
@@ -58,7 +58,9 @@ def through(gain: Callable[[Complex], Complex], signal: Array, step: float) -> A
     spectrum = np.fft.rfft(signal * np.exp(-damping * time))
     frequency = np.fft.rfftfreq(count, step)
     fade = np.sinc(frequency * 2.0 * step)
-    answer = np.fft.irfft(spectrum * fade * gain(damping + 2j * np.pi * frequency), count)
+    answer = np.fft.irfft(
+        spectrum * fade * gain(np.asarray(damping + 2j * np.pi * frequency, dtype=np.complex128)), count
+    )
     return np.asarray((answer * np.exp(damping * time))[..., :kept])
 
 
@@ -78,7 +80,8 @@ def step_response(dynamics: SensorDynamics, duration: float) -> tuple[Array, Arr
     step, before = duration / _STEPS, _STEPS // 64
     signal = np.ones(_STEPS)
     signal[:before], signal[before] = 0.0, 0.5
-    return step * (np.arange(_STEPS) - before), through(dynamics.gain, signal, step)
+    time = np.asarray(step * (np.arange(_STEPS) - before), dtype=np.float64)
+    return time, through(dynamics.gain, signal, step)
 
 
 def _leaving(dynamics: SensorDynamics) -> float:

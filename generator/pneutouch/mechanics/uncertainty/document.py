@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from pneutouch.mechanics.atlas.press import SensorBatch
+from pneutouch.mechanics.line.air import ADIABATIC, REFERENCE_TEMPERATURE
 from pneutouch.mechanics.uncertainty.gas_notes import gas_notes
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
 from pneutouch.mechanics.uncertainty.record import FigureRecord, IntervalRecord, UncertaintyRecord

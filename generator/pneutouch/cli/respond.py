@@ -1,0 +1,94 @@
+"""``pneutouch respond``: a step or a sine of force or travel through the whole sensor, as a simulated signal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from pneutouch.cli.app import (
+    CalibrationOption,
+    DesignArgument,
+    JsonOption,
+    ModelOption,
+    OutOption,
+    SetOption,
+    ToleranceOption,
+    app,
+    changes,
+    print_json,
+    reporting,
+)
+from pneutouch.cli.next_step import report_next, set_words
+from pneutouch.cli.progress import bar
+from pneutouch.cli.terminal import echo, notify
+
+if TYPE_CHECKING:
+    from pneutouch.workflows.respond.load import Load
+
+
+@app.command()
+def respond(
+    design: DesignArgument,
+    step: Annotated[
+        str | None,
+        typer.Option(metavar="SIZE", help="Step to a force or a travel, such as 2N or 3mm; left out: half the range."),
+    ] = None,
+    sine: Annotated[
+        str | None, typer.Option(metavar="HZ", help="Instead of a step: a sine of a frequency, such as 5Hz.")
+    ] = None,
+    peak: Annotated[
+        str | None,
+        typer.Option(metavar="SIZE", help="Peak of the sine from no load, such as 2N; left out: half the range."),
+    ] = None,
+    duration: Annotated[
+        float | None, typer.Option(metavar="S", help="Length of the record, s; left out: 1 s, or ten cycles.")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the gauge's noise.")] = 0,
+    set_: SetOption = None,
+    calibration: CalibrationOption = None,
+    model: ModelOption = None,
+    tolerance: ToleranceOption = None,
+    out: OutOption = Path("outputs"),
+    json: JsonOption = False,
+) -> None:
+    """Simulate the signal of a step or a sine of force: wall, gas, line and gauge; with the gain over frequency."""
+    with reporting():
+        load = _load(step, sine, peak, duration)
+        from pneutouch.evaluation.evaluate import evaluate
+        from pneutouch.mechanics.models import model_options
+        from pneutouch.workflows.respond.document import document, write_respond
+        from pneutouch.workflows.respond.run import run_respond
+
+        with bar("simulating the signal"):
+            evaluation = evaluate(design, changes(set_, calibration), **model_options(model, tolerance))
+            run = run_respond(evaluation, load, seed)
+            folder = write_respond(run, out)
+        content = document(run)
+        for note in content["notes"]:
+            notify(f"note: {note}")
+        if json:
+            print_json({**content, "folder": str(folder)})
+            return
+        from pneutouch.cli.respond_text import respond_text
+
+        echo(respond_text(content))
+        echo(f"\n{folder}")
+        report_next("build", design, *set_words(set_, calibration))
+
+
+def _load(step: str | None, sine: str | None, peak: str | None, duration: float | None) -> Load:
+    """The load that the options describe. Raises InputError where they contradict one another."""
+    from pneutouch.errors import InputError
+    from pneutouch.workflows.respond.load import Load, frequency_Hz, load_size
+
+    if sine is None:
+        if peak is not None:
+            raise InputError("is the peak of a sine", key="peak", remedy="give `sine`, or `step` in its place")
+        size, travel = (None, False) if step is None else load_size(step, "step")
+        return Load(size, travel, None, duration)
+    if step is not None:
+        raise InputError("cannot be given with `sine`", key="step", value=step, remedy="give `peak`")
+    size, travel = (None, False) if peak is None else load_size(peak, "peak")
+    return Load(size, travel, frequency_Hz(sine), duration)

@@ -1,0 +1,185 @@
+"""How fast a sensor reads: its gas line as drawn, and the figures of every state."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pneutouch.mechanics.line.air import AirState
+from pneutouch.mechanics.line.band import BandFigures, band_figures
+from pneutouch.mechanics.line.cascade import GasLine
+from pneutouch.mechanics.line.dynamics import SensorDynamics
+from pneutouch.mechanics.line.elements import Duct, GasVolume
+from pneutouch.mechanics.line.transient import StepFigures, step_figures
+from pneutouch.mechanics.viscous.prony import Prony, prony_series
+from pneutouch.parts.air_path import AirPiece, air_path
+from pneutouch.units import KPA, ML
+
+if TYPE_CHECKING:
+    from pneutouch.evaluation.evaluate import Evaluation
+    from pneutouch.mechanics import SensorPrediction, SensorState
+
+GAP = "gap"
+"""The piece of an air path that is a volume next to the cavity, not a duct."""
+
+GAUGE_RATE = "sampling of the gauge"
+"""What limits the bandwidth, next to those of `mechanics.line.band`."""
+
+_SAME = 1e-6
+"""Relative difference of dead volumes below which they are one."""
+
+
+@dataclass(frozen=True, slots=True)
+class DynamicState:
+    """One driving pressure in one series of relaxation data; ``source`` None: a wall that does not relax."""
+
+    driving_pressure: float
+    source: str | None
+    dynamics: SensorDynamics
+    band: BandFigures
+    step: StepFigures
+
+    def usable(self, rate_Hz: float | None) -> tuple[float | None, str | None]:
+        """Bandwidth in Hz with a gauge of ``rate_Hz`` (None: unknown), and what limits it."""
+        line = self.band.bandwidth
+        nyquist = None if rate_Hz is None else 0.5 * rate_Hz
+        if nyquist is not None and (line is None or nyquist < line):
+            return nyquist, GAUGE_RATE
+        return line, None if line is None else "line"
+
+
+@dataclass(frozen=True, slots=True)
+class SensorBandwidth:
+    """What limits a sensor over time.
+
+    Attributes:
+        pieces: The air's path as drawn.
+        end_volume: Gas behind it, mm3: of the gauge, or what the stated dead volume is greater by.
+        note: Where the dead volume that the prediction has is not that of the path; else None.
+        rate_Hz: Readings a second of the gauge; None where that is unknown.
+        states: One a driving pressure and series of relaxation data.
+    """
+
+    pieces: tuple[AirPiece, ...]
+    end_volume: float
+    note: str | None
+    rate_Hz: float | None
+    states: tuple[DynamicState, ...]
+
+
+def sensor_bandwidth(evaluation: Evaluation) -> SensorBandwidth:
+    """The figures of every state, for a small step of force at first contact."""
+    pieces, end, note = line_of(evaluation)
+    series: tuple[Prony | None, ...] = prony_series(evaluation.scene.membrane_material) or (None,)
+    states = []
+    for state in evaluation.prediction.states:
+        for one in series:
+            dynamics = state_dynamics(evaluation, state, one)
+            source = None if one is None else one.source
+            figures = band_figures(dynamics), step_figures(dynamics)
+            states.append(DynamicState(state.driving_pressure, source, dynamics, *figures))
+    return SensorBandwidth(pieces, end, note, gauge_rate_Hz(evaluation), tuple(states))
+
+
+def line_of(evaluation: Evaluation) -> tuple[tuple[AirPiece, ...], float, str | None]:
+    """The path as drawn, the gas behind it (mm3), and a note where the stated dead volume is less than the path's."""
+    assembly = evaluation.assembly
+    pieces = air_path(assembly.scene, assembly.layout)
+    drawn, stated = sum(piece.volume for piece in pieces), evaluation.sensor.gas.dead_volume
+    if stated >= drawn * (1.0 - _SAME):
+        return pieces, max(0.0, stated - drawn) if stated > drawn * (1.0 + _SAME) else 0.0, None
+    note = (
+        f"the dead volume of {stated / ML:.3g} mL is less than the {drawn / ML:.3g} mL of connector and tube as drawn; "
+        "the dynamics are those of the line as drawn"
+    )
+    return pieces, 0.0, note
+
+
+def state_dynamics(
+    evaluation: Evaluation, state: SensorState, series: Prony | None, compliance: float | None = None
+) -> SensorDynamics:
+    """A state for small changes; ``compliance`` (mm3/MPa) of the wall, None: that of the free inflated dome."""
+    pieces, end, _ = line_of(evaluation)
+    air = AirState(evaluation.sensor.gas.ambient_pressure + state.driving_pressure)
+    elements: list[Duct | GasVolume] = [
+        GasVolume(piece.volume) if piece.name == GAP else Duct(piece.length, piece.radius) for piece in pieces
+    ]
+    if end:
+        elements.append(GasVolume(end))
+    radius = evaluation.assembly.layout.inner_radius
+    surface = np.pi * (2.0 * radius**2 + state.apex_inner**2)
+    return SensorDynamics(
+        GasVolume(state.cavity_volume, surface),
+        GasLine(tuple(elements), air),
+        free_compliance(evaluation.prediction, state) if compliance is None else compliance,
+        () if series is None else tuple(series.excess.tolist()),
+        () if series is None else series.times,
+    )
+
+
+def free_compliance(prediction: SensorPrediction, state: SensorState) -> float:
+    """Volume that the inflated dome yields to a pressure inside, without contact, mm3/MPa.
+
+    At first contact it is also that under a constant force: the plate rides on the dome.
+    """
+    curve = prediction.inflation
+    slope = float(np.interp(state.cavity_volume, curve.volume, np.gradient(curve.pressure, curve.volume)))
+    return 1.0 / max(slope, 1e-12)
+
+
+def gauge_rate_Hz(evaluation: Evaluation) -> float | None:
+    """Readings a second of the design's gauge; None without one, or where it is unknown."""
+    gauge = evaluation.scene.gauge
+    rate = None if gauge is None else gauge.rate_Hz
+    return None if rate is None else rate.nominal
+
+
+def dynamics_document(figures: SensorBandwidth) -> dict[str, Any]:
+    """The figures as data, see docs/dynamics.md."""
+    note = {} if figures.note is None else {"note": figures.note}
+    return {
+        "basis": list(BASIS),
+        "line": [
+            {
+                "part": piece.name,
+                "length_mm": piece.length,
+                "inner_diameter_mm": 2.0 * piece.radius,
+                "volume_mL": piece.volume / ML,
+            }
+            for piece in figures.pieces
+        ],
+        "end_volume_mL": figures.end_volume / ML,
+        "gauge_rate_Hz": figures.rate_Hz,
+        **note,
+        "states": [_state_document(state, figures.rate_Hz) for state in figures.states],
+    }
+
+
+BASIS = (
+    "small step of force at first contact; laminar flow, linear, rigid round tube, air at 20 C with walls of constant "
+    "temperature; without the mass of the wall and of the object",
+    "gain: reading over that of a slow change; resonance, bandwidth, rise and overshoot with the wall as stiff as it "
+    "is at once",
+)
+
+
+def _state_document(state: DynamicState, rate_Hz: float | None) -> dict[str, Any]:
+    band, step = state.band, state.step
+    usable_Hz, limited = state.usable(rate_Hz)
+    return {
+        "driving_pressure_kPa": state.driving_pressure / KPA,
+        "relaxation_source": state.source,
+        "first_resonance_Hz": band.resonance,
+        "resonance_gain": band.resonance_gain,
+        "bandwidth_3_dB_Hz": usable_Hz,
+        "bandwidth_limited_by": limited,
+        "within_5_percent_Hz": band.within_tolerance,
+        "within_5_percent_limited_by": band.limited_by,
+        "delay_ms": 1e3 * step.delay,
+        "rise_time_ms": 1e3 * step.rise_time,
+        "overshoot_percent": 100.0 * step.overshoot,
+        "fast_gas_over_slow": state.dynamics.at_once().fast_gas,
+        "fast_wall_over_slow": state.dynamics.fast_wall,
+    }
