@@ -12,6 +12,7 @@ _HOMES = {
     "api.search": ("Selection", "select", "sweep"),
     "api.comparison": ("Comparison", "compare"),
     "api.measuring": ("FittedSensor", "calibrate", "characterize", "plan", "scan", "simulate"),
+    "api.signals": ("respond",),
     "api.listing": ("Listing", "calibrations", "designs", "materials", "printers"),
     "errors": ("ComputationError", "InputError", "PneutouchError", "RuleBrokenError"),
 }

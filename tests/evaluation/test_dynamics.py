@@ -24,7 +24,7 @@ def test_the_line_holds_the_dead_volume_of_the_prediction(drawn):
 
 def test_a_greater_dead_volume_lies_behind_the_tube(library):
     one = evaluate("agilus-dome", {"pneumatics.dead_volume_mL": 5.0}, model="atlas", library=library)
-    pieces, end, note = line_of(one)
+    pieces, end, note = line_of(one.assembly, one.sensor)
     assert sum(piece.volume for piece in pieces) + end == pytest.approx(5000.0)
     assert end > 0 and note is None
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pneutouch.evaluation.sheet_data import SpeedData, SpeedState
 from pneutouch.mechanics.line.air import AirState
 from pneutouch.mechanics.line.band import BandFigures, band_figures
 from pneutouch.mechanics.line.cascade import GasLine
@@ -18,8 +19,9 @@ from pneutouch.parts.air_path import AirPiece, air_path
 from pneutouch.units import KPA, ML
 
 if TYPE_CHECKING:
-    from pneutouch.evaluation.evaluate import Evaluation
-    from pneutouch.mechanics import SensorPrediction, SensorState
+    from pneutouch.catalogue import ResolvedDesign
+    from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
+    from pneutouch.parts import Assembly
 
 GAP = "gap"
 """The piece of an air path that is a volume next to the cavity, not a duct."""
@@ -69,25 +71,24 @@ class SensorBandwidth:
     states: tuple[DynamicState, ...]
 
 
-def sensor_bandwidth(evaluation: Evaluation) -> SensorBandwidth:
+def sensor_bandwidth(assembly: Assembly, sensor: Sensor, prediction: SensorPrediction) -> SensorBandwidth:
     """The figures of every state, for a small step of force at first contact."""
-    pieces, end, note = line_of(evaluation)
-    series: tuple[Prony | None, ...] = prony_series(evaluation.scene.membrane_material) or (None,)
+    pieces, end, note = line_of(assembly, sensor)
+    series: tuple[Prony | None, ...] = prony_series(assembly.scene.membrane_material) or (None,)
     states = []
-    for state in evaluation.prediction.states:
+    for state in prediction.states:
         for one in series:
-            dynamics = state_dynamics(evaluation, state, one)
+            dynamics = state_dynamics(assembly, sensor, state, one, free_compliance(prediction, state))
             source = None if one is None else one.source
             figures = band_figures(dynamics), step_figures(dynamics)
             states.append(DynamicState(state.driving_pressure, source, dynamics, *figures))
-    return SensorBandwidth(pieces, end, note, gauge_rate_Hz(evaluation), tuple(states))
+    return SensorBandwidth(pieces, end, note, gauge_rate_Hz(assembly.scene), tuple(states))
 
 
-def line_of(evaluation: Evaluation) -> tuple[tuple[AirPiece, ...], float, str | None]:
+def line_of(assembly: Assembly, sensor: Sensor) -> tuple[tuple[AirPiece, ...], float, str | None]:
     """The path as drawn, the gas behind it (mm3), and a note where the stated dead volume is less than the path's."""
-    assembly = evaluation.assembly
     pieces = air_path(assembly.scene, assembly.layout)
-    drawn, stated = sum(piece.volume for piece in pieces), evaluation.sensor.gas.dead_volume
+    drawn, stated = sum(piece.volume for piece in pieces), sensor.gas.dead_volume
     if stated >= drawn * (1.0 - _SAME):
         return pieces, max(0.0, stated - drawn) if stated > drawn * (1.0 + _SAME) else 0.0, None
     note = (
@@ -98,22 +99,22 @@ def line_of(evaluation: Evaluation) -> tuple[tuple[AirPiece, ...], float, str | 
 
 
 def state_dynamics(
-    evaluation: Evaluation, state: SensorState, series: Prony | None, compliance: float | None = None
+    assembly: Assembly, sensor: Sensor, state: SensorState, series: Prony | None, compliance: float
 ) -> SensorDynamics:
-    """A state for small changes; ``compliance`` (mm3/MPa) of the wall, None: that of the free inflated dome."""
-    pieces, end, _ = line_of(evaluation)
-    air = AirState(evaluation.sensor.gas.ambient_pressure + state.driving_pressure)
+    """A state for small changes, with a ``compliance`` of the wall in mm3/MPa."""
+    pieces, end, _ = line_of(assembly, sensor)
+    air = AirState(sensor.gas.ambient_pressure + state.driving_pressure)
     elements: list[Duct | GasVolume] = [
         GasVolume(piece.volume) if piece.name == GAP else Duct(piece.length, piece.radius) for piece in pieces
     ]
     if end:
         elements.append(GasVolume(end))
-    radius = evaluation.assembly.layout.inner_radius
+    radius = assembly.layout.inner_radius
     surface = np.pi * (2.0 * radius**2 + state.apex_inner**2)
     return SensorDynamics(
         GasVolume(state.cavity_volume, surface),
         GasLine(tuple(elements), air),
-        free_compliance(evaluation.prediction, state) if compliance is None else compliance,
+        compliance,
         () if series is None else tuple(series.excess.tolist()),
         () if series is None else series.times,
     )
@@ -129,9 +130,9 @@ def free_compliance(prediction: SensorPrediction, state: SensorState) -> float:
     return 1.0 / max(slope, 1e-12)
 
 
-def gauge_rate_Hz(evaluation: Evaluation) -> float | None:
+def gauge_rate_Hz(scene: ResolvedDesign) -> float | None:
     """Readings a second of the design's gauge; None without one, or where it is unknown."""
-    gauge = evaluation.scene.gauge
+    gauge = scene.gauge
     rate = None if gauge is None else gauge.rate_Hz
     return None if rate is None else rate.nominal
 
@@ -183,3 +184,16 @@ def _state_document(state: DynamicState, rate_Hz: float | None) -> dict[str, Any
         "fast_gas_over_slow": state.dynamics.at_once().fast_gas,
         "fast_wall_over_slow": state.dynamics.fast_wall,
     }
+
+
+def speed_data(figures: SensorBandwidth) -> SpeedData:
+    """What a datasheet shows of it: every driving pressure in the first series of relaxation data."""
+    first = {state.driving_pressure: state for state in reversed(figures.states)}
+    rows = []
+    for state in (first[pressure] for pressure in sorted(first)):
+        band, step = state.band, state.step
+        usable_Hz, limit = state.usable(figures.rate_Hz)
+        within = band.within_tolerance, band.limited_by
+        front = step.delay, step.rise_time, step.overshoot
+        rows.append(SpeedState(state.driving_pressure, band.resonance, usable_Hz, limit, *within, *front))
+    return SpeedData(tuple(rows), figures.rate_Hz, figures.note)

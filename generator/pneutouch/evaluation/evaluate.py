@@ -127,7 +127,7 @@ class Evaluation:
         """How fast the sensor reads; see docs/dynamics.md."""
         from pneutouch.evaluation.dynamics import sensor_bandwidth
 
-        return sensor_bandwidth(self)
+        return sensor_bandwidth(self.assembly, self.sensor, self.prediction)
 
     @cached_property
     def viscous_runs(self) -> ViscousRuns | str:

@@ -9,6 +9,7 @@ from pneutouch.evaluation.anywhere import contact_chart
 from pneutouch.evaluation.chart_data import ComparedMembrane
 from pneutouch.evaluation.charts import air, tradeoff, tuning
 from pneutouch.evaluation.contact_object import object_section
+from pneutouch.evaluation.dynamics import speed_data
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.gauge import sheet_gauge, zero_drift_kPa_per_K
 from pneutouch.evaluation.pressed import pressed_view
@@ -52,7 +53,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         other_contact=sensor.protocol.other_contact is not None,
         object_section=object_section(sensor),
         pressed=pressed_view(prediction),
-        bandwidth=evaluation.bandwidth,
+        speed=speed_data(evaluation.bandwidth),
     )
     if unknown(sensor, prediction.model) is not None:
         return sheet

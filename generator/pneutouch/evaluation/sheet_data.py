@@ -17,7 +17,6 @@ if TYPE_CHECKING:
         TradeOff,
         TuningChart,
     )
-    from pneutouch.evaluation.dynamics import SensorBandwidth
     from pneutouch.mechanics.prediction import SensorPrediction
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.uncertainty import GasNotes
@@ -138,6 +137,28 @@ class SheetGauge(NamedTuple):
     forces: tuple[DetectableForce, ...]
 
 
+class SpeedState(NamedTuple):
+    """How fast a sensor reads at a driving pressure (MPa): Hz and s, None where there is none; see docs/dynamics.md."""
+
+    driving_pressure: float
+    resonance: float | None
+    bandwidth: float | None
+    bandwidth_limit: str | None
+    within: float | None
+    within_limit: str | None
+    delay: float
+    rise_time: float
+    overshoot: float
+
+
+class SpeedData(NamedTuple):
+    """How fast a sensor reads, by driving pressure; ``rate_Hz`` of the gauge is None where it is unknown."""
+
+    states: tuple[SpeedState, ...]
+    rate_Hz: float | None
+    note: str | None
+
+
 @dataclass(frozen=True)
 class SheetData:
     """Everything a datasheet is drawn from.
@@ -167,7 +188,7 @@ class SheetData:
         object_section: Section (n, 2) in mm, r and z, of the object that presses it, at first contact with the unloaded
             dome; None for a plate.
         pressed: The pressed dome in three dimensions; None by a model without its surface.
-        bandwidth: How fast the sensor reads; None where that was not computed.
+        speed: How fast the sensor reads; None where that was not computed.
     """
 
     scene: ResolvedDesign
@@ -193,4 +214,4 @@ class SheetData:
     other_contact: bool = False
     object_section: Array | None = None
     pressed: PressedView | None = None
-    bandwidth: SensorBandwidth | None = None
+    speed: SpeedData | None = None

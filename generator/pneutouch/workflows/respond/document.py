@@ -47,7 +47,7 @@ def document(run: RespondRun) -> dict[str, Any]:
         "duration_s": load.seconds,
         "seed": run.seed,
         "gauge": scene.design.pneumatics.gauge,
-        "gauge_rate_Hz": gauge_rate_Hz(run.evaluation),
+        "gauge_rate_Hz": gauge_rate_Hz(run.evaluation.scene),
         "notes": _notes(run),
         "states": [_state(run, number, signal) for number, signal in enumerate(run.signals)],
         "basis": [*CHAIN, *BASIS],
@@ -58,7 +58,7 @@ def document(run: RespondRun) -> dict[str, Any]:
 def _notes(run: RespondRun) -> list[str]:
     scene, load = run.evaluation.scene, run.load
     notes = [] if run.evaluation.bandwidth.note is None else [run.evaluation.bandwidth.note]
-    rate_Hz = gauge_rate_Hz(run.evaluation)
+    rate_Hz = gauge_rate_Hz(run.evaluation.scene)
     if scene.gauge is None:
         notes.append("the design names no gauge (pneumatics.gauge): nothing is sampled")
     elif rate_Hz is None:
@@ -83,7 +83,6 @@ def _state(run: RespondRun, number: int, signal: StateSignal) -> dict[str, Any]:
         "bandwidth_3_dB_Hz": band.bandwidth,
         "within_5_percent_Hz": band.within_tolerance,
         "within_5_percent_limited_by": band.limited_by,
-        "wall_compliance_mm3_per_kPa": signal.dynamics.wall_compliance * KPA,
     }
     if load.frequency is not None:
         gain, lag = signal.at_frequency(load.frequency)
@@ -105,8 +104,8 @@ def write_respond(run: RespondRun, out: Path) -> Path:
             columns = {"time_s": signal.samples.time, "gauge_pressure_kPa": signal.samples.reading / KPA}
             files[f"samples-{number + 1}.csv"] = _csv(columns)
     load = run.load
-    asked = {"peak": load.peak, "unit": load.unit, "sine_Hz": load.frequency, "duration_s": load.duration}
-    inputs = {**BuildRecipe.of(run.evaluation).inputs(), "load": asked, "seed": run.seed}
+    requested = {"peak": load.peak, "unit": load.unit, "sine_Hz": load.frequency, "duration_s": load.duration}
+    inputs = {**BuildRecipe.of(run.evaluation).inputs(), "load": requested, "seed": run.seed}
     write_folder(folder, with_manifest(files, name, inputs))
     return folder
 

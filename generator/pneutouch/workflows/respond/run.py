@@ -173,7 +173,7 @@ def _signal(
 ) -> StateSignal:
     from scipy.interpolate import PchipInterpolator
 
-    dynamics = state_dynamics(evaluation, state, series, compliance)
+    dynamics = state_dynamics(evaluation.assembly, evaluation.sensor, state, series, compliance)
     band = band_figures(dynamics)
     rate = float(np.clip(_A_PERIOD * max(band.resonance or 0.0, load.frequency or 0.0), _LEAST_RATE, _MOST_RATE))
     count = int(load.seconds * rate)
@@ -200,12 +200,12 @@ def _sampled(evaluation: Evaluation, driving: float, time: Array, rise: Array, s
         return None
     at = np.arange(0.0, time[-1], 1.0 / gauge.rate_Hz.nominal)
     reading = driving + np.interp(at, time, rise)
-    if gauge.noise_kPa is not None:
-        reading = reading + np.random.default_rng(seed).normal(0.0, gauge.noise_kPa.nominal * KPA, at.size)
+    noise_kPa = 0.0 if gauge.noise_kPa is None else gauge.noise_kPa.nominal
+    reading = reading + np.random.default_rng(seed).normal(0.0, noise_kPa * KPA, at.size)
     low_kPa, high_kPa = gauge.gauge_pressures_kPa(evaluation.scene.design.pneumatics.ambient_pressure_kPa)
     beyond = (reading < low_kPa * KPA) | (reading > high_kPa * KPA)
     reading = np.clip(reading, low_kPa * KPA, high_kPa * KPA)
-    if gauge.resolution_kPa is not None and gauge.resolution_kPa.nominal:
-        step = gauge.resolution_kPa.nominal * KPA
-        reading = np.round(reading / step) * step
+    step_kPa = 0.0 if gauge.resolution_kPa is None else gauge.resolution_kPa.nominal
+    if step_kPa:
+        reading = np.round(reading / (step_kPa * KPA)) * (step_kPa * KPA)
     return GaugeSamples(at, reading, int(beyond.sum()))
