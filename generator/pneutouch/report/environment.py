@@ -4,7 +4,6 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.evaluation.sheet_data import SheetData
-from pneutouch.report.speed import speed_rows
 from pneutouch.units import KPA
 
 NOT_TESTED = "not tested"
@@ -13,7 +12,6 @@ NOT_TESTED = "not tested"
 def environment(sheet: SheetData) -> list[list[str]]:
     """Rows of quantity, value and basis."""
     rows = _air(sheet) if sheet.gas is not None else _drift_alone(sheet)
-    rows += speed_rows(sheet)
     material = sheet.scene.membrane_material
     if material.shore_a and material.shore_a_one_year:
         text = f"Shore A {material.shore_a.text()} to {material.shore_a_one_year.text()}"

@@ -11,6 +11,7 @@ from pneutouch.report.certainty import interval, uncertainty_section
 from pneutouch.report.environment import NOT_TESTED, environment
 from pneutouch.report.gauge import detection, gauge_range, gauge_volume
 from pneutouch.report.off_axis import CAPTION, OFF_AXIS, SHEAR, SHEAR_CAPTION, off_axis_rows, shear_rows
+from pneutouch.report.speed import speed_rows
 from pneutouch.units import KPA, ML
 from pneutouch.wording import SIMULATED, counted
 
@@ -62,6 +63,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "captions": _captions(sheet),
         "limits": _limits(sheet),
         "environment": [*detection(sheet), *environment(sheet)],
+        "speed": speed_rows(sheet),
         "reliability": [[what, NOT_TESTED] for what in prose.RELIABILITY],
         "bodies": _bodies(sheet),
         "printing": prose.printing(sheet.scene),
