@@ -227,7 +227,7 @@ def test_the_words_of_a_target_give_it_to_the_command(content, command, monkeypa
         taken.append(target)
         raise InputError("taken")
 
-    monkeypatch.setattr("pneutouch.workflows.select.run.select", take)
+    monkeypatch.setattr("pneutouch.workflows.select.gauged.select", take)
     monkeypatch.setattr("pneutouch.workflows.select.graded.select_graded", take)
     target = Target.model_validate(content)
     said = command("select", *target_words(target))

@@ -1,6 +1,6 @@
 """The gauge on a datasheet: what it reads, and the smallest force that it detects."""
 
-from pneutouch.evaluation.sheet_data import DetectableForce, SheetData
+from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.units import KPA
 
 
@@ -33,24 +33,19 @@ def detection(sheet: SheetData) -> list[list[str]]:
     at = " and ".join(f"{one.driving_pressure / KPA:g}" for one in ends) + " kPa"
     if reading.threshold_kPa is None:
         return [["Smallest force detected", "not known", f"{reading.limited_by} ({reading.title})"]]
-    band = (
-        "" if reading.rate_Hz is None else f", 0 to {reading.rate_Hz / 2:g} Hz ({reading.rate_Hz:g} readings a second)"
-    )
-    detected = f"{reading.threshold_kPa:.2g} kPa of the {reading.title}"
-    basis = f"{reading.criterion}{band}, {detected}, over the sensitivity at {at}"
+    band = "" if reading.rate_Hz is None else f", to {reading.rate_Hz / 2:g} Hz"
     return [
-        ["Smallest force detected", _both([one.force for one in ends], "N"), basis],
         [
-            "the same at first contact",
-            _both([one.at_first_contact for one in ends], "N"),
-            "the untouched dome gives less pressure: power law through the curve's first points",
+            "Smallest force detected",
+            _both([one.force for one in ends], "N"),
+            f"{reading.criterion}{band}, at {at}; limited by {reading.limited_by} ({reading.title})",
         ],
-        ["it is limited by", reading.limited_by, _drift(ends)],
+        [
+            "at first contact",
+            _both([one.at_first_contact for one in ends], "N"),
+            f"warming by {_both([one.warming for one in ends], 'K')} reads as much as the row above",
+        ],
     ]
-
-
-def _drift(ends: tuple[DetectableForce, ...]) -> str:
-    return f"unless the sealed gas warms by {_both([one.warming for one in ends], 'K')}: that reads the same"
 
 
 def _both(values: list[float | None], unit: str) -> str:

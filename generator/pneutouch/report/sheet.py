@@ -190,7 +190,7 @@ def _operating(sheet: SheetData) -> list[list[str]]:
         ["Medium", "air", "", "trapped, isothermal"],
         ["Ambient pressure", f"{design.pneumatics.ambient_pressure_kPa:g}", "kPa", "absolute"],
         ["Dead volume", f"{sheet.prediction.dead_volume / ML:.3f}", "mL", stated],
-        ["Pressure gauge", *gauge_range(sheet)],
+        *([] if sheet.scene.gauge is None else [["Pressure gauge", *gauge_range(sheet)]]),
         ["Contact object", *prose.contact_body(sheet.scene)],
         ["Indentation", f"0 to {design.depth_mm:.2f}", "mm", f"{design.indentation.steps} steps from first contact"],
     ]
