@@ -7,6 +7,7 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "api.design": ("Design", "load"),
+    "api.driving": ("DrivingResult",),
     "api.prediction": ("FigureValue", "PredictedState", "Prediction"),
     "api.results": ("CheckResult", "Result"),
     "api.search": ("Selection", "select", "sweep"),

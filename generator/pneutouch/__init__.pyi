@@ -2,6 +2,7 @@ from pneutouch.api.comparison import Comparison as Comparison
 from pneutouch.api.comparison import compare as compare
 from pneutouch.api.design import Design as Design
 from pneutouch.api.design import load as load
+from pneutouch.api.driving import DrivingResult as DrivingResult
 from pneutouch.api.listing import Listing as Listing
 from pneutouch.api.listing import calibrations as calibrations
 from pneutouch.api.listing import designs as designs

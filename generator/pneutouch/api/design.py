@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
 from pneutouch.api import show
+from pneutouch.api.driving import DrivingResult, tasks_of
 from pneutouch.api.fields import WHERE, changes, keywords, named_by_keyword, plain
 from pneutouch.api.prediction import Prediction
 from pneutouch.api.results import CheckResult
@@ -126,6 +127,46 @@ class Design(show.Shown):
             changed["contact.anywhere"] = True
         with named_by_keyword():
             return Prediction(evaluate(self.source, changed, closure=closure, clamp=clamp, aged=aged, **options))
+
+    def driving_pressure(
+        self,
+        *,
+        sensitivity_kPa_per_N: float | None = None,
+        stiffness_N_per_mm: float | None = None,
+        force_range_N: float | None = None,
+        leak: str | Path | None = None,
+        model: str | None = None,
+        tolerance: float | str | None = None,
+    ) -> DrivingResult:
+        """The driving pressure that gives one figure; see `driving_schedule`. Raises InputError."""
+        figures = {
+            "sensitivity_kPa_per_N": sensitivity_kPa_per_N,
+            "stiffness_N_per_mm": stiffness_N_per_mm,
+            "force_range_N": force_range_N,
+        }
+        task = {key: value for key, value in figures.items() if value is not None}
+        return self.driving_schedule([task], leak=leak, model=model, tolerance=tolerance)
+
+    def driving_schedule(
+        self,
+        tasks: str | Path | Iterable[Mapping[str, Any]],
+        *,
+        leak: str | Path | None = None,
+        model: str | None = None,
+        tolerance: float | str | None = None,
+    ) -> DrivingResult:
+        """The driving pressures for tasks in order: a file, or mappings of a figure's key (and ``name``).
+
+        ``leak`` is a results file of coupons or what `characterize` wrote. Without ``model`` the cheapest that meets
+        ``tolerance`` answers. Raises InputError.
+        """
+        from pneutouch.workflows.driving import driving_schedule, read_leak, schedule_document
+
+        with named_by_keyword():
+            required = tasks_of(tasks)
+            measured = None if leak is None else read_leak(Path(leak), self.name)
+            options = model_options(model or "auto", tolerance)
+            return DrivingResult(schedule_document(driving_schedule(self.source, required, leak=measured, **options)))
 
     def check(self, *, deep: bool = False) -> CheckResult:
         """Check printability and mechanical limits; ``deep`` has pymeshlab inspect the meshes as well."""

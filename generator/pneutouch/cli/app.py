@@ -158,10 +158,36 @@ def predict(
         typer.Option("--aged", help="After a year in light and air: the modulus shifted by the resin's hardness then."),
     ] = False,
     anywhere: AnywhereOption = False,
+    for_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--for",
+            metavar="FIGURE=VALUE",
+            help="Solve for the driving pressure that gives sensitivity, stiffness or force_range; may be repeated.",
+        ),
+    ] = None,
+    tasks: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Solve for the driving pressures of the tasks of a TOML or CSV.")
+    ] = None,
+    leak: Annotated[
+        Path | None, typer.Option(metavar="PATH", help="Measured leak: results of coupons, or of characterize.")
+    ] = None,
     json: JsonOption = False,
 ) -> None:
-    """Predict the figures and their uncertainty."""
+    """Predict the figures and their uncertainty, or the driving pressure that gives one (--for)."""
     with reporting():
+        if for_ or tasks is not None:
+            from pneutouch.cli.driving import report_driving
+            from pneutouch.mechanics.models import model_options
+
+            if monte_carlo:
+                raise InputError("cannot be given with `for_` or `tasks`", key="monte_carlo", value=monte_carlo)
+            options = {"closure": closure, "clamp": clamp, "aged": aged, **model_options(model or "auto", tolerance)}
+            fields, words = changes(set_, calibration, anywhere=anywhere), (set_, calibration)
+            report_driving(design, fields, for_ or [], tasks, leak, words, json=json, **options)
+            return
+        if leak is not None:
+            raise InputError("needs `for_` or `tasks`", key="leak", value=str(leak))
         from pneutouch.evaluation.document import full_document
         from pneutouch.evaluation.evaluate import evaluate
         from pneutouch.mechanics.models import model_options

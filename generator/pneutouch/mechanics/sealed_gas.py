@@ -1,0 +1,83 @@
+"""The gas of an inflated, untouched sensor: what fills it, what a leak and the temperature do to it.
+
+Ideal gas at one temperature behind a wall that gives way: the cavity's volume follows the pressure along the free
+inflation of the dome. Lengths mm, pressures MPa.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.arrays import Array
+
+
+@dataclass(frozen=True, slots=True)
+class SealedGas:
+    """The gas at n driving pressures.
+
+    Attributes:
+        pressure: Driving pressure, gauge, MPa (n,), rising.
+        volume: Cavity volume of the free dome there, mm3 (n,).
+        dead_volume: Volume behind the cavity, mm3.
+        ambient: Ambient pressure, absolute, MPa.
+        rest_volume: Cavity volume of the vented dome, mm3.
+    """
+
+    pressure: Array
+    volume: Array
+    dead_volume: float
+    ambient: float
+    rest_volume: float
+
+    @property
+    def capacity(self) -> Array:
+        """d(p V)/dp with p absolute and V the whole gas volume, mm3 (n,): the gas that one MPa more takes.
+
+        V + V_d + p dV/dp; a rigid cavity has V + V_d. dV/dp is the second-order difference.
+        """
+        give = np.gradient(self.volume, self.pressure, edge_order=2 if self.pressure.size > 2 else 1)
+        return np.asarray(self.volume + self.dead_volume + (self.pressure + self.ambient) * give)
+
+    @property
+    def injected(self) -> Array:
+        """Gas to inject from the vented state, as volume at ambient pressure, mm3 (n,). Isothermal (Boyle)."""
+        absolute = self.pressure + self.ambient
+        return absolute * (self.volume + self.dead_volume) / self.ambient - self.rest_volume - self.dead_volume
+
+    def by_temperature(self, temperature: float) -> Array:
+        """Change of the pressure of the sealed gas with temperature at ``temperature`` (K), MPa/K (n,).
+
+        n R = p V/T and d(p V) = capacity dp: dp/dT = p V/(T capacity), which is p/T in a rigid cavity.
+        """
+        held = (self.pressure + self.ambient) * (self.volume + self.dead_volume)
+        return np.asarray(held / temperature / self.capacity)
+
+    def loss(self, conductance: float) -> Array:
+        """Fall of the pressure by a leak, MPa/s (n,).
+
+        ``conductance`` in mm3/s: gas is lost at conductance times gauge pressure (laminar flow through a fine gap).
+        """
+        return np.asarray(conductance * self.pressure / self.capacity)
+
+    def holding_time(self, conductance: float, start: float, end: float) -> float:
+        """Time in s in which a leak lowers the pressure from ``start`` to ``end``, MPa; infinite without a leak.
+
+        The integral of capacity/(conductance p) over the pressure, with the capacity linear between the states.
+        """
+        if conductance <= 0.0 or end <= 0.0:
+            return float("inf")
+        grid = np.geomspace(end, start, _PANELS + 1)
+        rate = np.interp(grid, self.pressure, self.capacity)
+        # In ln p the integrand is the capacity alone, which the trapezium rule takes well.
+        return float(np.trapezoid(rate, np.log(grid)) / conductance)
+
+
+_PANELS = 256
+
+
+def conductance_of_cap(rate: float, pressure: float, volume: float) -> float:
+    """Conductance of a leak, mm3/s, by the fall of pressure (MPa/s) at a mean gauge pressure (MPa) in a rigid volume
+    (mm3)."""
+    return rate * volume / pressure

@@ -1,0 +1,119 @@
+"""Tasks of a sensor: the figure that each requires, and the files that list them."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from pneutouch.errors import InputError, nearest
+from pneutouch.spec.design import Printable
+from pneutouch.spec.fields import Table, declaration, number
+from pneutouch.spec.files import read_bytes
+from pneutouch.spec.read import read_toml, validate
+
+TASK_FIGURES = {
+    "sensitivity": "sensitivity_kPa_per_N",
+    "stiffness": "stiffness_N_per_mm",
+    "force_range": "force_range_N",
+}
+"""Keys of the figures that a driving pressure is set for, by their short names."""
+
+
+class DrivingTask(Table):
+    """[[task]]: one figure that a task requires, and the task's name."""
+
+    name: Printable | None = Field(default=None, max_length=80, description="Name of the task; may be left out.")
+    sensitivity_kPa_per_N: float | None = number(
+        None, unit="kPa/N", low=1e-4, high=1e4, help="Slope of pressure rise over contact force."
+    )
+    stiffness_N_per_mm: float | None = number(
+        None, unit="N/mm", low=1e-6, high=1e5, help="Mean contact force over indentation in the range."
+    )
+    force_range_N: float | None = number(None, unit="N", low=1e-4, high=1e5, help="Contact force at the range's end.")
+
+    @model_validator(mode="after")
+    def _one_figure(self) -> DrivingTask:
+        given = [key for key in TASK_FIGURES.values() if getattr(self, key) is not None]
+        if len(given) != 1:
+            stated = f"{' and '.join(given)} are given" if given else "no figure is given"
+            raise ValueError(f"{stated}; a task requires exactly one of {', '.join(TASK_FIGURES.values())}")
+        return self
+
+    @property
+    def figure(self) -> str:
+        """Key of the required figure."""
+        return next(key for key in TASK_FIGURES.values() if getattr(self, key) is not None)
+
+    @property
+    def value(self) -> float:
+        """The required value, in the unit of its key."""
+        return float(getattr(self, self.figure))
+
+
+class TaskFile(Table):
+    """A whole file of tasks, in the order in which they are done."""
+
+    task: Annotated[list[DrivingTask], Field(min_length=1, max_length=50)] = Field(description="a list of tasks")
+
+
+def parse_task(text: str) -> DrivingTask:
+    """The task of a text ``sensitivity=1.8``, by short or by full key. Raises InputError."""
+    key, equals, value = (part.strip() for part in text.partition("="))
+    keys = TASK_FIGURES | {full: full for full in TASK_FIGURES.values()}
+    if not equals:
+        raise InputError("write FIGURE=VALUE, such as sensitivity=1.8", key="for", value=text)
+    if key not in keys:
+        raise InputError(f"unknown figure.{nearest(key, keys)}", key="for", value=text)
+    unit = declaration(DrivingTask, keys[key]).unit
+    try:
+        number_given = float(value)
+    except ValueError:
+        raise InputError("the value must be a number", key="for", value=text, remedy=f"its unit is {unit}") from None
+    try:
+        return validate(DrivingTask, {keys[key]: number_given}, "")
+    except InputError as error:
+        raise InputError(error.problem, key="for", value=text) from None
+
+
+def read_tasks(path: Path) -> list[DrivingTask]:
+    """The tasks of a TOML file (tables ``[[task]]``) or of a CSV file (columns of the same keys). Raises InputError."""
+    if path.suffix.lower() != ".csv":
+        return validate(TaskFile, read_toml(path), str(path)).task
+    rows = _csv_rows(path)
+    return [_of_row(row, f"{path}: line {line}") for line, row in rows]
+
+
+def _csv_rows(path: Path) -> list[tuple[int, dict[str, str]]]:
+    """Line and cells that are not empty of every row. Raises InputError for a header that holds other keys."""
+    try:
+        text = read_bytes(path, kind="CSV file").decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(f"not UTF-8 text (byte {error.start})", file=path) from None
+    try:
+        reader = csv.reader(text.splitlines(), strict=True)
+        lines = [(reader.line_num, [cell.strip() for cell in row]) for row in reader if any(map(str.strip, row))]
+    except csv.Error as error:
+        raise InputError(f"no CSV table: {error}", file=path) from None
+    if len(lines) < 2:
+        raise InputError("holds no task", file=path, remedy="give a header and a row for each task")
+    head, known = lines[0][1], list(DrivingTask.model_fields)
+    for column in head:
+        if column not in known:
+            raise InputError(f"unknown column.{nearest(column, known)}", file=path, value=column)
+    for line, row in lines[1:]:
+        if len(row) != len(head):
+            raise InputError(f"line {line} has {len(row)} cells, the header {len(head)}", file=path)
+    return [(line, {k: cell for k, cell in zip(head, row, strict=True) if cell}) for line, row in lines[1:]]
+
+
+def _of_row(row: dict[str, str], where: str) -> DrivingTask:
+    content: dict[str, Any] = dict(row)
+    for key in content.keys() & set(TASK_FIGURES.values()):
+        try:
+            content[key] = float(row[key])
+        except ValueError:
+            raise InputError("must be a number", file=where, key=key, value=row[key]) from None
+    return validate(DrivingTask, content, where)

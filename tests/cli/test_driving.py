@@ -1,0 +1,81 @@
+"""``pneutouch predict --for`` as a user meets it."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+import pneutouch as pt
+
+ZERO = ("--model", "atlas")
+
+
+def test_for_answers_with_pressure_band_and_next_step(command):
+    done = command("predict", "paper-dome", "--for", "sensitivity=2.1", *ZERO)
+    assert done.returncode == 0, done.stderr
+    (row,) = (line for line in done.stdout.splitlines() if line.startswith("-  "))
+    assert "sensitivity 2.1 kPa/N" in row and " 13.25 " in row
+    last = done.stderr.splitlines()[-1]
+    assert last == "next: pneutouch predict paper-dome --set 'pneumatics.driving_pressures_kPa=[13.25]'"
+    again = command("predict", "paper-dome", "--set", "pneumatics.driving_pressures_kPa=[13.25]", *ZERO, "--json")
+    assert json.loads(again.stdout)["states"][0]["sensitivity_kPa_per_N"] == pytest.approx(2.1, rel=1e-3)
+
+
+def test_a_figure_out_of_reach_ends_with_code_1_and_its_range(command):
+    done = command("predict", "paper-dome", "--for", "sensitivity=3.5", *ZERO)
+    assert done.returncode == 1, done.stderr
+    assert "sensitivity by pressure: 1.445 (at 38.8 kPa) to 2.323 (at 0 kPa) kPa/N" in done.stdout
+    assert "no driving pressure gives it" in done.stdout
+    assert "to change offline: membrane.wall_thickness_mm 1.5 to" in done.stdout
+    assert done.stderr.splitlines()[-1] == "next: pneutouch select --sensitivity 3.5 --base paper-dome"
+
+
+def test_tasks_of_a_file_and_a_leak_give_a_schedule(command, tmp_path):
+    (tmp_path / "tasks.csv").write_text("name,stiffness_N_per_mm\nhold,4.2\nfeel,4.6\n")
+    (tmp_path / "results.toml").write_text(
+        'lab = "Bench"\ndate = 2026-11-21\n[leak-cap.paper-dome]\nstart_kPa = [20.0, 20.1]\nend_kPa = [19.5, 19.6]\n'
+    )
+    words = ("--tasks", "tasks.csv", "--leak", "results.toml", *ZERO, "--json")
+    done = command("predict", "paper-dome", *words)
+    assert done.returncode == 0, done.stderr
+    document = json.loads(done.stdout)
+    assert [task["task"] for task in document["tasks"]] == ["hold", "feel"]
+    assert document["leak"]["rate_kPa_per_min"] == pytest.approx(0.05)
+    assert all(task["gas"]["hold_s"] > 0 for task in document["tasks"])
+    assert document["tasks"][1]["gas"]["moved_mL"] < 0
+    schedule = pt.load("paper-dome").driving_schedule(
+        tmp_path / "tasks.csv", leak=tmp_path / "results.toml", model="atlas"
+    )
+    assert {**schedule.to_dict(), "leak": None} == {**document, "leak": None}
+
+
+def test_from_python_one_figure_gives_one_pressure():
+    result = pt.load("paper-dome").driving_pressure(stiffness_N_per_mm=4.3, model="atlas")
+    low, high = result.band_kPa
+    assert result.reached and low <= result.driving_pressure_kPa <= high
+    assert "stiffness_N_per_mm=4.3" in repr(result)
+    with pytest.raises(pt.InputError, match="no figure is given"):
+        pt.load("paper-dome").driving_pressure()
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--for", "stif=2"), "error: --for stif=2: unknown figure. Did you mean stiffness?"),
+        (("--for", "stiffness=2", "--monte-carlo", "9"), "error: --monte-carlo 9: cannot be given with --for or"),
+        (("--leak", "x.toml"), "error: --leak x.toml: needs --for or --tasks"),
+        (("--tasks", "none.csv"), "error: none.csv: no such file"),
+        (("--for", "stiffness=2", "--leak", "none.toml"), "error: none.toml: no such file"),
+        (("--for", "stiffness=2", "--leak", "other.toml"), "error: other.toml: leak-cap.paper-dome: no leak of this"),
+        (("--for", "stiffness=2", "--leak", "bad.json"), "error: bad.json: not as characterize writes it"),
+    ],
+)
+def test_wrong_words_are_one_clear_error(command, tmp_path, words, message):
+    (tmp_path / "other.toml").write_text(
+        'lab = "B"\ndate = 2026-11-21\n[leak-cap.long-tube]\nstart_kPa = [2]\nend_kPa = [1]\n'
+    )
+    (tmp_path / "bad.json").write_text("[]")
+    done = command("predict", "paper-dome", *words, *ZERO)
+    assert done.returncode == 2 and done.stdout == ""
+    assert done.stderr.splitlines()[-1].startswith(message)
