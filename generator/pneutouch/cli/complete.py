@@ -33,6 +33,11 @@ def coupon_names(incomplete: str) -> list[str]:
     return [f"{before}{comma}{name}" for name in COUPON_NAMES if name.startswith(word)]
 
 
+def simulators(incomplete: str) -> list[str]:
+    """Completes the name of a simulator."""
+    return [name for name in ("mujoco", "urdf") if name.startswith(incomplete)]
+
+
 def assignment(incomplete: str) -> list[str]:
     """Completes ``table.key=``, and after it a name where the key takes one."""
     from pneutouch.spec.design import DesignFile

@@ -1,6 +1,10 @@
 """``pneutouch export-reader``: the sensor's force over pressure, for microcontrollers, for Python and as data."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Annotated, Any
+
+import typer
 
 from pneutouch.cli.app import (
     CalibrationOption,
@@ -15,6 +19,7 @@ from pneutouch.cli.app import (
     print_json,
     reporting,
 )
+from pneutouch.cli.complete import simulators
 from pneutouch.cli.terminal import echo, notify
 
 
@@ -25,6 +30,12 @@ def export_reader(
     calibration: CalibrationOption = None,
     model: ModelOption = None,
     tolerance: ToleranceOption = None,
+    simulator: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME", help="Write a model for a simulator instead: mujoco or urdf.", autocompletion=simulators
+        ),
+    ] = None,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
 ) -> None:
@@ -35,8 +46,11 @@ def export_reader(
         from pneutouch.mechanics.models import model_options
         from pneutouch.workflows.reader import make_reader, write_reader
 
+        options = model_options(model or (None if tolerance else "auto"), tolerance)
+        if simulator is not None:
+            _export_simulator(design, changes(set_, calibration), simulator, out, options, json=json)
+            return
         with bar("tabulating the sensor"):
-            options = model_options(model or (None if tolerance else "auto"), tolerance)
             result = make_reader(evaluate(design, changes(set_, calibration), **options))
             folder = write_reader(result, out)
         if result.note is not None:
@@ -48,3 +62,23 @@ def export_reader(
 
             echo(reader_text(result.document))
             echo(f"\n{folder}")
+
+
+def _export_simulator(
+    design: str, changed: dict[str, Any], simulator: str, out: Path, options: Mapping[str, Any], *, json: bool
+) -> None:
+    """Write the model of a simulator and what it holds."""
+    from pneutouch.cli.progress import bar
+    from pneutouch.evaluation.evaluate import evaluate
+    from pneutouch.workflows.simulator import make_simulator, write_simulator
+
+    with bar("tabulating the press"):
+        result = make_simulator(evaluate(design, changed, **options), simulator)
+        folder = write_simulator(result, out)
+    if json:
+        print_json({**result.document, "folder": str(folder)})
+    else:
+        from pneutouch.cli.simulator_text import simulator_text
+
+        echo(simulator_text(result.document))
+        echo(f"\n{folder}")

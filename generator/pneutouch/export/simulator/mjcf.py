@@ -1,0 +1,112 @@
+"""A sensor as MuJoCo's MJCF, with the module that gives its joint the force of the dome."""
+
+from __future__ import annotations
+
+import pprint
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+from pneutouch.export.scene import stl
+from pneutouch.export.simulator.inertia import RigidInertia
+from pneutouch.export.simulator.model import DAMPING_SHARE, INERTIA_SHARE, TIME_STEP, PressTable, SimulatedSensor
+from pneutouch.export.simulator.xml_text import add, vector, xml_document
+from pneutouch.rounding import rounded
+
+_DIGITS = 9
+
+_CONTACT = {"solref": f"{2 * TIME_STEP:g} 1", "solimp": "0.9999 0.9999 0.001"}
+"""As stiff as the time step allows, and nearly rigid: what gives way is the joint."""
+
+
+def mjcf_files(sensor: SimulatedSensor) -> dict[str, bytes]:
+    """The model, its module and its meshes, by their paths in the folder."""
+    meshes = {f"meshes/{body.name}.stl": stl(body) for body in sensor.bodies}
+    return {f"{sensor.name}.xml": mjcf(sensor), "dome_force.py": module(sensor), **meshes}
+
+
+def module(sensor: SimulatedSensor) -> bytes:
+    """The callbacks with the table of the sensor, as a module that needs MuJoCo alone."""
+    source = (Path(__file__).parent / "dome_force.py").read_text(encoding="utf-8")
+    table = pprint.pformat(dome_table(sensor), width=118, compact=True, sort_dicts=False)
+    usage = (
+        '\n\ndef install(model: Any, driving_pressure_kPa: float | None = None, prefix: str = "") -> DomeForce:\n'
+        '    """Give a model that holds this sensor the force and the pressure of its dome; see `install_dome`."""\n'
+        "    return install_dome(model, TABLE, driving_pressure_kPa, prefix)\n"
+    )
+    return f"{source}\n\nTABLE: dict[str, Any] = {table}\n{usage}".encode()
+
+
+def dome_table(sensor: SimulatedSensor) -> dict[str, Any]:
+    """The table as the module reads it."""
+    return rounded(
+        {
+            "name": sensor.name,
+            "radius_m": sensor.radius,
+            "inertia_share": INERTIA_SHARE,
+            "damping_share": DAMPING_SHARE,
+            "states": [_state(table) for table in sensor.tables],
+        },
+        _DIGITS,
+    )
+
+
+def _state(table: PressTable) -> dict[str, Any]:
+    return {
+        "driving_pressure_kPa": table.driving_pressure_kPa,
+        "apex_m": table.apex,
+        "indentation_m": table.indentation.tolist(),
+        "force_N": table.force.tolist(),
+        "force_slope_N_per_m": table.force_slope.tolist(),
+        "pressure_kPa": table.pressure_kPa.tolist(),
+        "pressure_slope_kPa_per_m": table.pressure_slope_kPa_per_m.tolist(),
+    }
+
+
+def mjcf(sensor: SimulatedSensor) -> bytes:
+    """The model: a base with everything that does not move, and the dome as a sphere on a sliding joint.
+
+    The inertia of both together is that of the bodies, without driving pressure and force.
+    """
+    name, first = sensor.name, sensor.tables[0]
+    root = ElementTree.Element("mujoco", model=name)
+    add(root, "compiler", angle="radian", meshdir="meshes")
+    add(root, "option", timestep=TIME_STEP, integrator="implicitfast")
+    assets = add(root, "asset")
+    for body in sensor.bodies:
+        add(assets, "mesh", name=f"{name}_{body.name}", file=f"{body.name}.stl", scale="0.001 0.001 0.001")
+    world = add(root, "worldbody")
+    base = add(world, "body", name=name)
+    _inertial(base, sensor.inertia.without(sensor.moving))
+    for body in sensor.bodies:
+        # The convex hull of the membrane would hold the dome, which moves.
+        contact = {"contype": 0, "conaffinity": 0, "group": 2} if body.role == "membrane" else {"group": 1}
+        add(base, "geom", name=f"{name}_{body.name}", type="mesh", mesh=f"{name}_{body.name}", **contact)
+    _dome(base, sensor, first)
+    # MuJoCo leaves out contacts with the parent, but not where that is fixed to the world.
+    add(add(root, "contact"), "exclude", body1=name, body2=f"{name}_dome")
+    outputs = add(root, "sensor")
+    add(outputs, "jointpos", name=f"{name}_indentation_m", joint=f"{name}_indentation")
+    for what in ("force_N", "pressure_kPa", "status"):
+        add(outputs, "user", name=f"{name}_{what}", dim=1, needstage="pos")
+    numbers = add(root, "custom")
+    add(numbers, "numeric", name=f"{name}_driving_pressure_kPa", data=first.driving_pressure_kPa)
+    return xml_document(root)
+
+
+def _dome(base: ElementTree.Element, sensor: SimulatedSensor, table: PressTable) -> None:
+    name, centre = sensor.name, table.apex - sensor.radius
+    dome = add(base, "body", name=f"{name}_dome", pos=vector((0.0, 0.0, centre)))
+    moving = sensor.moving
+    at = (0.0, 0.0, float(moving.centre[2]) - centre)
+    add(dome, "inertial", pos=vector(at), mass=moving.mass, diaginertia=vector(moving.about_centre.diagonal()))
+    joint = f"{name}_indentation"
+    add(dome, "joint", name=joint, type="slide", axis="0 0 -1", armature=sensor.armature, damping=sensor.damping)
+    add(dome, "geom", name=f"{name}_dome", type="sphere", size=sensor.radius, rgba="0.3 0.5 0.7 0.5", **_CONTACT)
+    add(dome, "site", name=f"{name}_contact", pos=vector((0.0, 0.0, sensor.radius)), size="0.0005")
+
+
+def _inertial(body: ElementTree.Element, inertia: RigidInertia) -> None:
+    tensor = inertia.about_centre
+    full = [tensor[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
+    add(body, "inertial", pos=vector(inertia.centre), mass=inertia.mass, fullinertia=vector(full))

@@ -1,0 +1,129 @@
+"""What a simulator needs of a sensor, in metres, kilograms and newtons; pressures in kPa as everywhere."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.body import Body, Solid
+from pneutouch.export.simulator.inertia import RigidInertia, ball_inertia, inertia_of
+
+TIME_STEP = 0.002
+"""s. MuJoCo's default."""
+
+INERTIA_SHARE = 0.5
+"""Inertia of the joint in greatest stiffness times time step squared. An explicit spring is stable from 0.25 on."""
+
+DAMPING_SHARE = 0.2
+"""Damping of the joint in time step times greatest stiffness. Our choice: the wall's own damping is not known."""
+
+
+@dataclass(frozen=True)
+class PressTable:
+    """A press at one driving pressure: nodes of a cubic Hermite spline over the indentation.
+
+    Attributes:
+        driving_pressure_kPa: Pressure before contact.
+        apex: Height of the dome's outer apex over its base plane, m.
+        indentation: Nodes, m (n,), from 0 to the end of the range.
+        force, force_slope: N and N/m at the nodes (n,).
+        pressure_kPa, pressure_slope_kPa_per_m: Gauge pressure and its slope at the nodes (n,).
+    """
+
+    driving_pressure_kPa: float
+    apex: float
+    indentation: Array
+    force: Array
+    force_slope: Array
+    pressure_kPa: Array
+    pressure_slope_kPa_per_m: Array
+
+    @property
+    def stiffest(self) -> float:
+        """Greatest slope of the force at the nodes, N/m."""
+        return float(self.force_slope.max())
+
+
+def press_table(
+    driving_pressure_kPa: float, apex_mm: float, indentation_mm: Array, force: Array, rise_kPa: Array
+) -> PressTable:
+    """The table of a curve: monotone between its points (Fritsch and Carlson), as they are in `PchipInterpolator`."""
+    from scipy.interpolate import PchipInterpolator
+
+    depth = 1e-3 * indentation_mm
+    pressure_kPa = driving_pressure_kPa + rise_kPa
+    slopes = [PchipInterpolator(depth, values).derivative()(depth) for values in (force, pressure_kPa)]
+    return PressTable(driving_pressure_kPa, 1e-3 * apex_mm, depth, force, slopes[0], pressure_kPa, slopes[1])
+
+
+@dataclass(frozen=True)
+class SimulatedSensor:
+    """A sensor as simulators take it.
+
+    Attributes:
+        name: Name of the design, of its link and body.
+        bodies: Print meshes, mm, in the frame of the base plane: z outwards along the axis of the dome.
+        inertia: Of all bodies together.
+        moving: The share of it that moves with the apex; see `moving_share`.
+        radius: Outer radius of the unloaded dome, m.
+        rear: Height of the rearmost face, m: below the base plane.
+        tables: One a driving pressure, rising.
+    """
+
+    name: str
+    bodies: tuple[Body, ...]
+    inertia: RigidInertia
+    moving: RigidInertia
+    radius: float
+    rear: float
+    tables: tuple[PressTable, ...]
+
+    @property
+    def stiffest(self) -> float:
+        """Greatest stiffness of all tables, N/m."""
+        return max(table.stiffest for table in self.tables)
+
+    @property
+    def armature(self) -> float:
+        """Inertia of the joint in addition to the moving mass that makes it stable at `TIME_STEP`, kg."""
+        return max(0.0, INERTIA_SHARE * self.stiffest * TIME_STEP**2 - self.moving.mass)
+
+    @property
+    def damping(self) -> float:
+        """Damping of the joint at `TIME_STEP`, N s/m."""
+        return DAMPING_SHARE * self.stiffest * TIME_STEP
+
+
+def simulated_sensor(
+    name: str,
+    bodies: tuple[Body, ...],
+    solids: tuple[Solid, ...],
+    dome: tuple[float, float, float],
+    tables: tuple[PressTable, ...],
+) -> SimulatedSensor:
+    """A sensor of bodies; ``dome`` is inner radius and wall in mm, and the density of the wall in g/cm3."""
+    inner, wall, density = dome
+    rear = 1e-3 * min(float(body.bounds[0, 2]) for body in bodies)
+    return SimulatedSensor(
+        name,
+        bodies,
+        inertia_of(bodies, solids),
+        moving_share(1e-3 * inner, 1e-3 * wall, 1e3 * density),
+        1e-3 * (inner + wall),
+        rear,
+        tables,
+    )
+
+
+def moving_share(inner: float, wall: float, density: float) -> RigidInertia:
+    """The mass that moves with the apex: a third of the wall's (m, kg/m3).
+
+    A wall whose points move in proportion to their height z has the kinetic energy of the mass of z2/h2, and over a
+    hemispherical shell z is evenly spread (Archimedes): 1/3. It sits at the centroid of the shell.
+    """
+    outer = inner + wall
+    mass = density * 2.0 / 3.0 * np.pi * (outer**3 - inner**3)
+    height = 3.0 / 8.0 * (outer**4 - inner**4) / (outer**3 - inner**3)
+    return ball_inertia(mass / 3.0, np.array([0.0, 0.0, height]), 0.5 * outer)
