@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo test pytest lint review ratios check-slow chart table-s1-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page contact-table lock clean
+.PHONY: venv demo test pytest lint review ratios check-slow chart table-s1-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page contact-table simulator-page lock clean
 
 venv: $(VENV)/.dev
 
@@ -102,3 +102,7 @@ contact-table: $(VENV)/.dev
 # Voxel stacks: the dithers and the rasters, measured; writes docs/voxels.md and its pictures.
 voxel-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.voxel_page
+
+# The exported model pressed in MuJoCo; writes the chart and the table of docs/simulators.md.
+simulator-page: $(VENV)/.dev
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.simulator_page

@@ -23,12 +23,12 @@ def test_for_answers_with_pressure_band_and_next_step(command):
 
 
 def test_a_figure_out_of_reach_ends_with_code_1_and_its_range(command):
-    done = command("predict", "paper-dome", "--for", "sensitivity=3.5", *ZERO)
+    done = command("predict", "paper-dome", "--for", "sensitivity=2.5", *ZERO)
     assert done.returncode == 1, done.stderr
     assert "sensitivity by pressure: 1.445 (at 38.8 kPa) to 2.323 (at 0 kPa) kPa/N" in done.stdout
     assert "no driving pressure gives it" in done.stdout
     assert "to change offline: membrane.wall_thickness_mm 1.5 to" in done.stdout
-    assert done.stderr.splitlines()[-1] == "next: pneutouch select --sensitivity 3.5 --base paper-dome"
+    assert done.stderr.splitlines()[-1] == "next: pneutouch select --sensitivity 2.5 --base paper-dome"
 
 
 def test_tasks_of_a_file_and_a_leak_give_a_schedule(command, tmp_path):
@@ -73,7 +73,7 @@ def test_from_python_one_figure_gives_one_pressure():
 )
 def test_wrong_words_are_one_clear_error(command, tmp_path, words, message):
     (tmp_path / "other.toml").write_text(
-        'lab = "B"\ndate = 2026-11-21\n[leak-cap.long-tube]\nstart_kPa = [2]\nend_kPa = [1]\n'
+        'lab = "B"\ndate = 2026-11-21\n[leak-cap.long-tube]\nstart_kPa = [2, 2]\nend_kPa = [1, 1]\n'
     )
     (tmp_path / "bad.json").write_text("[]")
     done = command("predict", "paper-dome", *words, *ZERO)

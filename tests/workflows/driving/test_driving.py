@@ -23,7 +23,7 @@ def curves(library):
 @pytest.fixture(scope="module")
 def schedule(library):
     tasks = [DrivingTask(name="grasp", stiffness_N_per_mm=4.2), DrivingTask(sensitivity_kPa_per_N=2.2)]
-    tasks += [DrivingTask(sensitivity_kPa_per_N=3.0), DrivingTask(force_range_N=28.0)]
+    tasks += [DrivingTask(sensitivity_kPa_per_N=2.5), DrivingTask(force_range_N=28.0)]
     return driving_schedule("paper-dome", tasks, library=library, leak=LEAK)
 
 
@@ -73,7 +73,7 @@ def test_what_is_not_reached_is_stated_with_a_change_that_reaches_it(schedule):
     assert not missed.reached and not schedule.reached and missed.gas is None
     (wall,) = (one for one in missed.changes if one.what == "membrane.wall_thickness_mm")
     assert wall.before == 1.5 and wall.after < 1.5
-    assert wall.predicted == pytest.approx(3.0, rel=0.1)
+    assert wall.predicted == pytest.approx(2.5, rel=0.05)
 
 
 def test_volumes_are_boyles_and_add_up_over_the_tasks(schedule):

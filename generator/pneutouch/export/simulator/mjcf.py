@@ -71,7 +71,7 @@ def mjcf(sensor: SimulatedSensor) -> bytes:
     name, first = sensor.name, sensor.tables[0]
     root = ElementTree.Element("mujoco", model=name)
     add(root, "compiler", angle="radian", meshdir="meshes")
-    add(root, "option", timestep=TIME_STEP, integrator="implicitfast")
+    add(root, "option", timestep=TIME_STEP)
     assets = add(root, "asset")
     for body in sensor.bodies:
         add(assets, "mesh", name=f"{name}_{body.name}", file=f"{body.name}.stl", scale="0.001 0.001 0.001")
@@ -101,7 +101,7 @@ def _dome(base: ElementTree.Element, sensor: SimulatedSensor, table: PressTable)
     at = (0.0, 0.0, float(moving.centre[2]) - centre)
     add(dome, "inertial", pos=vector(at), mass=moving.mass, diaginertia=vector(moving.about_centre.diagonal()))
     joint = f"{name}_indentation"
-    add(dome, "joint", name=joint, type="slide", axis="0 0 -1", armature=sensor.armature, damping=sensor.damping)
+    add(dome, "joint", name=joint, type="slide", axis="0 0 -1", armature=sensor.armature)
     add(dome, "geom", name=f"{name}_dome", type="sphere", size=sensor.radius, rgba="0.3 0.5 0.7 0.5", **_CONTACT)
     add(dome, "site", name=f"{name}_contact", pos=vector((0.0, 0.0, sensor.radius)), size="0.0005")
 

@@ -90,11 +90,6 @@ class SimulatedSensor:
         """Inertia of the joint in addition to the moving mass that makes it stable at `TIME_STEP`, kg."""
         return max(0.0, INERTIA_SHARE * self.stiffest * TIME_STEP**2 - self.moving.mass)
 
-    @property
-    def damping(self) -> float:
-        """Damping of the joint at `TIME_STEP`, N s/m."""
-        return DAMPING_SHARE * self.stiffest * TIME_STEP
-
 
 def simulated_sensor(
     name: str,
