@@ -96,6 +96,22 @@ DesignFolderOption = Annotated[
 ]
 
 
+ForOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--for",
+        metavar="FIGURE=VALUE",
+        help="Solve for the driving pressure that gives sensitivity, stiffness or force_range; may be repeated.",
+    ),
+]
+TasksOption = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Solve for the driving pressures of the tasks of a TOML or CSV.")
+]
+LeakOption = Annotated[
+    Path | None, typer.Option(metavar="PATH", help="Measured leak: results of coupons, or of characterize.")
+]
+
+
 ForceOption = Annotated[bool, typer.Option("--force", help="Replace a design file of this name.")]
 
 
@@ -158,20 +174,9 @@ def predict(
         typer.Option("--aged", help="After a year in light and air: the modulus shifted by the resin's hardness then."),
     ] = False,
     anywhere: AnywhereOption = False,
-    for_: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--for",
-            metavar="FIGURE=VALUE",
-            help="Solve for the driving pressure that gives sensitivity, stiffness or force_range; may be repeated.",
-        ),
-    ] = None,
-    tasks: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Solve for the driving pressures of the tasks of a TOML or CSV.")
-    ] = None,
-    leak: Annotated[
-        Path | None, typer.Option(metavar="PATH", help="Measured leak: results of coupons, or of characterize.")
-    ] = None,
+    for_: ForOption = None,
+    tasks: TasksOption = None,
+    leak: LeakOption = None,
     json: JsonOption = False,
 ) -> None:
     """Predict the figures and their uncertainty, or the driving pressure that gives one (--for)."""

@@ -8,10 +8,9 @@ from typing import Any
 
 import typer
 
-from pneutouch.cli.app import print_json
 from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo
+from pneutouch.cli.terminal import echo, put
 
 
 def report_driving(
@@ -29,6 +28,7 @@ def report_driving(
 
     ``words`` are the ``--set`` options and the calibration, for the next command.
     """
+    from pneutouch.output.files import json_bytes
     from pneutouch.spec.tasks import parse_task, read_tasks
     from pneutouch.workflows.driving import driving_schedule, read_leak, schedule_document
 
@@ -38,7 +38,7 @@ def report_driving(
         schedule = driving_schedule(design, required, changes, leak=measured, progress=progress, **options)
     document = schedule_document(schedule)
     if json:
-        print_json(document)
+        put(json_bytes(document).decode())
     else:
         from pneutouch.cli.driving_text import schedule_text
 
@@ -52,8 +52,10 @@ def _next(design: str, document: dict[str, Any], words: tuple[list[str] | None, 
     """Predict at the pressures where all tasks are met; else look for another design for the first that is not."""
     missed = next((task for task in document["tasks"] if not task["reached"]), None)
     if missed is None:
-        pressures = sorted({round(task["solutions"][0]["driving_pressure_kPa"], 2) for task in document["tasks"]})
-        listed = ",".join(f"{pressure_kPa:g}" for pressure_kPa in pressures)
+        answers = [task["solutions"][0] for task in document["tasks"]]
+        listed = ",".join(
+            f"{at_kPa:g}" for at_kPa in sorted({round(one["driving_pressure_kPa"], 2) for one in answers})
+        )
         report_next("predict", design, *set_words(*words), "--set", f"pneumatics.driving_pressures_kPa=[{listed}]")
         return
     value = f"{missed['value']:g}"

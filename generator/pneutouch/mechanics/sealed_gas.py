@@ -1,6 +1,6 @@
 """The gas of an inflated, untouched sensor: what fills it, what a leak and the temperature do to it.
 
-Ideal gas at one temperature behind a wall that gives way: the cavity's volume follows the pressure along the free
+Ideal gas at one temperature behind a wall that yields: the cavity's volume follows the pressure along the free
 inflation of the dome. Lengths mm, pressures MPa.
 """
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -65,7 +66,7 @@ def _task(answer: TaskAnswer, rated: float) -> dict[str, Any]:
         "solutions": [_solution(one, rated) for one in answer.solutions],
     }
     if answer.gas is not None:
-        content["gas"] = _gas(answer.gas, task.value)
+        content["gas"] = _gas(answer.gas)
     else:
         content["possible_band"] = _band(answer.possible)
         content["offline"] = [
@@ -94,15 +95,19 @@ def _band(band: PressureBand | None) -> dict[str, Any] | None:
     return {**ends, "open_low": band.open_low, "open_high": band.open_high}
 
 
-def _gas(gas: SealedState, value: float) -> dict[str, Any]:
-    by_pressure = None if gas.slope is None else 100.0 * gas.slope * KPA / value
-    by_kelvin = gas.by_temperature / KPA
+def _gas(gas: SealedState) -> dict[str, Any]:
+    by_temperature_kPa_per_K = gas.by_temperature / KPA
+    percent_per_kPa = None
+    if gas.slope is not None:
+        percent_per_kPa = 0.0 if gas.step is None else math.copysign(100.0 * HOLD_SHARE / (gas.step / KPA), gas.slope)
     return {
         "injected_mL": gas.injected / ML,
         "moved_mL": gas.moved / ML,
-        "by_temperature_kPa_per_K": by_kelvin,
-        "figure_by_temperature_percent_per_K": None if by_pressure is None else by_pressure * by_kelvin,
-        "figure_by_pressure_percent_per_kPa": by_pressure,
+        "by_temperature_kPa_per_K": by_temperature_kPa_per_K,
+        "figure_by_temperature_percent_per_K": None
+        if percent_per_kPa is None
+        else percent_per_kPa * by_temperature_kPa_per_K,
+        "figure_by_pressure_percent_per_kPa": percent_per_kPa,
         "hold_percent": 100.0 * HOLD_SHARE,
         "step_kPa": None if gas.step is None else gas.step / KPA,
         "loss_kPa_per_min": None if gas.loss is None else 60.0 * gas.loss / KPA,

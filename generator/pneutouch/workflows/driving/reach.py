@@ -30,7 +30,7 @@ _FEW = 13
 _BUDGETS = 7
 """Driving pressures at which the uncertainty is computed; it changes slowly between them."""
 
-Progress = Callable[[int, int, str], None]
+ReachProgress = Callable[[int, int, str], None]
 
 
 @dataclass
@@ -68,7 +68,8 @@ class ReachCurves:
         ]
         if not known:
             return np.full(len(self.states), np.nan)
-        return np.interp(self.pressures, *(np.array(column) for column in zip(*known, strict=True)))
+        at, width = np.array(known).T
+        return np.asarray(np.interp(self.pressures, at, width))
 
     @property
     def gas(self) -> SealedGas:
@@ -107,7 +108,7 @@ def reach_curves(
     *,
     library: Library | None = None,
     model: str = "auto",
-    progress: Progress = lambda done, total, what: None,
+    progress: ReachProgress = lambda done, total, what: None,
     **options: object,
 ) -> ReachCurves:
     """Evaluate a design over its driving pressures; its own list of them is not read. Raises InputError.

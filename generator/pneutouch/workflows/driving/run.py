@@ -14,7 +14,7 @@ from pneutouch.spec.read import Changes
 from pneutouch.spec.tasks import DrivingTask
 from pneutouch.workflows.driving.leak import LeakSource
 from pneutouch.workflows.driving.offline import OfflineChange, offline_changes
-from pneutouch.workflows.driving.reach import Progress, ReachCurves, reach_curves
+from pneutouch.workflows.driving.reach import ReachCurves, ReachProgress, reach_curves
 from pneutouch.workflows.driving.solve import DrivingSolution, PressureBand, possible, solutions
 
 HOLD_SHARE = 0.01
@@ -85,7 +85,7 @@ def driving_schedule(
     library: Library | None = None,
     model: str = "auto",
     leak: LeakSource | None = None,
-    progress: Progress = lambda done, total, what: None,
+    progress: ReachProgress = lambda done, total, what: None,
     **options: object,
 ) -> DrivingSchedule:
     """Solve every task of a design for its driving pressure.
@@ -98,11 +98,11 @@ def driving_schedule(
     if leak is not None:
         conductance = leak.conductance(gas, curves.evaluation.assembly)
     answers, before = [], 0.0
-    for task, found in zip(tasks, solved, strict=True):
-        if found:
-            sealed = _sealed(curves, gas, task, found[0].state.driving_pressure, before, conductance)
+    for task, states in zip(tasks, solved, strict=True):
+        if states:
+            sealed = _sealed(curves, gas, task, states[0].state.driving_pressure, before, conductance)
             before = sealed.injected
-            answers.append(TaskAnswer(task, found, sealed))
+            answers.append(TaskAnswer(task, states, sealed))
         else:
             moved = tuple(offline_changes(curves, task.figure, task.value))
             answers.append(TaskAnswer(task, (), None, moved, possible(curves, task.figure, task.value)))

@@ -43,16 +43,16 @@ class DrivingSolution:
 def solutions(curves: ReachCurves, figure: str, value: float) -> list[DrivingSolution]:
     """Every driving pressure at which a figure has a value, rising. Every bracket of the computed states is solved."""
     pressures, values = curves.pressures, curves.values(figure)
-    found: list[float] = []
+    roots: list[float] = []
     for k in range(len(pressures)):
         if abs(values[k] - value) <= _EXACT * value:
-            found.append(float(pressures[k]))
+            roots.append(float(pressures[k]))
         elif k + 1 < len(pressures) and (values[k] - value) * (values[k + 1] - value) < 0:
             if abs(values[k + 1] - value) <= _EXACT * value:
                 continue
             root = _root(curves, figure, value, (float(pressures[k]), float(pressures[k + 1])))
-            found += [] if root is None else [root]
-    states = [curves.add(pressure) for pressure in found]
+            roots += [] if root is None else [root]
+    states = [curves.add(pressure) for pressure in roots]
     return [DrivingSolution(state, band(curves, figure, value, state.driving_pressure)) for state in states]
 
 
