@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.mechanics.uncertainty.gas_notes import REFERENCE_TEMPERATURE
+from pneutouch.mechanics.line.air import REFERENCE_TEMPERATURE
 from pneutouch.rounding import rounded
 from pneutouch.spec.tasks import TASK_FIGURES
 from pneutouch.units import KPA, ML

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.catalogue import DesignSource, Library
+from pneutouch.mechanics.line.air import REFERENCE_TEMPERATURE
 from pneutouch.mechanics.sealed_gas import SealedGas
-from pneutouch.mechanics.uncertainty.gas_notes import REFERENCE_TEMPERATURE
 from pneutouch.spec.read import Changes
 from pneutouch.spec.tasks import DrivingTask
 from pneutouch.workflows.driving.leak import LeakSource
