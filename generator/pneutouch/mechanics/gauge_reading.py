@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from pneutouch.spec.gauge import Gauge
+from pneutouch.spec.quantity import Quantity
 from pneutouch.units import GAUGE_LIMIT, KPA
 
 RECORDER_STEP_V = 20.0 / 2**16
@@ -76,17 +77,23 @@ def gauge_reading(gauge: Gauge | None, ambient_pressure: float) -> GaugeReading:
             PAPER_GAUGE, -GAUGE_LIMIT, GAUGE_LIMIT, PAPER_NOISE, PAPER_STEP, RECORDER_RATE_HZ, error=4.0 * KPA
         )
     low_kPa, high_kPa = gauge.gauge_pressures_kPa(ambient_pressure / KPA)
-    noise, error = (
-        None if quantity is None else quantity.nominal * KPA for quantity in (gauge.noise_kPa, gauge.error_kPa)
-    )
+    noise, error = _pressure(gauge.noise_kPa), _pressure(gauge.error_kPa)
     return GaugeReading(
         gauge.title, low_kPa * KPA, high_kPa * KPA, noise, _step(gauge), _rate_Hz(gauge), gauge.is_absolute, error
     )
 
 
+def _pressure(stated_kPa: Quantity | None) -> float | None:
+    """A stated figure in MPa."""
+    if stated_kPa is None:
+        return None
+    value_kPa = stated_kPa.nominal
+    return value_kPa * KPA
+
+
 def _step(gauge: Gauge) -> float | None:
     if gauge.resolution_kPa is not None:
-        return gauge.resolution_kPa.nominal * KPA
+        return _pressure(gauge.resolution_kPa)
     transfer = gauge.transfer
     if transfer.at_low is None or transfer.at_high is None or transfer.output not in ("V", "share of supply"):
         return None
@@ -95,7 +102,8 @@ def _step(gauge: Gauge) -> float | None:
         if gauge.supply_V is None:
             return None
         volts *= gauge.supply_V.nominal
-    return RECORDER_STEP_V * gauge.range_kPa.span / volts * KPA
+    span_kPa = gauge.range_kPa.span
+    return RECORDER_STEP_V * span_kPa / volts * KPA
 
 
 def _rate_Hz(gauge: Gauge) -> float | None:

@@ -130,8 +130,8 @@ class Gauge(Table):
     def gauge_pressures_kPa(self, ambient_kPa: float) -> tuple[float, float]:
         """Least and greatest gauge pressure that it reads at an ambient pressure, kPa: of an absolute one less the
         ambient pressure. The greatest is below 0 where its range ends under the ambient pressure."""
-        shift = ambient_kPa if self.is_absolute else 0.0
-        return self.range_kPa.low - shift, self.range_kPa.high - shift
+        shift_kPa = ambient_kPa if self.is_absolute else 0.0
+        return self.range_kPa.low - shift_kPa, self.range_kPa.high - shift_kPa
 
     def pressure_kPa(self, output: float) -> float:
         """Pressure in the gauge's reference by its output, kPa. Raises ValueError for a compensated output."""
