@@ -138,7 +138,7 @@ def _sheared(friction: float, modulus: float, *meshes: tuple[int, int, int]) -> 
     sideways along its own surface before a point touched."""
     name = f"level plate, friction {friction:g}, wall of {modulus:g} MPa, 0 kPa, then sideways"
     scene = replace(_plate(0.0, 0.0, *meshes), name=name, friction=friction, modulus=modulus)
-    return replace(scene, depth=2.4, steps=4, travel=0.3, stops=(10,))
+    return replace(scene, depth=1.2, steps=4, travel=0.2, stops=(5, 10))
 
 
 OTHERS = ((4, (12, 1)), (4, (24, 2)), (ORDER, (24, 2)))

@@ -19,6 +19,7 @@ from pneutouch.cli.app import (
     reporting,
 )
 from pneutouch.cli.complete import names
+from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.terminal import echo
 
 
@@ -65,3 +66,6 @@ def compare(
 
             echo(comparison_text(result.document))
             echo(f"\n{folder}")
+            plain, _, calibration = next((thing for thing in things if "@" in thing), "").partition("@")
+            if calibration and not Path(f"{plain}@{calibration}").exists():
+                report_next("export-reader", plain, *set_words(set_, calibration))

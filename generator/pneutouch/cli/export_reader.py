@@ -62,6 +62,8 @@ def export_reader(
 
             echo(reader_text(result.document))
             echo(f"\n{folder}")
+            files = " and ".join(sorted(path.name for path in folder.glob("*_reader.*")))
+            notify(f"how to use it: the examples at the head of {files}")
 
 
 def _export_simulator(
