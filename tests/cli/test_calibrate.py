@@ -100,6 +100,16 @@ def test_the_truth_is_in_the_intervals_and_the_files_predict(campaign, place):
     assert state["sensitivity_kPa_per_N"] == pytest.approx(measured, rel=0.03)
 
 
+def test_a_calibrated_comparison_leads_to_the_reader_and_another_design_gets_none(campaign, place):
+    assert run("calibrate", str(campaign), "--design", "mine", "--save", "dome-1", "--out", "out").exit_code == 0
+    compared = run("compare", "mine", "mine@dome-1", "--model", "atlas", "--out", "out")
+    assert compared.stderr.splitlines()[-1] == "next: pneutouch export-reader mine --calibration dome-1"
+    refused = run("export-reader", "soft-pad", "--calibration", "dome-1", "--out", "out")
+    assert refused.exit_code == 2
+    assert "--calibration dome-1: the calibration was made with a membrane of" in refused.stderr
+    assert not [path for path in (place / "out").iterdir() if path.name.endswith("-reader")]
+
+
 def test_a_part_of_the_parameters_says_what_else_counts(campaign, place):
     words = ("calibrate", str(campaign), "--design", "mine", "--fit", "modulus,dead-volume", "--out", "out", "--json")
     counted, bare = (json.loads(run(*words, *more).stdout) for more in ((), ("--no-priors", "--save", "bare")))
