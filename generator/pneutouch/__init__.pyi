@@ -22,6 +22,7 @@ from pneutouch.api.results import Result as Result
 from pneutouch.api.search import Selection as Selection
 from pneutouch.api.search import select as select
 from pneutouch.api.search import sweep as sweep
+from pneutouch.api.signals import respond as respond
 from pneutouch.errors import ComputationError as ComputationError
 from pneutouch.errors import InputError as InputError
 from pneutouch.errors import PneutouchError as PneutouchError
