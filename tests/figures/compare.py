@@ -16,8 +16,9 @@ RELATIVE = 5e-6
 # In a list a number is compared by the scale of the list: what should be zero has no digits of its own.
 OF_LIST = 1e-7
 ABSOLUTE = 1e-9
-# The correlations of a fit come from differences of its residuals: 9e-5 between the same two processors.
-CORRELATION = 1e-3
+# The covariance of a fit comes from differences of its residuals: 9e-5 between the same two processors.
+OF_FIT = 1e-3
+FITTED = frozenset({"correlation", "covariance"})
 # Follow the bytes of drawings and texts, or the version, and are no figures.
 LEFT_OUT = frozenset({"input_hash", "sha256", "bytes", "versions", "version", "pneutouch_version"})
 DIGEST = re.compile(r"[0-9a-f]{12}(?:[0-9a-f]{52})?")
@@ -64,7 +65,7 @@ def differences(old: Any, new: Any, renames: Sequence[Rename] = (), path: tuple[
     elif isinstance(old, list) and isinstance(new, list):
         if len(old) != len(new):
             yield f"{where}: {len(old)} entries before, {len(new)} now"
-        near = scale(old) * (CORRELATION if "correlation" in path else OF_LIST)
+        near = scale(old) * (OF_LIST if FITTED.isdisjoint(path) else OF_FIT)
         for at, pair in enumerate(zip(old, new, strict=False)):
             if not all(is_number(each) and math.isfinite(each) for each in pair) or abs(pair[0] - pair[1]) > near:
                 yield from differences(*pair, renames, (*path, str(at)))

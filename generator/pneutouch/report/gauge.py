@@ -7,13 +7,20 @@ from pneutouch.units import KPA
 def gauge_range(sheet: SheetData) -> list[str]:
     """Range, unit and note of the gauge."""
     gauge, reading = sheet.scene.gauge, sheet.gauge
-    note = f"{reading.title}, the paper's, assumed" if gauge is None else f"{reading.title} ({gauge.order_code})"
+    note = f"{reading.title}, the paper's, assumed"
+    if gauge is not None:
+        note = f"{reading.title} ({_breakable(gauge.order_code)})"
     if gauge is not None and gauge.is_absolute:
         note += (
             f"; absolute, {gauge.range_kPa.low:g} to {gauge.range_kPa.high:g} kPa: it reads the ambient pressure too, "
             "which must be subtracted"
         )
     return [f"{reading.low_kPa:.4g} to {reading.limit_kPa:.4g}", "kPa gauge", note]
+
+
+def _breakable(code: str) -> str:
+    """An order code that a narrow column may break, at a space of no width after every eighth character."""
+    return "\u200b".join(code[start : start + 8] for start in range(0, len(code), 8))
 
 
 def gauge_volume(sheet: SheetData) -> str:
