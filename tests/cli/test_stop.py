@@ -25,6 +25,7 @@ LINES = [
     "new mine --out made",
     "predict paper-dome",
     "export-reader paper-dome --out made",
+    "respond paper-dome --step 2N --out made",
     "check paper-dome",
     "select --sensitivity 2 --at 10 --write found --out made --charts charts",
     "build paper-dome --out made",

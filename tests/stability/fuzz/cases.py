@@ -18,8 +18,9 @@ LINES: dict[str, tuple[str, ...]] = {
         "paper-dome --model membrane",
         "graded-dome --model atlas --json",
         "paper-dome --model membrane --set membrane.wall_thickness_mm=1.2",
+        "paper-dome --model membrane --for sensitivity=2.1 --for force_range=31",
     ),
-    "list": ("", "materials --json", "examples"),
+    "list": ("", "materials --json", "examples", "gauges"),
     "new": ("mine", "mine --from fingertip-dome", "--from campaign", "mine --out there"),
     "build": (
         "paper-dome --model membrane",
@@ -53,6 +54,12 @@ LINES: dict[str, tuple[str, ...]] = {
         "texture-specimen --design paper-dome --data signal.csv --pressures 0,22",
     ),
     "show": ("built.3mf", "stack --json"),
+    "export-reader": (
+        "paper-dome --model membrane",
+        "paper-dome --model membrane --set pneumatics.gauge=honeywell-abp2-5psi --json",
+        "paper-dome --simulator urdf",
+    ),
+    "respond": ("paper-dome --model membrane --step 2N", "paper-dome --model membrane --sine 5Hz --peak 2N --json"),
 }
 """Valid command lines; what they name lies in the folder of a case."""
 
