@@ -15,17 +15,14 @@ from pneutouch.report.section import section
 from pneutouch.units import KPA
 
 _TOLERANCE = 0.02
-"""Greatest distance of a mesh that is looked at from the exact surface, mm."""
-
-_SECTION = 0.05
-"""The same of the section, half of it in its own plane: 0.3 pixels where a sensor of 50 mm is 600 pixels wide."""
+"""Greatest distance of the drawn section, and of a mesh that is looked at, from the exact surface, mm."""
 
 _DIGITS = 3
 
 
 def drawing_document(assembly: Assembly) -> dict[str, Any]:
     """Loops (x, z) in mm where the plane y = 0 cuts each body, and the lengths that the dimensions state, mm."""
-    meshes = [solid.mesh(_SECTION) for solid in assembly.solids]
+    meshes = [solid.mesh(_TOLERANCE) for solid in assembly.solids]
     bodies = [
         {
             "name": body.name,

@@ -8,6 +8,30 @@ export function written(state) {
   return `#${parts.join("&")}`;
 }
 
+let due = null;
+let timer = null;
+
+/** Put a state into the address, so that a link or a bookmark brings it back; after `wait` ms where no other one came by then. */
+export function note(state, wait = 0) {
+  forget();
+  due = state;
+  // The browser takes several milliseconds to change an address.
+  if (wait) timer = setTimeout(flush, wait);
+  else flush();
+}
+
+/** Put in what still waits. */
+export function flush() {
+  if (due) history.replaceState(null, "", written(due));
+  forget();
+}
+
+/** Leave the address as it is. */
+export function forget() {
+  clearTimeout(timer);
+  due = null;
+}
+
 export function read(hash) {
   const [base, ...parts] = hash.replace(/^#/, "").split("&");
   const values = {};

@@ -56,22 +56,13 @@ function show() {
   parts.form.show(page.state, page.plain[page.state.base] ?? page.quick);
 }
 
-/** The state in the address, so that a link or a bookmark brings it back. */
-function note() {
-  clearTimeout(parts.noting);
-  history.replaceState(null, "", address.written(page.state));
-}
-
 /** Request the answers to the state as it is now: what is quick, and after its answer to the last move the solid. */
 function update(settled = true) {
   show();
   buttons();
   report("Computing.", true);
   byId("base").value = page.state.base;
-  clearTimeout(parts.noting);
-  // The browser takes several milliseconds to change an address.
-  if (settled) note();
-  else parts.noting = setTimeout(note, SETTLED);
+  address.note(page.state, settled ? 0 : SETTLED);
   document.dispatchEvent(new Event("design"));
   clearTimeout(parts.soon);
   clearTimeout(parts.later);
@@ -261,9 +252,9 @@ function listen() {
     else return;
     event.preventDefault();
   });
-  window.addEventListener("pagehide", note);
+  window.addEventListener("pagehide", () => address.flush());
   window.addEventListener("hashchange", () => {
-    clearTimeout(parts.noting);
+    address.forget();
     const state = address.read(location.hash);
     if (state && !same(state, page.state)) go(state);
   });
