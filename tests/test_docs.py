@@ -152,7 +152,10 @@ def test_presses_off_the_axis_agree_with_calculix_in_three_dimensions():
 
     data = stored("off-axis-calculix.json")
     assert "\n".join(section(data)) in (DOCS / "validation.md").read_text(encoding="utf-8")
-    assert data and all(len(scene["rows"]) == 2 for scene in data)
+    pressed = [[row for row in scene["rows"] if "travel_mm" not in row] for scene in data]
+    assert data and all(len(rows) == 2 for rows in pressed)
+    # One scene goes on sideways, with friction.
+    assert sum(len(scene["rows"]) > 2 for scene in data) == 1
     for figure in FIGURES:
         assert max(map(abs, differences(data, figure))) < 0.02, figure
 

@@ -60,7 +60,7 @@ class DrivingResult(show.Shown):
         return None if band is None else (band["low_kPa"], band["high_kPa"])
 
     def to_dict(self) -> dict[str, Any]:
-        """As the command ``predict --for`` prints it as JSON."""
+        """As the command ``predict`` prints it as JSON for the same tasks."""
         return dict(self._document)
 
     def _head(self) -> str:

@@ -25,7 +25,7 @@ _URDF = """\
 - Frame {name}_mount: the rearmost face of the sensor, z = {rear:.4g} mm.
 - Frame {name}_contact: the apex at {pressure} kPa, z = {apex:.4g} mm.
 - Mesh paths are relative to this file; where a tool needs a package, put package://NAME/ in front of them.
-- URDF has no force over indentation: for that take `--simulator mujoco`, or reader.json of `export-reader`.
+- URDF has no force over indentation: for that take the export for MuJoCo, or reader.json of `export-reader`.
 """
 
 
