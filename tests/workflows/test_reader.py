@@ -13,7 +13,7 @@ import pytest
 
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.reader import reader_grid
-from pneutouch.export.reader.reading import Status
+from pneutouch.export.reader.reading import ForceReader, Status
 from pneutouch.export.reader.render import MOST_TABLES, table_bytes
 from pneutouch.mechanics import predict
 from pneutouch.units import KPA
@@ -120,3 +120,13 @@ def test_the_same_design_gives_the_same_bytes_and_a_module_that_reads(tmp_path, 
     middle = len(state.force) // 2
     reading = reader.read((state.driving_pressure + state.pressure_rise[middle]) / KPA)
     assert reading.force_N == pytest.approx(state.force[middle], rel=0.005)
+
+
+def test_an_absolute_gauge_at_its_end_gives_no_force_at_any_ambient_pressure():
+    """It reads to 125 kPa with the ambient pressure in it: 20.7 kPa where that is greatest, 3 kPa above the design's."""
+    changes = {"pneumatics.gauge": "bosch-bmp390", "pneumatics.driving_pressures_kPa": [0.0, 5.0]}
+    known = make_reader(evaluate("paper-dome", changes, model="auto")).document
+    reader, ambient_kPa = ForceReader(known), known["box"]["ambient_pressure_kPa"][1]
+    assert reader.tare([5.0], 20.0, ambient_kPa) == Status.OK
+    assert reader.read(124.9 - ambient_kPa, 20.0, ambient_kPa).status <= Status.ABOVE_RATING
+    assert reader.read(125.0 - ambient_kPa, 20.0, ambient_kPa).status == Status.GAUGE_SATURATED

@@ -10,13 +10,11 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, ReaderGrid
 from pneutouch.evaluation.reader_uncertainty import force_uncertainty, why_unknown
+from pneutouch.export.reader.reading import FORMAT, NOISES, UNSTEADY
 from pneutouch.units import KPA, ML
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.evaluate import Evaluation
-
-FORMAT = 1
-"""Number of the form of ``reader.json``; raised where a reader of the form before would misread it."""
 
 _DRIFT_SHARE = 0.001
 """Share of full scale that a driving pressure just below its box may be off by without a status."""
@@ -77,7 +75,9 @@ def _gauge(evaluation: Evaluation) -> dict[str, Any]:
     ambient_kPa = gas.ambient_pressure / KPA
     if gauge is None:
         return {"name": None, "range_kPa": _single(np.array([-ambient_kPa, gas.gauge_limit / KPA]))}
-    low, high = gauge.gauge_pressures_kPa(ambient_kPa)
+    # An absolute gauge reads the ambient pressure too: what it reads at every ambient pressure of the box.
+    low, _ = gauge.gauge_pressures_kPa(ambient_kPa - CHANGE_KPA)
+    _, high = gauge.gauge_pressures_kPa(ambient_kPa + CHANGE_KPA)
     # A gauge at rest may read below its range by its error.
     below = 0.0 if gauge.error_kPa is None else gauge.error_kPa.nominal
     return {"name": evaluation.scene.design.pneumatics.gauge, "range_kPa": _single(np.array([low - below, high]))}
@@ -95,8 +95,14 @@ def _zero(evaluation: Evaluation, grid: ReaderGrid) -> dict[str, float]:
         "drift_rate_kPa_per_s": _one(per_kelvin_kPa * AIR_K_PER_H / 3600.0),
         "drift_most_kPa": _one(per_kelvin_kPa * CHANGE_K),
         "noise_least_kPa": _one(_noise_kPa(evaluation, grid)),
+        "noise_most_kPa": _one(_noise_most_kPa(evaluation, grid)),
         "filter_s": FILTER_S,
     }
+
+
+def _noise_most_kPa(evaluation: Evaluation, grid: ReaderGrid) -> float:
+    """Scatter up to which readings without contact are a tare, kPa: beyond it something moves."""
+    return max(NOISES * _noise_kPa(evaluation, grid), UNSTEADY * float(grid.rise.max()) / KPA)
 
 
 def _noise_kPa(evaluation: Evaluation, grid: ReaderGrid) -> float:

@@ -51,6 +51,7 @@ def record(*, factor: float = 1.0, relative: bool = True, range_kPa=(-101.325, 9
             "drift_rate_kPa_per_s": single(0.3 * 2.2 / 3600),
             "drift_most_kPa": 1.5,
             "noise_least_kPa": single(1e-5),
+            "noise_most_kPa": single(0.03),
             "filter_s": 1.0,
         },
         "conditions": {

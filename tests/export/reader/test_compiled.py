@@ -172,11 +172,13 @@ def test_the_sketch_prints_the_newtons_of_the_python_reader(tmp_path, name):
     assert lines[0] == "tare: status 0"
     assert lines[1].startswith("0.000 N") and lines[1].endswith("status 0")
     reader = module(tmp_path)
-    printed = float(lines[-1].split()[0])
-    at = [float(line.split(", ")[1].split()[0]) for line in (lines[1], lines[-1])]
+    pressed, beyond = lines[40], lines[-1]
+    printed = float(pressed.split()[0])
+    at = [float(line.split(", ")[1].split()[0]) for line in (lines[1], pressed)]
     reader.tare([at[0]])
     assert printed == pytest.approx(reader.read(at[1]).force_N, abs=0.002)
-    assert lines[-1].endswith("status 0, touched")
+    assert pressed.endswith("status 0, touched")
+    assert beyond.startswith("nan N") and beyond.split("status ")[1][0] in "34"
 
 
 def test_a_gauge_that_no_sketch_can_read_is_left_out_with_the_reason():

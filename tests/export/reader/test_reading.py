@@ -131,12 +131,37 @@ def test_a_tare_that_cannot_be_leaves_the_reader_without_a_zero():
 
 
 def test_the_uncertainty_holds_the_gauges_noise_as_the_tare_found_it():
-    quiet, loud = tared(10.0).read(14.0), tared(10.0, noise_kPa=0.1).read(14.0)
+    quiet, loud = tared(10.0).read(14.0), tared(10.0, noise_kPa=0.02).read(14.0)
     slope = (tared(10.0).read(14.01).force_N - quiet.force_N) / 0.01
-    noise = math.sqrt(0.02 * 1.5)  # two readings at +-0.1: variance 0.02, of the mean half of it
+    noise = math.sqrt(8e-4 * 1.5)  # two readings at +-0.02: variance 8e-4, of the mean half of it
     assert quiet.uncertainty_N == pytest.approx((0.05 + 0.01 * 4 * 4 / 11) * quiet.force_N, rel=1e-3)
     assert loud.uncertainty_N == pytest.approx(math.hypot(quiet.uncertainty_N, slope * noise), rel=1e-3)
     assert math.isnan(tared(10.0, relative=False).read(14.0).uncertainty_N)
+
+
+def test_readings_that_scatter_by_more_than_a_gauge_does_are_no_tare():
+    """A disturbed tare would widen the threshold of a touch, and a touch below it would be learnt as zero."""
+    reader = ForceReader(record())
+    most = record()["zero"]["noise_most_kPa"]
+    assert reader.tare([10.0 - 0.1, 10.0 + 0.1]) == Status.UNSTEADY_TARE
+    assert reader.read(12.0).status == Status.NOT_TARED
+    assert reader.tare([10.0 - 0.7 * most, 10.0 + 0.7 * most]) == Status.OK
+
+
+def test_readings_that_do_not_scatter_know_their_zero_to_one_step_alone():
+    known = record()
+    known["zero"]["noise_least_kPa"] = 0.02
+    reader = ForceReader(known)
+    reader.tare([10.0] * 200)
+    slope = (reader.read(14.01).force_N - reader.read(14.0).force_N) / 0.01
+    share = tared(10.0).read(14.0).uncertainty_N
+    expected = math.hypot(share, slope * math.hypot(0.02, 0.02))
+    assert reader.read(14.0).uncertainty_N == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_table_of_another_form_is_refused():
+    with pytest.raises(ValueError, match="format 99: this module reads format 1"):
+        ForceReader({**record(), "format": 99})
 
 
 SECONDS = 0.2

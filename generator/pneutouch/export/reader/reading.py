@@ -9,10 +9,17 @@ from collections.abc import Sequence
 from enum import IntEnum
 from typing import Any, NamedTuple
 
+FORMAT = 1
+"""Form of the table; raised where a reader of the form before would misread it."""
+
 CELSIUS = 273.15
 
 NOISES = 5.0
 """Standard deviations of the gauge's noise by which a reading is distinguished from its zero."""
+
+UNSTEADY = 0.002
+"""Share of the greatest pressure rise that readings without contact may scatter by, or `NOISES` times the gauge's noise
+where that is more: our choice. The threshold of a touch follows from their scatter."""
 
 QUIET = 0.001
 """Share of the greatest pressure rise that counts as noise at least, where a reading is below zero."""
@@ -30,6 +37,7 @@ class Status(IntEnum):
     DRIVING_PRESSURE = 6
     BELOW_ZERO = 7
     BEYOND_RANGE = 8
+    UNSTEADY_TARE = 9
 
 
 class ForceReading(NamedTuple):
@@ -53,6 +61,9 @@ class ForceReader:
     """The force of one sensor. ``table`` is the content of its ``reader.json``; tare it before the first reading."""
 
     def __init__(self, table: dict[str, Any]) -> None:
+        """Raises ValueError for a table of another form than this module reads."""
+        if table["format"] != FORMAT:
+            raise ValueError(f"format {table['format']!r:.40}: this module reads format {FORMAT}")
         grid, box = table["grid"], table["box"]
         self._rows: list[float] = grid["driving_pressure_kPa"]
         self._rise: list[list[float]] = grid["pressure_rise_kPa"]
@@ -92,8 +103,12 @@ class ForceReader:
         if not self._driving[0] <= mean <= self._driving[1]:
             return Status.DRIVING_PRESSURE
         variance = math.fsum((one_kPa - mean) ** 2 for one_kPa in gauge_kPa) / max(count - 1, 1)
-        self.noise_kPa = max(math.sqrt(variance), self._zero["noise_least_kPa"])
-        self._zero_variance = self.noise_kPa**2 / count
+        if variance > self._zero["noise_most_kPa"] ** 2:
+            return Status.UNSTEADY_TARE
+        least = self._zero["noise_least_kPa"]
+        self.noise_kPa = max(math.sqrt(variance), least)
+        # Readings that do not scatter share the error of one step: their mean is no better than one of them.
+        self._zero_variance = variance / count if variance > least**2 else least**2
         self._kelvin, self._ambient_kPa, self.driving_pressure_kPa = temperature_C + CELSIUS, ambient_kPa, mean
         self._deviation, self.drift_kPa, self.touched = 0.0, 0.0, False
         return self._rating(mean)

@@ -29,10 +29,11 @@ WORDS = {
     Status.DRIVING_PRESSURE: "the driving pressure is outside the box",
     Status.BELOW_ZERO: "the pressure is below that without contact: leak or cooling; tare again",
     Status.BEYOND_RANGE: "the force is beyond the box",
+    Status.UNSTEADY_TARE: "the readings of the tare scatter: something moves; tare again",
 }
 """What each status means."""
 
-_PARTS = ("grid", "gas", "box", "rating", "gauge", "zero", "conditions")
+_PARTS = ("format", "grid", "gas", "box", "rating", "gauge", "zero", "conditions")
 
 
 def reader_files(record: Mapping[str, Any], name: str, gauge: Gauge | None = None) -> dict[str, bytes]:
@@ -119,6 +120,7 @@ def _header(record: Mapping[str, Any]) -> dict[str, Any]:
         "below": NOISES,
         "quiet": QUIET,
         "noise_least": zero["noise_least_kPa"],
+        "noise_most": zero["noise_most_kPa"],
         "filter": zero["filter_s"],
         "drift_rate": zero["drift_rate_kPa_per_s"],
         "drift_most": zero["drift_most_kPa"],
