@@ -91,3 +91,12 @@ def test_an_underdamped_line_overshoots_and_a_narrow_one_does_not():
     assert ringing.overshoot > 0.5 and quiet.overshoot < 0.2
     assert ringing.delay == pytest.approx(300.0 / AIR.sound_speed, rel=0.1)
     assert quiet.rise_time > 5 * ringing.rise_time
+
+
+def test_a_fast_sine_keeps_its_size_where_the_gain_is_one():
+    """A fifth of the sampling rate: faded as a step is, it would lose a quarter."""
+    rate = 50_000.0
+    time = np.arange(4000) / rate
+    sine = 1.0 - np.cos(2 * math.pi * 10_000.0 * time)
+    assert through(np.ones_like, sine, 1 / rate, sharp=False) == pytest.approx(sine, abs=2e-3)
+    assert np.abs(through(np.ones_like, sine, 1 / rate) - sine).max() > 0.2

@@ -44,10 +44,11 @@ class StepFigures:
     reading: Array
 
 
-def through(gain: Callable[[Complex], Complex], signal: Array, step: float) -> Array:
-    """A signal (n,) of even steps (s), 0 before its first sample, after a gain over s; 1 where the gain is 1.
+def through(gain: Callable[[Complex], Complex], signal: Array, step: float, *, sharp: bool = True) -> Array:
+    """A signal (n,) of even steps (s), 0 before its first sample, after a gain over s.
 
-    The gain is a function of s (m,), or gives several at once as (k, m): the result is (n,) or (k, n).
+    The gain is a function of s (m,), or gives several at once as (k, m): the result is (n,) or (k, n). ``sharp`` signals
+    jump: their last frequencies are faded; a smooth one keeps all of its size.
     """
     kept = signal.size
     # Where the record ends, its last value falls to 0 as sharply as a step: that lies behind what is kept.
@@ -57,7 +58,7 @@ def through(gain: Callable[[Complex], Complex], signal: Array, step: float) -> A
     damping = _DAMPING / (step * count)
     spectrum = np.fft.rfft(signal * np.exp(-damping * time))
     frequency = np.fft.rfftfreq(count, step)
-    fade = np.sinc(frequency * 2.0 * step)
+    fade = np.sinc(frequency * 2.0 * step) if sharp else np.ones_like(frequency)
     answer = np.fft.irfft(
         spectrum * fade * gain(np.asarray(damping + 2j * np.pi * frequency, dtype=np.complex128)), count
     )

@@ -187,7 +187,7 @@ def _signal(
     time = np.arange(count) / rate
     along = peak * load.over(time)
     slow = np.asarray(PchipInterpolator(*curve)(along))
-    cavity, gauge = through(lambda s: np.stack(dynamics.both(s)), slow, 1.0 / rate)
+    cavity, gauge = through(lambda s: np.stack(dynamics.both(s)), slow, 1.0 / rate, sharp=load.frequency is None)
     samples = _sampled(evaluation, state.driving_pressure, time, gauge, seed)
     source = None if series is None else series.source
     return StateSignal(state.driving_pressure, source, peak, dynamics, band, time, along, slow, cavity, gauge, samples)
