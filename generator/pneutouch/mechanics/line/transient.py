@@ -47,8 +47,8 @@ class StepFigures:
 def through(gain: Callable[[Complex], Complex], signal: Array, step: float, *, sharp: bool = True) -> Array:
     """A signal (n,) of even steps (s), 0 before its first sample, after a gain over s.
 
-    The gain is a function of s (m,), or gives several at once as (k, m): the result is (n,) or (k, n). ``sharp`` signals
-    jump: their last frequencies are faded; a smooth one keeps all of its size.
+    The gain is a function of s (m,), or gives several at once as (k, m): the result is (n,) or (k, n). ``sharp``
+    signals jump: their last frequencies are faded; a smooth one keeps all of its size.
     """
     kept = signal.size
     # Where the record ends, its last value falls to 0 as sharply as a step: that lies behind what is kept.
