@@ -5,7 +5,11 @@ It is shipped with a table in front; MuJoCo is all that it needs.
 
 from __future__ import annotations
 
+import functools
+import threading
+import weakref
 from bisect import bisect_right
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import mujoco
@@ -13,8 +17,14 @@ import mujoco
 IN_RANGE, BEYOND_RANGE = 0.0, 1.0
 """Values of the sensor NAME_status: beyond the range force and pressure go on straight, and are not to be trusted."""
 
-_domes: dict[int, list[Any]] = {}
-_before: list[Any] = [None, None]
+_SHARED = "_pneutouch_domes_1"
+"""Attribute of the module mujoco with the registry of all copies of this module, by number of its interface."""
+
+_LOADERS = (
+    (mujoco.MjModel, staticmethod, ("from_xml_path", "from_xml_string")),
+    (mujoco.MjSpec, lambda method: method, ("compile", "recompile", "to_xml")),
+)
+"""What compiles a model, with how it is bound to its class."""
 
 
 class DomeForce:
@@ -112,19 +122,102 @@ class DomeForce:
             data.sensordata[place] = value
 
 
-def _passive(model: Any, data: Any) -> None:
-    if _before[0] is not None:
-        _before[0](model, data)
-    for dome in _domes.get(model._address, ()):
-        dome.press(model, data)
+class ChainedCallback:
+    """A global callback of MuJoCo that calls the one that was set before it, and then serves the domes."""
+
+    def __init__(self, get: Callable[[], Any], put: Callable[[Any], None], serve: Callable[..., None]) -> None:
+        self._get, self._put, self._serve = get, put, serve
+        self._before: list[Any] = [None]
+        self._thread = threading.local()
+
+    def __call__(self, *arguments: Any) -> None:
+        """Take model and data, and for the sensors the stage."""
+        # One that was set later may call this one in turn. Each time it goes on to an older one, so that it ends.
+        depth = getattr(self._thread, "depth", 0)
+        before = self._before[max(0, len(self._before) - 1 - depth)]
+        self._thread.depth = depth + 1
+        try:
+            if before is not None:
+                before(*arguments)
+        finally:
+            self._thread.depth = depth
+        if depth == 0:
+            self._serve(*arguments)
+
+    def set(self) -> None:
+        """Put this callback in front of the one that is set."""
+        current = self._get()
+        if current is self:
+            return
+        if current in self._before:
+            del self._before[self._before.index(current) + 1 :]
+        else:
+            self._before.append(current)
+        self._put(self)
+
+    def pause(self) -> Callable[[], None]:
+        """Take a Python callback away, whose ever it is; returns what sets it again."""
+        current = self._get()
+        if current is None or hasattr(current, "restype"):  # A C function of ctypes.
+            return lambda: None
+        self._put(None)
+        return lambda: self._put(current)
 
 
-def _sensor(model: Any, data: Any, stage: int) -> None:
-    if _before[1] is not None:
-        _before[1](model, data, stage)
-    if stage == int(mujoco.mjtStage.mjSTAGE_POS):
-        for dome in _domes.get(model._address, ()):
-            dome.sense(data)
+class DomeRegistry:
+    """The domes of all models by the model's address, and the callbacks that serve them; one in a process."""
+
+    def __init__(self) -> None:
+        self._domes: dict[int, tuple[weakref.ref[Any], list[Any]]] = {}
+        self._callbacks = (
+            ChainedCallback(mujoco.get_mjcb_passive, mujoco.set_mjcb_passive, self._press),
+            ChainedCallback(mujoco.get_mjcb_sensor, mujoco.set_mjcb_sensor, self._sense),
+        )
+        self._loading = threading.RLock()
+        for owner, bind, names in _LOADERS:
+            for name in names:
+                setattr(owner, name, bind(self._without_callbacks(getattr(owner, name))))
+
+    def _without_callbacks(self, load: Callable[..., Any]) -> Callable[..., Any]:
+        """MuJoCo steps a model while it compiles it: it has no Python object for a Python callback then, and fails."""
+
+        @functools.wraps(load)
+        def paused(*arguments: Any, **named: Any) -> Any:
+            with self._loading:
+                again = [callback.pause() for callback in self._callbacks]
+                try:
+                    return load(*arguments, **named)
+                finally:
+                    for one in again:
+                        one()
+
+        return paused
+
+    def add(self, model: Any, dome: Any) -> None:
+        """Serve a dome of a model, in place of the one at the same joint."""
+        address = model._address
+        others = [one for one in self.of(model) if one.joint != dome.joint]
+        self._domes[address] = (weakref.ref(model, functools.partial(self._forget, address)), [*others, dome])
+        for callback in self._callbacks:
+            callback.set()
+
+    def of(self, model: Any) -> Sequence[Any]:
+        """The domes of a model; none for one that has the address of a model that is gone."""
+        known, domes = self._domes.get(model._address, (None, ()))
+        return domes if known is not None and known() is model else ()
+
+    def _forget(self, address: int, gone: weakref.ref[Any]) -> None:
+        if address in self._domes and self._domes[address][0] is gone:
+            del self._domes[address]
+
+    def _press(self, model: Any, data: Any) -> None:
+        for dome in self.of(model):
+            dome.press(model, data)
+
+    def _sense(self, model: Any, data: Any, stage: int) -> None:
+        if stage == int(mujoco.mjtStage.mjSTAGE_POS):
+            for dome in self.of(model):
+                dome.sense(data)
 
 
 def install_dome(
@@ -132,16 +225,14 @@ def install_dome(
 ) -> DomeForce:
     """Give a model the force and the pressure of the dome; again for another driving pressure or sensor.
 
-    MuJoCo's callbacks are global: those set before go on, and models without the sensor are left alone. Call it again
-    after the time step was changed. Raises ValueError as `DomeForce`.
+    MuJoCo's callbacks are global: those set before go on, and models without the sensor are left alone. While a model
+    is loaded or compiled they are paused: no other thread may step a sensor then. Call it again after the time step
+    was changed. Raises ValueError as `DomeForce`.
     """
     dome = DomeForce(model, table, driving_pressure_kPa, prefix)
-    others = [one for one in _domes.get(model._address, []) if one.joint != dome.joint]
-    _domes[model._address] = [*others, dome]
-    if mujoco.get_mjcb_passive() is not _passive:
-        _before[0] = mujoco.get_mjcb_passive()
-        mujoco.set_mjcb_passive(_passive)
-    if mujoco.get_mjcb_sensor() is not _sensor:
-        _before[1] = mujoco.get_mjcb_sensor()
-        mujoco.set_mjcb_sensor(_sensor)
+    registry = getattr(mujoco, _SHARED, None)
+    if registry is None:
+        registry = DomeRegistry()
+        setattr(mujoco, _SHARED, registry)
+    registry.add(model, dome)
     return dome
