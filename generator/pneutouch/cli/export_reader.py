@@ -55,6 +55,9 @@ def export_reader(
             folder = write_reader(result, out)
         if result.note is not None:
             notify(result.note)
+        off_percent = result.document["difference"]["nominal_percent"]
+        if off_percent > 0.5:
+            notify(f"warning: the table is up to {off_percent:.2f} % of full scale off the model, more than 0.5 %")
         if json:
             print_json({**result.document, "folder": str(folder)})
         else:

@@ -138,7 +138,8 @@ def _driving_pressures(evaluation: Evaluation, lowest: float, highest: float) ->
     """
     ambient = evaluation.sensor.gas.ambient_pressure
     limits = evaluation.prediction.limits
-    cap = np.inf if limits.limit_point is None else _LIMIT_SHARE * limits.limit_point
+    limit = np.inf if limits.limit_point is None else limits.limit_point
+    cap = _LIMIT_SHARE * min(limit, evaluation.sensor.gas.gauge_limit)
     high = max(min(highest + (highest + ambient) * CHANGE_K / REFERENCE_K, cap), highest)
     low = max(lowest - (lowest + ambient) * CHANGE_K / REFERENCE_K, 0.0)
     margin = ambient * CHANGE_K / REFERENCE_K + CHANGE_KPA * KPA
@@ -146,7 +147,8 @@ def _driving_pressures(evaluation: Evaluation, lowest: float, highest: float) ->
     bottom = low - margin
     if bottom >= 0.0:
         return np.linspace(bottom, high, steps + 1), 0, low, high
-    below = max(1, round(steps * -bottom / (high - bottom)))
+    # The parabola below zero goes through three computed rows.
+    below = min(max(1, round(steps * -bottom / (high - bottom))), steps - 2)
     step = high / (steps - below)
     return np.asarray(step * np.arange(-below, steps - below + 1)), below, low, high
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from pneutouch.errors import ComputationError
 from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, ReaderCurve, ReaderGrid, curve_of, fine
 from pneutouch.export.reader.reading import CELSIUS, ForceReader, Status
 from pneutouch.mechanics import Sensor, predict
@@ -26,7 +27,7 @@ _READ = (Status.OK, Status.ABOVE_RATING)
 
 
 class ReaderDifference(NamedTuple):
-    """Largest difference of the force from the full model, N, over ``states`` states, and without a status."""
+    """Largest difference of the force from the full model, N; ``states`` of those as tared have a force."""
 
     nominal_N: float
     other_conditions_N: float
@@ -44,10 +45,14 @@ def reader_difference(evaluation: Evaluation, grid: ReaderGrid, record: dict[str
     reader, sensor = ForceReader(record), evaluation.sensor
     pressures = np.sort(draw.uniform(grid.low, grid.high, presses))
     nominal = _curves(evaluation, sensor, grid, pressures)
-    differences = [0.0]
+    differences: list[float] = []
     for pressure, curve in zip(pressures, nominal, strict=True):
-        reader.tare([float(pressure) / KPA])
-        differences += _differences(reader, float(pressure), curve, draw.uniform(0.0, 1.0, each), {})
+        if reader.tare([float(pressure) / KPA]) in _READ:
+            differences += _differences(reader, float(pressure), curve, draw.uniform(0.0, 1.0, each), {})
+    if not differences:
+        raise ComputationError(
+            "the reader gives no force at any state of its box", remedy="take another gauge or range"
+        )
     others = [0.0]
     for change_kPa in (-CHANGE_KPA, CHANGE_KPA):
         changed = sensor.replace(ambient_pressure=sensor.gas.ambient_pressure + change_kPa * KPA)
@@ -55,7 +60,7 @@ def reader_difference(evaluation: Evaluation, grid: ReaderGrid, record: dict[str
         for pressure, curve in zip(some, _curves(evaluation, changed, grid, some), strict=True):
             for conditions in _tared(reader, changed, float(pressure), curve, grid):
                 others += _differences(reader, float(pressure), curve, draw.uniform(0.0, 1.0, 50), conditions)
-    return ReaderDifference(max(differences), max(others), presses * each)
+    return ReaderDifference(max(differences), max(others), len(differences))
 
 
 def _curves(evaluation: Evaluation, sensor: Sensor, grid: ReaderGrid, pressures: Any) -> list[ReaderCurve]:
