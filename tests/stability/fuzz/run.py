@@ -88,10 +88,16 @@ def judge(case: Case, done: subprocess.CompletedProcess[str], folder: Path) -> s
         return f"{len(done.stderr)} characters on stderr"
     if done.returncode and not done.stderr and not done.stdout:
         return "fails without a word"
-    if done.returncode == 0 and "--json" in case.words and "--help" not in case.words and not _is_json(done.stdout):
+    if done.returncode == 0 and _asks_json(case.words) and not _is_json(done.stdout):
         return "no JSON"
     hidden = [path for path in folder.rglob(".*") if path.name not in (".", "..")]
     return f"left behind: {hidden[0].name}" if hidden else None
+
+
+def _asks_json(words: list[str]) -> bool:
+    """Whether ``--json`` is an option there, and not the value of ``--out`` before it."""
+    option = any(word == "--json" and words[k] != "--out" for k, word in enumerate(words[1:]))
+    return option and "--help" not in words
 
 
 def _is_json(text: str) -> bool:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pneutouch.errors import InputError, one_line
+from pneutouch.errors import InputError
 from pneutouch.output.files import replace_files
 from pneutouch.tables.csv_write import csv_bytes
-from pneutouch.workflows.sweep.dataset import PRESSURE, damaged
+from pneutouch.workflows.sweep.dataset import PRESSURE, stored_dataset
 from pneutouch.workflows.sweep.plan import SweepPlan
 from pneutouch.workflows.sweep.variables import POINT, STATE
 from pneutouch.workflows.sweep.workfolder import check_output
@@ -81,44 +81,18 @@ def check_companions(out: Path, plan: SweepPlan) -> None:
 def write_companions(out: Path) -> tuple[list[dict[str, Any]], list[Path]]:
     """Write table and pictures of a finished dataset next to it; returns the rows and the files written.
 
-    Raises InputError for a dataset in which a column is missing, or holds what it must not.
+    Raises InputError for a dataset that is not as the sweep wrote it.
     """
-    import xarray
-
     from pneutouch.report.swept import pictures
 
-    with xarray.open_dataset(out, engine="scipy") as opened:
-        content = opened.load()
-    try:
-        _check_columns(content)
-        rows, swept = table_rows(content), swept_figure(content)
-    except KeyError as error:
-        raise damaged(out, one_line(str(error.args[0]))) from None
+    content = stored_dataset(out)
+    rows, swept = table_rows(content), swept_figure(content)
     files = {out.with_suffix(".csv"): table_csv(rows)}
     if swept is not None:
         for name, (text, image) in pictures(swept).items():
             files |= dict(zip(_picture_files(out, name), (text.encode(), image), strict=True))
     replace_files(files)
     return rows, list(files)
-
-
-def _check_columns(content: xarray.Dataset) -> None:
-    """Raise KeyError for a column that is missing, has text in place of numbers or bytes in place of text, or in
-    which swept values are missing."""
-    for variable in (*STATE, *POINT):
-        _check_column(content, variable.name, texts=variable.text, numbers=not variable.text)
-    for name in content.coords:
-        _check_column(content, str(name), texts=True, numbers=True)
-        # A swept value may be infinite, as the friction of a surface that grips; it is always there.
-        if content[name].dtype.kind == "f" and np.isnan(content[name].values).any():
-            raise KeyError(f"column {name} has no value in some rows")
-
-
-def _check_column(content: xarray.Dataset, name: str, *, texts: bool, numbers: bool) -> None:
-    values = content[name].values
-    is_text = values.dtype.kind in "OU" and all(isinstance(value, str) for value in values.ravel().tolist())
-    if not ((texts and is_text) or (numbers and values.dtype.kind in "fiu")):
-        raise KeyError(f"column {name} does not hold {'text' if texts else 'numbers'}")
 
 
 def _picture_files(out: Path, name: str) -> tuple[Path, Path]:

@@ -5,6 +5,7 @@ netCDF-3 with 64-bit offsets, by scipy: it needs no further library here, every 
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 
 PRESSURE = "driving_pressure_kPa"
 """The dimension of the driving pressures: those of all points."""
+
+_CONTENT_HASH = "content_hash"
 
 
 def dataset(study: SweepStudy, records: dict[int, Record]) -> xarray.Dataset:
@@ -58,7 +61,28 @@ def dataset(study: SweepStudy, records: dict[int, Record]) -> xarray.Dataset:
         ),
         **_coordinates(study),
     }
-    return xarray.Dataset(content, coordinates, _attributes(study, rows, content))
+    whole = xarray.Dataset(content, coordinates, _attributes(study, rows, content))
+    whole.attrs[_CONTENT_HASH] = _content_hash(whole)
+    return whole
+
+
+def _content_hash(content: xarray.Dataset) -> str:
+    """SHA-256 of names, dimensions, values and attributes: what is damaged after it was written is never reported."""
+    digest = hashlib.sha256()
+    for name in sorted(map(str, content.variables)):
+        column = content[name]
+        values = column.values
+        plain = json.dumps(values.tolist()).encode() if values.dtype.kind in "OU" else values.astype("<f8").tobytes()
+        head = [
+            name,
+            list(map(str, column.dims)),
+            list(values.shape),
+            sorted((k, str(v)) for k, v in column.attrs.items()),
+        ]
+        digest.update(json.dumps(head).encode() + plain)
+    attributes = sorted((str(k), str(v)) for k, v in content.attrs.items() if k != _CONTENT_HASH)
+    digest.update(json.dumps(attributes).encode())
+    return digest.hexdigest()
 
 
 def netcdf(content: xarray.Dataset) -> bytes:
@@ -82,20 +106,24 @@ def stored_fingerprint(path: Path) -> str:
         ) from None
 
 
-def stored_states(path: Path) -> list[str]:
-    """Status of every state of a finished sweep's file. Raises InputError where there is none."""
+def stored_dataset(path: Path) -> xarray.Dataset:
+    """A finished sweep's dataset. Raises InputError where it is not as it was written."""
     import xarray
 
-    with xarray.open_dataset(path, engine="scipy") as content:
-        if "status" not in content:
-            raise damaged(path, "column status is missing")
-        states: list[str] = content["status"].values.ravel().tolist()
-        return states
-
-
-def damaged(path: Path, why: str) -> InputError:
-    """The error for a dataset that was changed since a sweep wrote it."""
-    return InputError(f"the dataset is damaged, {why}", file=path, remedy="move it, or compute it again with `fresh`")
+    try:
+        with xarray.open_dataset(path, engine="scipy") as opened:
+            content = opened.load()
+        intact = content.attrs[_CONTENT_HASH] == _content_hash(content)
+    # What was changed can be anything: a text that is no text, a number that is a date.
+    except Exception:
+        intact = False
+    if not intact:
+        raise InputError(
+            "the dataset is damaged: its content is not what the sweep wrote",
+            file=path,
+            remedy="move it, or compute it again with `fresh`",
+        )
+    return content
 
 
 def _by_pressure(

@@ -10,7 +10,7 @@ from pneutouch.catalogue import Library
 from pneutouch.errors import ComputationError, InputError, joined
 from pneutouch.holding import uninterrupted
 from pneutouch.workflows.sweep.cluster import on_cluster
-from pneutouch.workflows.sweep.dataset import dataset, netcdf, stored_fingerprint, stored_states
+from pneutouch.workflows.sweep.dataset import dataset, netcdf, stored_dataset, stored_fingerprint
 from pneutouch.workflows.sweep.journal import Journal
 from pneutouch.workflows.sweep.local import cores, in_pool, in_process
 from pneutouch.workflows.sweep.plan import SweepPlan
@@ -67,7 +67,7 @@ def sweep(
         records = {} if fresh else _fitting(journal.read(), resolved)
         if _is_there(resolved, out, fresh=fresh, resumed=bool(records)):
             folder.finish(None)
-            return _outcome(resolved, out, 0, stored_states(out))
+            return _outcome(resolved, out, 0, stored_dataset(out)["status"].values.ravel().tolist())
         if fresh:
             folder.restart()
         before = len(records)
