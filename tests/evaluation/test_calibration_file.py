@@ -11,7 +11,8 @@ import pytest
 from pneutouch.catalogue import load_scene
 from pneutouch.catalogue.listing import listing
 from pneutouch.errors import InputError
-from pneutouch.evaluation.evaluate import elastomers, evaluate
+from pneutouch.evaluation.elastomers import elastomers
+from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.output.recipe import BuildRecipe, evaluate_recipe
 from pneutouch.output.recipe_read import read_recipe
 from pneutouch.spec.design import CALIBRATION

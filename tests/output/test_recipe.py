@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from pneutouch.catalogue import KINDS, Library, ResolvedDesign, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
-from pneutouch.evaluation.evaluate import PredictionOptions, elastomers
+from pneutouch.evaluation.elastomers import elastomers
+from pneutouch.evaluation.evaluate import PredictionOptions
 from pneutouch.export.threemf import threemf
 from pneutouch.export.threemf_read import Package, read_threemf
 from pneutouch.output.manifest import input_hash as hash_of

@@ -69,7 +69,7 @@ def _title(thing: Any) -> str:
     if isinstance(thing, DesignFile | Specimen):
         return thing.document.title
     if isinstance(thing, Material):
-        return f"{thing.label}, {thing.kind}"
+        return f"{thing.label}, {thing.kind_shown}"
     if isinstance(thing, MixingCurve):
         points, top = len(thing.points), 100 * thing.points[-1].fraction
         known = "fractions assumed" if thing.is_assumed else "measured"

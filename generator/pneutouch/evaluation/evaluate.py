@@ -14,6 +14,7 @@ from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scen
 from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.evaluation.calibrated import assumption, calibrated_error, calibrated_sensor, check_options, unmeasured
 from pneutouch.evaluation.contact_object import check_first_touch, check_object, contact_object, rigid_base
+from pneutouch.evaluation.elastomers import Resins, alike, elastomers
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
 from pneutouch.mechanics.gauge_reading import gauge_reading
@@ -22,7 +23,6 @@ from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.prediction import ErrorEstimate
 from pneutouch.mechanics.viscous.known import AGED, ageing_ratio
 from pneutouch.parts import Assembly, assemble
-from pneutouch.spec.material import Material
 from pneutouch.spec.read import Changes
 from pneutouch.units import KPA
 
@@ -38,9 +38,6 @@ if TYPE_CHECKING:
 
 CLAMPS = ("base", "flange")
 """Where the solid is held."""
-
-
-Resins = dict[str, Material]
 
 
 @dataclass(frozen=True)
@@ -75,6 +72,11 @@ class Evaluation:
     def resins(self) -> Resins:
         """Elastomers by name that the design is compared with and the model's error is taken from."""
         return self.find_resins()
+
+    @property
+    def alike(self) -> Resins:
+        """Those of `resins` that are made as the membrane is: printed ones, or what the casting profile runs."""
+        return alike(self.scene.printer, self.resins)
 
     @cached_property
     def findings(self) -> list[Finding]:
@@ -158,7 +160,8 @@ def evaluate(
         raise InputError(f"unknown.{nearest(clamp, CLAMPS)}", key="clamp", value=clamp)
     library = library or Library.default()
     scene = load_scene(design, changes, library)
-    return evaluate_scene(scene, lambda: elastomers(library), PredictionOptions(model, closure, clamp, tolerance, aged))
+    options = PredictionOptions(model, closure, clamp, tolerance, aged)
+    return evaluate_scene(scene, lambda: elastomers(library, scene.printer.is_casting), options)
 
 
 def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], options: PredictionOptions) -> Evaluation:
@@ -208,12 +211,6 @@ def _sensitivity_error(scene: ResolvedDesign, sensor: Sensor, model: str, closur
     """The model's known error in sensitivity: by the calibration where there is one, else against Table S1."""
     known = None if scene.calibration is None else calibrated_error(scene.calibration)
     return known or sensitivity_error(scene.membrane_material, sensor, model, closure)
-
-
-def elastomers(library: Library) -> Resins:
-    """Every elastomer of a library, by name."""
-    materials = library.all("materials", Material)
-    return {name: material for name, material in materials.items() if material.kind == "elastomer"}
 
 
 def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:

@@ -8,7 +8,8 @@ from pneutouch.bench.simulate import SimulationTruth, press_curves
 from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
-from pneutouch.evaluation.evaluate import elastomers, sensor_of
+from pneutouch.evaluation.elastomers import elastomers
+from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.gauge import reading_of
 from pneutouch.mechanics import Sensor, predict
 from pneutouch.mechanics.rating import Rating, rating
@@ -61,7 +62,7 @@ def resins_of(
     """The design in each resin; none given: its own, "all": those of the paper's Table S1. Raises InputError."""
     library = library or Library.default()
     given = load_scene(design, changes, library)
-    known = elastomers(library)
+    known = elastomers(library, given.printer.is_casting)
     names = list(resins) or [resin_of(given)]
     if tuple(names) == ALL:
         names = sorted(

@@ -44,7 +44,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         numerical_error=stated_error(prediction.model, sensor),
         zero_drift_kPa_per_K=zero_drift_kPa_per_K(scene, prediction, states[0]),
         gauge=sheet_gauge(scene, prediction),
-        resin_curves=resin_curves(sensor, evaluation.resins, highest, prediction.model, prediction.closure, states),
+        resin_curves=resin_curves(sensor, evaluation.alike, highest, prediction.model, prediction.closure, states),
         viscous=viscous_data(evaluation.viscous_runs),
         ageing=ageing_data(prediction, material, sensor),
         constants=constant_membranes(sensor, prediction),

@@ -9,7 +9,8 @@ from typing import Any
 from pneutouch import __version__
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
-from pneutouch.evaluation.evaluate import Evaluation, PredictionOptions, Resins, evaluate_scene
+from pneutouch.evaluation.elastomers import Resins
+from pneutouch.evaluation.evaluate import Evaluation, PredictionOptions, evaluate_scene
 
 FORMAT = 1
 """Number of the form that recipes have; a recipe of another form is refused."""

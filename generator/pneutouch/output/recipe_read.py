@@ -10,7 +10,8 @@ from typing import Any, NoReturn
 from pneutouch import __version__
 from pneutouch.catalogue import KINDS, ResolvedDesign, check_scene
 from pneutouch.errors import InputError, nearest, shown
-from pneutouch.evaluation.evaluate import CLAMPS, PredictionOptions, Resins
+from pneutouch.evaluation.elastomers import Resins
+from pneutouch.evaluation.evaluate import CLAMPS, PredictionOptions
 from pneutouch.export.threemf_read import Package
 from pneutouch.mechanics.contact import CLOSURES
 from pneutouch.mechanics.models import MODEL_CHOICES

@@ -107,7 +107,7 @@ def plug_neck(scene: ResolvedDesign, layout: Layout) -> tuple[float, float]:
     the middle does not close it.
     """
     assert layout.port_axis is not None
-    least = scene.connector_printer.smallest.wall_rigid_mm.recommended
+    least = scene.connector_printer.smallest.wall("rigid").recommended
     gap = max(scene.fit_clearance, min(layout.port.passage, layout.opening_radius - least))
     return layout.opening_radius - gap, layout.port_axis - layout.port.passage - _UNDER_PORT
 

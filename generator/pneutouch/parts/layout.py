@@ -132,7 +132,7 @@ def _ring_radius(scene: ResolvedDesign, groove: float, flange: float) -> float:
     """Outer radius of the rigid ring around the flange; a clamping ring carries its screw heads on flat context."""
     seat = scene.seat
     if isinstance(seat, ClampedFlange):
-        least = scene.connector_printer.smallest.wall_rigid_mm.recommended
+        least = scene.connector_printer.smallest.wall("rigid").recommended
         hole = 0.5 * (seat.clearance_diameter + scene.hole_undersize) + least
         cone = groove - scene.fit_clearance - CLAMPED_SHARE * flange + seat.ring_thickness
         head = 0.5 * seat.head_diameter
@@ -161,7 +161,7 @@ def _plate_radius(scene: ResolvedDesign, ring: float, bolts: float) -> float:
     if isinstance(mount, BoltCircle) and mount.family == "through":
         hole = (
             0.5 * (mount.hole_diameter + scene.hole_undersize)
-            + scene.connector_printer.smallest.wall_rigid_mm.recommended
+            + scene.connector_printer.smallest.wall("rigid").recommended
         )
         return bolts + max(mount.head_diameter / 2 + HEAD_GAP, hole)
     return ring
@@ -177,7 +177,7 @@ def _plate_thickness(scene: ResolvedDesign, port: PortShape) -> float:
     """At least the mount's; thicker for blind holes from both sides, a plug's shoulder or a port in the side."""
     seat, mount = scene.seat, scene.mount
     depth = mount.hole_depth if isinstance(mount, BoltCircle) and mount.hole_depth is not None else 0.0
-    needs, floor = [mount.plate_thickness], scene.connector_printer.smallest.wall_rigid_mm.recommended
+    needs, floor = [mount.plate_thickness], scene.connector_printer.smallest.wall("rigid").recommended
     if isinstance(seat, ClampedFlange):
         needs.append(seat.core_depth + depth + floor)
     if isinstance(seat, OnePiece):
@@ -196,7 +196,7 @@ def _port_height(scene: ResolvedDesign, port: PortShape) -> float:
     if isinstance(scene.seat, OnePiece):
         low = max(
             low,
-            scene.seat.shoulder_thickness + port.passage + scene.connector_printer.smallest.wall_rigid_mm.recommended,
+            scene.seat.shoulder_thickness + port.passage + scene.connector_printer.smallest.wall("rigid").recommended,
         )
     return low
 

@@ -43,7 +43,7 @@ def _no_space(scene: ResolvedDesign, problem: str, remedy: str) -> InputError:
 def _least(scene: ResolvedDesign, layout: Layout) -> Lengths:
     """Radii that must not be smaller."""
     seat, mount, port, needs = scene.seat, scene.mount, layout.port, {}
-    wall = scene.connector_printer.smallest.wall_rigid_mm.recommended
+    wall = scene.connector_printer.smallest.wall("rigid").recommended
     inner = port.reach if layout.port_axis is None else 0.0
     if isinstance(seat, OnePiece):
         plug = layout.opening_radius - scene.fit_clearance

@@ -42,7 +42,7 @@ class ItemEstimate:
 class JobEstimate:
     """One job: size as it stands in mm, support in mm3, time in s; None where the profile does not state enough.
 
-    ``assumptions`` state what each figure is based on.
+    ``assumptions`` state what each figure is based on. What is cast has no layers.
     """
 
     name: str
@@ -51,7 +51,7 @@ class JobEstimate:
     items: tuple[ItemEstimate, ...]
     size: tuple[float, float, float]
     support: float
-    layers: int
+    layers: int | None
     swaths: int | None
     seconds: float | None
     assumptions: tuple[str, ...]
@@ -87,7 +87,9 @@ def estimate(subject: PrintSubject) -> list[JobEstimate]:
 def _estimate(job: PrintJob) -> JobEstimate:
     first = job.parts[0].item
     x, y, z = (float(length) for length in job.bounds[1] - job.bounds[0])
-    layers = math.ceil(z / (UM * first.mode.layer_height_um) - 1e-9)
+    if first.printer.is_casting:
+        return _cast(job)
+    layers = math.ceil(z / (UM * first.mode.layer_um) - 1e-9)
     support, how = _support(job)
     swaths = None
     if job.printer.process == "polyjet":
@@ -101,6 +103,20 @@ def _estimate(job: PrintJob) -> JobEstimate:
     return JobEstimate(
         job.name, job.printer.title, first.mode.name, items, (x, y, z), support, layers, swaths, seconds, tuple(notes)
     )
+
+
+def _cast(job: PrintJob) -> JobEstimate:
+    """What a casting takes: the body alone, and the time of its cure; mould, overflow and loss come on top."""
+    first = job.parts[0].item
+    x, y, z = (float(length) for length in job.bounds[1] - job.bounds[0])
+    items, seconds = tuple(_item(part) for part in job.parts), None
+    notes = ["silicone: the body alone; what stays in sprue, vents and cup comes on top"]
+    casting = first.body.material.casting
+    if casting is not None:
+        seconds = 3600 * casting.cure_h.nominal
+        notes.append(f"time: cure at room temperature ({casting.cure_h.source}); printing the mould comes on top")
+    mode = first.mode.name
+    return JobEstimate(job.name, job.printer.title, mode, items, (x, y, z), 0.0, None, None, seconds, tuple(notes))
 
 
 def _item(part: PrintPart) -> ItemEstimate:
@@ -137,6 +153,8 @@ def _seconds(job: PrintJob, layers: int, swaths: int | None, support: float) -> 
             return None, ["time: the printer's profile gives no layer_seconds or no swath_mm"]
         text = f"time: {layers} layers x {swaths} swaths x {layer.nominal:g} s ({layer.source}); warming up left out"
         return layers * swaths * layer.nominal, [text, "swaths: the shorter side across the travel of the heads"]
+    if item.printer.process == "resin" and layer is not None:
+        return layers * layer.nominal, [f"time: {layers} layers x {layer.nominal:g} s ({layer.source})"]
     rate = item.printer.deposition_mm3_per_s
     if layer is None or rate is None:
         return None, ["time: the printer's profile gives no layer_seconds or no deposition_mm3_per_s"]

@@ -21,8 +21,8 @@ def print_sheet(sheet: SheetData, left_out: Mapping[str, str]) -> str:
     for body, solid in zip(assembly.bodies, assembly.solids, strict=True):
         machine, mode = assembly.machine(body.name)
         rows.append(
-            f"| {body.name} | stl/{body.name}.stl | {solid.material.label} | {machine.title} | {mode.name}, "
-            f"{mode.layer_height_um:g} µm | {_size(body)} | {solid.mass:.2f} g |"
+            f"| {body.name} | stl/{body.name}.stl | {solid.material.label} | {machine.title} | {mode.label} | "
+            f"{_size(body)} | {solid.mass:.2f} g |"
         )
     deviation = max(assembly.deviation(body) for body in assembly.bodies)
     findings = "\n".join([f"- {f.severity}: {f.body}: {f.message}; {f.fix}." for f in sheet.findings] or ["- none"])
@@ -77,9 +77,10 @@ def _takes(sheet: SheetData) -> str:
     rows, notes = [], []
     for job in sheet.estimates:
         resins = ", ".join(f"{name} {volume:.2f} mL" for name, volume in job.resins.items())
+        layers = "" if job.layers is None else f"{job.layers}"
         swaths = "" if job.swaths is None else f" x {counted(job.swaths, 'swath')}"
         rows.append(
-            f"| {job.name} | {job.mode} | {resins} | {job.support / ML:.2f} mL | {job.layers}{swaths} | "
+            f"| {job.name} | {job.mode} | {resins} | {job.support / ML:.2f} mL | {layers}{swaths} | "
             f"{_time(job.seconds)} |"
         )
         notes += [f"- {job.name}: {note}." for note in job.assumptions]

@@ -253,8 +253,7 @@ def _bodies(sheet: SheetData) -> list[list[str]]:
     rows = []
     for solid in sheet.assembly.solids:
         printer, mode = sheet.assembly.machine(solid.name)
-        size, layers = f"{solid.volume / ML:.3f} mL, {solid.mass:.2f} g", f"{mode.layer_height_um:g} µm"
-        machine = f"{printer.title}, {mode.name}, {layers}"
+        size, machine = f"{solid.volume / ML:.3f} mL, {solid.mass:.2f} g", f"{printer.title}, {mode.label}"
         rows.append([solid.name, solid.material.label, size, machine, printer.support])
     return rows
 

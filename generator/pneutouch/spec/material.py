@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import Literal
+from typing import Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
+from pneutouch.spec.casting import Casting
 from pneutouch.spec.fields import MaterialKind, Table
 from pneutouch.spec.quantity import Quantity
 
@@ -27,7 +28,24 @@ class HyperelasticLaw(Table):
 
     name: str = Field(description="neo-hookean, mooney-rivlin, yeoh or ogden.")
     constants: list[float] = Field(min_length=1, max_length=6, description="MPa; Ogden: mu, alpha, mu, alpha ...")
+    largest_stretch: float | None = Field(
+        default=None, gt=1, le=20, description="Fitted to a tensile curve from 1 to there; left out: not known."
+    )
+    misfit_percent: float | None = Field(
+        default=None,
+        ge=0,
+        le=1000,
+        description="Largest difference of the nominal stress to the curve over that range, of the datum, where the "
+        "strain is 10 % or more.",
+    )
     source: str = Field(min_length=8)
+
+    @model_serializer(mode="wrap")
+    def _without_no_fit(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        # What a result follows from is hashed: a law that was not fitted here reads as before.
+        content: dict[str, Any] = handler(self)
+        fit = ("largest_stretch", "misfit_percent")
+        return {key: value for key, value in content.items() if key not in fit or value is not None}
 
 
 _MIX_SUM = 1e-6
@@ -132,6 +150,7 @@ class Material(Table):
     shear_modulus_is: Literal["relaxed", "instantaneous"] | None = Field(
         default=None, description="Which modulus shear_modulus_MPa is: relaxed (long-term) or instantaneous."
     )
+    casting: Casting | None = Field(default=None, description="Of a resin that is cast in a mould, not printed.")
 
     @model_validator(mode="after")
     def _relaxation_of_a_known_modulus(self) -> Material:
@@ -159,10 +178,33 @@ class Material(Table):
         return self
 
     @model_validator(mode="after")
+    def _cast_of_one(self) -> Material:
+        if self.casting is not None and (self.kind != "elastomer" or self.is_digital):
+            raise ValueError("casting: a resin that is cast is an elastomer with one base resin, itself")
+        return self
+
+    @model_validator(mode="after")
     def _elastomer_complete(self) -> Material:
         if self.kind == "elastomer" and (self.shear_modulus_MPa is None or self.poisson_ratio is None):
             raise ValueError("an elastomer needs shear_modulus_MPa and poisson_ratio")
         return self
+
+    @model_serializer(mode="wrap")
+    def _without_no_casting(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        content: dict[str, Any] = handler(self)
+        if content.get("casting") is None:
+            content.pop("casting", None)
+        return content
+
+    @property
+    def is_cast(self) -> bool:
+        """Whether it is mixed by hand and cast in a mould."""
+        return self.casting is not None
+
+    @property
+    def kind_shown(self) -> str:
+        """The kind as users read it: a cast elastomer is ``cast``."""
+        return "cast" if self.is_cast else self.kind
 
     @property
     def is_digital(self) -> bool:

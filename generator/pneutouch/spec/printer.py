@@ -1,8 +1,10 @@
 """A printer profile: what the machine can hold, resolve and build."""
 
+from __future__ import annotations
+
 from typing import Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field, field_validator, model_validator
 
 from pneutouch.spec.fields import MaterialKind, Table
 from pneutouch.spec.material import Material
@@ -13,6 +15,11 @@ HOLE_UNDERSIZE_MM = (-0.5, 1.0)
 """Bounds of `Printer.hole_undersize_mm`, our choice: beyond them a hole was not printed but misread, and bores drawn
 wider by it vanish or meet."""
 
+CAST_STEP_MM = 0.02
+"""Step of the mesh of a cast body, which copies its mould: no process sets one."""
+
+CAST_STEP_SOURCE = "STL of 0.01 to 0.03 mm is enough, finer prints no better: vendor, objet.com Tips and Tricks"
+"""Source of `CAST_STEP_MM`, for printed moulds."""
 
 _INCH_UM = 25400.0
 
@@ -27,16 +34,28 @@ class Envelope(Table):
 
 
 class Mode(Table):
-    """A print mode: its layer height, and whether it mixes digital materials."""
+    """A print mode: its layer height, and whether it mixes digital materials. A mode of casting has no layers."""
 
     name: str
-    layer_height_um: float = Field(gt=0)
+    layer_height_um: float | None = Field(default=None, gt=0, description="Left out: it builds no layers.")
     digital_materials: bool
     resins_at_once: int | None = Field(default=None, ge=1, le=8, description="Fewer than the machine, where it is so.")
     layer_seconds: Quantity | None = Field(
         default=None, description="Time of one layer, s; of one swath where there are several."
     )
     source: str = Field(min_length=8)
+
+    @property
+    def layer_um(self) -> float:
+        """The layer height. Raises ValueError for a mode without layers."""
+        if self.layer_height_um is None:
+            raise ValueError(f"{self.name} has no layers")
+        return self.layer_height_um
+
+    @property
+    def label(self) -> str:
+        """Name and layer height, as sheets print it: ``High Quality, 16 µm``."""
+        return self.name if self.layer_height_um is None else f"{self.name}, {self.layer_height_um:g} µm"
 
 
 class Resolution(Table):
@@ -71,9 +90,9 @@ class FeatureSize(Table):
 class SmallestSizes(Table):
     """Smallest features, walls and pins by kind of material; ``channel`` is a hole much longer than wide."""
 
-    wall_rigid_mm: FeatureSize
+    wall_rigid_mm: FeatureSize | None = Field(default=None, description="Left out: the process makes nothing rigid.")
     wall_soft_mm: FeatureSize
-    pin_rigid_mm: FeatureSize
+    pin_rigid_mm: FeatureSize | None = Field(default=None, description="Left out: the process makes nothing rigid.")
     pin_soft_mm: FeatureSize
     hole_mm: FeatureSize
     channel_mm: FeatureSize
@@ -81,21 +100,24 @@ class SmallestSizes(Table):
     emboss_mm: FeatureSize
 
     def wall(self, kind: MaterialKind) -> FeatureSize:
-        """The wall limit for a kind of material."""
-        return self.wall_soft_mm if kind == "elastomer" else self.wall_rigid_mm
+        """The wall limit for a kind of material; the soft one where the process makes nothing rigid."""
+        return self.wall_soft_mm if kind == "elastomer" else self.wall_rigid_mm or self.wall_soft_mm
 
     def pin(self, kind: MaterialKind) -> FeatureSize:
-        """The limit of a free-standing pin for a kind of material."""
-        return self.pin_soft_mm if kind == "elastomer" else self.pin_rigid_mm
+        """The limit of a free-standing pin for a kind of material, as `wall`."""
+        return self.pin_soft_mm if kind == "elastomer" else self.pin_rigid_mm or self.pin_soft_mm
+
+
+_ENVELOPE = "Left out of casting alone: the printer of the mould bounds the size."
 
 
 class Printer(Table):
-    """One machine as a lab runs it."""
+    """One machine as a lab runs it, or casting, which has no machine: no envelope, no pixels and no layers."""
 
     title: str
-    process: Literal["polyjet", "filament"]
-    envelope_mm: Envelope
-    resolution: Resolution
+    process: Literal["polyjet", "filament", "resin", "casting"]
+    envelope_mm: Envelope | None = Field(default=None, description=_ENVELOPE)
+    resolution: Resolution | None = Field(default=None, description="Left out of casting alone.")
     accuracy_mm: Quantity
     smallest: SmallestSizes
     resins: list[str] = Field(min_length=1, description="Base resins or filaments the machine runs.")
@@ -117,6 +139,49 @@ class Printer(Table):
                 raise ValueError(f"{key} = {number:g}: must be from {low:g} to {high:g} mm")
         return given
 
+    @model_validator(mode="after")
+    def _of_its_process(self) -> Printer:
+        layered = [mode.layer_height_um is not None for mode in self.mode]
+        given = {"envelope_mm": self.envelope_mm, "resolution": self.resolution}
+        if self.is_casting:
+            wrong = [key for key, table in given.items() if table is not None]
+            if wrong or any(layered):
+                key = wrong[0] if wrong else "mode.layer_height_um"
+                raise ValueError(f'{key}: process = "casting" has none; leave it out')
+            return self
+        for key, table in given.items():
+            if table is None:
+                raise ValueError(f'{key}: missing; it may be left out with process = "casting" alone')
+        if not all(layered):
+            raise ValueError('mode.layer_height_um: missing; it may be left out with process = "casting" alone')
+        if self.smallest.wall_rigid_mm is None or self.smallest.pin_rigid_mm is None:
+            raise ValueError("smallest: wall_rigid_mm and pin_rigid_mm are missing")
+        return self
+
+    @property
+    def is_casting(self) -> bool:
+        """Whether it stands for casting in a mould, not for a machine."""
+        return self.process == "casting"
+
+    @property
+    def pixel(self) -> Resolution:
+        """The step in the plane. Raises ValueError for casting, which has none."""
+        if self.resolution is None:
+            raise ValueError(f"{self.title} has no pixels")
+        return self.resolution
+
+    @property
+    def envelope(self) -> Envelope:
+        """The build envelope. Raises ValueError for casting, which has none."""
+        if self.envelope_mm is None:
+            raise ValueError(f"{self.title} has no build envelope")
+        return self.envelope_mm
+
+    @property
+    def step_source(self) -> str:
+        """Source of the step in the plane, or of the step that stands for it in casting."""
+        return CAST_STEP_SOURCE if self.resolution is None else self.resolution.source
+
     def mode_for(self, *materials: Material) -> Mode | None:
         """The finest mode that prints the materials in one job, or None where the machine cannot."""
         resins = {resin for material in materials for resin in material.base_resins}
@@ -128,8 +193,10 @@ class Printer(Table):
             for mode in self.mode
             if (mode.digital_materials or not mixed) and len(resins) <= (mode.resins_at_once or self.resins_at_once)
         ]
-        return min(modes, key=lambda mode: mode.layer_height_um, default=None)
+        return min(modes, key=lambda mode: mode.layer_height_um or 0.0, default=None)
 
     def finest_step(self, mode: Mode) -> float:
         """The smallest step the machine can make in a mode, in mm: no mesh needs to be finer."""
-        return UM * min(mode.layer_height_um, self.resolution.x_um, self.resolution.y_um)
+        if self.is_casting:
+            return CAST_STEP_MM
+        return UM * min(mode.layer_um, self.pixel.x_um, self.pixel.y_um)

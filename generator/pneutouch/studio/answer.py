@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.api.prediction import Prediction
@@ -9,7 +10,8 @@ from pneutouch.api.results import CheckResult
 from pneutouch.catalogue import load_scene
 from pneutouch.evaluation.charts import tuning
 from pneutouch.evaluation.document import rating_document
-from pneutouch.evaluation.evaluate import PredictionOptions, elastomers, evaluate_scene, sensor_of
+from pneutouch.evaluation.elastomers import elastomers
+from pneutouch.evaluation.evaluate import PredictionOptions, evaluate_scene, sensor_of
 from pneutouch.evaluation.tuning import curve
 from pneutouch.evaluation.uncertainty import unknown
 from pneutouch.evaluation.variants import resin_curves
@@ -24,7 +26,6 @@ if TYPE_CHECKING:
 
     from pneutouch.catalogue import DesignSource, Library
     from pneutouch.evaluation.evaluate import Evaluation
-    from pneutouch.spec.material import Material
     from pneutouch.studio.question import Question
 
 _DIGITS = 6
@@ -51,7 +52,8 @@ class Answers:
         outside = outside_atlas(sensor_of(assembly))
         if outside is not None:
             return {**answer, "outside": outside, "prediction": None, "curves": None}
-        evaluation = evaluate_scene(scene, self._resins, PredictionOptions("atlas"))
+        resins = partial(elastomers, self._library, scene.printer.is_casting)
+        evaluation = evaluate_scene(scene, resins, PredictionOptions("atlas"))
         self._last = question, evaluation
         prediction = {**evaluation.prediction.document(), "rating": rating_document(evaluation)}
         drawn = curve(evaluation.sensor, _highest(evaluation), "this design")
@@ -65,15 +67,13 @@ class Answers:
         """
         if self._last is None or self._last[0] != question:
             scene = load_scene(question.source(self._bases, self._library), {}, self._library)
-            self._last = question, evaluate_scene(scene, self._resins, PredictionOptions("atlas"))
+            resins = partial(elastomers, self._library, scene.printer.is_casting)
+            self._last = question, evaluate_scene(scene, resins, PredictionOptions("atlas"))
         return _predicted(self._last[1])
 
     def view(self, question: Question) -> dict[str, Any]:
         """The bodies as meshes to look at. Raises InputError naming the field."""
         return view_document(assemble(load_scene(question.source(self._bases, self._library), {}, self._library)))
-
-    def _resins(self) -> dict[str, Material]:
-        return elastomers(self._library)
 
 
 def full_answer(question: Question, bases: Mapping[str, str], library: Library) -> dict[str, Any]:
@@ -82,7 +82,9 @@ def full_answer(question: Question, bases: Mapping[str, str], library: Library) 
     Raises PneutouchError where the design cannot work or cannot be computed.
     """
     source = question.source(bases, library)
-    evaluation = evaluate_scene(load_scene(source, {}, library), lambda: elastomers(library), PredictionOptions(USUAL))
+    scene = load_scene(source, {}, library)
+    resins = partial(elastomers, library, scene.printer.is_casting)
+    evaluation = evaluate_scene(scene, resins, PredictionOptions(USUAL))
     check = CheckResult(source.name, tuple(evaluation.findings))
     jobs = [job.document() for job in evaluation.estimates]
     walls = [walls_document(state) for state in evaluation.prediction.states]
@@ -123,7 +125,7 @@ def _resin_curves(evaluation: Evaluation) -> list[dict[str, Any]]:
     prediction = evaluation.prediction
     resins = resin_curves(
         evaluation.sensor,
-        evaluation.resins,
+        evaluation.alike,
         _highest(evaluation),
         prediction.model,
         prediction.closure,

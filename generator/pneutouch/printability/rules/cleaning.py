@@ -31,10 +31,10 @@ _BRIDGED = 50.0
 
 
 def check(view: PrintView) -> list[Finding]:
-    """Look into each job as it is printed; filament needs support only under ceilings."""
+    """Look into each job as it is printed; filament and resin need support only under ceilings, casting needs none."""
     findings = []
     for job in view.jobs:
-        if job.sound:
+        if job.sound and not job.printer.is_casting:
             findings += [*_necks(job), *_hidden(job)]
             if job.printer.process == "polyjet":
                 findings += _slender(job)
@@ -52,7 +52,7 @@ def _necks(job: PrintJob) -> list[Finding]:
             continue
         severity: Severity = "error" if pocket.ratio < CONFINED else "warning"
         source = _NECK
-        if job.printer.process == "filament":
+        if job.printer.process != "polyjet":
             severity, source = "warning", _FILAMENT
         fix = "widen the opening, or split the part there"
         excess = Excess(pocket.ratio, CONFINED if severity == "error" else NARROW, "")
@@ -103,7 +103,7 @@ def _escapes(job: PrintJob, cells: Indices) -> Flags:
 
 
 def _needs_support(job: PrintJob, region: Flags) -> bool:
-    """Polyjet fills every hollow; filament needs support under ceilings too wide to bridge."""
+    """Polyjet fills every hollow; filament and resin need support under ceilings too wide to bridge."""
     if job.printer.process == "polyjet":
         return True
     ceiling = overhangs(job.voxels)[:, :, 1:] & region[:, :, :-1]

@@ -5,12 +5,16 @@ from pneutouch.printability.view import PrintJob, PrintView
 
 
 def check(view: PrintView) -> list[Finding]:
-    """Compare the bounds along the build direction and across it, in either orientation on the tray."""
-    return [finding for job in view.jobs if (finding := _check(job)) is not None]
+    """Compare the bounds along the build direction and across it, in either orientation on the tray.
+
+    What is cast has no machine to fit in.
+    """
+    jobs = (job for job in view.jobs if not job.printer.is_casting)
+    return [finding for job in jobs if (finding := _check(job)) is not None]
 
 
 def _check(job: PrintJob) -> Finding | None:
-    envelope = job.printer.envelope_mm
+    envelope = job.printer.envelope
     x, y, z = (float(length) for length in job.bounds[1] - job.bounds[0])
     if z <= envelope.z and ((x <= envelope.x and y <= envelope.y) or (x <= envelope.y and y <= envelope.x)):
         return None

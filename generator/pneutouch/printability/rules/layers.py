@@ -38,17 +38,17 @@ class WallStep(NamedTuple):
 def check(view: PrintView) -> list[Finding]:
     """Compare the wall with the steps of the machine at the pole and at the rim: one finding a wall.
 
-    The wall of a calibrated sensor is printed already, and fitted: nothing is found of it.
+    The wall of a calibrated sensor is printed already, and fitted: nothing is found of it. A cast one has no steps.
     """
     context = view.sensor
     part = None if context is None else view.part(context.membrane)
-    if context is None or part is None or context.calibrated:
+    if context is None or part is None or context.calibrated or part.item.printer.is_casting:
         return []
     printer, wall = part.item.printer, context.sensor.dome.wall_thickness
     upright = abs(part.item.up[2]) / float(np.linalg.norm(part.item.up)) > 0.7
     along, across = ("pole", "rim") if upright else ("rim", "pole")
-    layer = WallStep("layers", along, UM * part.item.mode.layer_height_um)
-    pixel = WallStep("pixels", across, UM * max(printer.resolution.x_um, printer.resolution.y_um))
+    layer = WallStep("layers", along, UM * part.item.mode.layer_um)
+    pixel = WallStep("pixels", across, UM * max(printer.pixel.x_um, printer.pixel.y_um))
     missed = [step for step in (layer, pixel) if step.off(wall) > _OFF]
     if not missed:
         return []

@@ -11,19 +11,22 @@ from pneutouch.printability.view import PrintJob, PrintPart, PrintView
 _SOURCE = "vendor: faces that support touches come out matte (DOC-37004 p. 5-34); share allowed: own, unverified"
 _MOST = 0.01
 """Share of the sensing face that support may touch."""
-_DOWN = {"polyjet": -0.02, "filament": -0.7}
-"""Vertical part of the normal below which a face needs support: any overhang (PolyJet), past 45 degrees (filament)."""
+_DOWN = {"polyjet": -0.02, "filament": -0.7, "resin": -0.7}
+"""Vertical part of the normal below which a face needs support: any overhang (PolyJet), past 45 degrees (others)."""
 _OFF = 1e-3
 """Distance from the face in mm at which the look upwards starts."""
 
 
 def check(view: PrintView) -> list[Finding]:
-    """Measure the share of each sensing face that looks down or lies under something of the same job."""
+    """Measure the share of each sensing face that looks down or lies under something of the same job; none is cast."""
     return [
         finding
         for job in view.jobs
         for part in job.parts
-        if part.item.sensing is not None and job.sound and (finding := _check(job, part)) is not None
+        if part.item.sensing is not None
+        and job.sound
+        and not job.printer.is_casting
+        and (finding := _check(job, part)) is not None
     ]
 
 

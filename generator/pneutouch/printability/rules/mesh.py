@@ -54,7 +54,7 @@ def _coarse(part: PrintPart) -> list[Finding]:
         return []
     text = f"the mesh is off by {deviation / UM:.0f} um ({how}); the machine's finest step is {step / UM:g} um"
     fix = part.item.hints.get("mesh", f"mesh it within {step:g} mm")
-    source = f"{_FINEST}{part.item.printer.resolution.source}"
+    source = f"{_FINEST}{part.item.printer.step_source}"
     return [Finding("mesh", "warning", part.name, text, fix, source, spot(where), Excess(deviation, step))]
 
 

@@ -40,12 +40,12 @@ def check_stack(
             )
         )
     if layers < rules.least_slices:
-        text = f"{layers} slices of {mode.layer_height_um:g} um; the utility takes no fewer than {rules.least_slices}"
+        text = f"{layers} slices of {mode.layer_um:g} um; the utility takes no fewer than {rules.least_slices}"
         fix = "take a mode of thinner layers, or make the part taller"
         findings.append(
             Finding(RULE, "error", body, text, fix, rules.source, excess=Excess(layers, rules.least_slices, "slices"))
         )
-    envelope = (printer.envelope_mm.x, printer.envelope_mm.y, printer.envelope_mm.z)
+    envelope = (printer.envelope.x, printer.envelope.y, printer.envelope.z)
     worst = max(zip(size, envelope, strict=True), key=lambda pair: pair[0] / pair[1])
     if worst[0] > worst[1]:
         stack, limits = (
@@ -53,5 +53,5 @@ def check_stack(
         )
         text = f"the stack is {stack} mm; the machine builds {limits} mm"
         fix = "make it smaller, or take a larger printer"
-        findings.append(Finding(RULE, "error", body, text, fix, printer.envelope_mm.source, excess=Excess(*worst)))
+        findings.append(Finding(RULE, "error", body, text, fix, printer.envelope.source, excess=Excess(*worst)))
     return findings

@@ -66,8 +66,8 @@ def plan_voxels(
         bodies.append(VoxelBody(solid, mixed))
     grid = raster(
         [body.inside for body in bodies],
-        printer.resolution.dpi,
-        chosen.layer_height_um,
+        printer.pixel.dpi,
+        chosen.layer_um,
         upright=assembly.stands_up("membrane"),
         coarser=coarser,
     )

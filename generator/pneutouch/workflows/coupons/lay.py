@@ -43,7 +43,7 @@ def lay(printer_name: str, items: tuple[CouponItem, ...]) -> tuple[CouponPiece, 
     printer = items[0].printer
     mode = job_mode(printer_name, items)
     pieces = [_piece(item, solid, printer, mode) for item in items for solid in item.coupon.draw(item.context)]
-    envelope = printer.envelope_mm
+    envelope = printer.envelope
     # The deepest first, so that a row wastes little; equal ones stay in the order of the sheet.
     order = [
         k for k in sorted(range(len(pieces)), key=lambda k: -pieces[k].size[1]) for _ in range(pieces[k].item.copies)

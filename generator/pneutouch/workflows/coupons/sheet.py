@@ -50,7 +50,7 @@ def _printing(name: str, pieces: tuple[CouponPiece, ...], order: CouponOrder) ->
     return [
         f"### {printer.title} (`{name}`)",
         f"`{order.name if name == order.profile else name}.3mf`: all copies in place, one material an object; mode "
-        f"{mode.name}, {mode.layer_height_um:g} µm. **Choose the material of each object by hand**; pieces of one "
+        f"{mode.label}. **Choose the material of each object by hand**; pieces of one "
         "shape "
         "differ by their place on the tray alone, so bag and label them as they come off.",
         "\n".join([head, "|---|---|---|---|---|---|---|", *rows]),

@@ -9,7 +9,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
 from pneutouch.errors import InputError
-from pneutouch.evaluation.evaluate import elastomers
+from pneutouch.evaluation.elastomers import elastomers
 from pneutouch.mechanics.atlas.inflated import least_limit
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.table import shipped
@@ -116,7 +116,7 @@ def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeC
     least = feature.least or feature.recommended
     resins = {
         name: material
-        for name, material in sorted(elastomers(library).items())
+        for name, material in sorted(elastomers(library, scene.printer.is_casting).items())
         if scene.printer.mode_for(material) is not None
         and resin_outside_atlas(material_sensor(material).wall, sensor.gas.ambient_pressure) is None
     }

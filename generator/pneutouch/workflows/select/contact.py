@@ -13,7 +13,8 @@ from pneutouch.catalogue import Library, ResolvedDesign, load_scene
 from pneutouch.errors import ComputationError, InputError
 from pneutouch.evaluation.chart_data import TuningCurve
 from pneutouch.evaluation.contact_object import check_object
-from pneutouch.evaluation.evaluate import elastomers, sensor_of
+from pneutouch.evaluation.elastomers import elastomers
+from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.graded_uncertainty import even_wall
 from pneutouch.evaluation.tuning import interval
 from pneutouch.evaluation.uncertainty import known, unknown
@@ -114,4 +115,4 @@ class CandidateSolver:
 
     @cached_property
     def _materials(self) -> list[Material]:
-        return list(elastomers(self._library).values())
+        return list(elastomers(self._library, self._base.printer.is_casting).values())

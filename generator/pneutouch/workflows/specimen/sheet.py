@@ -21,7 +21,7 @@ def sheet(drawn: SpecimenBodies, findings: list[Finding], input_hash: str, left_
         f"# Print sheet: {_escaped(document.title)}",
         f"Texture specimen {scene.name}, revision {document.revision}, input {input_hash}",
         "\n".join(_bodies(drawn)),
-        f"Machine: {scene.printer.title}, {scene.mode.name}, {scene.mode.layer_height_um:g} µm. All bodies are **one "
+        f"Machine: {scene.printer.title}, {scene.mode.label}. All bodies are **one "
         "job**: "
         f"load them as one assembly (`{scene.name}.3mf`, or all STL files together), never one by one. They share "
         "one frame, "

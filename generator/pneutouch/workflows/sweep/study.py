@@ -8,7 +8,7 @@ from pneutouch import __version__
 from pneutouch.catalogue import KINDS, DesignSource, Library, load_scene
 from pneutouch.catalogue.cached_library import CachedLibrary
 from pneutouch.errors import InputError
-from pneutouch.evaluation.evaluate import elastomers
+from pneutouch.evaluation.elastomers import elastomers
 from pneutouch.mechanics.models import USUAL
 from pneutouch.output.files import digest, json_bytes
 from pneutouch.spec.contact import LYING
@@ -67,7 +67,8 @@ def study(plan: SweepPlan, library: Library) -> SweepStudy:
     names |= {("tubes", tube) for kind, name in names if kind == "ports" for tube in library.load(kind, name).tubes}
     if plan.model != "membrane":
         # The uncertainty takes the model's error from every resin that was measured.
-        names |= {("materials", name) for name in elastomers(library)}
+        casting = any(library.load("printers", name).is_casting for kind, name in names if kind == "printers")
+        names |= {("materials", name) for name in elastomers(library, casting)}
     for kind, name in sorted(names):
         path = library.paths(kind)[name]
         files[f"{KINDS[kind].folder}/{name}.toml"] = path.read_text(encoding="utf-8-sig")

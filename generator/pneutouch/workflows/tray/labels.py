@@ -85,7 +85,7 @@ def _job_lines(layout: TrayLayout, job: TrayJob, number: int) -> list[str]:
     return [
         f"## Job {number}: `{layout.name(job)}.3mf`",
         "",
-        f"Load {' and '.join(job.resins)}. Mode {job.mode.name}, {job.mode.layer_height_um:g} µm, {job.layers} layers, "
+        f"Load {' and '.join(job.resins)}. Mode {job.mode.label}, {job.layers} layers, "
         f"{job.height:.1f} mm; {mass:.1f} g of model material. Bounding boxes take {shares['bounding_boxes']:.1%} of "
         "the "
         f"envelope's footprint, outlines {shares['outlines']:.1%}.",
@@ -116,10 +116,9 @@ def _coarser(layout: TrayLayout, job: TrayJob) -> list[str]:
         for solid in part.solids
     }
     return [
-        f"{label} alone would print in {mode.name}, {mode.layer_height_um:g} µm: the other resins of the job take "
-        "that from it."
+        f"{label} alone would print in {mode.label}: the other resins of the job take that from it."
         for label, mode in modes.items()
-        if mode is not None and mode.layer_height_um < job.mode.layer_height_um
+        if mode is not None and mode.layer_um < job.mode.layer_um
     ]
 
 

@@ -133,12 +133,12 @@ def lay(order: TrayOrder, library: Library | None = None, progress: StepReport =
 
 def layers(height: float, mode: Mode) -> int:
     """Layers of a mode in a height in mm; a micrometre too much is rounding."""
-    return math.ceil((height - UM) / (UM * mode.layer_height_um))
+    return math.ceil((height - UM) / (UM * mode.layer_um))
 
 
 def fill(job: TrayJob, printer: Printer) -> dict[str, float]:
     """Shares of the envelope's footprint: of the parts' bounding boxes, and of their true outlines."""
-    whole = printer.envelope_mm.x * printer.envelope_mm.y
+    whole = printer.envelope.x * printer.envelope.y
     boxes = sum(part.footprint[0] * part.footprint[1] for part in job.parts)
     areas: dict[Any, float] = {}
     true = 0.0
@@ -170,7 +170,7 @@ def _job(pieces: list[TrayPiece], printer: Printer, marker: Marker, order: TrayO
         plain = [replace(meshes[shape_of(solid)], material=solid.material) for solid in piece.solids]
         parts += [_part(piece, plain, copy, marker) for copy in range(1, piece.value.copies + 1)]
     _check_height(parts, printer, order.where)
-    head, envelope = order.tray.tray, printer.envelope_mm
+    head, envelope = order.tray.tray, printer.envelope
     places = pack(
         [_box(part) for part in parts],
         PackingArea(envelope.x, envelope.y, head.margin_mm, head.spacing_mm),
@@ -207,11 +207,11 @@ def _box(part: TrayPart) -> tuple[float, float]:
 
 def _check_height(parts: list[TrayPart], printer: Printer, where: str) -> None:
     for part in parts:
-        if part.size[2] > printer.envelope_mm.z:
+        if part.size[2] > printer.envelope.z:
             raise InputError(
                 f"{part.name} of {part.value.design} is {part.size[2]:.1f} mm tall",
                 file=where,
-                remedy=f"the {printer.title} builds {printer.envelope_mm.z:g} mm",
+                remedy=f"the {printer.title} builds {printer.envelope.z:g} mm",
             )
 
 

@@ -20,7 +20,7 @@ _WIDTH = 170.0
 
 def tray_svg(layout: TrayLayout, job: TrayJob) -> bytes:
     """SVG of one job."""
-    envelope = layout.printer.envelope_mm
+    envelope = layout.printer.envelope
     head = layout.order.tray.tray
     with figure(_WIDTH, _WIDTH * envelope.y / envelope.x + 6.0) as drawn:
         ax = drawn.add_subplot()

@@ -121,7 +121,7 @@ def _job_document(layout: TrayLayout, job: TrayJob) -> dict[str, Any]:
     return {
         "name": layout.name(job),
         "mode": job.mode.name,
-        "layer_height_um": job.mode.layer_height_um,
+        "layer_height_um": job.mode.layer_um,
         "layers": job.layers,
         "height_mm": round(job.height, 3),
         "resins": list(job.resins),
