@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import tomllib
 
 import pytest
 
+from pneutouch.catalogue import Library
 from pneutouch.catalogue.examples import COMMANDS, examples
 from tests.conftest import ROOT
 
@@ -74,3 +76,43 @@ def test_what_there_is_not_is_refused(command):
     assert command("new").returncode == 2
     assert command("new", "../x", "--from", "fingertip").returncode == 2
     assert command("new", "paper-dome", "--from", "fingertip-dome").returncode == 2
+
+
+def written(tmp_path, name):
+    return tomllib.loads((tmp_path / f"designs/{name}.toml").read_text())
+
+
+def test_a_process_brings_a_profile_a_seat_without_glue_and_pressures_that_it_stands(command, tmp_path):
+    done = command("new", "mine", "--process", "casting", "--material", "DragonSkin20")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "designs/mine.toml\n", "next: pneutouch check mine\n")
+    design = written(tmp_path, "mine")
+    assert design["membrane"]["material"] == "DragonSkin20"
+    assert design["print"] == {**design["print"], "profile": "silicone-casting", "connector_profile": "abs-filament"}
+    assert Library.default().load("seats", design["connector"]["seat"]).family != "glued-flange"
+    checked = command("check", "mine")
+    assert checked.returncode == 0, checked.stdout
+    assert "driving" not in checked.stdout
+
+
+def test_a_material_alone_takes_the_printer_that_runs_it(command, tmp_path):
+    assert command("new", "mine", "--material", "Agilus30").returncode == 0
+    assert written(tmp_path, "mine")["print"]["profile"] == "j735"
+    assert command("new", "other", "--process", "polyjet").returncode == 0
+    assert written(tmp_path, "other")["membrane"]["material"] == "TangoPlus"
+
+
+@pytest.mark.parametrize(
+    ("words", "problem"),
+    [
+        (["--process", "casting", "--material", "TangoPlus"], "TangoPlus is not made by it; it takes polyjet"),
+        (["--process", "cast"], "--process cast: unknown. Did you mean casting?"),
+        (["--process", "filament"], "no profile of this process runs an elastomer"),
+        (["--process", "casting", "--material", "ABS"], "ABS is rigid"),
+        (["--material", "DragonSkin"], "no such name among the materials. Did you mean DragonSkin20?"),
+        (["--from", "paper-dome", "--process", "casting"], "--process cannot be given with a copy"),
+    ],
+)
+def test_a_process_the_resin_is_not_made_by_is_refused(command, tmp_path, words, problem):
+    done = command("new", "mine", *words)
+    assert done.returncode == 2 and problem in done.stderr, done.stderr
+    assert not (tmp_path / "designs").exists()

@@ -9,6 +9,7 @@ import numpy as np
 from pneutouch.body import Body
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
+from pneutouch.evaluation.elastomers import elastomers
 from pneutouch.evaluation.subject import subject_of
 from pneutouch.export.threemf import threemf
 from pneutouch.parts import Assembly, assemble
@@ -18,7 +19,7 @@ from pneutouch.spec.read import parse_changes
 from tests.conftest import ROOT
 
 LIBRARY = Library((ROOT,))
-RESINS = [name for name in LIBRARY.paths("materials") if LIBRARY.load("materials", name).kind == "elastomer"]
+RESINS = list(elastomers(LIBRARY))
 
 
 def outcome(base: str, chosen: list[str]) -> tuple[str, list[Finding] | str]:

@@ -11,7 +11,6 @@ import typer
 from pneutouch import __version__
 from pneutouch.cli.commands import CHANGES, Commands
 from pneutouch.cli.complete import assignment, names
-from pneutouch.cli.next_step import report_next
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify, put
 from pneutouch.errors import ComputationError, InputError, PneutouchError
@@ -236,33 +235,6 @@ def list_(
         if broken:
             remedy = "mend or move it" if len(broken) == 1 else "mend or move them"
             raise InputError(f"cannot be read: {', '.join(broken)}", remedy=remedy)
-
-
-@app.command()
-def new(
-    name: Annotated[str | None, typer.Argument(help="Name of the new file: letters, digits, - and _.")] = None,
-    from_: Annotated[
-        str | None,
-        typer.Option("--from", metavar="EXAMPLE", help="Copy a design, a specimen or an example: see pneutouch list."),
-    ] = None,
-    set_: SetOption = None,
-    out: DesignFolderOption = None,
-) -> None:
-    """Write a commented design file, or a copy of an example."""
-    with reporting():
-        from pneutouch.output.new import NewFile, new_design, new_from
-
-        if from_ is not None:
-            made = new_from(from_, name, out, changes(set_))
-        elif set_:
-            raise InputError("no design to change", key="set", remedy="give one with `from`")
-        elif name is not None:
-            path = new_design(name, design_folder(out))
-            made = NewFile(path, ("check", name if out is None else str(path)))
-        else:
-            raise InputError("no name for the new design", remedy="give a name, or an example with `from`")
-        echo(str(made.path))
-        report_next(*made.command, first=made.first)
 
 
 def design_folder(out: Path | None) -> Path:

@@ -28,9 +28,18 @@ class NewFile:
     first: str = ""
 
 
-def new_design(name: str, folder: Path) -> Path:
-    """Write ``folder/name.toml`` with every key, its default, unit, bounds and help; never over a file."""
-    return write_design(name, folder, design_template(name))
+def new_design(name: str, folder: Path, process: str | None = None, material: str | None = None) -> Path:
+    """Write ``folder/name.toml`` with every key, its default, unit, bounds and help; never over a file.
+
+    With ``process`` or ``material`` the design starts with a profile that runs it. Raises InputError where none does.
+    """
+    if process is None and material is None:
+        return write_design(name, folder, design_template(name))
+    from pneutouch.output.new_process import process_values
+
+    values = process_values(process, material, Library.default())
+    note = "Every key may be left out; shown are the defaults but for what process and resin need."
+    return write_design(name, folder, design_template(name, values, note))
 
 
 def new_changed(source: DesignSource, name: str, folder: Path, *, overwrite: bool = False) -> Path:

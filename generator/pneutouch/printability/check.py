@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from pneutouch.printability.finding import Finding
 from pneutouch.printability.rules import (
+    casting,
     cleaning,
     contact_faces,
     driving,
@@ -39,6 +40,9 @@ RULES: dict[str, Rule] = {
     "cleaning": cleaning.check,
     "matte": matte.check,
     "layers": layers.check,
+    "filling": casting.filling,
+    "bubbles": casting.bubbles,
+    "inhibition": casting.inhibition,
     "driving": driving.check,
     "freedom": freedom.check,
 }
@@ -48,7 +52,7 @@ def check(subject: PrintSubject, sensor_context: SensorContext | None = None) ->
     """All findings, errors first.
 
     Bodies whose mesh bounds no solid get the findings that need none: mesh, envelope and resins. Rules on the sensor's
-    working (driving, layers) report nothing without ``sensor_context``.
+    working (driving, layers) and on casting report nothing without ``sensor_context``.
     """
     view = PrintView(subject, sensor_context)
     return sorted((finding for rule in RULES.values() for finding in rule(view)), key=lambda finding: finding.rank)

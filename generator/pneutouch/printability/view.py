@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
@@ -26,12 +26,21 @@ if TYPE_CHECKING:
     from pneutouch.spec.gauge import Gauge
 
 
+class WettedSurface(NamedTuple):
+    """What a silicone is poured against: the body's name, its material's label and the process it is printed by."""
+
+    body: str
+    material: str
+    process: str
+
+
 @dataclass(frozen=True)
 class SensorContext:
     """What the rules on the sensor's working need: its prediction, the mechanics' view of it, and its rating.
 
     ``membrane`` is the name of the item whose wall the sensor presses; ``calibrated``: the sensor is a printed one.
-    ``gauge`` is the one that the design names; None stands for the paper's.
+    ``gauge`` is the one that the design names; None stands for the paper's. ``wetted``: what a cast membrane cures
+    against.
     """
 
     prediction: SensorPrediction
@@ -40,6 +49,7 @@ class SensorContext:
     membrane: str = "membrane"
     calibrated: bool = False
     gauge: Gauge | None = None
+    wetted: tuple[WettedSurface, ...] = ()
 
 
 NARROW = 3.0

@@ -15,6 +15,9 @@ HOLE_UNDERSIZE_MM = (-0.5, 1.0)
 """Bounds of `Printer.hole_undersize_mm`, our choice: beyond them a hole was not printed but misread, and bores drawn
 wider by it vanish or meet."""
 
+Process = Literal["polyjet", "filament", "resin", "casting"]
+"""How bodies are made; "resin" is stereolithography, which prints moulds."""
+
 CAST_STEP_MM = 0.02
 """Step of the mesh of a cast body, which copies its mould: no process sets one."""
 
@@ -115,7 +118,7 @@ class Printer(Table):
     """One machine as a lab runs it, or casting, which has no machine: no envelope, no pixels and no layers."""
 
     title: str
-    process: Literal["polyjet", "filament", "resin", "casting"]
+    process: Process
     envelope_mm: Envelope | None = Field(default=None, description=_ENVELOPE)
     resolution: Resolution | None = Field(default=None, description="Left out of casting alone.")
     accuracy_mm: Quantity

@@ -143,7 +143,8 @@ def _options(name: str, kinds: list[Any], declared: Declaration, library: Librar
 
 def _materials(kind: str | None, library: Library) -> list[Option]:
     known = library.all("materials", Material)
-    return [{"name": name, "title": one.label} for name, one in known.items() if kind in (None, one.kind)]
+    titles = {name: f"{one.label}, cast" if one.is_cast else one.label for name, one in known.items()}
+    return [{"name": name, "title": titles[name]} for name, one in known.items() if kind in (None, one.kind)]
 
 
 def _title(registry: str, name: str, library: Library) -> str:

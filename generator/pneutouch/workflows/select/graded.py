@@ -7,6 +7,7 @@ import numpy as np
 
 from pneutouch.catalogue import Library, ResolvedDesign
 from pneutouch.errors import InputError
+from pneutouch.evaluation.elastomers import elastomers
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.variants import in_resin
 from pneutouch.mechanics.atlas.table import shipped
@@ -236,9 +237,7 @@ def _catalogue(
 ) -> tuple[list[UniformMembrane], dict[str, str]]:
     """Every elastomer of the catalogue at this size, softest first, and why the others are left out."""
     resins, out = [], {}
-    for name, material in library.all("materials", Material).items():
-        if material.kind != "elastomer":
-            continue
+    for name, material in elastomers(library).items():
         if scene.printer.mode_for(material) is None:
             out[name] = f"the {scene.printer.title} cannot run it"
         else:

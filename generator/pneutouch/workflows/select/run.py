@@ -12,6 +12,7 @@ import numpy as np
 from pneutouch.catalogue import Library, ResolvedDesign
 from pneutouch.catalogue.cached_library import CachedLibrary
 from pneutouch.errors import InputError
+from pneutouch.evaluation.elastomers import elastomers
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.atlas_states import resin_outside_atlas
@@ -213,9 +214,10 @@ def _refined(pair: ResinPair) -> Refine:
 def _resins(
     target: Target, where: str, scene: ResolvedDesign, sensor: Sensor, library: Library
 ) -> tuple[tuple[CandidateResin, ...], dict[str, str]]:
-    """Resins the printer runs and the atlas covers, and why the others are left out."""
-    known = library.all("materials", Material)
-    names = target.given.materials or sorted(name for name, m in known.items() if m.kind == "elastomer")
+    """Resins the printer runs and the atlas covers, and why others of its process are left out."""
+    casting = scene.printer.is_casting
+    offered = (name for name, one in elastomers(library, casting).items() if one.is_cast == casting)
+    names = target.given.materials or sorted(offered)
     resins, out = [], {}
     for name in names:
         material = library.load("materials", name, file=where, key="given.materials")

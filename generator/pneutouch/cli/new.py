@@ -1,0 +1,55 @@
+"""``pneutouch new``: a design file to start from."""
+
+from typing import Annotated
+
+import typer
+
+from pneutouch.cli.app import DesignFolderOption, SetOption, app, changes, design_folder, reporting
+from pneutouch.cli.complete import names
+from pneutouch.cli.next_step import report_next
+from pneutouch.cli.terminal import echo
+from pneutouch.errors import InputError
+
+
+@app.command()
+def new(
+    name: Annotated[str | None, typer.Argument(help="Name of the new file: letters, digits, - and _.")] = None,
+    from_: Annotated[
+        str | None,
+        typer.Option("--from", metavar="EXAMPLE", help="Copy a design, a specimen or an example: see pneutouch list."),
+    ] = None,
+    set_: SetOption = None,
+    process: Annotated[
+        str | None,
+        typer.Option("--process", metavar="PROCESS", help="How the dome is made: polyjet, filament, resin or casting."),
+    ] = None,
+    material: Annotated[
+        str | None,
+        typer.Option(
+            "--material",
+            metavar="NAME",
+            help="Resin of the dome; left out: the first that the process runs.",
+            autocompletion=names("materials"),
+        ),
+    ] = None,
+    out: DesignFolderOption = None,
+) -> None:
+    """Write a commented design file, or a copy of an example."""
+    with reporting():
+        from pneutouch.output.new import NewFile, new_design, new_from
+
+        started = {"--process": process, "--material": material}
+        if from_ is not None:
+            given = " and ".join(flag for flag, value in started.items() if value is not None)
+            if given:
+                raise InputError(f"{given} cannot be given with a copy", key="from", remedy="change it with `set`")
+            made = new_from(from_, name, out, changes(set_))
+        elif set_:
+            raise InputError("no design to change", key="set", remedy="give one with `from`")
+        elif name is not None:
+            path = new_design(name, design_folder(out), process, material)
+            made = NewFile(path, ("check", name if out is None else str(path)))
+        else:
+            raise InputError("no name for the new design", remedy="give a name, or an example with `from`")
+        echo(str(made.path))
+        report_next(*made.command, first=made.first)
