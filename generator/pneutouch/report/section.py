@@ -1,4 +1,4 @@
-"""The section through the x axis, cut from the meshes themselves: what is drawn is what is printed."""
+"""The section through the x axis, of the solids as designed."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneutouch.arrays import Array
-from pneutouch.body import Body, Bore, Solid
+from pneutouch.body import Bore, Solid
+from pneutouch.body.outline import section_outline
 from pneutouch.parts import Assembly
 from pneutouch.report.dimension import THIN, circle
 from pneutouch.report.shown import grade_colours
@@ -36,7 +36,7 @@ def draw_section(ax: Axes, assembly: Assembly) -> None:
 
     grading = assembly.scene.membrane_material.along
     for solid in assembly.solids:
-        paths = [Path(np.vstack([loop, loop[:1]]), closed=True) for loop in section(solid.mesh(_TOLERANCE))]
+        paths = [Path(np.vstack([loop, loop[:1]]), closed=True) for loop in section_outline(solid, _TOLERANCE)]
         if not paths:
             continue
         shape = Path.make_compound_path(*paths)
@@ -76,16 +76,6 @@ def section_picture(assembly: Assembly) -> str:
         ax.autoscale()
         ax.axis("off")
         return svg(drawn)
-
-
-def section(body: Body) -> list[Array]:
-    """Loops (n, 2) of (x, z) where the plane y = 0 cuts a body, mm."""
-    from manifold3d import Manifold, Mesh64
-
-    # The plane is slightly off, since whole rows of vertices lie on y = 0 itself.
-    upright = body.vertices[:, [0, 2, 1]] * np.array([1.0, 1.0, -1.0])
-    cut = Manifold(Mesh64(np.ascontiguousarray(upright), body.triangles.astype(np.uint64))).slice(1e-4)
-    return [np.asarray(loop) for loop in cut.to_polygons()]
 
 
 def draw_bores(ax: Axes, solid: Solid, but: float | None = None) -> None:

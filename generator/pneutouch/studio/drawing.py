@@ -8,10 +8,10 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
 from pneutouch.body.normals import corner_normals
+from pneutouch.body.outline import section_outline
 from pneutouch.mechanics import SensorState
 from pneutouch.meridian import Meridian
 from pneutouch.parts import Assembly
-from pneutouch.report.section import section
 from pneutouch.units import KPA
 
 _TOLERANCE = 0.02
@@ -22,18 +22,17 @@ _DIGITS = 3
 
 def drawing_document(assembly: Assembly) -> dict[str, Any]:
     """Loops (x, z) in mm where the plane y = 0 cuts each body, and the lengths that the dimensions state, mm."""
-    meshes = [solid.mesh(_TOLERANCE) for solid in assembly.solids]
     bodies = [
         {
-            "name": body.name,
-            "role": body.role,
-            "material": body.material.label,
-            "loops": [_flat(loop, _DIGITS) for loop in section(body)],
+            "name": solid.name,
+            "role": solid.role,
+            "material": solid.material.label,
+            "loops": [_flat(loop, _DIGITS) for loop in section_outline(solid, _TOLERANCE)],
         }
-        for body in meshes
+        for solid in assembly.solids
     ]
     layout = assembly.layout
-    bounds = [_bounds(solid, body) for solid, body in zip(assembly.solids, meshes, strict=True)]
+    bounds = [_bounds(solid) for solid in assembly.solids]
     low, high = np.min([each[0] for each in bounds], axis=0), np.max([each[1] for each in bounds], axis=0)
     return {
         "bodies": bodies,
@@ -46,10 +45,10 @@ def drawing_document(assembly: Assembly) -> dict[str, Any]:
     }
 
 
-def _bounds(solid: Solid, body: Body) -> Array:
+def _bounds(solid: Solid) -> Array:
     """Smallest and largest corner, shape (2, 3), mm; those of the exact surface where nothing sits on a turned body."""
     if not isinstance(solid.base, Meridian) or solid.adds or solid.cuts:
-        return body.bounds
+        return solid.mesh(_TOLERANCE).bounds
     radius, low, high = solid.base.bounds()
     return np.array([(-radius, -radius, low), (radius, radius, high)])
 

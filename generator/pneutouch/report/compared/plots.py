@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pneutouch.body.outline import section_outline
 from pneutouch.evaluation.comparison_record import (
     ComparedCurve,
     ComparisonRecord,
@@ -19,7 +20,6 @@ from pneutouch.evaluation.comparison_record import (
 from pneutouch.parts import Assembly
 from pneutouch.report.bands import band
 from pneutouch.report.compared.words import labels
-from pneutouch.report.section import section
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, figure, svg
 
 if TYPE_CHECKING:
@@ -209,7 +209,7 @@ def sections(document: ComparisonRecord, parts: Mapping[str, Assembly]) -> str |
         for name in names:
             look = _look(labels(document).index(name))
             for solid in parts[name].solids:
-                for loop in section(solid.mesh(_TOLERANCE)):
+                for loop in section_outline(solid, _TOLERANCE):
                     closed = np.vstack([loop, loop[:1]])
                     ax.plot(closed[:, 0], closed[:, 1], **{**look, "lw": 0.9})
         ax.set(aspect="equal", xlabel="x  (mm)", ylabel="z  (mm)")
