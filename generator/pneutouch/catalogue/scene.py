@@ -17,7 +17,7 @@ from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.names import name_of
-from pneutouch.spec.part import AnyMount, AnySeat, OnePiece, Port, Sleeve, Tube
+from pneutouch.spec.part import AnyMount, AnySeat, GluedFlange, OnePiece, Port, Sleeve, Tube
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.spec.read import Changes, override, read_toml, validate
 
@@ -180,6 +180,7 @@ def check_scene(scene: ResolvedDesign) -> None:
     _check_runs(scene, "print.profile", scene.printer, scene.membrane_material)
     _check_runs(scene, "print.connector_profile", scene.connector_printer, scene.connector_material)
     _check_one_piece(scene)
+    _check_glue(scene)
     _check_calibration(scene)
 
 
@@ -262,6 +263,15 @@ def _check_one_piece(scene: ResolvedDesign) -> None:
         )
     if problem is not None:
         raise InputError(problem, file=scene.where, key="connector.seat", value=scene.design.connector.seat)
+
+
+def _check_glue(scene: ResolvedDesign) -> None:
+    """A glue is named for a flange that is glued."""
+    named = scene.design.connector.glue
+    if named is not None and not isinstance(scene.seat, GluedFlange):
+        problem = f"connector.seat = {shown(scene.design.connector.seat)} has no glue at the flange"
+        remedy = "leave it out, or take connector.seat = glued-flange"
+        raise InputError(problem, file=scene.where, key="connector.glue", value=named, remedy=remedy)
 
 
 def _check_calibration(scene: ResolvedDesign) -> None:

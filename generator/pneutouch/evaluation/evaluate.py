@@ -81,13 +81,14 @@ class Evaluation:
     @cached_property
     def findings(self) -> list[Finding]:
         """Findings of the print rules."""
-        from pneutouch.evaluation.subject import subject_of
+        from pneutouch.evaluation.subject import glued_seat, subject_of
         from pneutouch.printability import SensorContext, check
 
         # What is printed is the wall as drawn, whatever wall a calibration gives the model.
         drawn = self.sensor.replace(wall_thickness=self.assembly.layout.wall)
         calibrated = self.scene.calibration is not None
-        context = SensorContext(self.prediction, drawn, self.rating, calibrated=calibrated, gauge=self.scene.gauge)
+        seat, gauge = glued_seat(self.scene), self.scene.gauge
+        context = SensorContext(self.prediction, drawn, self.rating, calibrated=calibrated, gauge=gauge, glued=seat)
         return check(subject_of(self.assembly), context)
 
     @cached_property

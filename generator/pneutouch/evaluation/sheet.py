@@ -12,6 +12,7 @@ from pneutouch.evaluation.contact_object import object_section
 from pneutouch.evaluation.dynamics import speed_data
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.gauge import sheet_gauge, zero_drift_kPa_per_K
+from pneutouch.evaluation.pour import silicone_pour
 from pneutouch.evaluation.pressed import pressed_view
 from pneutouch.evaluation.relaxation import ageing_data, viscous_data
 from pneutouch.evaluation.sheet_data import SheetData
@@ -54,6 +55,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         object_section=object_section(sensor),
         pressed=pressed_view(prediction),
         speed=speed_data(evaluation.bandwidth),
+        pour=silicone_pour(evaluation.assembly),
     )
     if unknown(sensor, prediction.model) is not None:
         return sheet

@@ -160,6 +160,16 @@ class SpeedData(NamedTuple):
 
 
 @dataclass(frozen=True)
+class SiliconePour:
+    """What is weighed for one filling: all parts together and each of them, g; ``note`` states what it is made of."""
+
+    volume_mL: float
+    mass_g: float
+    parts_g: tuple[float, ...]
+    note: str
+
+
+@dataclass(frozen=True)
 class SheetData:
     """Everything a datasheet is drawn from.
 
@@ -189,6 +199,7 @@ class SheetData:
             dome; None for a plate.
         pressed: The pressed dome in three dimensions; None by a model without its surface.
         speed: How fast the sensor reads; None where that was not computed.
+        pour: The silicone to weigh; None where the membrane is not cast.
     """
 
     scene: ResolvedDesign
@@ -215,3 +226,4 @@ class SheetData:
     object_section: Array | None = None
     pressed: PressedView | None = None
     speed: SpeedData | None = None
+    pour: SiliconePour | None = None

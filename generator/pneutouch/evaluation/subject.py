@@ -5,8 +5,11 @@ from collections.abc import Callable
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts import Assembly
+from pneutouch.parts.glue import glue_of, glue_surfaces
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
+from pneutouch.printability.view import GluedSeat
 
 _HINTS = {
     "membrane": {
@@ -49,6 +52,12 @@ def subject_of(assembly: Assembly) -> PrintSubject:
     area = assembly.seat_area
     joints = (Joint("membrane", "connector", area, where),) if area > 0 else ()
     return PrintSubject(tuple(items), joints, scene.name)
+
+
+def glued_seat(scene: ResolvedDesign) -> GluedSeat | None:
+    """The glue of the flange with the surfaces that it joins; None without one, or where the design leaves it open."""
+    name, surfaces = glue_of(scene), glue_surfaces(scene)
+    return None if name is None or surfaces is None else GluedSeat(name, *surfaces)
 
 
 def _outer_wall(assembly: Assembly) -> Callable[[Array], Flags]:

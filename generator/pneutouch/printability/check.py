@@ -13,6 +13,7 @@ from pneutouch.printability.rules import (
     feature_sizes,
     freedom,
     gaps,
+    glue,
     hollows,
     layers,
     matte,
@@ -43,6 +44,7 @@ RULES: dict[str, Rule] = {
     "filling": casting.filling,
     "bubbles": casting.bubbles,
     "inhibition": casting.inhibition,
+    "glue": glue.check,
     "driving": driving.check,
     "freedom": freedom.check,
 }

@@ -10,6 +10,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.body import Body
+from pneutouch.parts.glue import Surface
 from pneutouch.printability.measure.cavities import Pocket, balls, pockets, seen, unseen
 from pneutouch.printability.measure.chords import Chords, Side, chords, refined
 from pneutouch.printability.measure.samples import SurfaceSamples, sample
@@ -34,13 +35,21 @@ class WettedSurface(NamedTuple):
     process: str
 
 
+class GluedSeat(NamedTuple):
+    """Name of the glue of a seat, and the surfaces of membrane and connector."""
+
+    glue: str
+    membrane: Surface
+    connector: Surface
+
+
 @dataclass(frozen=True)
 class SensorContext:
     """What the rules on the sensor's working need: its prediction, the mechanics' view of it, and its rating.
 
     ``membrane`` is the name of the item whose wall the sensor presses; ``calibrated``: the sensor is a printed one.
     ``gauge`` is the one that the design names; None stands for the paper's. ``wetted``: what a cast membrane cures
-    against.
+    against. ``glued``: what joins membrane and connector, None where the seat or the design leaves it open.
     """
 
     prediction: SensorPrediction
@@ -50,6 +59,7 @@ class SensorContext:
     calibrated: bool = False
     gauge: Gauge | None = None
     wetted: tuple[WettedSurface, ...] = ()
+    glued: GluedSeat | None = None
 
 
 NARROW = 3.0

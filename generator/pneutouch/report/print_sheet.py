@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pneutouch.body import Body
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.sheet_data import SheetData
-from pneutouch.report import prose
+from pneutouch.report.making import making
 from pneutouch.report.ordering import part_number
 from pneutouch.units import ML
 from pneutouch.wording import counted
@@ -28,7 +28,7 @@ def print_sheet(sheet: SheetData, left_out: Mapping[str, str]) -> str:
     findings = "\n".join([f"- {f.severity}: {f.body}: {f.message}; {f.fix}." for f in sheet.findings] or ["- none"])
     table = "\n".join(rows)
     missing = "".join(f"Not written: `{name}`. {why}.\n\n" for name, why in left_out.items())
-    steps = "\n".join(f"{k}. {line}" for k, line in enumerate(prose.printing(scene), start=1))
+    steps = "\n".join(f"{k}. {line}" for k, line in enumerate(making(scene, sheet.pour), start=1))
     return f"""\
 # Print sheet: {_escaped(scene.design.document.title)}
 

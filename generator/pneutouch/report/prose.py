@@ -3,9 +3,7 @@
 from math import isfinite
 
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.report.port_note import port_steps
 from pneutouch.spec.contact import ContactTable
-from pneutouch.spec.part import ClampedFlange, OnePiece, RobotFlange, Sleeve
 
 PAPER = (
     "He, Herzig, Nanayakkara, Maiolino: 3D-printed soft sensors for adaptive sensing with online and offline "
@@ -171,83 +169,3 @@ def method(scene: ResolvedDesign) -> tuple[str, ...]:
         "Sensitivity is the slope of the least-squares line, with intercept, of pressure rise over force.",
         "Measure the dead volume: close the sensor, inject a known volume of air, read the pressure.",
     )
-
-
-def printing(scene: ResolvedDesign) -> list[str]:
-    """How to print, clean and assemble, in order."""
-    grown = isinstance(scene.seat, OnePiece)
-    lines = [_print_membrane(scene, grown)]
-    if scene.membrane_material.is_digital:
-        pair = " + ".join(scene.membrane_material.base_resins)
-        lines.append(
-            f"Digital material: choose {scene.membrane_material.title} made of {pair}; the vendor uses the same digits "
-            "for other pairs."
-        )
-    opening = "the opening" if grown else "the open base"
-    lines.append(
-        f"Membrane support: {scene.printer.support}. Aim the jet through {opening}; keep it moving, the wall is soft."
-    )
-    if not grown:
-        what = "groove, channel and port" if scene.seat.family == "glued-flange" else "channel, screw holes and port"
-        lines.append(
-            f"Connector: print in {scene.connector_material.label}, seat up. Remove support from {what} "
-            f"({scene.connector_printer.support})."
-        )
-    return [*lines, *_assembly(scene), port_steps(scene), *_mounting(scene)]
-
-
-def _print_membrane(scene: ResolvedDesign, grown: bool) -> str:
-    soft, rigid = scene.membrane_material.label, scene.connector_material.label
-    up = scene.design.print.orientation == "dome-up"
-    if grown:
-        stands = "dome up" if up else "turned over, dome down"
-        return (
-            f"Membrane and connector: one print, {stands}, the membrane in {soft}, the connector in {rigid}; load both "
-            "bodies as one assembly. Support fills the cavity and leaves through the opening behind it. Plug: print "
-            "apart."
-        )
-    if not up:
-        return (
-            f"Membrane: print in {soft}, turned over, dome down and rim up. Support stands under the dome, so that the "
-            "sensing face comes out matte; the cavity needs none."
-        )
-    return (
-        f"Membrane: print in {soft}, dome up, rim on the tray. The sensing face then touches no "
-        "support and comes out glossy; support fills the cavity and leaves through the open base."
-    )
-
-
-def _assembly(scene: ResolvedDesign) -> list[str]:
-    """How membrane and rigid bodies go together, for each kind of seat."""
-    seat, fit = scene.seat, f"Fit: {scene.fit_clearance:.2f} mm a side"
-    if isinstance(seat, ClampedFlange):
-        return [
-            f"Ring: print in {scene.connector_material.label}, cone up. {fit} around the flange. Lay the flange on the "
-            f"plate and the ring on the flange; drive {seat.screw_count} {seat.screw} screws crosswise until the "
-            f"ring's skirt meets the plate: it then squeezes the flange by {seat.squeeze:.0%}. No glue."
-        ]
-    if isinstance(seat, OnePiece):
-        return [
-            f"Plug: print in {scene.connector_material.label}. {fit} in the opening. When the cavity is clean and dry, "
-            "glue the plug's shoulder into the counterbore; keep glue off the gap above it, which is part of the air "
-            "space."
-        ]
-    return [
-        f"{fit} between flange and groove, the printers' accuracies added up. Dry-fit, then fill the gap with a "
-        "flexible adhesive that wets both materials; the flange's underside lies on the seat."
-    ]
-
-
-def _mounting(scene: ResolvedDesign) -> list[str]:
-    mount = scene.mount
-    if isinstance(mount, RobotFlange):
-        return [
-            f"Mount: centring boss into the robot's flange, dowel in its hole, {mount.count} {mount.screw} screws from "
-            "the dome's side."
-        ]
-    if isinstance(mount, Sleeve):
-        return [
-            f"Mount: push the sleeve over the {mount.finger_diameter:g} mm finger; tap and drive "
-            f"{mount.set_screw_count} {mount.screw} set screws."
-        ]
-    return []

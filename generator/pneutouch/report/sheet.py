@@ -10,6 +10,7 @@ from pneutouch.report.anywhere import contact_section
 from pneutouch.report.certainty import interval, uncertainty_section
 from pneutouch.report.environment import NOT_TESTED, environment
 from pneutouch.report.gauge import detection, gauge_range, gauge_volume
+from pneutouch.report.making import making, making_title
 from pneutouch.report.off_axis import CAPTION, OFF_AXIS, SHEAR, SHEAR_CAPTION, off_axis_rows, shear_rows
 from pneutouch.report.speed import speed_rows
 from pneutouch.units import KPA, ML
@@ -66,7 +67,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "speed": speed_rows(sheet),
         "reliability": [[what, NOT_TESTED] for what in prose.RELIABILITY],
         "bodies": _bodies(sheet),
-        "printing": prose.printing(sheet.scene),
+        "making": {"title": making_title(sheet.pour), "lines": making(sheet.scene, sheet.pour)},
         "method": prose.method(sheet.scene),
         "ordering": ordering.code_table(sheet.scene),
         "handling": prose.HANDLING,

@@ -80,6 +80,18 @@ class Connector(Table):
         help="Finger that a sleeve goes over, for a mount that is one, whatever number its name has; left out: the "
         "mount's own.",
     )
+    glue: Literal["silicone-adhesive", "cyanoacrylate", "epoxy"] | None = Field(
+        default=None,
+        description="Glue of a glued flange: silicone-adhesive, cyanoacrylate or epoxy; left out: silicone-adhesive "
+        "for a cast membrane, else the maker's choice.",
+    )
+
+    @model_serializer(mode="wrap")
+    def _without_no_glue(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        content: dict[str, Any] = handler(self)
+        if content.get("glue") is None:
+            content.pop("glue", None)
+        return content
 
 
 class Pneumatics(Table):

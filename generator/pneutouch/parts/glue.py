@@ -1,0 +1,98 @@
+"""Which glue joins which pair of surfaces; silicone takes silicone's own alone."""
+
+from typing import Literal, NamedTuple
+
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.spec.part import GluedFlange
+from pneutouch.spec.printer import Printer
+
+Surface = Literal["silicone", "photopolymer", "thermoplastic"]
+"""What a glue wets, by the process that made it."""
+
+_SURFACES: dict[str, Surface] = {
+    "casting": "silicone",
+    "polyjet": "photopolymer",
+    "resin": "photopolymer",
+    "filament": "thermoplastic",
+}
+
+
+class GlueBond(NamedTuple):
+    """A pair of surfaces that a glue joins; ``weak``: it peels under load."""
+
+    pair: frozenset[Surface]
+    weak: bool = False
+
+
+class Glue(NamedTuple):
+    """A glue: its name in text, the bonds that it makes, and what they are known from."""
+
+    title: str
+    bonds: tuple[GlueBond, ...]
+    source: str
+
+    def bond(self, one: Surface, other: Surface) -> GlueBond | None:
+        """The bond between two surfaces, None where it makes none."""
+        return next((bond for bond in self.bonds if bond.pair == {one, other}), None)
+
+
+def _pair(one: Surface, other: Surface) -> frozenset[Surface]:
+    return frozenset((one, other))
+
+
+_HARD = (
+    GlueBond(_pair("photopolymer", "photopolymer")),
+    GlueBond(_pair("photopolymer", "thermoplastic")),
+    GlueBond(_pair("thermoplastic", "thermoplastic")),
+)
+
+GLUES: dict[str, Glue] = {
+    "silicone-adhesive": Glue(
+        "silicone adhesive (such as Sil-Poxy)",
+        (
+            GlueBond(_pair("silicone", "silicone")),
+            GlueBond(_pair("silicone", "thermoplastic"), weak=True),
+            GlueBond(_pair("silicone", "photopolymer"), weak=True),
+        ),
+        "jehbco.com.au: only silicone sticks to silicone, and silicone adhesives to plastics; adhesives.org: bonds of "
+        "silicone carry relatively small loads; Sil-Poxy: vendor's bulletin, from memory, unverified",
+    ),
+    "cyanoacrylate": Glue(
+        "cyanoacrylate",
+        _HARD,
+        "Stratasys TAG 80-01: one of the methods compared for FDM parts; on photopolymer: usual practice, unverified; "
+        "samaro.fr: standard cyanoacrylates do not work on silicone",
+    ),
+    "epoxy": Glue(
+        "two-part epoxy",
+        _HARD,
+        "usual practice on plastics, unverified; jehbco.com.au: glues other than silicone fail on silicone",
+    ),
+}
+"""The glues that a design can name, by name."""
+
+
+def surface_of(printer: Printer) -> Surface:
+    """The surface of what a profile makes."""
+    return _SURFACES[printer.process]
+
+
+def glue_surfaces(scene: ResolvedDesign) -> tuple[Surface, Surface] | None:
+    """The surfaces that glue joins at the seat, membrane first; None for a seat without glue there."""
+    if not isinstance(scene.seat, GluedFlange):
+        return None
+    return surface_of(scene.printer), surface_of(scene.connector_printer)
+
+
+def glue_of(scene: ResolvedDesign) -> str | None:
+    """Name of the glue at the seat: the design's, else silicone's own for a cast membrane; None where it is open."""
+    surfaces, named = glue_surfaces(scene), scene.design.connector.glue
+    if surfaces is None or named is not None:
+        return named
+    return "silicone-adhesive" if "silicone" in surfaces else None
+
+
+def glues_for(one: Surface, other: Surface) -> list[str]:
+    """Names of the glues that join two surfaces, those of a lasting bond first."""
+    weak = {name: bond.weak for name, glue in GLUES.items() if (bond := glue.bond(one, other)) is not None}
+    return sorted(weak, key=lambda name: weak[name])

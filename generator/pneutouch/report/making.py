@@ -1,0 +1,123 @@
+"""How to make a sensor, step by step: printed or cast, cleaned, joined and mounted."""
+
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.evaluation.sheet_data import SiliconePour
+from pneutouch.parts.glue import GLUES, glue_of
+from pneutouch.report.port_note import port_steps
+from pneutouch.spec.part import ClampedFlange, OnePiece, RobotFlange, Sleeve
+
+
+def making(scene: ResolvedDesign, pour: SiliconePour | None = None) -> list[str]:
+    """How to make, clean and assemble a sensor, in order; ``pour`` where its membrane is cast."""
+    grown = isinstance(scene.seat, OnePiece)
+    lines = _printed(scene, grown) if pour is None else casting_steps(scene, pour)
+    if not grown:
+        what = "groove, channel and port" if scene.seat.family == "glued-flange" else "channel, screw holes and port"
+        lines.append(
+            f"Connector: print in {scene.connector_material.label}, seat up. Remove support from {what} "
+            f"({scene.connector_printer.support})."
+        )
+    return [*lines, *_assembly(scene), port_steps(scene), *_mounting(scene)]
+
+
+def making_title(pour: SiliconePour | None) -> str:
+    """Heading of the steps on the sheet."""
+    return "Material and print" if pour is None else "How to make it"
+
+
+def _printed(scene: ResolvedDesign, grown: bool) -> list[str]:
+    """How to print and clean a membrane."""
+    lines = [_print_membrane(scene, grown)]
+    if scene.membrane_material.is_digital:
+        pair = " + ".join(scene.membrane_material.base_resins)
+        lines.append(
+            f"Digital material: choose {scene.membrane_material.title} made of {pair}; the vendor uses the same digits "
+            "for other pairs."
+        )
+    opening = "the opening" if grown else "the open base"
+    lines.append(
+        f"Membrane support: {scene.printer.support}. Aim the jet through {opening}; keep it moving, the wall is soft."
+    )
+    return lines
+
+
+def casting_steps(scene: ResolvedDesign, pour: SiliconePour) -> list[str]:
+    """How to cast a membrane: release, weigh, mix, degas, pour, cure and demould."""
+    silicone = scene.membrane_material
+    casting = silicone.casting
+    assert casting is not None
+    parts = zip("ABC", pour.parts_g, strict=False)
+    masses = " and ".join(f"{mass:.1f} g of part {name}" for name, mass in parts)
+    ratio = ":".join(f"{part:g}" for part in casting.parts_by_mass)
+    pot, cure = casting.pot_life_min.text(), casting.cure_h.text()
+    return [
+        f"Mould: clean and dry. {casting.release[0].upper()}{casting.release[1:]}, on every face that the silicone "
+        f"touches. These stop its cure: {', '.join(casting.inhibited_by)}; wear nitrile gloves, not latex.",
+        f"Weigh {masses} of {silicone.title} into one cup, {ratio} by mass, {pour.mass_g:.1f} g together: {pour.note}.",
+        f"Mix 3 min and scrape sides and bottom. Degas under vacuum until the froth has fallen, about 5 min. From the "
+        f"start of mixing it flows for {pot} min at room temperature.",
+        "Close the mould. Pour in a thin stream, or inject with a syringe, at one place, until silicone without "
+        "bubbles stands in every vent.",
+        f"Cure for {cure} h at room temperature, vents up; a cup with the rest of the batch shows whether it is cured.",
+        "Demould: open the mould, peel the flange off all round, then roll the dome off the core. Cut sprue and vents "
+        "off flush. Wash with soap and dry: release agent spoils every joint.",
+    ]
+
+
+def _print_membrane(scene: ResolvedDesign, grown: bool) -> str:
+    soft, rigid = scene.membrane_material.label, scene.connector_material.label
+    up = scene.design.print.orientation == "dome-up"
+    if grown:
+        stands = "dome up" if up else "turned over, dome down"
+        return (
+            f"Membrane and connector: one print, {stands}, the membrane in {soft}, the connector in {rigid}; load both "
+            "bodies as one assembly. Support fills the cavity and leaves through the opening behind it. Plug: print "
+            "apart."
+        )
+    if not up:
+        return (
+            f"Membrane: print in {soft}, turned over, dome down and rim up. Support stands under the dome, so that the "
+            "sensing face comes out matte; the cavity needs none."
+        )
+    return (
+        f"Membrane: print in {soft}, dome up, rim on the tray. The sensing face then touches no "
+        "support and comes out glossy; support fills the cavity and leaves through the open base."
+    )
+
+
+def _assembly(scene: ResolvedDesign) -> list[str]:
+    """How membrane and rigid bodies go together, for each kind of seat."""
+    seat, fit = scene.seat, f"Fit: {scene.fit_clearance:.2f} mm a side"
+    if isinstance(seat, ClampedFlange):
+        return [
+            f"Ring: print in {scene.connector_material.label}, cone up. {fit} around the flange. Lay the flange on the "
+            f"plate and the ring on the flange; drive {seat.screw_count} {seat.screw} screws crosswise until the "
+            f"ring's skirt meets the plate: it then squeezes the flange by {seat.squeeze:.0%}. No glue."
+        ]
+    if isinstance(seat, OnePiece):
+        return [
+            f"Plug: print in {scene.connector_material.label}. {fit} in the opening. When the cavity is clean and dry, "
+            "glue the plug's shoulder into the counterbore; keep glue off the gap above it, which is part of the air "
+            "space."
+        ]
+    glue = glue_of(scene)
+    what = "a flexible adhesive that wets both materials" if glue is None else GLUES[glue].title
+    return [
+        f"{fit} between flange and groove, the printers' accuracies added up. Dry-fit, then fill the gap with {what}; "
+        "the flange's underside lies on the seat."
+    ]
+
+
+def _mounting(scene: ResolvedDesign) -> list[str]:
+    mount = scene.mount
+    if isinstance(mount, RobotFlange):
+        return [
+            f"Mount: centring boss into the robot's flange, dowel in its hole, {mount.count} {mount.screw} screws from "
+            "the dome's side."
+        ]
+    if isinstance(mount, Sleeve):
+        return [
+            f"Mount: push the sleeve over the {mount.finger_diameter:g} mm finger; tap and drive "
+            f"{mount.set_screw_count} {mount.screw} set screws."
+        ]
+    return []

@@ -1,0 +1,43 @@
+"""How a sensor is made: a cast one by weighing, pouring and curing, a printed one as before."""
+
+import pytest
+
+from pneutouch.catalogue import load_scene
+from pneutouch.evaluation.pour import silicone_pour
+from pneutouch.parts import assemble
+from pneutouch.report.making import making, making_title
+
+
+def steps(name, changes=None):
+    assembly = assemble(load_scene(name, changes))
+    pour = silicone_pour(assembly)
+    return pour, making(assembly.scene, pour)
+
+
+def test_a_cast_dome_is_weighed_by_its_ratio_poured_cured_and_peeled():
+    pour, lines = steps("cast-dome")
+    assert pour.parts_g == pytest.approx((pour.mass_g / 2, pour.mass_g / 2))
+    text = " ".join(lines)
+    assert f"{pour.parts_g[0]:.1f} g of part A and {pour.parts_g[1]:.1f} g of part B" in text
+    order = [text.index(word) for word in ("Release agent", "Weigh", "Degas", "Pour", "Cure", "Demould", "screws")]
+    assert order == sorted(order)
+    assert "latex" in text and "water jet" not in text and "Aim the jet" not in text and "support" not in lines[0]
+    assert making_title(pour) == "How to make it"
+
+
+def test_a_printed_dome_has_nothing_to_pour():
+    pour, lines = steps("paper-dome")
+    assert pour is None and making_title(pour) == "Material and print"
+    assert "flexible adhesive that wets both materials" in " ".join(lines) and "Weigh" not in " ".join(lines)
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "glue"),
+    [
+        ("cast-dome", {"connector.seat": "glued-flange"}, "silicone adhesive (such as Sil-Poxy)"),
+        ("paper-dome", {"connector.glue": "cyanoacrylate"}, "cyanoacrylate"),
+    ],
+)
+def test_the_glue_is_that_of_the_pair_of_materials(name, changes, glue):
+    _, lines = steps(name, changes)
+    assert f"fill the gap with {glue};" in " ".join(lines)
