@@ -10,13 +10,13 @@ import pytest
 from pneutouch.catalogue import load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation.subject import glued_seat
-from pneutouch.parts.glue import GLUES, Surface, glue_of, glues_for, surface_of
+from pneutouch.parts.glue import GLUES, GlueSurface, glue_of, glues_for, surface_of
 from pneutouch.printability.rules import glue
 from pneutouch.printability.view import GluedSeat, PrintView
 from pneutouch.spec.design import Connector, DesignFile
 from tests.printability.working import dome
 
-SURFACES = typing.get_args(Surface)
+SURFACES = typing.get_args(GlueSurface)
 GLUED = {"connector.seat": "glued-flange"}
 
 

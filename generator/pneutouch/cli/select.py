@@ -22,6 +22,7 @@ from pneutouch.cli.declared import field_tables, named_by_flag, with_fields
 from pneutouch.cli.next_step import DesignPlace, report_next, report_written
 from pneutouch.cli.progress import bar
 from pneutouch.cli.select_fields import SELECT_FIELDS
+from pneutouch.cli.select_processes import select_over
 from pneutouch.cli.terminal import echo
 from pneutouch.errors import InputError
 from pneutouch.spec.target import Target
@@ -48,6 +49,14 @@ def select(
     charts: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Folder for the trade-off and tuning charts, SVG.")
     ] = None,
+    process: Annotated[
+        str | None,
+        typer.Option(
+            "--process",
+            metavar="PROCESS,...|any",
+            help="The best design of each process: polyjet, casting ...; or any. --pick is then its row.",
+        ),
+    ] = None,
     out: DesignFolderOption = None,
     json: JsonOption = False,
     **fields: Any,
@@ -64,6 +73,10 @@ def select(
         if write is not None:
             check_free(write, folder, overwrite=overwrite)
         request = _target(target, fields, set_ or [])
+        if process is not None:
+            place = None if write is None else DesignPlace(write, folder, overwrite)
+            select_over(request, where, process, place, pick, json=json, charts=charts is not None)
+            return
         if request.given.graded:
             place = None if write is None else DesignPlace(write, folder, overwrite)
             _graded(request, where, place, charts=charts is not None, pick=pick != 1, json=json)

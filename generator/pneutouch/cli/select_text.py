@@ -8,14 +8,15 @@ from pneutouch.units import KPA
 from pneutouch.workflows.select.run import SelectionRun
 from pneutouch.workflows.select.words import dropped_lines, headline, missed_text, remarks, search_notes
 
-_HEAD = ["", "resin", "R0 mm", "t0 mm", "wide mm", "kPa", "S kPa/N", "U (k=2)", "range N", "ends with"]
-_HEAD += ["S 0 kPa..rated", "rated kPa", "binds", "solid S"]
+HEAD = ["", "resin", "R0 mm", "t0 mm", "wide mm", "kPa", "S kPa/N", "U (k=2)", "range N", "ends with"]
+HEAD += ["S 0 kPa..rated", "rated kPa", "binds", "solid S"]
+"""Columns of the table of designs."""
 
 
 def selection_text(selection: SelectionRun) -> str:
     """Ranked designs, or why there are none."""
     answer, notes, left = selection.answer, search_notes(selection), remarks(selection)
-    head = [*_HEAD[:8], *(["place (k=1)"] if selection.problem.anywhere else []), *_HEAD[8:]]
+    head = [*HEAD[:8], *(["place (k=1)"] if selection.problem.anywhere else []), *HEAD[8:]]
     head = head if selection.by_solid is None else [*head[:-1], "plate S"]
     if answer.designs:
         seen: set[str] = set()
@@ -23,7 +24,7 @@ def selection_text(selection: SelectionRun) -> str:
         for rank, choice in enumerate(answer.designs):
             label = f"{rank + 1}" + (" runner-up" if choice.resin.name in seen else "")
             seen.add(choice.resin.name)
-            rows.append([label, *_row(selection, choice), _other(selection, choice, rank)])
+            rows.append([label, *row_of(selection, choice), _other(selection, choice, rank)])
         return "\n".join([headline(selection), *notes, "", table_text(head, rows), "", *left]).rstrip()
     if selection.rejected:
         return "\n".join([headline(selection), *notes, "", *left])
@@ -32,7 +33,7 @@ def selection_text(selection: SelectionRun) -> str:
         lines += [
             "",
             "nearest:",
-            table_text(head[:-1], [["", *_row(selection, answer.nearest)]]),
+            table_text(head[:-1], [["", *row_of(selection, answer.nearest)]]),
             f"it misses: {missed_text(selection, answer.nearest)}",
         ]
     return "\n".join([*lines, "", *dropped_lines(selection), *left]).rstrip()
@@ -50,7 +51,8 @@ def _place(choice: Candidate) -> str:
     return "not known" if choice.place is None else f"{100 * choice.place:.0f} %"
 
 
-def _row(selection: SelectionRun, choice: Candidate) -> list[str]:
+def row_of(selection: SelectionRun, choice: Candidate) -> list[str]:
+    """A design in the columns of `HEAD`, without its rank and the other model's sensitivity."""
     pool = choice.pool
     return [
         choice.resin.name,

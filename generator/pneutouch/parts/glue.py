@@ -6,10 +6,10 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.spec.part import GluedFlange
 from pneutouch.spec.printer import Printer
 
-Surface = Literal["silicone", "photopolymer", "thermoplastic"]
+GlueSurface = Literal["silicone", "photopolymer", "thermoplastic"]
 """What a glue wets, by the process that made it."""
 
-_SURFACES: dict[str, Surface] = {
+_SURFACES: dict[str, GlueSurface] = {
     "casting": "silicone",
     "polyjet": "photopolymer",
     "resin": "photopolymer",
@@ -20,7 +20,7 @@ _SURFACES: dict[str, Surface] = {
 class GlueBond(NamedTuple):
     """A pair of surfaces that a glue joins; ``weak``: it peels under load."""
 
-    pair: frozenset[Surface]
+    pair: frozenset[GlueSurface]
     weak: bool = False
 
 
@@ -31,12 +31,12 @@ class Glue(NamedTuple):
     bonds: tuple[GlueBond, ...]
     source: str
 
-    def bond(self, one: Surface, other: Surface) -> GlueBond | None:
+    def bond(self, one: GlueSurface, other: GlueSurface) -> GlueBond | None:
         """The bond between two surfaces, None where it makes none."""
         return next((bond for bond in self.bonds if bond.pair == {one, other}), None)
 
 
-def _pair(one: Surface, other: Surface) -> frozenset[Surface]:
+def _pair(one: GlueSurface, other: GlueSurface) -> frozenset[GlueSurface]:
     return frozenset((one, other))
 
 
@@ -72,12 +72,12 @@ GLUES: dict[str, Glue] = {
 """The glues that a design can name, by name."""
 
 
-def surface_of(printer: Printer) -> Surface:
+def surface_of(printer: Printer) -> GlueSurface:
     """The surface of what a profile makes."""
     return _SURFACES[printer.process]
 
 
-def glue_surfaces(scene: ResolvedDesign) -> tuple[Surface, Surface] | None:
+def glue_surfaces(scene: ResolvedDesign) -> tuple[GlueSurface, GlueSurface] | None:
     """The surfaces that glue joins at the seat, membrane first; None for a seat without glue there."""
     if not isinstance(scene.seat, GluedFlange):
         return None
@@ -92,7 +92,7 @@ def glue_of(scene: ResolvedDesign) -> str | None:
     return "silicone-adhesive" if "silicone" in surfaces else None
 
 
-def glues_for(one: Surface, other: Surface) -> list[str]:
+def glues_for(one: GlueSurface, other: GlueSurface) -> list[str]:
     """Names of the glues that join two surfaces, those of a lasting bond first."""
     weak = {name: bond.weak for name, glue in GLUES.items() if (bond := glue.bond(one, other)) is not None}
     return sorted(weak, key=lambda name: weak[name])

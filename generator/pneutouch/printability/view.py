@@ -10,7 +10,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.body import Body
-from pneutouch.parts.glue import Surface
+from pneutouch.parts.glue import GlueSurface
 from pneutouch.printability.measure.cavities import Pocket, balls, pockets, seen, unseen
 from pneutouch.printability.measure.chords import Chords, Side, chords, refined
 from pneutouch.printability.measure.samples import SurfaceSamples, sample
@@ -39,8 +39,8 @@ class GluedSeat(NamedTuple):
     """Name of the glue of a seat, and the surfaces of membrane and connector."""
 
     glue: str
-    membrane: Surface
-    connector: Surface
+    membrane: GlueSurface
+    connector: GlueSurface
 
 
 @dataclass(frozen=True)

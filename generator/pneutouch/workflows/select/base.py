@@ -119,7 +119,8 @@ def _source(target: Target, library: Library) -> DesignSource:
     return replace(source, content={key: value for key, value in source.content.items() if key != CALIBRATION})
 
 
-def _base(target: Target, changes: dict[str, Any], library: Library) -> DesignFile:
+def settled_base(target: Target, changes: dict[str, Any], library: Library) -> DesignFile:
+    """The base design with its changes, before its names are resolved."""
     return _source(target, library).changed(changes)
 
 
@@ -128,7 +129,7 @@ def _on_finger(finger_mm: float, target: Target, changes: dict[str, Any], librar
     sleeves = {
         name: mount for name in library.paths("mounts") if isinstance(mount := library.load("mounts", name), Sleeve)
     }
-    chosen = _base(target, changes, library).connector.mount
+    chosen = settled_base(target, changes, library).connector.mount
     if chosen not in sleeves:
         if "connector.mount" in changes:
             problem = f"it goes over no finger; {', '.join(sleeves)} does"
@@ -141,7 +142,7 @@ def _on_finger(finger_mm: float, target: Target, changes: dict[str, Any], librar
 
 def _some_resin(target: Target, where: str, changes: dict[str, Any], library: Library) -> str:
     """A resin that the base can be drawn with: the first of those allowed that its printer runs, else the first."""
-    profile = _base(target, changes, library).print.profile
+    profile = settled_base(target, changes, library).print.profile
     key = "setting.profile" if target.setting.profile is not None else "print.profile"
     printer: Printer = library.load("printers", profile, file=where, key=key)
     pair = requested_pair(target, where, printer, library)

@@ -161,7 +161,8 @@ def _answered(run: SelectionRun, refine: Refine | None, library: Library) -> Sel
     errors = measured_errors(library.all("materials", Material))
     anywhere = target.weights.contact_anywhere
     uncertainty = partial(sensitivity_uncertainties, run.base, run.sensor, errors, anywhere=anywhere)
-    other = other_contact(run.sensor)
+    laws = [resin.name for resin in problem.resins if resin.material.law is not None]
+    other = other_contact(run.sensor) or (f"the atlas has no law as that of {laws[0]}" if laws else None)
     if other is not None and anywhere:
         raise InputError(
             f"the table of contact anywhere is for designs that a central plate calibrates, and {other}",
@@ -221,7 +222,9 @@ def _resins(
     resins, out = [], {}
     for name in names:
         material = library.load("materials", name, file=where, key="given.materials")
-        wall = material_sensor(material).wall
+        # A cast resin's law is the solid's: the search goes by the neo-Hookean fit, corrected by the solid.
+        plain = material.model_copy(update={"law": None}) if casting else material
+        wall = material_sensor(plain).wall
         if not prints(scene, material):
             out[name] = f"the {scene.printer.title} cannot run it{with_connector(scene)}"
         elif (why := resin_outside_atlas(wall, sensor.gas.ambient_pressure)) is not None:

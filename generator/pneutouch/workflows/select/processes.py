@@ -1,0 +1,116 @@
+"""One target over several processes: the selection of each on a profile of it, one below the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, get_args
+
+from pneutouch.catalogue import Library
+from pneutouch.catalogue.cached_library import CachedLibrary
+from pneutouch.errors import InputError, nearest
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer, Process
+from pneutouch.spec.target import Target
+from pneutouch.workflows.select.base import setting_changes, settled_base
+from pneutouch.workflows.select.document import document
+from pneutouch.workflows.select.gauged import select
+from pneutouch.workflows.select.run import SelectionRun
+
+ANY = ("any",)
+"""Instead of names: every process by which a profile makes an elastomer."""
+
+_CAST_SEAT = "connector.seat=clamped-flange-M2"
+"""A cast flange is clamped: no glue but silicone's bonds it. What the target sets comes after it."""
+
+
+@dataclass(frozen=True)
+class ProcessSelection:
+    """The answers by process, with the profile of each; ``left_out`` states why a process was not searched."""
+
+    runs: dict[str, SelectionRun]
+    profiles: dict[str, str]
+    left_out: dict[str, str]
+
+    @property
+    def best(self) -> list[tuple[str, SelectionRun]]:
+        """Process and answer of each that has a design, in the order given."""
+        return [(process, run) for process, run in self.runs.items() if run.answer.designs]
+
+    def pick(self, row: int) -> SelectionRun:
+        """The answer whose best design stands in a row of the table, from 1. Raises InputError where there is none."""
+        if not 1 <= row <= len(self.best):
+            raise InputError(f"must be from 1 to {len(self.best)}", key="pick", value=row)
+        return self.best[row - 1][1]
+
+    def document(self) -> dict[str, Any]:
+        """The answers as ``select --process`` prints them."""
+        shown = {process: {"profile": self.profiles[process], **document(run)} for process, run in self.runs.items()}
+        return {"met": bool(self.best), "processes": shown, "left_out": self.left_out}
+
+
+def select_processes(
+    target: Target,
+    where: str,
+    processes: Sequence[str],
+    library: Library | None = None,
+    *,
+    progress: Callable[[str], None] = lambda step: None,
+) -> ProcessSelection:
+    """Answer a target once for each process. Raises InputError for a process that no profile has.
+
+    A process takes the base's profile where that is one of it, else the first that makes an elastomer; resins that the
+    target names count for the processes that make them.
+    """
+    library = CachedLibrary((library or Library.default()).folders)
+    if target.setting.profile is not None:
+        problem, given = "a profile is of one process", target.setting.profile
+        raise InputError(problem, key="setting.profile", value=given, remedy="leave it out, or the processes")
+    if target.given.mix is not None or target.given.graded:
+        raise InputError("a mix is printed on one machine", key="process", remedy="leave out `mix`, or the processes")
+    names = _named(processes, library)
+    usual = settled_base(target, setting_changes(target, library), library).print.profile
+    runs, profiles, left_out = {}, {}, {}
+    for process in names:
+        offered = _profile(process, usual, target.given.materials, library)
+        if offered is None:
+            left_out[process] = f"no profile of it makes {' or '.join(target.given.materials or ['an elastomer'])}"
+            continue
+        profiles[process], resins = offered
+        progress(process)
+        runs[process] = select(_of(target, process, profiles[process], resins), where, library, written=1)
+    return ProcessSelection(runs, profiles, left_out)
+
+
+def _named(processes: Sequence[str], library: Library) -> list[str]:
+    known = get_args(Process)
+    if tuple(processes) == ANY:
+        return [process for process in known if _profile(process, "", None, library) is not None]
+    for process in processes:
+        if process not in known:
+            raise InputError(f"unknown.{nearest(process, [*known, *ANY])}", key="process", value=process)
+    return list(dict.fromkeys(processes))
+
+
+_Offer = tuple[str, list[str] | None]
+
+
+def _profile(process: str, usual: str, resins: list[str] | None, library: Library) -> _Offer | None:
+    """A profile of a process, and those of the resins named that it makes; None where it makes none."""
+    printers = library.all("printers", Printer)
+    known = library.all("materials", Material)
+    loaded = {name: library.load("materials", name, key="given.materials") for name in resins or known}
+    for name in sorted(printers, key=lambda name: name != usual):
+        makes = [each for each, one in loaded.items() if one.kind == "elastomer" and printers[name].mode_for(one)]
+        if printers[name].process == process and makes:
+            return name, makes if resins else None
+    return None
+
+
+def _of(target: Target, process: str, profile: str, resins: list[str] | None) -> Target:
+    """The target on one profile."""
+    changes: dict[str, Any] = {"profile": profile}
+    if process == "casting":
+        changes["assignments"] = [_CAST_SEAT, *target.setting.assignments]
+    given = target.given.model_copy(update={"materials": resins})
+    return target.model_copy(update={"setting": target.setting.model_copy(update=changes), "given": given})
