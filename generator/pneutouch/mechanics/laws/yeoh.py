@@ -12,6 +12,6 @@ def energy(s: Strain, c10: float, c20: float, c30: float) -> Jet:
     return c10 * x + c20 * (x * x) + c30 * (x * (x * x))
 
 
-def yeoh(c10: float, c20: float, c30: float, poisson_ratio: float = 0.49) -> Hyperelastic:
-    """The law with constants in MPa."""
+def yeoh(c10: float, c20: float, c30: float = 0.0, poisson_ratio: float = 0.49) -> Hyperelastic:
+    """The law with constants in MPa; without ``c30`` it has two terms."""
     return Hyperelastic(partial(energy, c10=c10, c20=c20, c30=c30), poisson_ratio, "sum ci0(I1-3)^i")

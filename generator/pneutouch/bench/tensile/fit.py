@@ -1,0 +1,139 @@
+"""A hyperelastic law fitted to curves of tension by least squares of the relative difference."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.bench.tensile.curve import TensionCurve
+from pneutouch.bench.tensile.uniaxial import tension, tension_basis
+
+FROM_STRAIN = 0.1
+"""Strain from which the misfit is stated: below it slack, crosshead and the zero of the load cell decide."""
+
+WINDOW = 0.1
+"""Stretch over which the differences of neighbouring points are averaged before the greatest of them is taken."""
+
+_COVERAGE = 2.0
+
+_STARTS: tuple[tuple[tuple[float, ...], ...], ...] = (
+    ((2.0,), (4.0,), (8.0,)),
+    ((2.0, 6.0), (1.5, 4.0), (1.0, 10.0)),
+    ((1.5, 5.0, 12.0), (1.0, 3.0, 8.0)),
+)
+"""Exponents from which Ogden's law is fitted, by its number of terms; the best of the fits is kept."""
+
+_EXPONENTS = (1.0, 25.0)
+"""Bounds of Ogden's exponents. A negative one is felt in two directions and hardly in tension, which cannot give it."""
+
+_MODULI = 50.0
+"""Bound of a term's modulus over that of the whole curve."""
+
+
+class LawForm(NamedTuple):
+    """A law by name with its number of constants."""
+
+    name: str
+    parameters: int
+
+    @property
+    def label(self) -> str:
+        """The law in words, with its number of terms where it may have several."""
+        if self.name in ("neo-hookean", "mooney-rivlin"):
+            return {"neo-hookean": "neo-Hookean", "mooney-rivlin": "Mooney-Rivlin"}[self.name]
+        return f"Yeoh, {self.parameters} terms" if self.name == "yeoh" else f"Ogden, {self.parameters // 2} terms"
+
+
+@dataclass(frozen=True, slots=True)
+class LawFit:
+    """A fitted law: constants in MPa (Ogden: mu, alpha, ...) with their k = 2 uncertainties, and how far it is off.
+
+    Attributes:
+        errors: Twice the standard errors of the fit. They hold the scatter of the points alone, not that of batches.
+        misfit: Greatest relative difference of nominal stress to the running mean of the data over `WINDOW`, from a
+            strain of `FROM_STRAIN` on: the noise of a load cell is not the law's.
+        worst: The same to the single points.
+    """
+
+    form: LawForm
+    constants: tuple[float, ...]
+    errors: tuple[float, ...]
+    misfit: float
+    worst: float
+
+    @property
+    def determined(self) -> bool:
+        """Whether the data determine every constant: none is less than its uncertainty."""
+        return all(abs(value) > error for value, error in zip(self.constants, self.errors, strict=True))
+
+    def stress(self, stretch: Array) -> Array:
+        """Nominal stress in MPa at stretches (n,)."""
+        return tension(self.form.name, self.constants, stretch)
+
+
+def joined_points(curves: Sequence[TensionCurve]) -> tuple[Array, Array, Array]:
+    """Stretch, stress and the stress that a difference is set against (n,): its own, at least that at `FROM_STRAIN`."""
+    stretch = np.concatenate([curve.stretch for curve in curves])
+    stress = np.concatenate([curve.stress for curve in curves])
+    least = np.concatenate([np.full(curve.stretch.size, curve.stress_at(1.0 + FROM_STRAIN)) for curve in curves])
+    return stretch, stress, np.maximum(stress, least)
+
+
+def fit_law(form: LawForm, curves: Sequence[TensionCurve]) -> LawFit:
+    """The law's constants over all points of the curves; each difference counts relative to the measured stress.
+
+    Relative differences give each part of the range the same weight, and the greatest of them is the stated misfit.
+    """
+    stretch, stress, scale = joined_points(curves)
+    constants: Array
+    if form.name == "ogden":
+        constants, spread = _ogden(form.parameters // 2, stretch, stress, scale)
+    else:
+        basis = tension_basis(form.name, form.parameters, stretch) / scale[:, None]
+        constants = np.asarray(np.linalg.lstsq(basis, stress / scale, rcond=None)[0], float)
+        spread = _spread(basis, basis @ constants - stress / scale)
+    fit = LawFit(form, tuple(map(float, constants)), tuple(map(float, _COVERAGE * spread)), np.inf, np.inf)
+    off = [difference(fit, curve) for curve in curves]
+    means, points = (np.concatenate([pair[k] for pair in off]) for k in (1, 2))
+    if not points.size:
+        return fit
+    return replace(fit, misfit=float(np.abs(means).max()), worst=float(np.abs(points).max()))
+
+
+def difference(fit: LawFit, curve: TensionCurve) -> tuple[Array, Array, Array]:
+    """Stretches from `FROM_STRAIN` on, (n,), and there the relative differences of a law: running mean, single points."""
+    far = curve.stretch >= 1.0 + FROM_STRAIN
+    stretch, stress = curve.stretch[far], curve.stress[far]
+    points = fit.stress(stretch) / stress - 1.0
+    near = np.abs(stretch[:, None] - stretch[None, :]) <= 0.5 * WINDOW
+    return stretch, np.asarray(near @ points / near.sum(axis=1)), points
+
+
+def _spread(jacobian: Array, residual: Array) -> Array:
+    """Standard errors of the constants from the derivatives (n, k) and the residuals (n,) of a least squares fit."""
+    freedom = max(residual.size - jacobian.shape[1], 1)
+    covariance = np.linalg.pinv(jacobian.T @ jacobian) * float(residual @ residual) / freedom
+    return np.sqrt(np.maximum(np.diag(covariance), 0.0))
+
+
+def _ogden(terms: int, stretch: Array, stress: Array, scale: Array) -> tuple[Array, Array]:
+    """Constants mu, alpha, ... of the best fit from several starts, and their standard errors."""
+    from scipy.optimize import least_squares
+
+    size = float(np.median(stress / np.maximum(stretch - stretch**-2, 1e-9)))
+
+    def residual(flat: Array) -> Array:
+        scaled = flat.copy()
+        scaled[::2] *= size
+        return (tension("ogden", scaled.tolist(), stretch) - stress) / scale
+
+    low, high = np.tile([-_MODULI, _EXPONENTS[0]], terms), np.tile([_MODULI, _EXPONENTS[1]], terms)
+    fits = []
+    for start in _STARTS[terms - 1]:
+        first = np.ravel([(1.0 / terms, alpha) for alpha in start])
+        fits.append(least_squares(residual, first, bounds=(low, high), max_nfev=200))
+    best = min(fits, key=lambda fit: float(fit.cost))
+    factors = np.tile([size, 1.0], terms)
+    return np.asarray(best.x) * factors, _spread(np.asarray(best.jac), np.asarray(best.fun)) * factors

@@ -1,0 +1,208 @@
+"""A tensile file, read and checked: stretch and nominal stress, in order, in units that an elastomer can have."""
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.bench.tensile.columns import ColumnPair, TensileColumn, column_pairs
+from pneutouch.bench.tensile.curve import TensionCurve
+from pneutouch.bench.tensile.fit import LawForm, fit_law
+from pneutouch.errors import InputError
+from pneutouch.tables.layout import TableLayout
+from pneutouch.tables.read import layout_of, whole
+from pneutouch.tables.text import head_lines
+
+LEAST_POINTS = 8
+"""Points of a curve: two for each constant of the laws of four, our choice."""
+
+LEAST_STRETCH = 1.2
+"""Where a curve must reach at least: a shorter one tells a modulus and no law."""
+
+MODULI = (0.002, 20.0)
+"""MPa: outside these the numbers are in other units. The softest silicone gels have about 0.005, printed elastomers up
+to 5.3."""
+
+_MOST_STRAIN = 20.0
+"""Strains above this are per cent: the silicones tear at 10 at most."""
+
+_BACK, _BROKEN, _AGREE = 2e-3, 0.9, 0.05
+_FACT = re.compile(r"([A-Z][^;,\t]*)[;,\t]([^;,\t]+)[;,\t]*")
+
+
+@dataclass(frozen=True, slots=True)
+class SpecimenSize:
+    """Lengths of a tensile specimen in mm; None: as the file states it."""
+
+    gauge_length: float | None = None
+    width: float | None = None
+    thickness: float | None = None
+
+
+def read_tension(path: Path, size: SpecimenSize | None = None) -> TensionCurve:
+    """The loading curve of a tensile file: text, a workbook or parquet, with a header that names quantity and unit.
+
+    Raises InputError for a file that cannot be read, for units that no elastomer has, for a stretch that falls, for too
+    few points, and where true and engineering columns contradict one another.
+    """
+    layout, file = layout_of(path), str(path)
+    pairs = column_pairs(layout.names, layout.units, file)
+    facts = _facts(path)
+    found = _first_filled(path, pairs, layout)
+    pair, length, load = found
+    stretch, notes = _stretch(pair.length, length, file, _size(size, facts))
+    stress = _stress(pair.load, load, stretch, file, _size(size, facts))
+    if pair.load.true:
+        notes.append("true strain and stress were turned into stretch and nominal stress, for an incompressible solid")
+    elif pair.load.kind == "stress" and not pair.load.stated:
+        notes.append(f"column {pair.load.name} is taken as nominal stress (force over the undeformed cross-section)")
+    _agrees(path, pairs, layout, pair, stretch, stress)
+    curve = _loading(TensionCurve(stretch, stress, file, tuple(notes), facts=facts))
+    _plausible(curve)
+    return curve
+
+
+def _first_filled(path: Path, pairs: list[ColumnPair], layout: TableLayout) -> tuple[ColumnPair, Array, Array]:
+    """The first pair whose columns hold numbers, and those."""
+    failures = []
+    for pair in pairs:
+        try:
+            values = whole(path, (pair.length.name, pair.load.name), layout)[1]
+            return pair, values[0], values[1]
+        except InputError as error:
+            failures.append(error)
+    raise failures[0]
+
+
+def _facts(path: Path) -> dict[str, str]:
+    """Lines above the table that state one thing each, such as ``Speed (mm/min);450``."""
+    if path.suffix.lower() in (".parquet", ".xlsx", ".xlsm", ".tdms"):
+        return {}
+    facts: dict[str, str] = {}
+    for line in head_lines(path, None)[0][:60]:
+        if known := _FACT.fullmatch(line.strip()):
+            facts.setdefault(known[1].strip(), known[2].strip())
+    return {key: value for key, value in facts.items() if key != "PARAMETER"}
+
+
+def _size(given: SpecimenSize | None, facts: dict[str, str]) -> SpecimenSize:
+    given = given or SpecimenSize()
+
+    def stated(word: str) -> float | None:
+        for key, value in facts.items():
+            if word in key.lower() and "mm" in key.lower():
+                try:
+                    return float(value)
+                except ValueError:
+                    return None
+        return None
+
+    return SpecimenSize(
+        given.gauge_length or stated("length"), given.width or stated("width"), given.thickness or stated("thickness")
+    )
+
+
+def _stretch(column: TensileColumn, values: Array, file: str, size: SpecimenSize) -> tuple[Array, list[str]]:
+    key = f"column {column.name}"
+    if column.kind == "travel":
+        if size.gauge_length is None:
+            problem = "an extension makes no stretch without the length that it is of"
+            raise InputError(problem, file=file, key=key, remedy="give `gauge_length` in mm")
+        notes = [f"extension over the gauge length of {size.gauge_length:g} mm"]
+        return 1.0 + values * (column.factor or 1.0) / size.gauge_length, notes
+    scaled = values * (1.0 if column.factor is None else column.factor)
+    if column.kind == "stretch":
+        if scaled.min() < 1.0 - 0.1:
+            problem = f"a stretch begins at 1, and this at {scaled.min():.4g}"
+            raise InputError(problem, file=file, key=key, remedy="is it a strain? Name the column so")
+        return scaled, []
+    if column.factor is None and scaled.max() > _MOST_STRAIN:
+        problem = f"a strain of {scaled.max():.4g}, {100 * scaled.max():.4g} %: is it in per cent?"
+        raise InputError(problem, file=file, key=key, remedy=f"name the column {column.name} (%)")
+    if scaled.min() > 0.9:
+        problem = f"a strain begins at 0, and this at {scaled.min():.4g}"
+        raise InputError(problem, file=file, key=key, remedy="is it a stretch? Name the column so")
+    return (np.exp(scaled), []) if column.true else (1.0 + scaled, [])
+
+
+def _stress(column: TensileColumn, values: Array, stretch: Array, file: str, size: SpecimenSize) -> Array:
+    scaled = values * (column.factor or 1.0)
+    if column.kind == "stress":
+        return scaled / stretch if column.true else scaled
+    if size.width is None or size.thickness is None:
+        problem = "a force makes no stress without the cross-section that it pulls"
+        raise InputError(problem, file=file, key=f"column {column.name}", remedy="give `width` and `thickness` in mm")
+    return scaled / (size.width * size.thickness)
+
+
+def _agrees(
+    path: Path, pairs: list[ColumnPair], layout: TableLayout, used: ColumnPair, stretch: Array, stress: Array
+) -> None:
+    """Check engineering and true columns against one another, where a file has both."""
+    for other in pairs:
+        if other is used or other.load.kind != "stress" or other.length.kind == "travel":
+            continue
+        try:
+            length, load = whole(path, (other.length.name, other.load.name), layout)[1]
+        except InputError:
+            continue
+        again, _ = _stretch(other.length, length, str(path), SpecimenSize())
+        second = _stress(other.load, load, again, str(path), SpecimenSize())
+        k = int(np.argmax(stretch))
+        off = abs(second[k] / stress[k] - 1.0) if stress[k] else np.inf
+        if off > _AGREE or abs(again[k] / stretch[k] - 1.0) > _AGREE:
+            raise InputError(
+                f"{used.load.name} and {other.load.name} contradict one another: at a stretch of {stretch[k]:.3g} they "
+                f"make {stress[k]:.4g} and {second[k]:.4g} MPa of nominal stress",
+                file=path,
+                remedy="engineering stress is force over the undeformed cross-section, true stress is that times the "
+                "stretch: are the names exchanged?",
+            )
+
+
+def _loading(curve: TensionCurve) -> TensionCurve:
+    """The points up to the break, each at a greater stretch than those before it."""
+    stretch, stress, notes = curve.stretch, curve.stress, list(curve.notes)
+    last = int(np.argmax(stress))
+    if (stress[last:] < _BROKEN * stress[last]).any():
+        notes.append(f"points after the break at a stretch of {stretch[last]:.3g} are left out")
+        stretch, stress = stretch[: last + 1], stress[: last + 1]
+    highest = np.maximum.accumulate(stretch)
+    falls = np.flatnonzero(stretch < highest - _BACK * (highest[-1] - 1.0) - 1e-12)
+    if falls.size:
+        k = int(falls[0])
+        raise InputError(
+            f"the stretch falls from {highest[k]:.4g} to {stretch[k]:.4g} at point {k + 1}",
+            file=curve.file,
+            remedy="give the points of one loading: of a cyclic test its last loading, without the pre-load",
+        )
+    keep = np.concatenate([[True], stretch[1:] > highest[:-1]]) & (stretch > 1.0)
+    return replace(curve, stretch=stretch[keep], stress=stress[keep], notes=tuple(notes))
+
+
+def _plausible(curve: TensionCurve) -> None:
+    """Check number of points, reach and size. Raises InputError."""
+    if curve.stretch.size < LEAST_POINTS:
+        raise InputError(f"{curve.stretch.size} points", file=curve.file, remedy=f"at least {LEAST_POINTS}")
+    most = float(curve.stretch[-1])
+    if most < LEAST_STRETCH:
+        problem = f"the largest stretch is {most:.4g}, a strain of {100 * (most - 1):.3g} %"
+        remedy = f"a law needs at least {LEAST_STRETCH:g}; is a strain of per cent meant, or one named so that is none?"
+        raise InputError(problem, file=curve.file, remedy=remedy)
+    modulus = fit_law(LawForm("neo-hookean", 1), [curve]).constants[0]
+    if not MODULI[0] <= modulus <= MODULI[1]:
+        raise InputError(
+            f"stress over stretch makes a shear modulus of {modulus:.4g} MPa; an elastomer has {MODULI[0]:g} to "
+            f"{MODULI[1]:g} MPa{_other_unit(modulus)}",
+            file=curve.file,
+            remedy="write the unit of the stress into the column's name",
+        )
+
+
+def _other_unit(modulus: float) -> str:
+    """Which unit the numbers may be in, in words."""
+    if modulus > MODULI[1]:
+        return ": are the numbers in kPa and named MPa?"
+    return ": are the numbers in MPa and named kPa?" if modulus > 0.0 else ""
