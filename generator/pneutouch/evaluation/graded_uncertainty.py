@@ -22,11 +22,23 @@ _NOTE = (
 )
 
 
+_LAW_NOTE = (
+    "the wall has a fitted law: the figures are the solid's, their relative uncertainty is that of the neo-Hookean "
+    "wall with the modulus fitted over the same stretches (docs/materials.md sets both side by side)"
+)
+
+
 def even_wall(sensor: Sensor) -> Sensor:
-    """The sensor with its mean modulus everywhere; one that is even already is given back as it is."""
-    return sensor if sensor.wall.grade is None else sensor.replace(grade=None)
+    """The sensor as the atlas can take it: its mean modulus everywhere, and the neo-Hookean wall for a fitted law."""
+    even = sensor if sensor.wall.grade is None else sensor.replace(grade=None)
+    return even.replace(law=None) if _fitted(even) else even
 
 
 def notes_on(sensor: Sensor) -> tuple[str, ...]:
     """Notes on the uncertainty of this sensor."""
-    return () if sensor.wall.grade is None else (_NOTE,)
+    graded = () if sensor.wall.grade is None else (_NOTE,)
+    return (*graded, _LAW_NOTE) if _fitted(sensor) else graded
+
+
+def _fitted(sensor: Sensor) -> bool:
+    return sensor.wall.law is not None and sensor.wall.largest_stretch is not None

@@ -65,7 +65,9 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
 def resin_outside_atlas(wall: WallMaterial, ambient_pressure: float) -> str | None:
     """Why the atlas covers no dome of a resin, or None where it does; ``ambient_pressure`` in MPa."""
     recipe = shipped().recipe
-    if wall.law is not None or wall.poisson_ratio != recipe.poisson_ratio:
+    # A fitted law has a neo-Hookean modulus next to it, which finds designs; the solid then confirms them by the law.
+    own_law = wall.law is not None and wall.largest_stretch is None
+    if own_law or wall.poisson_ratio != recipe.poisson_ratio:
         return "the atlas covers neither its law nor its Poisson ratio"
     too_soft = ambient_pressure > recipe.stiffest * wall.shear_modulus
     return "it is too soft for the atlas in so high an ambient pressure" if too_soft else None

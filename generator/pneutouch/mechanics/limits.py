@@ -12,6 +12,10 @@ RATED_SHARE = 0.9
 """Share of the binding limit that a sensor is rated at, and warned above: the dome grows fast near the limit point."""
 
 
+LAW_RANGE = "law range"
+"""Name of the limit, and of the event, beyond which the wall is stretched further than its law was fitted."""
+
+
 @dataclass(frozen=True, slots=True)
 class LimitPoint:
     """The maximum of the inflation curve: apex heights in mm, driving pressure in MPa."""
@@ -39,11 +43,15 @@ class LimitPoint:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Driving pressures (MPa) at which each limit is met; None where it is not met before the limit point."""
+    """Driving pressures (MPa) at which each limit is met; None where it is not met before the limit point.
+
+    ``law_range``: where the inflated wall leaves the stretches that its law was fitted over, of a law that states them.
+    """
 
     limit_point: float | None
     break_strain: float | None
     gauge: float
+    law_range: float | None = None
 
     @property
     def binding(self) -> str:
@@ -57,7 +65,12 @@ class Limits:
 
     def named(self) -> list[tuple[str, float]]:
         """The limits that are met, with their names."""
-        pairs = [("limit point", self.limit_point), ("break strain", self.break_strain), ("gauge range", self.gauge)]
+        pairs = [
+            ("limit point", self.limit_point),
+            ("break strain", self.break_strain),
+            (LAW_RANGE, self.law_range),
+            ("gauge range", self.gauge),
+        ]
         return [(name, value) for name, value in pairs if value is not None]
 
 

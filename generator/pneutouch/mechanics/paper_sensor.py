@@ -38,20 +38,32 @@ def material_sensor(material: Material) -> Sensor:
     """
     assert material.shear_modulus_MPa is not None and material.poisson_ratio is not None
     elongation = material.elongation_at_break_percent
-    law = None if material.law is None else (material.law.name, tuple(material.law.constants))
+    law = _law(material)
     wall = WallMaterial(
         material.shear_modulus_MPa.nominal,
         material.poisson_ratio.nominal,
         break_stretch=None if elongation is None else 1 + elongation.least / 100,
         law=law,
         grade=_grade(material),
+        largest_stretch=None if material.law is None else material.law.largest_stretch,
     )
+    # A law fitted here has a modulus fitted over the same range next to it; of another its own is taken.
+    fitted = wall.largest_stretch is not None and law is not None
+    modulus = wall.shear_modulus if fitted else wall.hyperelastic.mu
     return Sensor(
         Dome(PAPER_RADIUS, PAPER_WALL),
-        dataclasses.replace(wall, shear_modulus=wall.hyperelastic.mu),
+        dataclasses.replace(wall, shear_modulus=modulus),
         GasCircuit(STANDARD_ATMOSPHERE, dead_volume=0.0, gauge_limit=GAUGE_LIMIT),
         IndentationProtocol(0.5 * PAPER_PLATE, depth=PAPER_DEPTH, steps=14),
     )
+
+
+def _law(material: Material) -> tuple[str, tuple[float, ...]] | None:
+    """The law of a material; None for the neo-Hookean one of its shear modulus, which the atlas covers."""
+    law, modulus = material.law, material.shear_modulus_MPa
+    if law is None or modulus is None or (law.name == "neo-hookean" and law.constants == [modulus.nominal]):
+        return None
+    return law.name, tuple(law.constants)
 
 
 def _grade(material: Material) -> tuple[tuple[float, ...], tuple[float, ...]] | None:

@@ -79,6 +79,7 @@ class LimitsRecord(TypedDict):
 
     limit_point_kPa: float | None
     break_strain_kPa: float | None
+    law_range_kPa: NotRequired[float]
     gauge_range_kPa: float
     binding: str
 
@@ -256,12 +257,7 @@ class SensorPrediction:
             "closure": self.closure,
             "error_estimate": self.error_estimate,
             "limit_point": None if point is None else point.document(),
-            "limits": {
-                "limit_point_kPa": None if caps.limit_point is None else caps.limit_point / KPA,
-                "break_strain_kPa": None if caps.break_strain is None else caps.break_strain / KPA,
-                "gauge_range_kPa": caps.gauge / KPA,
-                "binding": caps.binding,
-            },
+            "limits": _limits(caps),
             "dead_volume_mL": self.dead_volume / ML,
             "inflation": {
                 "apex_height_inner_mm": self.inflation.apex_inner.tolist(),
@@ -273,3 +269,13 @@ class SensorPrediction:
             "assumptions": list(self.assumptions),
         }
         return rounded(content, _DIGITS, _NOTHING)
+
+
+def _limits(limits: Limits) -> LimitsRecord:
+    content: LimitsRecord = {
+        "limit_point_kPa": None if limits.limit_point is None else limits.limit_point / KPA,
+        "break_strain_kPa": None if limits.break_strain is None else limits.break_strain / KPA,
+        "gauge_range_kPa": limits.gauge / KPA,
+        "binding": limits.binding,
+    }
+    return content if limits.law_range is None else {**content, "law_range_kPa": limits.law_range / KPA}

@@ -32,8 +32,10 @@ class WallMaterial:
     """The elastic wall. ``break_stretch`` is the stretch at which the resin may break.
 
     ``law`` is the name of a hyperelastic law with its constants; without it the wall is neo-Hookean with
-    ``shear_modulus``. ``grade`` are arc positions from the pole (0) to the rim (1) with the modulus there relative to
-    ``shear_modulus``, linear between them; without it the wall is homogeneous.
+    ``shear_modulus``. Next to a law ``shear_modulus`` is that of the neo-Hookean wall that stands for it in
+    the atlas. ``largest_stretch`` is the stretch of uniaxial tension up to which the law was fitted, where it is known.
+    ``grade`` are arc positions from the pole (0) to the rim (1) with the modulus there relative to ``shear_modulus``,
+    linear between them; without it the wall is homogeneous.
     """
 
     shear_modulus: float
@@ -41,6 +43,7 @@ class WallMaterial:
     break_stretch: float | None = None
     law: tuple[str, tuple[float, ...]] | None = None
     grade: tuple[tuple[float, ...], tuple[float, ...]] | None = None
+    largest_stretch: float | None = None
 
     @property
     def hyperelastic(self) -> Hyperelastic:

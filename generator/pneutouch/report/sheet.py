@@ -4,6 +4,7 @@ from typing import Any
 
 from pneutouch import __version__
 from pneutouch.evaluation.sheet_data import SheetData
+from pneutouch.mechanics.limits import LAW_RANGE, Limits
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report import ordering, prose
 from pneutouch.report.anywhere import contact_section
@@ -227,8 +228,17 @@ def _model_error(sheet: SheetData) -> list[str]:
     return list(sheet.prediction.error_estimate["summary"])
 
 
+def _law_range(limits: Limits) -> list[list[str]]:
+    """The limit that a fitted law sets, where there is one."""
+    if limits.law_range is None:
+        return []
+    return [
+        [LAW_RANGE, f"{limits.law_range / KPA:.1f}", "the inflated wall leaves the stretches its law was fitted over"]
+    ]
+
+
 def _limits(sheet: SheetData) -> list[list[str]]:
-    """The three limits of the driving pressure and which of them the rating follows from."""
+    """The limits of the driving pressure and which of them the rating follows from."""
     limits, point = sheet.prediction.limits, sheet.prediction.limit_point
     broken = DASH if limits.break_strain is None else f"{limits.break_strain / KPA:.1f}"
     where = "the resin's least elongation at break" + ("; not met before the limit point" if broken == DASH else "")
@@ -239,6 +249,7 @@ def _limits(sheet: SheetData) -> list[list[str]]:
     rows = [
         ["limit point", peak, reach],
         ["break strain", broken, where],
+        *_law_range(limits),
         ["gauge range", f"{limits.gauge / KPA:.4g}", f"what the {sheet.gauge.title} reads"],
     ]
     spread = {limit.name: limit for limit in sheet.rating.limits if limit.low < limit.nominal}

@@ -1,1 +1,1 @@
-"""Laws fitted to tension: a measured curve of nominal stress over stretch in, a hyperelastic law with its misfit out."""
+"""Laws fitted to tension: a curve of nominal stress over stretch in, a hyperelastic law with its misfit out."""

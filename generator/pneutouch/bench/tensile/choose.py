@@ -27,7 +27,8 @@ FORMS = (
 )
 """Laws in the order in which they are preferred: fewest constants first. Of as many constants Yeoh's comes first: it
 depends on the first invariant alone, and what tension says of it carries over to two directions (Yeoh, Rubber Chem.
-Technol. 66, 754-771, 1993); the constant of the second invariant is hardly determined by tension (Treloar 1975, p. 215)."""
+Technol. 66, 754-771, 1993); tension hardly determines the constant of the second invariant (Treloar 1975,
+p. 215)."""
 
 LAST = LawForm("ogden", 6)
 """Tried where none of `FORMS` is good enough: six constants, of which few curves determine all."""
@@ -48,7 +49,7 @@ class LawChoice:
         curves: As fitted: without slack, up to the largest stretch.
         whole: The same with their points beyond the range.
         largest: Greatest stretch of the fit.
-        fits: Every law that was tried, in the order of `FORMS`.
+        fits: The laws that were tried, in the order of `FORMS`; Ogden's alone where none before was good enough.
         refused: Why a law cannot be used, by its index in ``fits``.
         chosen: Index of the law taken.
         each: Shear modulus of the neo-Hookean law of each curve alone, MPa.
@@ -95,18 +96,29 @@ def choose_law(curves: Sequence[TensionCurve], largest: float | None = None, sla
     most = min(float(curve.stretch[-1]) for curve in whole)
     largest = min(reached_stretch(modulus) if largest is None else largest, most)
     fitted = tuple(curve.up_to(largest) for curve in whole)
-    fits = [fit_law(form, fitted) for form in FORMS]
-    refused = {k: why for k, fit in enumerate(fits) if (why := _refused(fit, largest)) is not None}
-    if not any(fit.misfit <= MISFIT for k, fit in enumerate(fits) if k not in refused):
-        fits.append(fit_law(LAST, fitted))
-        if (why := _refused(fits[-1], largest)) is not None:
-            refused[len(fits) - 1] = why
+    fits, refused = _tried(fitted, largest)
     usable = [k for k in range(len(fits)) if k not in refused]
     if not usable:
         problem = "no law fits these data: each is unstable in the range, or has constants that they do not determine"
         raise InputError(problem, file=curves[0].file)
     each = tuple(fit_law(NEO_HOOKEAN, [curve]).constants[0] for curve in fitted)
     return LawChoice(fitted, whole, largest, tuple(fits), refused, _taken(fits, usable), each)
+
+
+def _tried(curves: Sequence[TensionCurve], largest: float) -> tuple[list[LawFit], dict[int, str]]:
+    """The laws in the order of `FORMS` up to the first that is good enough, at least those that are linear in their
+    constants, and why some cannot be used."""
+    fits: list[LawFit] = []
+    refused: dict[int, str] = {}
+    good = False
+    for form in (*FORMS, LAST):
+        if good and form.name == "ogden":
+            continue
+        fits.append(fit_law(form, curves))
+        if (why := _refused(fits[-1], largest)) is not None:
+            refused[len(fits) - 1] = why
+        good = good or (why is None and fits[-1].misfit <= MISFIT)
+    return fits, refused
 
 
 def _taken(fits: Sequence[LawFit], usable: Sequence[int]) -> int:

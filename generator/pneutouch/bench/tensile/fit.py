@@ -103,7 +103,7 @@ def fit_law(form: LawForm, curves: Sequence[TensionCurve]) -> LawFit:
 
 
 def difference(fit: LawFit, curve: TensionCurve) -> tuple[Array, Array, Array]:
-    """Stretches from `FROM_STRAIN` on, (n,), and there the relative differences of a law: running mean, single points."""
+    """Stretches from `FROM_STRAIN` on, (n,), and there the relative differences of a law: running mean, points."""
     far = curve.stretch >= 1.0 + FROM_STRAIN
     stretch, stress = curve.stretch[far], curve.stress[far]
     points = fit.stress(stretch) / stress - 1.0

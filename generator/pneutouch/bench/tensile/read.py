@@ -29,6 +29,7 @@ _MOST_STRAIN = 20.0
 """Strains above this are per cent: the silicones tear at 10 at most."""
 
 _BACK, _BROKEN, _AGREE = 2e-3, 0.9, 0.05
+_MOST_FACTS = 60
 _FACT = re.compile(r"([A-Z][^;,\t]*)[;,\t]([^;,\t]+)[;,\t]*")
 
 
@@ -81,7 +82,7 @@ def _facts(path: Path) -> dict[str, str]:
     if path.suffix.lower() in (".parquet", ".xlsx", ".xlsm", ".tdms"):
         return {}
     facts: dict[str, str] = {}
-    for line in head_lines(path, None)[0][:60]:
+    for line in head_lines(path, None)[0][:_MOST_FACTS]:
         if known := _FACT.fullmatch(line.strip()):
             facts.setdefault(known[1].strip(), known[2].strip())
     return {key: value for key, value in facts.items() if key != "PARAMETER"}
@@ -163,11 +164,11 @@ def _agrees(
 
 
 def _loading(curve: TensionCurve) -> TensionCurve:
-    """The points up to the break, each at a greater stretch than those before it."""
+    """The points up to the greatest stress, before a break or an unloading, each at a greater stretch than before."""
     stretch, stress, notes = curve.stretch, curve.stress, list(curve.notes)
     last = int(np.argmax(stress))
     if (stress[last:] < _BROKEN * stress[last]).any():
-        notes.append(f"points after the break at a stretch of {stretch[last]:.3g} are left out")
+        notes.append(f"points after the greatest stress, at a stretch of {stretch[last]:.3g}, are left out")
         stretch, stress = stretch[: last + 1], stress[: last + 1]
     highest = np.maximum.accumulate(stretch)
     falls = np.flatnonzero(stretch < highest - _BACK * (highest[-1] - 1.0) - 1e-12)

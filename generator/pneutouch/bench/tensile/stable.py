@@ -8,9 +8,9 @@ Deformations, 1984, section 6.2).
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.tensile.uniaxial import first_invariant
 from pneutouch.mechanics.laws import Hyperelastic, hyperelastic
 from pneutouch.mechanics.laws.strain import VALUE, Strain
+from pneutouch.mechanics.laws.tension import first_invariant
 
 _STATES, _STEP = 60, 1e-3
 _POISSON_RATIO = 0.49

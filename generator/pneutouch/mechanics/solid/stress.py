@@ -1,11 +1,13 @@
 """Stretch and stress on the two faces of the wall, where bending puts the largest."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.laws.strain import BY_A, BY_H, BY_J, Strain
+from pneutouch.mechanics.laws.tension import same_invariant
 from pneutouch.mechanics.solid.elements import positions, strain_operator
 from pneutouch.mechanics.solid.inflate import Inflation, between, pressure_between
 from pneutouch.mechanics.solid.kinematics import HOOP, IN_PLANE, area_ratio
@@ -94,6 +96,11 @@ class StrainProbe:
         """Greatest principal stretch over both faces for nondimensional positions x (n_nodes, 2)."""
         return float(self._strains(x)[3].max())
 
+    def greatest_tension(self, x: Array) -> float:
+        """Stretch of uniaxial tension with the greatest first invariant over both faces at positions x (n_nodes, 2)."""
+        _, j, h, stretch = self._strains(x)
+        return float(same_invariant(((stretch**2).sum(axis=0) * (j * h) ** (-2.0 / 3.0)).max()))
+
     def principal(self, x: Array) -> tuple[Array, Array]:
         """Principal stretches and deviator-carrying stresses lambda dW/dlambda / J (MPa), (3, n_points) each."""
         a, j, h, stretch = self._strains(x)
@@ -135,18 +142,25 @@ class StrainProbe:
 
 
 def burst(probe: StrainProbe, inflation: Inflation, break_strain: float) -> tuple[float, float] | None:
-    """Pressure (MPa) and outer apex height (mm) at which free inflation reaches a break strain (stretch - 1), or None.
+    """Pressure (MPa) and outer apex height (mm) where free inflation reaches a break strain (stretch - 1), or None."""
+    return met(probe, inflation, lambda x: probe.greatest_stretch(x) - 1.0, break_strain)
+
+
+def met(
+    probe: StrainProbe, inflation: Inflation, measure: Callable[[Array], float], level: float
+) -> tuple[float, float] | None:
+    """Pressure (MPa) and outer apex height (mm) at which a measure of positions (n_nodes, 2) reaches a level, or None.
 
     Bisected on the Hermite cubic between neighbouring states.
     """
     solid = probe.solid
     for a, b in zip(inflation.states, inflation.states[1:], strict=False):
-        if probe.greatest_stretch(b.unit.x) - 1.0 < break_strain:
+        if measure(b.unit.x) < level:
             continue
         low, high = a.unit.volume, b.unit.volume
         for _ in range(40):
             middle = 0.5 * (low + high)
-            over = probe.greatest_stretch(between(a, b, middle)) - 1.0 >= break_strain
+            over = measure(between(a, b, middle)) >= level
             low, high = (low, middle) if over else (middle, high)
         x = between(a, b, high)
         share = (high - a.unit.volume) / (b.unit.volume - a.unit.volume)

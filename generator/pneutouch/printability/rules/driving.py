@@ -7,6 +7,7 @@ from pneutouch.units import KPA
 _SOURCES = {
     "limit point": "paper, section 4-A: the valid range ends at the maximum driving pressure",
     "break strain": "lower end of the material's elongation at break",
+    "law range": "the stretch up to which the material's law was fitted (its file), against that of the inflated wall",
     "gauge range": "paper, Supplement C: SMC PSE543-R06, +-100 kPa",
 }
 

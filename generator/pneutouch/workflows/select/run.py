@@ -271,7 +271,9 @@ def _confirm(selection: SelectionRun, choice: Candidate, judged: Evaluation | No
     from pneutouch.mechanics.solid_states import solid_states
 
     if judged is None:
-        state = solid_states(selection.sensor_of(choice), choice.pool.pressure)[0]
+        wall = material_sensor(choice.resin.material).wall
+        sensor = selection.sensor_of(choice).replace(law=wall.law, largest_stretch=wall.largest_stretch)
+        state = solid_states(sensor, choice.pool.pressure)[0]
     else:
         driven = float(choice.pool.pressure[0])
         state = min(judged.prediction.states, key=lambda state: abs(state.driving_pressure - driven))

@@ -119,7 +119,8 @@ def _hardness(material: Material) -> tuple[float, bool]:
     if material.shore_a is not None:
         return material.shore_a.nominal, True
     assert material.shear_modulus_MPa is not None
-    return shore_a(_ELASTIC * material.shear_modulus_MPa.nominal), False
+    # What is softer than the scale reads is taken at its zero, where Gent's slope is the greatest that it has.
+    return max(0.0, shore_a(_ELASTIC * material.shear_modulus_MPa.nominal)), False
 
 
 def _between_prints(material: Material, size: int) -> UncertaintySource:

@@ -1,0 +1,134 @@
+"""Tensile files as labs have them: columns and units found, and the usual mistakes refused in words."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pneutouch.bench.tensile.puck import PuckSize, fit_puck
+from pneutouch.bench.tensile.read import SpecimenSize, read_tension
+from pneutouch.bench.tensile.uniaxial import tension
+from pneutouch.errors import InputError
+
+LAMBDA = np.linspace(1.02, 3.0, 60)
+STRESS = tension("yeoh", (0.06, 0.009), LAMBDA)
+
+
+def write(folder, header, *columns, lines=(), delimiter=","):
+    path = folder / "data.csv"
+    rows = [delimiter.join(f"{value:.8g}" for value in row) for row in zip(*columns, strict=True)]
+    path.write_text("\n".join([*lines, header, *rows]) + "\n")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("header", "length", "load"),
+    [
+        ("stretch,stress (MPa)", LAMBDA, STRESS),
+        ("Engineering Strain,Engineering Stress (kPa)", LAMBDA - 1, 1e3 * STRESS),
+        ("strain (%),nominal stress [psi]", 100 * (LAMBDA - 1), STRESS / 6.894757e-3),
+        ("True Strain,True Stress (MPa)", np.log(LAMBDA), STRESS * LAMBDA),
+        ("Dehnung (%),Spannung (N/mm2)", 100 * (LAMBDA - 1), STRESS),
+        ("Extension (mm),Load (N)", 25 * (LAMBDA - 1), 12 * STRESS),
+        ("Extension_cm,Load_mN", 2.5 * (LAMBDA - 1), 12e3 * STRESS),
+    ],
+)
+def test_columns_and_units(tmp_path, header, length, load):
+    curve = read_tension(write(tmp_path, header, length, load), SpecimenSize(25, 6, 2))
+    assert curve.stretch == pytest.approx(LAMBDA, rel=1e-6)
+    assert curve.stress == pytest.approx(STRESS, rel=1e-5)
+
+
+HEAD = (
+    "PARAMETER;INFO;;;",
+    "Specimen Length (mm);33;;;",
+    "Speed (mm/min);450;;;",
+    "Strain Measurement;Global;;;",
+    ";;;;",
+)
+COLUMNS = "Time (s);True Strain;True Stress (MPa);Engineering Strain;Engineering Stress (MPa)"
+
+
+def database(folder, blank=False, swapped=False):
+    nominal = STRESS * LAMBDA if swapped else STRESS
+    rows = [
+        f"{k:g};{np.log(s):.8g};{p * s:.8g};" + (";" if blank else f"{s - 1:.8g};{n:.8g}")
+        for k, (s, p, n) in enumerate(zip(LAMBDA, STRESS, nominal, strict=True))
+    ]
+    path = folder / "silicone.csv"
+    path.write_text("\n".join([*HEAD, COLUMNS, *rows]) + "\n")
+    return path
+
+
+@pytest.mark.parametrize("blank", [False, True])
+def test_the_files_of_the_soft_robotics_materials_database(tmp_path, blank):
+    curve = read_tension(database(tmp_path, blank))
+    assert curve.stress == pytest.approx(STRESS, rel=1e-5)
+    assert curve.facts["Speed (mm/min)"] == "450"
+    assert bool(curve.notes) == blank
+
+
+def refused(path, match, **size):
+    with pytest.raises(InputError, match=match):
+        read_tension(path, SpecimenSize(**size))
+
+
+def test_units_that_are_wrong(tmp_path):
+    refused(write(tmp_path, "strain,stress (MPa)", 100 * (LAMBDA - 1), STRESS), "per cent")
+    refused(write(tmp_path, "strain,stress (MPa)", LAMBDA - 1, 1e3 * STRESS), "in kPa and named MPa")
+    refused(write(tmp_path, "strain,stress (kPa)", LAMBDA - 1, STRESS), "in MPa and named kPa")
+    refused(write(tmp_path, "strain,stress", LAMBDA - 1, STRESS), "states no unit")
+    refused(write(tmp_path, "stretch,stress (MPa)", LAMBDA - 1, STRESS), "is it a strain")
+    refused(write(tmp_path, "strain,stress (MPa)", LAMBDA, STRESS), "is it a stretch")
+    refused(write(tmp_path, "strain (%),stress (MPa)", LAMBDA - 1, STRESS), "largest stretch is 1.0")
+    refused(write(tmp_path, "strain,true stress (MPa)", LAMBDA - 1, STRESS), "one is true")
+    refused(write(tmp_path, "strain,stress (mm)", LAMBDA - 1, STRESS), "no unit of a stress")
+    refused(write(tmp_path, "a,b", LAMBDA - 1, STRESS), "no columns of stretch and stress")
+
+
+def test_true_and_engineering_columns_that_contradict(tmp_path):
+    refused(database(tmp_path, swapped=True), "are the names exchanged")
+
+
+def test_lengths_that_are_missing(tmp_path):
+    path = write(tmp_path, "Extension (mm),Force (N)", 25 * (LAMBDA - 1), 12 * STRESS)
+    refused(path, "gauge_length", width=6, thickness=2)
+    refused(path, "cross-section", gauge_length=25)
+
+
+def test_points_that_are_wrong(tmp_path):
+    refused(write(tmp_path, "stretch,stress (MPa)", LAMBDA[:5], STRESS[:5]), "5 points")
+    cyclic = np.concatenate([LAMBDA[:20], LAMBDA[:20][::-1], LAMBDA])
+    stress = np.concatenate([STRESS[:20], STRESS[:20][::-1], STRESS])
+    refused(write(tmp_path, "stretch,stress (MPa)", cyclic, stress), "the stretch falls")
+
+
+def test_points_after_the_break_are_left_out(tmp_path):
+    stress = np.concatenate([STRESS[:50], np.zeros(10)])
+    curve = read_tension(write(tmp_path, "stretch,stress (MPa)", LAMBDA, stress))
+    assert curve.stretch[-1] == pytest.approx(LAMBDA[49])
+    assert "after the greatest stress" in curve.notes[-1]
+
+
+def test_of_a_loop_the_loading_counts(tmp_path):
+    around, stress = np.concatenate([LAMBDA, LAMBDA[::-1]]), np.concatenate([STRESS, 0.8 * STRESS[::-1]])
+    curve = read_tension(write(tmp_path, "stretch,stress (MPa)", around, stress))
+    assert curve.stretch == pytest.approx(LAMBDA)
+    assert curve.stress == pytest.approx(STRESS, rel=1e-6)
+
+
+@pytest.mark.parametrize("bonded", [False, True])
+def test_a_puck_gives_its_modulus(tmp_path, bonded):
+    size, travel = PuckSize(20.0, 10.0, bonded), np.linspace(0.0, 3.0, 40)
+    stretch = 1 - np.maximum(travel - 0.3, 0) / 10
+    force = 0.2 * (stretch**-2 - stretch) * np.pi * 100 * (1.5 if bonded else 1.0)
+    fit = fit_puck(write(tmp_path, "Compression (mm),Force (N)", travel, force), size)
+    assert fit.modulus == pytest.approx(0.2, rel=0.01)
+    assert fit.zero == pytest.approx(0.3, abs=0.02)
+    assert 1.2 < fit.largest < 1.5
+
+
+def test_a_puck_hardly_pressed_is_refused(tmp_path):
+    travel = np.linspace(0, 0.2, 20)
+    with pytest.raises(InputError, match="less than 5 % of the thickness"):
+        fit_puck(write(tmp_path, "Compression (mm),Force (N)", travel, travel), PuckSize(20.0, 10.0))
