@@ -46,11 +46,11 @@ def shape_figures(assembly: Assembly) -> dict[str, Any]:
 def design_figures(library: Library, design: str) -> dict[str, Any]:
     """Figures and findings of a design as it is shipped."""
     evaluation = evaluate(design, library=library)
-    prediction = evaluation.prediction
+    prediction, point = evaluation.prediction, evaluation.prediction.limit_point
     return {
         **shape_figures(evaluation.assembly),
         "dead_volume_mm3": round(evaluation.assembly.dead_volume, 4),
-        "limit_point_kPa": round(1e3 * prediction.limit_point.driving_pressure, 5),
+        "limit_point_kPa": None if point is None else round(1e3 * point.driving_pressure, 5),
         "sensitivity_kPa_per_N": [round(state.figures.sensitivity_kPa_per_N, 5) for state in prediction.states],
         "force_range_N": [round(state.figures.force_range[1], 4) for state in prediction.states],
         "findings": sorted({f"{finding.severity} {finding.rule}" for finding in evaluation.findings}),

@@ -4,7 +4,6 @@ from typing import Any
 
 from pneutouch import __version__
 from pneutouch.evaluation.sheet_data import SheetData
-from pneutouch.mechanics.limits import LAW_RANGE, Limits
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report import ordering, prose
 from pneutouch.report.anywhere import contact_section
@@ -228,12 +227,12 @@ def _model_error(sheet: SheetData) -> list[str]:
     return list(sheet.prediction.error_estimate["summary"])
 
 
-def _law_range(limits: Limits) -> list[list[str]]:
-    """The limit that a fitted law sets, where there is one."""
-    if limits.law_range is None:
+def _law_range(pressure: float | None) -> list[list[str]]:
+    """The limit that a fitted law sets (MPa), where there is one."""
+    if pressure is None:
         return []
     return [
-        [LAW_RANGE, f"{limits.law_range / KPA:.1f}", "the inflated wall leaves the stretches its law was fitted over"]
+        ["law range", f"{pressure / KPA:.1f}", "the inflated wall leaves the stretches that its law was fitted over"]
     ]
 
 
@@ -249,7 +248,7 @@ def _limits(sheet: SheetData) -> list[list[str]]:
     rows = [
         ["limit point", peak, reach],
         ["break strain", broken, where],
-        *_law_range(limits),
+        *_law_range(limits.law_range),
         ["gauge range", f"{limits.gauge / KPA:.4g}", f"what the {sheet.gauge.title} reads"],
     ]
     spread = {limit.name: limit for limit in sheet.rating.limits if limit.low < limit.nominal}
