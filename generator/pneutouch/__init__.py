@@ -14,6 +14,7 @@ _HOMES = {
     "api.comparison": ("Comparison", "compare"),
     "api.measuring": ("FittedSensor", "calibrate", "characterize", "plan", "scan", "simulate"),
     "api.signals": ("respond",),
+    "api.materials": ("fit_material",),
     "api.listing": ("Listing", "calibrations", "designs", "materials", "printers"),
     "errors": ("ComputationError", "InputError", "PneutouchError", "RuleBrokenError"),
 }

@@ -36,6 +36,7 @@ LINES = [
     f"{SWEEP}400 --model membrane --workers 2",
     "tray paper-dome soft-pad --out made",
     "coupons --out made",
+    "fit-material campaign/tension.csv --name mine --like DragonSkin20 --out made",
     "show campaign/paper-dome.3mf",
     "plan paper-dome --out made",
     "simulate paper-dome --specimens 2 --rate 20 --out made",
@@ -68,6 +69,8 @@ def campaign(shared, built):
         next((folder / "made").iterdir()).rename(folder / "campaign")
         (folder / "made").rmdir()
         shutil.copy(built("paper-dome") / "paper-dome.3mf", folder / "campaign")
+        rows = [f"{1 + k / 50:.3f},{0.15 * (1 + k / 50 - (1 + k / 50) ** -2):.6f}" for k in range(1, 101)]
+        (folder / "campaign/tension.csv").write_text("\n".join(["stretch,stress (MPa)", *rows]) + "\n")
 
     return shared.folder("stopped-campaign", fill)
 

@@ -39,6 +39,7 @@ COMMANDS: dict[str, dict[str, CommandEntry]] = {
         "build": CommandEntry("build", "Build everything: print files, prediction, datasheet."),
         "tray": CommandEntry("tray", "Lay many sensors out on one tray of a printer."),
         "coupons": CommandEntry("coupons", "Make test prints, or enter what was measured on them."),
+        "fit-material": CommandEntry("fit_material", "Fit a law to a tensile or puck test: a material of your own."),
         "show": CommandEntry("show", "Show what a 3MF or a voxel stack holds."),
     },
     "Measure": {

@@ -13,6 +13,13 @@ from tests.stability.fuzz.cases import LINES, RESULTS, RIG
 SIGNAL = "time_s,pressure_kPa,force_N\n" + "".join(f"{0.01 * k:.2f},{1 + 0.01 * (k % 7)},0\n" for k in range(400))
 
 
+_STRETCHES = [1 + k / 40 for k in range(1, 60)]
+TENSION = "stretch,stress (MPa)\n" + "".join(f"{s:.4f},{0.15 * (s - s**-2):.6f}\n" for s in _STRETCHES)
+PRESS = "Compression (mm),Force (N)\n" + "".join(
+    f"{0.1 * k:.1f},{60 * ((1 - 0.01 * k) ** -2 - 1 + 0.01 * k):.4f}\n" for k in range(30)
+)
+
+
 def make_base(folder: Path, built: Path) -> None:
     """Fill ``folder``; ``built`` is the output folder of the paper's sensor."""
     run("new", "mine", cwd=folder)
@@ -22,6 +29,8 @@ def make_base(folder: Path, built: Path) -> None:
     (folder / "rig.toml").write_text(RIG)
     (folder / "results.toml").write_text(RESULTS)
     (folder / "signal.csv").write_text(SIGNAL)
+    (folder / "tension.csv").write_text(TENSION)
+    (folder / "press.csv").write_text(PRESS)
     (folder / "built").mkdir()
     for name in ("manifest.json", "prediction.json"):
         shutil.copy(built / name, folder / "built")

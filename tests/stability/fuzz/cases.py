@@ -40,6 +40,11 @@ LINES: dict[str, tuple[str, ...]] = {
     ),
     "tray": ("tray.toml", "paper-dome --over membrane.material=TangoPlus,FLX9940 --copies 2"),
     "coupons": ("", "--results results.toml", "--profile j735 --material Agilus30 --only puck --copies puck=2"),
+    "fit-material": (
+        "tension.csv --name mine --like DragonSkin20",
+        "tension.csv --name mine --density 1.07 --shore-a 19,20 --stretch-to 2 --json",
+        "press.csv --name mine --like DragonSkin20 --puck 20x10 --bonded",
+    ),
     "plan": ("paper-dome", "paper-dome --rig rig.toml --resins TangoPlus,FLX9940 --json"),
     "simulate": (
         "paper-dome --pressures 0,22 --kinds steps --runs 1 --rest 2",
@@ -155,6 +160,11 @@ def _signal(rng: random.Random, base: Path, folder: Path) -> list[str]:
     return ["scan", "texture-specimen", "--design", "paper-dome", "--data", "signal.csv"]
 
 
+def _tension(rng: random.Random, base: Path, folder: Path) -> list[str]:
+    (folder / "tension.csv").write_bytes(damaged_csv((base / "tension.csv").read_text(), rng))
+    return ["fit-material", "tension.csv", "--name", "mine", "--like", "DragonSkin20"]
+
+
 def _threemf(rng: random.Random, base: Path, folder: Path) -> list[str]:
     """A 3MF damaged as a whole, or whose recipe and model are damaged inside of a sound archive."""
     content = (base / "built.3mf").read_bytes()
@@ -233,6 +243,7 @@ FILES: dict[str, Maker] = {
     "results": _toml("results.toml", "results.toml", "coupons --results results.toml"),
     "campaign": _run,
     "signal": _signal,
+    "tension": _tension,
     "3MF": _threemf,
     "voxel stack": _stack,
     "stopped sweep": _sweep_rest,

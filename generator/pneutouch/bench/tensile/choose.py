@@ -26,7 +26,7 @@ FORMS = (
     LawForm("ogden", 4),
 )
 """Laws in the order in which they are preferred: fewest constants first. Of as many constants Yeoh's comes first: it
-depends on the first invariant alone, and what tension says of it carries over to two directions (Yeoh, Rubber Chem.
+depends on the first invariant alone, and what tension states of it carries over to two directions (Yeoh, Rubber Chem.
 Technol. 66, 754-771, 1993); tension hardly determines the constant of the second invariant (Treloar 1975,
 p. 215)."""
 

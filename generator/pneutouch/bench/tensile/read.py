@@ -19,7 +19,7 @@ LEAST_POINTS = 8
 """Points of a curve: two for each constant of the laws of four, our choice."""
 
 LEAST_STRETCH = 1.2
-"""Where a curve must reach at least: a shorter one tells a modulus and no law."""
+"""Where a curve must reach at least: a shorter one gives a modulus and no law."""
 
 MODULI = (0.002, 20.0)
 """MPa: outside these the numbers are in other units. The softest silicone gels have about 0.005, printed elastomers up
@@ -51,8 +51,7 @@ def read_tension(path: Path, size: SpecimenSize | None = None) -> TensionCurve:
     layout, file = layout_of(path), str(path)
     pairs = column_pairs(layout.names, layout.units, file)
     facts = _facts(path)
-    found = _first_filled(path, pairs, layout)
-    pair, length, load = found
+    pair, length, load = _first_filled(path, pairs, layout)
     stretch, notes = _stretch(pair.length, length, file, _size(size, facts))
     stress = _stress(pair.load, load, stretch, file, _size(size, facts))
     if pair.load.true:

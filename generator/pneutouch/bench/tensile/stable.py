@@ -45,10 +45,10 @@ def _least_stiffness(law: Hyperelastic, first: Array, second: Array) -> Array:
         return np.asarray(law.energy(Strain(a, j, 1.0 / j)).data[VALUE])
 
     here = energy(first, second)
-    ways = {}
+    sums = {}
     for key, (x, y) in {"xx": (1, 0), "yy": (0, 1), "xy": (1, 1)}.items():
         there = energy(first + x * _STEP, second + y * _STEP) + energy(first - x * _STEP, second - y * _STEP)
-        ways[key] = (there - 2.0 * here) / _STEP**2
-    across = 0.5 * (ways["xy"] - ways["xx"] - ways["yy"])
-    middle, apart = 0.5 * (ways["xx"] + ways["yy"]), 0.5 * (ways["xx"] - ways["yy"])
+        sums[key] = (there - 2.0 * here) / _STEP**2
+    across = 0.5 * (sums["xy"] - sums["xx"] - sums["yy"])
+    middle, apart = 0.5 * (sums["xx"] + sums["yy"]), 0.5 * (sums["xx"] - sums["yy"])
     return np.asarray(middle - np.hypot(apart, across))

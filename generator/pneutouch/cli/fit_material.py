@@ -1,0 +1,122 @@
+"""``pneutouch fit-material``: a laboratory's tensile or puck test to a material file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
+from pneutouch.cli.complete import names
+from pneutouch.cli.next_step import report_next
+from pneutouch.cli.progress import bar
+from pneutouch.cli.terminal import echo, notify
+
+if TYPE_CHECKING:
+    from pneutouch.bench.tensile.puck import PuckSize
+
+
+@app.command("fit-material")
+def fit_material(
+    data: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="DATA...", help="CSV of a tensile test, one file a specimen; with --puck of a puck test."
+        ),
+    ],
+    name: Annotated[str, typer.Option("--name", metavar="NAME", help="Name of the material, as designs name it.")],
+    like: Annotated[
+        str | None,
+        typer.Option(
+            autocompletion=names("materials"), help="Known material whose density, hardness and casting are kept."
+        ),
+    ] = None,
+    density: Annotated[float | None, typer.Option(metavar="G/CM3", help="Density of a material that is new.")] = None,
+    shore_a: Annotated[str | None, typer.Option(metavar="N,N,...", help="Readings of the hardness, Shore A.")] = None,
+    gauge_length: Annotated[
+        float | None,
+        typer.Option(metavar="MM", help="Length that an extension is of.", show_default="as the file states"),
+    ] = None,
+    width: Annotated[
+        float | None, typer.Option(metavar="MM", help="Width of the specimen.", show_default="as the file states")
+    ] = None,
+    thickness: Annotated[
+        float | None, typer.Option(metavar="MM", help="Thickness of the specimen.", show_default="as the file states")
+    ] = None,
+    puck: Annotated[
+        str | None,
+        typer.Option(metavar="DxT", help="A puck pressed between plates: diameter and thickness in mm, such as 20x6."),
+    ] = None,
+    bonded: Annotated[bool, typer.Option("--bonded", help="The puck's faces cannot slide on the plates.")] = False,
+    stretch_to: Annotated[
+        float | None, typer.Option(metavar="STRETCH", help="Fit up to there.", show_default="what a sensor reaches")
+    ] = None,
+    slack: Annotated[
+        float | None, typer.Option(metavar="STRAIN", help="Strain before the specimen pulls.", show_default="found")
+    ] = None,
+    lab: Annotated[str | None, typer.Option(help="Who measured, for the sources.")] = None,
+    out: OutOption = Path("outputs"),
+    json: JsonOption = False,
+) -> None:
+    """Fit a hyperelastic law to a tensile or puck test and write it as a material of your own."""
+    with reporting():
+        from pneutouch.bench.tensile.read import SpecimenSize
+        from pneutouch.workflows.fit_material.fitted import FitOptions, MaterialFacts
+        from pneutouch.workflows.fit_material.run import fit_material as fit
+        from pneutouch.workflows.fit_material.run import write_material
+
+        facts = MaterialFacts(like, density, _readings(shore_a), lab)
+        size = SpecimenSize(gauge_length, width, thickness)
+        options = FitOptions(tuple(data), name, size, _puck(puck, bonded), stretch_to, slack, facts)
+        with bar("fitting laws"):
+            folder, content = write_material(fit(options), out)
+        for note in content["notes"]:
+            notify(f"note: {note}")
+        if json:
+            print_json({**content, "folder": str(folder)})
+            return
+        from pneutouch.cli.fit_material_text import fit_text
+
+        echo(fit_text(content))
+        echo(f"\nwritten: {content['file']}\n{folder}")
+        _report_next(name, content["profile"])
+
+
+def _report_next(name: str, profile: str | None) -> None:
+    """The prediction of a dome in the material, with the profile that makes it."""
+    first = "" if profile else f"add {name} to the resins of a profile of your own, printprofiles/PROFILE.toml"
+    made = ("--set", f"print.profile={profile or 'PROFILE'}")
+    report_next("predict", "paper-dome", "--set", f"membrane.material={name}", *made, first=first)
+
+
+def _puck(text: str | None, bonded: bool) -> PuckSize | None:
+    """The size of a puck. Raises InputError for what is none."""
+    from pneutouch.bench.tensile.puck import PuckSize
+    from pneutouch.errors import InputError
+    from pneutouch.spec.number import plain_number
+
+    if text is None:
+        if bonded:
+            raise InputError("is of a puck", key="bonded", remedy="give `puck` too")
+        return None
+    parts = text.lower().replace("mm", "").split("x")
+    try:
+        diameter, thick = (plain_number(part) for part in parts)
+    except ValueError:
+        raise InputError("diameter and thickness in mm, such as 20x6", key="puck", value=text) from None
+    return PuckSize(diameter, thick, bonded)
+
+
+def _readings(text: str | None) -> tuple[float, ...]:
+    """Readings of hardness. Raises InputError for what is none."""
+    from pneutouch.errors import InputError
+    from pneutouch.spec.number import plain_number
+
+    try:
+        readings = tuple(plain_number(part) for part in (text or "").split(",") if part.strip())
+    except ValueError:
+        readings = (-1.0,)
+    if any(not 0 < reading < 100 for reading in readings):
+        raise InputError("numbers from 0 to 100, separated by commas, such as 19,20,21", key="shore_a", value=text)
+    return readings

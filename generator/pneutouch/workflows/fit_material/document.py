@@ -1,0 +1,156 @@
+"""What a fit found, as data and as files."""
+
+from __future__ import annotations
+
+import tomllib
+from typing import Any
+
+import numpy as np
+
+from pneutouch.bench.tensile.choose import MISFIT
+from pneutouch.bench.tensile.fit import LawFit, difference
+from pneutouch.catalogue import Library
+from pneutouch.mechanics.laws import hyperelastic
+from pneutouch.mechanics.uncertainty.hardness import young_modulus
+from pneutouch.output.files import digest, json_bytes
+from pneutouch.output.manifest import with_manifest
+from pneutouch.report.law_chart import LawCurve, law_chart
+from pneutouch.rounding import rounded
+from pneutouch.spec.files import read_bytes
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+from pneutouch.workflows.fit_material.fitted import FittedMaterial
+
+HARDNESS_SHARE = (0.4, 0.65)
+"""Young's modulus over that of Gent's relation where nothing is odd: TangoPlus by the paper's modulus has 0.50, eight
+of the nine shipped silicones 0.44 to 0.52 (docs/materials.md)."""
+
+_MOST_BYTES = 100_000_000
+_GRID = 200
+
+
+def document(fitted: FittedMaterial) -> dict[str, Any]:
+    """All results; names carry their units."""
+    choice, law = fitted.choice, fitted.law
+    small = hyperelastic(law.form.name, law.constants, 0.49).mu
+    fits = (law,) if choice is None else choice.fits
+    refused = {} if choice is None else choice.refused
+    content = {
+        "material": fitted.options.name,
+        "file": str(fitted.path),
+        "test": "puck" if choice is None else "tension",
+        "largest_stretch": fitted.largest,
+        "law": _fit(law),
+        "shear_modulus_small_strain_MPa": small,
+        "shear_modulus_MPa": fitted.neo_hookean.constants[0],
+        "shear_modulus_uncertainty_MPa": fitted.neo_hookean.errors[0],
+        "specimens": [] if choice is None else _specimens(fitted),
+        "fits": [{**_fit(fit), "refused": refused.get(k)} for k, fit in enumerate(fits)],
+        "profile": _profile(fitted),
+        "notes": _notes(fitted, small),
+    }
+    return rounded(content, 6)
+
+
+def _fit(fit: LawFit) -> dict[str, Any]:
+    """A law with its constants: MPa, Ogden's exponents without unit."""
+    return {
+        "name": fit.form.name,
+        "label": fit.form.label,
+        "constants": list(fit.constants),
+        "uncertainties": list(fit.errors),
+        "misfit_percent": 100 * fit.misfit,
+        "misfit_of_points_percent": 100 * fit.worst,
+    }
+
+
+def _specimens(fitted: FittedMaterial) -> list[dict[str, Any]]:
+    assert fitted.choice is not None
+    curves = zip(fitted.choice.curves, fitted.choice.each, strict=True)
+    return [
+        {
+            "data": curve.file,
+            "points": int(curve.stretch.size),
+            "slack_percent": 100 * curve.slack,
+            "shear_modulus_MPa": modulus,
+        }
+        for curve, modulus in curves
+    ]
+
+
+def _notes(fitted: FittedMaterial, small: float) -> list[str]:
+    notes = []
+    if fitted.choice is not None:
+        notes += [f"{curve.file}: {note}" for curve in fitted.choice.curves for note in curve.notes]
+        slack = max(curve.slack for curve in fitted.choice.curves)
+        if slack > 0.03:
+            notes.append(
+                f"{100 * slack:.2g} % of strain were taken off as slack: measure on marks of the specimen, not on the "
+                "crosshead, or set the zero of the force with the specimen hanging free"
+            )
+    if fitted.law.misfit > MISFIT:
+        notes.append(
+            f"no law that the data determine is within {100 * MISFIT:g} % of them; {fitted.law.form.label} is off by "
+            f"up to {100 * fitted.law.misfit:.2g} %"
+        )
+    notes += _hardness(fitted, small)
+    notes.append("the intervals hold the scatter of these points alone, not that of other batches, rates or ages")
+    return notes
+
+
+def _profile(fitted: FittedMaterial) -> str | None:
+    """The profile that makes the material: one that casts where it is cast; None where none runs it."""
+    library = Library.default()
+    material = _material(fitted)
+    made = {name: one for name, one in library.all("printers", Printer).items() if one.mode_for(material) is not None}
+    cast = [name for name, one in made.items() if one.is_casting == material.is_cast]
+    return next(iter([*cast, *made]), None)
+
+
+def _material(fitted: FittedMaterial) -> Material:
+    return Material.model_validate(tomllib.loads(fitted.text))
+
+
+def _hardness(fitted: FittedMaterial, small: float) -> list[str]:
+    """The modulus against the hardness of the file."""
+    material = _material(fitted)
+    if material.shore_a is None:
+        return []
+    share = 3.0 * small / young_modulus(material.shore_a.nominal)
+    low, high = HARDNESS_SHARE
+    text = (
+        f"Young's modulus at small strain is {share:.2f} of Gent's relation at Shore A {material.shore_a.nominal:g}; "
+        f"of others {low:g} to {high:g}"
+    )
+    return [text if low <= share <= high else f"{text}: an outlier; was this material measured, in these units?"]
+
+
+def files(fitted: FittedMaterial, content: dict[str, Any]) -> dict[str, bytes]:
+    """The files of the output folder: figures, plot, manifest."""
+    inputs = {
+        "data": {path.name: digest(read_bytes(path, _MOST_BYTES, "data")) for path in fitted.options.data},
+        "stretch_to": fitted.options.largest,
+        "slack": fitted.options.slack,
+        "material": fitted.text,
+    }
+    made = {"fit.json": json_bytes(content), "fit.svg": _chart(fitted).encode()}
+    return with_manifest(made, f"fit-{fitted.options.name}", inputs)
+
+
+def _chart(fitted: FittedMaterial) -> str:
+    stretch = np.linspace(1.0, fitted.largest, _GRID)
+    laws = [fitted.law] if fitted.law.form == fitted.neo_hookean.form else [fitted.law, fitted.neo_hookean]
+    if fitted.puck is not None:
+        stretch = np.linspace(float(fitted.puck.stretch.min()), 1.0, _GRID)
+        off = fitted.law.stress(fitted.puck.stretch) / fitted.puck.stress - 1.0
+        curves = [LawCurve(fitted.law.form.label, stretch, fitted.law.stress(stretch), fitted.puck.stretch, off)]
+        return law_chart([(fitted.puck.stretch, fitted.puck.stress)], curves, fitted.largest)
+    assert fitted.choice is not None
+    curves = []
+    for law in laws:
+        off_at, off, _ = (
+            np.concatenate(parts) for parts in zip(*(difference(law, c) for c in fitted.choice.curves), strict=True)
+        )
+        curves.append(LawCurve(law.form.label, stretch, law.stress(stretch), off_at, off))
+    points = [(curve.stretch, curve.stress) for curve in fitted.choice.curves]
+    return law_chart(points, curves, fitted.largest)

@@ -1,0 +1,109 @@
+"""``fit-material``: from a laboratory's file to a material that designs use."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+
+import numpy as np
+import pytest
+
+from pneutouch.bench.tensile.uniaxial import tension
+from pneutouch.catalogue import Library
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.solid_states import solid_result
+from pneutouch.spec.material import HyperelasticLaw, Material
+from tests.conftest import ROOT
+
+STRETCH = np.linspace(1.02, 2.6, 80)
+SILICONES = ("DragonSkin10", "DragonSkin20", "DragonSkin30", "Ecoflex0010", "Ecoflex0030", "Ecoflex0050", "MoldStar16")
+SILICONES = (*SILICONES, "RTV615", "SortaClear40")
+
+
+def write(path, factor=1.0):
+    rows = zip(STRETCH, factor * tension("yeoh", (0.06, 0.009), STRETCH), strict=True)
+    path.write_text("\n".join(["stretch,stress (MPa)", *(f"{a:.6f},{b:.8f}" for a, b in rows)]) + "\n")
+    return path
+
+
+def test_a_tensile_test_becomes_a_material(command, tmp_path):
+    write(tmp_path / "pull.csv")
+    line = ("fit-material", "pull.csv", "--name", "Ours", "--like", "DragonSkin20", "--json")
+    first = command(*line, cwd=tmp_path)
+    assert first.returncode == 0, first.stderr
+    content = json.loads(first.stdout)
+    assert content["law"]["name"] == "yeoh"
+    assert content["law"]["constants"] == pytest.approx([0.06, 0.009], rel=0.01)
+    path = tmp_path / "printprofiles/materials/Ours.toml"
+    law = tomllib.loads(path.read_text())["law"]
+    assert law["largest_stretch"] == 2.0
+    assert law["misfit_percent"] < 1
+    before = path.read_bytes()
+    assert command(*line, cwd=tmp_path).stdout == first.stdout
+    assert path.read_bytes() == before
+    assert {file.name for file in (tmp_path / "outputs/fit-Ours").iterdir()} == {"fit.json", "fit.svg", "manifest.json"}
+    assert "next: pneutouch predict paper-dome --set membrane.material=Ours" in command(*line[:-1], cwd=tmp_path).stderr
+    path.write_text("# mine\n" + path.read_text())
+    refused = command(*line, cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "was not written by pneutouch fit-material" in refused.stderr
+
+
+def test_three_specimens_give_low_high_and_spread(command, tmp_path):
+    for k, factor in enumerate((0.9, 1.0, 1.1)):
+        write(tmp_path / f"{k}.csv", factor)
+    done = command("fit-material", "0.csv", "1.csv", "2.csv", "--name", "Ours", "--density", "1.1", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    modulus = tomllib.loads((tmp_path / "printprofiles/materials/Ours.toml").read_text())["shear_modulus_MPa"]
+    assert modulus["low"] == pytest.approx(0.9 * modulus["value"], rel=0.02)
+    assert modulus["spread"] == pytest.approx(0.1 * modulus["value"], rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("words", "match"),
+    [
+        (("pull.csv", "--name", "Ours"), "--density"),
+        (("pull.csv", "--name", "Ours", "--like", "ABS"), "is rigid"),
+        (("pull.csv", "--name", "a/b", "--density", "1"), "cannot be a name"),
+        (("pull.csv", "--name", "Ours", "--density", "1", "--puck", "20"), "such as 20x6"),
+        (("pull.csv", "--name", "Ours", "--density", "1", "--shore-a", "200"), "from 0 to 100"),
+        (("pull.csv", "--name", "Ours", "--density", "1", "--stretch-to", "0.5"), "from 1.1 to 20"),
+        (("none.csv", "--name", "Ours", "--density", "1"), "no such file"),
+    ],
+)
+def test_bad_input_is_refused_and_leaves_nothing(command, tmp_path, words, match):
+    write(tmp_path / "pull.csv")
+    done = command("fit-material", *words, cwd=tmp_path)
+    assert done.returncode == 2
+    assert match in done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["pull.csv"]
+
+
+@pytest.mark.parametrize("name", SILICONES)
+def test_the_shipped_silicones_state_their_fit(name):
+    material = Library((ROOT,)).load("materials", name)
+    assert material.is_cast
+    law, modulus = material.law, material.shear_modulus_MPa
+    assert law.largest_stretch == (2.5 if modulus.nominal < 0.1 else 2.0)
+    assert law.misfit_percent <= (8.0 if name in ("Ecoflex0010", "Ecoflex0030") else 5.0)
+    assert "10.1089/soro.2019.0115" in law.source and "ODbL" in law.source
+    sensor = material_sensor(material)
+    assert sensor.wall.shear_modulus == modulus.nominal
+    assert (sensor.wall.law is None) == (law.name == "neo-hookean")
+
+
+def bare(largest):
+    """Dragon Skin 20 with its law, as if fitted up to a stretch."""
+    material: Material = Library((ROOT,)).load("materials", "DragonSkin20")
+    law = HyperelasticLaw(**{**material.law.model_dump(), "largest_stretch": largest})
+    return material_sensor(material.model_copy(update={"law": law}))
+
+
+def test_a_law_asked_beyond_its_range_is_reported():
+    short, long = (solid_result(bare(largest), np.array([0.0]), cells=16) for largest in (1.3, 6.0))
+    (event,) = [event for event in short.states[0].events if event.kind == "law range"]
+    assert not event.ends_range
+    assert "fitted up to 1.3" in event.message
+    assert not [event for event in long.states[0].events if event.kind == "law range"]
+    assert short.limits.law_range < (long.limits.law_range or np.inf)
+    assert ("law range", short.limits.law_range) in short.limits.named()
