@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo test pytest lint review ratios check-slow chart table-s1-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page contact-table simulator-page lock clean
+.PHONY: venv demo test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page contact-table simulator-page lock clean
 
 venv: $(VENV)/.dev
 
@@ -63,6 +63,10 @@ chart: $(VENV)/.dev
 # Friction between wall and plate: sensitivity, the loop it makes, convergence and time; writes docs/friction.md.
 friction-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.friction_page
+
+# All elastomers with their laws and what they make of the paper's dome; writes docs/materials.md.
+materials-page: $(VENV)/.dev
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.materials_page
 
 # The paper's Table S1 under what the paper leaves open; writes docs/table-s1.md and its chart.
 table-s1-page: $(VENV)/.dev

@@ -17,6 +17,11 @@ if TYPE_CHECKING:
     from pneutouch.bench.tensile.puck import PuckSize
 
 
+_LengthOption = Annotated[
+    float | None, typer.Option(metavar="MM", help="Of the tensile specimen.", show_default="as the file states")
+]
+
+
 @app.command("fit-material")
 def fit_material(
     data: Annotated[
@@ -34,16 +39,9 @@ def fit_material(
     ] = None,
     density: Annotated[float | None, typer.Option(metavar="G/CM3", help="Density of a material that is new.")] = None,
     shore_a: Annotated[str | None, typer.Option(metavar="N,N,...", help="Readings of the hardness, Shore A.")] = None,
-    gauge_length: Annotated[
-        float | None,
-        typer.Option(metavar="MM", help="Length that an extension is of.", show_default="as the file states"),
-    ] = None,
-    width: Annotated[
-        float | None, typer.Option(metavar="MM", help="Width of the specimen.", show_default="as the file states")
-    ] = None,
-    thickness: Annotated[
-        float | None, typer.Option(metavar="MM", help="Thickness of the specimen.", show_default="as the file states")
-    ] = None,
+    gauge_length: _LengthOption = None,
+    width: _LengthOption = None,
+    thickness: _LengthOption = None,
     puck: Annotated[
         str | None,
         typer.Option(metavar="DxT", help="A puck pressed between plates: diameter and thickness in mm, such as 20x6."),

@@ -250,14 +250,14 @@ class SensorPrediction:
 
     def document(self) -> ModelRecord:
         """The prediction as ``predict`` prints it, without rating and uncertainty."""
-        point, caps = self.limit_point, self.limits
+        point = self.limit_point
         content: ModelRecord = {
             "design": self.design,
             "model": self.model,
             "closure": self.closure,
             "error_estimate": self.error_estimate,
             "limit_point": None if point is None else point.document(),
-            "limits": _limits(caps),
+            "limits": self._limits_record(),
             "dead_volume_mL": self.dead_volume / ML,
             "inflation": {
                 "apex_height_inner_mm": self.inflation.apex_inner.tolist(),
@@ -270,12 +270,12 @@ class SensorPrediction:
         }
         return rounded(content, _DIGITS, _NOTHING)
 
-
-def _limits(limits: Limits) -> LimitsRecord:
-    content: LimitsRecord = {
-        "limit_point_kPa": None if limits.limit_point is None else limits.limit_point / KPA,
-        "break_strain_kPa": None if limits.break_strain is None else limits.break_strain / KPA,
-        "gauge_range_kPa": limits.gauge / KPA,
-        "binding": limits.binding,
-    }
-    return content if limits.law_range is None else {**content, "law_range_kPa": limits.law_range / KPA}
+    def _limits_record(self) -> LimitsRecord:
+        caps = self.limits
+        content: LimitsRecord = {
+            "limit_point_kPa": None if caps.limit_point is None else caps.limit_point / KPA,
+            "break_strain_kPa": None if caps.break_strain is None else caps.break_strain / KPA,
+            "gauge_range_kPa": caps.gauge / KPA,
+            "binding": caps.binding,
+        }
+        return content if caps.law_range is None else {**content, "law_range_kPa": caps.law_range / KPA}

@@ -12,7 +12,8 @@ from pneutouch.mechanics.harmonic.face import pressed_face
 from pneutouch.mechanics.harmonic.fields import Harmonics
 from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.hermite import hermite
-from pneutouch.mechanics.limits import LAW_RANGE, LimitPoint, Limits
+from pneutouch.mechanics.law_range import beyond_law, leaves_law
+from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.object_mesh import object_cells
 from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState, WallPath
 from pneutouch.mechanics.pressed_face import PressedFace
@@ -27,7 +28,7 @@ from pneutouch.mechanics.solid.mesh import dome, nodes_along
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.printed import printed_dome
 from pneutouch.mechanics.solid.rigid_base import RigidBase
-from pneutouch.mechanics.solid.stress import StrainProbe, burst, met
+from pneutouch.mechanics.solid.stress import StrainProbe, burst
 from pneutouch.meridian.arc import arc_share
 from pneutouch.units import KPA
 
@@ -161,9 +162,7 @@ def _inflation(solid: SolidModel, run: Inflation) -> InflationCurve:
 def _limits(sensor: Sensor, probe: StrainProbe, run: Inflation) -> Limits:
     """Driving pressures at which the limits are met on the rising branch, the one that can be driven to."""
     rupture = None if sensor.wall.break_stretch is None else burst(probe, run, sensor.wall.break_stretch - 1)
-    largest = sensor.wall.largest_stretch
-    unknown = None if largest is None else met(probe, run, probe.greatest_tension, largest)
-    broken, left = (_rising(run, place) for place in (rupture, unknown))
+    broken, left = (_rising(run, place) for place in (rupture, leaves_law(probe, run, sensor.wall.largest_stretch)))
     return Limits(
         limit_point=None if run.limit is None else run.limit.pressure,
         break_strain=broken,
@@ -177,22 +176,6 @@ def _rising(run: Inflation, place: tuple[float, float] | None) -> float | None:
     if place is None or (run.limit is not None and place[1] > run.limit.outer_apex):
         return None
     return place[0]
-
-
-def _beyond_law(probe: StrainProbe, pressed: IndentationPath, largest: float | None) -> list[Event]:
-    """The event of a wall pressed beyond the stretches that its law was fitted over; none where they are not known."""
-    if largest is None:
-        return []
-    tension = [probe.greatest_tension(state.positions / probe.solid.length) for state in pressed.path]
-    travel = [max(state.indentation, 0.0) for state in pressed.path]
-    beyond = [at for at, stretch in zip(travel, tension, strict=True) if stretch > largest]
-    if not beyond:
-        return []
-    text = (
-        f"the wall is stretched up to the first invariant of tension to {max(tension):.2f} times the length, and its "
-        f"law was fitted up to {largest:g}"
-    )
-    return [Event(LAW_RANGE, beyond[0], False, text)]
 
 
 def press_settings(sensor: Sensor) -> PressSettings:
@@ -217,7 +200,7 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
     free = state_at(probe.solid, pressure, run)
     test, press = sensor.protocol, press_settings(sensor)
     pressed = indent(probe.solid, free, press, probe)
-    unfitted = _beyond_law(probe, pressed, sensor.wall.largest_stretch)
+    unfitted = beyond_law(probe, pressed, sensor.wall.largest_stretch)
     happened = sorted([*reported_events(pressed.events), *unfitted], key=lambda event: event.indentation)
     end = min(range_end(happened, test.depth), pressed.path[-1].indentation)
     grid = np.linspace(0.0, end, test.steps + 1)

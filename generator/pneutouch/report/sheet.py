@@ -227,18 +227,9 @@ def _model_error(sheet: SheetData) -> list[str]:
     return list(sheet.prediction.error_estimate["summary"])
 
 
-def _law_range(pressure: float | None) -> list[list[str]]:
-    """The limit that a fitted law sets (MPa), where there is one."""
-    if pressure is None:
-        return []
-    return [
-        ["law range", f"{pressure / KPA:.1f}", "the inflated wall leaves the stretches that its law was fitted over"]
-    ]
-
-
 def _limits(sheet: SheetData) -> list[list[str]]:
     """The limits of the driving pressure and which of them the rating follows from."""
-    limits, point = sheet.prediction.limits, sheet.prediction.limit_point
+    limits, point, fitted = sheet.prediction.limits, sheet.prediction.limit_point, sheet.prediction.limits.law_range
     broken = DASH if limits.break_strain is None else f"{limits.break_strain / KPA:.1f}"
     where = "the resin's least elongation at break" + ("; not met before the limit point" if broken == DASH else "")
     reach = "none: the pressure goes on rising"
@@ -248,7 +239,11 @@ def _limits(sheet: SheetData) -> list[list[str]]:
     rows = [
         ["limit point", peak, reach],
         ["break strain", broken, where],
-        *_law_range(limits.law_range),
+        *(
+            []
+            if fitted is None
+            else [["law range", f"{fitted / KPA:.1f}", "stretched further than its law was fitted"]]
+        ),
         ["gauge range", f"{limits.gauge / KPA:.4g}", f"what the {sheet.gauge.title} reads"],
     ]
     spread = {limit.name: limit for limit in sheet.rating.limits if limit.low < limit.nominal}

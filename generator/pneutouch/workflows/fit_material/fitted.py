@@ -1,4 +1,4 @@
-"""What ``fit-material`` is asked for and what it found."""
+"""The options of ``fit-material`` and its results."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class FittedMaterial:
     """What a fit found.
 
     Attributes:
-        options: As asked for.
+        options: As given.
         law: The law taken.
         neo_hookean: The neo-Hookean law over the same stretches.
         largest: Stretch of tension up to which they were fitted.

@@ -1,0 +1,166 @@
+"""Write docs/materials.md: ``python -m benchmarks.materials_page`` (a minute of processor time).
+
+``--reach`` prints how far the wall of the shipped domes is stretched instead (`pneutouch.bench.tensile.reach`).
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from pneutouch.bench.tensile.fit import LawForm
+from pneutouch.catalogue import Library
+from pneutouch.errors import BeyondLimitError
+from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.mechanics.limits import Limits
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.solid.indent import indent
+from pneutouch.mechanics.solid.inflate import inflate, state_at
+from pneutouch.mechanics.solid_states import press_settings, solid_probe, solid_result
+from pneutouch.mechanics.uncertainty.hardness import young_modulus
+from pneutouch.spec.material import Material
+from pneutouch.units import KPA
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGE, TEXT = ROOT / "docs/materials.md", ROOT / "benchmarks/materials_text.md"
+PRESSURES_KPA = (0.0, 22.0)
+
+
+def materials() -> dict[str, Material]:
+    """The shipped elastomers by name, printed ones first, soft ones first."""
+    every = Library((ROOT,)).all("materials", Material)
+    soft = {name: one for name, one in every.items() if one.shear_modulus_MPa is not None and one.kind == "elastomer"}
+    return dict(sorted(soft.items(), key=lambda item: (item[1].is_cast, item[1].shear_modulus_MPa.nominal)))
+
+
+def sensitivity(sensor: Sensor, pressure_kPa: float) -> str:
+    """S at a driving pressure, kPa/N, or why there is none."""
+    try:
+        result = solid_result(sensor.replace(waves=0), np.array([pressure_kPa * KPA]), past_limit=1.0)
+    except BeyondLimitError as error:
+        return f"beyond the limit point, {error.limit / KPA:.1f} kPa"
+    figures, left = result.states[0].figures, result.limits.law_range
+    if figures is None:
+        return "no range"
+    mark = "" if left is None or pressure_kPa * KPA <= left else f" (beyond the law range, {left / KPA:.1f} kPa)"
+    return f"{figures.sensitivity_kPa_per_N:.2f}{mark}"
+
+
+def limits(sensor: Sensor) -> Limits:
+    """The limits of the driving pressure."""
+    return solid_result(sensor.replace(waves=0), np.array([0.0]), past_limit=1.0).limits
+
+
+def law_words(material: Material) -> tuple[str, str, str]:
+    """Law, misfit and range of a material as cells."""
+    if material.law is None:
+        return "neo-Hookean", "not fitted", ""
+    law = material.law
+    label = LawForm(law.name, len(law.constants)).label
+    constants = ", ".join(f"{constant:.4g}" for constant in law.constants)
+    misfit = "" if law.misfit_percent is None else f"{law.misfit_percent:.1f} %"
+    return f"{label}: {constants}", misfit, "" if law.largest_stretch is None else f"1 to {law.largest_stretch:g}"
+
+
+def table() -> str:
+    """One row a material."""
+    rows = [
+        [
+            "material",
+            "kind",
+            "mu, MPa",
+            "law, MPa",
+            "misfit",
+            "stretch",
+            *(f"S at {p:g} kPa, kPa/N" for p in PRESSURES_KPA),
+        ]
+    ]
+    rows[0].append("source")
+    rows.append(["---"] * len(rows[0]))
+    for name, material in materials().items():
+        sensor, modulus = material_sensor(material), material.shear_modulus_MPa
+        cells = [sensitivity(sensor, pressure) for pressure in PRESSURES_KPA]
+        source = "database, below" if material.law is not None else modulus.source.split(":")[0].split(";")[0]
+        rows.append([f"`{name}`", material.kind_shown, f"{modulus.nominal:.4g}", *law_words(material), *cells, source])
+    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+
+
+def laws() -> str:
+    """Neo-Hookean against the fitted law, one row a material that has another one."""
+    rows = [
+        [
+            "material",
+            "S by the law",
+            "S, neo-Hookean",
+            "difference",
+            "limit of the law, kPa",
+            "limit point, neo-Hookean, kPa",
+        ]
+    ]
+    rows.append(["---"] * len(rows[0]))
+    for name, material in materials().items():
+        sensor = material_sensor(material)
+        if sensor.wall.law is None:
+            continue
+        other = sensor.replace(law=None, largest_stretch=None)
+        by_law, plain = (solid_result(one.replace(waves=0), np.array([0.0]), past_limit=1.0) for one in (sensor, other))
+        values = [one.states[0].figures.sensitivity_kPa_per_N for one in (by_law, plain)]
+        low, point = by_law.limits.law_range, by_law.limits.limit_point
+        named = [f"{low / KPA:.1f} (law range)"] if low is not None else []
+        named += [f"{point / KPA:.1f} (limit point)"] if point is not None else []
+        rows.append(
+            [
+                f"`{name}`",
+                *(f"{value:.3f}" for value in values),
+                f"{100 * (values[1] / values[0] - 1):+.1f} %",
+                ", ".join(named) or "none",
+                f"{plain.limits.limit_point / KPA:.1f}",
+            ]
+        )
+    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+
+
+def hardness() -> str:
+    """Young's modulus at small strain over Gent's, one row a material with a Shore A hardness and a law or a note."""
+    rows = [["material", "Shore A", "E at small strain, MPa", "over Gent's"], ["---"] * 4]
+    for name, material in materials().items():
+        if material.shore_a is None or not (material.is_cast or name == "TangoPlus"):
+            continue
+        shore, young = material.shore_a.nominal, 3.0 * material_sensor(material).wall.hyperelastic.mu
+        rows.append([f"`{name}`", f"{shore:g}", f"{young:.3g}", f"{young / young_modulus(shore):.2f}"])
+    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+
+
+def page() -> str:
+    """The page as it must be."""
+    text = TEXT.read_text(encoding="utf-8")
+    for key, make in (("{table}", table), ("{laws}", laws), ("{hardness}", hardness)):
+        text = text.replace(key, make())
+    return text
+
+
+def reach() -> list[str]:
+    """The largest stretch of tension by the first invariant on the shipped domes, by modulus and driving pressure."""
+    lines = []
+    for name in ("paper-dome", "fingertip-dome", "soft-pad"):
+        given = evaluate(name, {"pneumatics.driving_pressures_kPa": [0.0]}, model="membrane").sensor.replace(waves=0)
+        for modulus in (0.012, 0.025, 0.05, 0.08, 0.2, 0.35, 0.6):
+            sensor = given.replace(shear_modulus=modulus)
+            probe = solid_probe(sensor)
+            run = inflate(probe.solid, past_limit=1.0)
+            for share in (0.0, 0.5, 0.8):
+                free = state_at(probe.solid, share * run.limit.pressure, run)
+                pressed = indent(probe.solid, free, press_settings(sensor), probe)
+                most = max(probe.greatest_tension(one.positions / probe.solid.length) for one in pressed.path)
+                lines.append(f"{name} {modulus:g} MPa, {share:g} of the limit point: {most:.2f}")
+    return lines
+
+
+if __name__ == "__main__":
+    if "--reach" in sys.argv:
+        sys.stdout.write("\n".join(reach()) + "\n")
+    else:
+        PAGE.write_text(page(), encoding="utf-8")
