@@ -40,8 +40,9 @@ def sensitivity(sensor: Sensor, pressure_kPa: float) -> str:
     """S at a driving pressure, kPa/N, or why there is none."""
     try:
         result = solid_result(sensor.replace(waves=0), np.array([pressure_kPa * KPA]), past_limit=1.0)
-    except BeyondLimitError as error:
-        return f"beyond the limit point, {error.limit / KPA:.1f} kPa"
+    except BeyondLimitError:
+        name, limit = min(limits(sensor).named(), key=lambda known: known[1])
+        return f"beyond the {name}, {limit / KPA:.1f} kPa"
     figures, left = result.states[0].figures, result.limits.law_range
     if figures is None:
         return "no range"

@@ -107,3 +107,17 @@ def test_a_law_asked_beyond_its_range_is_reported():
     assert not [event for event in long.states[0].events if event.kind == "law range"]
     assert short.limits.law_range < (long.limits.law_range or np.inf)
     assert ("law range", short.limits.law_range) in short.limits.named()
+
+
+def test_python_gives_what_the_command_gives(tmp_path, monkeypatch):
+    import pneutouch as pt
+
+    monkeypatch.chdir(tmp_path)
+    result = pt.fit_material(write(tmp_path / "pull.csv"), "Ours", like="DragonSkin20", lab="Soft lab")
+    assert result["law"]["label"] == "Yeoh, 2 terms"
+    assert not (tmp_path / "printprofiles").exists()
+    result.save("out")
+    written = tomllib.loads((tmp_path / "printprofiles/materials/Ours.toml").read_text())
+    assert written["law"]["source"].endswith("Soft lab")
+    with pytest.raises(pt.InputError, match="largest|stretch_to"):
+        pt.fit_material(tmp_path / "pull.csv", "Ours", like="DragonSkin20", stretch_to=0.5)

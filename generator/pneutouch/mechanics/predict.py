@@ -227,7 +227,9 @@ def _stated(model: str, sensor: Sensor, pressures: Array) -> tuple[ErrorEstimate
     """Numerical errors and assumptions of a model."""
     if model == "membrane":
         return error_against_exact_membrane(sensor, pressures), _MEMBRANE_ASSUMPTIONS
-    law = f"law {sensor.wall.hyperelastic.convention}, Poisson ratio {sensor.wall.poisson_ratio:g}"
+    largest = sensor.wall.largest_stretch
+    fitted = "" if largest is None else f", fitted to tension up to a stretch of {largest:g}"
+    law = f"law {sensor.wall.hyperelastic.convention}{fitted}, Poisson ratio {sensor.wall.poisson_ratio:g}"
     if model == "atlas":
         errors: ErrorEstimate = {
             **DISCRETISATION,
