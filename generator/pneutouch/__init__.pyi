@@ -8,6 +8,7 @@ from pneutouch.api.listing import calibrations as calibrations
 from pneutouch.api.listing import designs as designs
 from pneutouch.api.listing import materials as materials
 from pneutouch.api.listing import printers as printers
+from pneutouch.api.materials import fit_material as fit_material
 from pneutouch.api.measuring import FittedSensor as FittedSensor
 from pneutouch.api.measuring import calibrate as calibrate
 from pneutouch.api.measuring import characterize as characterize
