@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from pneutouch.catalogue.gauge import named_gauge
 from pneutouch.catalogue.library import Library
 from pneutouch.catalogue.mixture import mixed_material
+from pneutouch.catalogue.named_parts import mount_of, tube_of
 from pneutouch.errors import InputError, shown
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import MaterialKind
@@ -17,7 +18,7 @@ from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.names import name_of
-from pneutouch.spec.part import AnyMount, AnySeat, GluedFlange, OnePiece, Port, Sleeve, Tube
+from pneutouch.spec.part import AnyMount, AnySeat, GluedFlange, OnePiece, Port, Tube
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.spec.read import Changes, override, read_toml, validate
 
@@ -27,7 +28,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ResolvedDesign:
-    """All that a design names. ``where`` is the file as the user gave it, for messages."""
+    """All that a design names. ``where`` is the file as the user gave it, for messages.
+
+    ``mould_printer`` and ``mould_material`` are there where the membrane is cast, and None where it is printed.
+    """
 
     name: str
     where: str
@@ -42,6 +46,8 @@ class ResolvedDesign:
     mount: AnyMount
     calibration: SensorCalibration | None = None
     gauge: Gauge | None = None
+    mould_printer: Printer | None = None
+    mould_material: Material | None = None
 
     def __repr__(self) -> str:
         return f"ResolvedDesign({self.name!r}, {self.where!r})"
@@ -136,20 +142,23 @@ def _resolved(name: str, where: str, design: DesignFile, library: Library) -> Re
         chosen = getattr(getattr(design, table), key)
         return library.load(kind, chosen, file=where, key=f"{table}.{key}")
 
+    printer: Printer = find("printers", "print", "profile")
     scene = ResolvedDesign(
         name=name,
         where=where,
         design=design,
         membrane_material=_membrane_material(design, where, library),
         connector_material=find("materials", "connector", "material"),
-        printer=find("printers", "print", "profile"),
+        printer=printer,
         connector_printer=find("printers", "print", "connector_profile"),
-        tube=_tube(design, where, library),
+        tube=tube_of(design, where, library),
         port=find("ports", "connector", "port"),
         seat=find("seats", "connector", "seat"),
-        mount=_mount(design, where, library),
+        mount=mount_of(design, where, library),
         calibration=_calibration(design, where, library),
         gauge=named_gauge(design, where, library),
+        mould_printer=find("printers", "mould", "profile") if printer.is_casting else None,
+        mould_material=find("materials", "mould", "material") if printer.is_casting else None,
     )
     check_scene(scene)
     return scene
@@ -182,42 +191,7 @@ def check_scene(scene: ResolvedDesign) -> None:
     _check_one_piece(scene)
     _check_glue(scene)
     _check_calibration(scene)
-
-
-def _tube(design: DesignFile, where: str, library: Library) -> Tube:
-    """The tube that the design names, else the usual one of its port. Raises InputError where it does not fit."""
-    port = library.load("ports", design.connector.port, file=where, key="connector.port")
-    name = design.pneumatics.tube
-    if name is not None:
-        library.load("tubes", name, file=where, key="pneumatics.tube")
-        if name not in port.tubes:
-            raise InputError(
-                f"the port {design.connector.port} takes {', '.join(port.tubes)}",
-                file=where,
-                key="pneumatics.tube",
-                value=name,
-                remedy="give one of these, or another connector.port",
-            )
-    tube: Tube = library.load("tubes", name or port.tubes[0], file=where, key="tubes of connector.port")
-    return tube
-
-
-def _mount(design: DesignFile, where: str, library: Library) -> AnyMount:
-    """The mount that the design names; a sleeve for the finger that it gives."""
-    chosen, finger = design.connector.mount, design.connector.finger_diameter_mm
-    mount: AnyMount = library.load("mounts", chosen, file=where, key="connector.mount")
-    if finger is None:
-        return mount
-    if not isinstance(mount, Sleeve):
-        sleeves = [name for name in library.paths("mounts") if isinstance(library.load("mounts", name), Sleeve)]
-        raise InputError(
-            f"connector.mount = {shown(chosen)} goes over no finger",
-            file=where,
-            key="connector.finger_diameter_mm",
-            value=finger,
-            remedy=f"take connector.mount = {' or '.join(sleeves)}, or leave it out",
-        )
-    return mount.for_finger(finger)
+    _check_mould(scene)
 
 
 def _mode(printer: Printer, *materials: Material) -> Mode:
@@ -272,6 +246,24 @@ def _check_glue(scene: ResolvedDesign) -> None:
         problem = f"connector.seat = {shown(scene.design.connector.seat)} has no glue at the flange"
         remedy = "leave it out, or take connector.seat = glued-flange"
         raise InputError(problem, file=scene.where, key="connector.glue", value=named, remedy=remedy)
+
+
+def _check_mould(scene: ResolvedDesign) -> None:
+    """A membrane is cast in a mould that is printed."""
+    if not scene.printer.is_casting:
+        return
+    if scene.mould_printer is None or scene.mould_material is None:
+        raise InputError("the membrane is cast; the mould's printer and material are missing", file=scene.where)
+    if scene.mould_printer.is_casting:
+        raise InputError(
+            f"the mould is printed, not cast; {scene.mould_printer.title} is no printer",
+            file=scene.where,
+            key="mould.profile",
+            value=scene.design.mould.profile,
+            remedy="take the profile of a printer",
+        )
+    _check_kind(scene, "mould.material", scene.mould_material, "rigid")
+    _check_runs(scene, "mould.profile", scene.mould_printer, scene.mould_material)
 
 
 def _check_calibration(scene: ResolvedDesign) -> None:

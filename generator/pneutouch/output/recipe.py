@@ -74,7 +74,7 @@ def scene_kinds() -> dict[str, str]:
     return {name: f"{name.rpartition('_')[2]}s" for name in names}
 
 
-OPTIONAL = ("calibration", "gauge")
+OPTIONAL = ("calibration", "gauge", "mould_printer", "mould_material")
 """Fields of a scene that a recipe leaves out where they are None: recipes without them are those of older versions."""
 
 

@@ -29,7 +29,7 @@ def gap_volume(scene: ResolvedDesign, layout: Layout) -> float:
     """Volume in mm3 of the gap inside a clamped flange or around a plug; a glued flange's gaps are full of glue."""
     seat = scene.seat
     if isinstance(seat, ClampedFlange):
-        return _annulus(layout.groove_inner, layout.inner_radius, layout.flange_thickness)
+        return _inside_flange(layout)
     if isinstance(seat, OnePiece):
         bottom, body = layout.under + seat.shoulder_thickness, plug_radius(scene, layout)
         if layout.port_axis is None:
@@ -43,12 +43,23 @@ def glue_volume(scene: ResolvedDesign, layout: Layout) -> float:
     """Volume in mm3 of the gaps that glue fills: around a glued flange, or around a plug's shoulder."""
     seat = scene.seat
     if isinstance(seat, GluedFlange):
-        inside = _annulus(layout.groove_inner, layout.inner_radius, layout.flange_thickness)
-        return inside + _annulus(layout.flange_radius, layout.groove_outer, layout.flange_thickness)
+        outside = _annulus(layout.flange_radius, layout.groove_outer, layout.flange_thickness)
+        return _inside_flange(layout) + outside + _draft(layout.flange_radius, -layout.flange_draft, layout)
     if isinstance(seat, OnePiece):
         wide = layout.opening_radius + seat.shoulder_width
         return _annulus(wide - scene.fit_clearance, wide, seat.shoulder_thickness)
     return 0.0
+
+
+def _inside_flange(layout: Layout) -> float:
+    """The gap between spigot and flange, mm3."""
+    upright = _annulus(layout.groove_inner, layout.inner_radius, layout.flange_thickness)
+    return upright + _draft(layout.inner_radius, layout.flange_draft, layout)
+
+
+def _draft(radius: float, draft: float, layout: Layout) -> float:
+    """Volume in mm3 between an upright side of the flange and one that leans by ``draft`` to the other radius."""
+    return math.pi * layout.flange_thickness * abs(draft) * (radius + draft / 3)
 
 
 def _annulus(inner: float, outer: float, height: float) -> float:

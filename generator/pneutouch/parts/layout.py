@@ -31,6 +31,7 @@ class Layout:
 
     ``under`` is the rearmost face around the axis: ``plate_low``, or lower where the mount has a boss there.
     ``opening_radius`` is the hole that a plug closes, 0 without one. ``port_axis`` is the height of a side port.
+    ``flange_draft`` is how much wider both sides of a cast flange are at its underside than at the base plane.
     """
 
     inner_radius: float
@@ -48,6 +49,7 @@ class Layout:
     opening_radius: float
     port: PortShape
     port_axis: float | None
+    flange_draft: float = 0.0
 
     @property
     def outer_radius(self) -> float:
@@ -125,7 +127,15 @@ def lay_out_dome(scene: ResolvedDesign, port: PortShape, inner_radius: float, wa
         opening_radius=inner_radius - seat.lip_wall_mm if isinstance(seat, OnePiece) else 0.0,
         port=port,
         port_axis=low + _port_height(scene, port) if side else None,
+        flange_draft=_flange_draft(scene, flange),
     )
+
+
+def _flange_draft(scene: ResolvedDesign, thickness: float) -> float:
+    """How far the sides of a cast flange lean over its thickness; printed ones stand upright."""
+    if not scene.printer.is_casting:
+        return 0.0
+    return thickness * math.tan(math.radians(scene.design.mould.draft_deg))
 
 
 def _ring_radius(scene: ResolvedDesign, groove: float, flange: float) -> float:

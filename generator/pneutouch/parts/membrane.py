@@ -12,16 +12,19 @@ HELD = "held"
 
 
 def membrane_meridian(layout: Layout) -> Meridian:
-    """Meridian from the pole inside, round the flange, back to the pole outside."""
+    """Meridian from the pole inside, round the flange, back to the pole outside.
+
+    A cast flange opens downwards inside and out by its draft, so that it leaves core and ring.
+    """
     inner, outer, flange = layout.inner_radius, layout.outer_radius, layout.flange_radius
-    low = -layout.flange_thickness
+    low, draft = -layout.flange_thickness, layout.flange_draft
     return Meridian(
         (
             Arc((0.0, 0.0), inner, math.pi / 2, 0.0, INNER_WALL),
-            Line((inner, 0.0), (inner, low), HELD),
-            Line((inner, low), (flange, low), HELD),
-            Line((flange, low), (flange, 0.0), HELD),
-            Line((flange, 0.0), (outer, 0.0), "flange top"),
+            Line((inner, 0.0), (inner + draft, low), HELD),
+            Line((inner + draft, low), (flange, low), HELD),
+            Line((flange, low), (flange - draft, 0.0), HELD),
+            Line((flange - draft, 0.0), (outer, 0.0), "flange top"),
             Arc((0.0, 0.0), outer, 0.0, math.pi / 2, OUTER_WALL),
         )
     )

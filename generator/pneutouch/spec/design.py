@@ -11,6 +11,7 @@ from pneutouch.errors import shown
 from pneutouch.spec.contact import ContactTable
 from pneutouch.spec.fields import EntryError, Table, name, number, numbers
 from pneutouch.spec.grade import ResinOrMix
+from pneutouch.spec.mould import Mould
 
 
 def _within(low: float, high: float, unit: str) -> AfterValidator:
@@ -196,6 +197,7 @@ class DesignFile(Table):
     indentation: Indentation = Indentation()
     contact: ContactTable = ContactTable()
     print: Print = Print()
+    mould: Mould = Mould()
 
     @model_validator(mode="before")
     @classmethod
@@ -221,6 +223,9 @@ class DesignFile(Table):
         content: dict[str, Any] = handler(self)
         if content.get(CALIBRATION) is None:
             content.pop(CALIBRATION, None)
+        # Most designs are printed: one that states nothing of a mould reads as before there were moulds.
+        if self.mould == Mould():
+            content.pop("mould", None)
         return content
 
     @property

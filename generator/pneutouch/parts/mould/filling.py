@@ -1,0 +1,57 @@
+"""How long a mould takes to fill, and its air to leave, by the silicone's viscosity.
+
+Slow flow of a Newtonian liquid: the pour channel by Hagen and Poiseuille (pipe of varying radius, 8 mu L / (pi r^4)
+integrated along it), the dome's wall by the flow between parallel faces (12 mu ds / (w h^3), its width w taken as the
+circumference at half the arc). Batchelor, An Introduction to Fluid Dynamics (1967), sections 4.2 and 4.8.
+"""
+
+import math
+from dataclasses import dataclass
+
+from pneutouch.parts.mould.size import MouldSize
+
+GRAVITY = 9.80665
+"""m/s2."""
+
+SYRINGE_KPA = 100.0
+"""Pressure of a hand on a syringe of 10 mL, about 15 N on 1.5 cm2: own estimate."""
+
+
+@dataclass(frozen=True, slots=True)
+class MouldFilling:
+    """Times in s at a viscosity; ``pour_s`` by the weight of the silicone in funnel and window, ``syringe_s`` by hand.
+
+    ``bubble_s`` is the time in which a bubble as wide as a vent rises from the pole out of the mould.
+    """
+
+    pour_s: float
+    syringe_s: float
+    bubble_s: float
+
+
+def filling(size: MouldSize, viscosity_Pa_s: float, density_g_per_cm3: float) -> MouldFilling:
+    """Filling of one cavity. A bubble rises at rho g r^2 / (3 mu): Hadamard (1911), Rybczynski (1911), free surface."""
+    resistance = viscosity_Pa_s * (_channel(size) + _wall(size)) * 1e9
+    volume = size.faces.meridian.volume() * 1e-9
+    weight = density_g_per_cm3 * 1e3 * GRAVITY
+    head = weight * (size.foot + size.shape.wall) * 1e-3
+    rise = weight * (0.5e-3 * size.shape.vent_diameter) ** 2 / (3 * viscosity_Pa_s)
+    height = (size.faces.outer.radius - size.foot_low) * 1e-3
+    return MouldFilling(volume * resistance / head, volume * resistance / (SYRINGE_KPA * 1e3), height / rise)
+
+
+def _channel(size: MouldSize) -> float:
+    """The integral of 8 / (pi r^4) along the pour channel, funnel and neck, mm-3."""
+    gate = 0.5 * size.shape.sprue_diameter
+    half = 0.5 * size.foot
+    return sum(
+        8 * half / (3 * math.pi * (b - a)) * (a**-3 - b**-3) for a, b in ((size.neck, gate), (size.neck, size.mouth))
+    )
+
+
+def _wall(size: MouldSize) -> float:
+    """The same of the wall from the flange to the pole, mm-3."""
+    inner, outer = size.faces.inner.radius, size.faces.outer.radius
+    middle = 0.5 * (inner + outer)
+    length, width = 0.5 * math.pi * middle, 2 * math.pi * middle * math.sin(0.25 * math.pi)
+    return 12 * length / (width * (outer - inner) ** 3)

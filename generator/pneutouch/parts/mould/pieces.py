@@ -1,0 +1,199 @@
+"""The parts of a mould as exact solids: cap, ring, core and base; ring and core stand once for each cavity."""
+
+import math
+
+from pneutouch.body import Bore, Feature, Frame, Prism, Solid, Turned
+from pneutouch.meridian import Arc, Line, Meridian, Point, Segment
+from pneutouch.parts.mould.lay import CLIP_LEDGE
+from pneutouch.parts.mould.screws import SCREW
+from pneutouch.parts.mould.size import CORNER, FILLET, TAPER, MouldSize
+from pneutouch.parts.trace import TracedPath, trace
+from pneutouch.spec.material import Material
+
+ROLE = "mould"
+"""Role of every part of a mould."""
+
+LEDGE_HEIGHT = 6.0
+"""Height in mm of the ledges that clips hold: own choice."""
+
+_PAST = 1.0
+"""How far in mm a tool reaches past an open face, so that no two faces coincide."""
+
+_HANDLE_DEPTH = 8.0
+"""Depth in mm of the core's screw hole, by which it is drawn: own choice."""
+
+
+def mould_solids(size: MouldSize, material: Material) -> tuple[Solid, ...]:
+    """Cap, ring, core and base; ring and core of the first cavity."""
+    return cap(size, material), ring(size, material), core(size, material), base(size, material)
+
+
+def cap(size: MouldSize, material: Material) -> Solid:
+    """The plate that forms the outer wall and the flange's top, a pocket for each cavity."""
+    low, high = size.cap_low, size.cap_high
+    pocket, net = pocket_meridian(size, _PAST), pocket_meridian(size, 0.0).volume()
+    cuts = tuple(Feature(Turned(pocket, Frame((x, y, 0.0))), net) for x, y in size.places)
+    adds: tuple[Feature, ...] = ()
+    body = Prism(plate(size), low, high)
+    if size.shape.fastener == "clips":
+        body = Prism(plate(size, CLIP_LEDGE), low, low + LEDGE_HEIGHT)
+        block = Prism(plate(size), low, high)
+        adds = (Feature(block, block.area() * (high - low - LEDGE_HEIGHT)),)
+    depth = min(SCREW.depth, high - low - 1.0)
+    radius = 0.5 * (SCREW.core_diameter + size.shape.hole_undersize)
+    bores = tuple(Bore(x, y, radius, low, low + depth, closed="high") for x, y in screw_places(size))
+    return Solid("mould-cap", ROLE, material, body, bores, adds, cuts)
+
+
+def ring(size: MouldSize, material: Material) -> Solid:
+    """The ring that forms the flange's edge, from the cap's face to the core's foot."""
+    edge, low, clearance = size.faces.edge, size.low, size.shape.clearance
+    rounding = FILLET + clearance
+    corner = _corner(size.seat_radius - clearance, rounding)
+    wide = size.seat(low) - clearance
+    return Solid(
+        "mould-ring",
+        ROLE,
+        material,
+        Meridian(
+            (
+                Line(edge.start, (wide, low), "underside"),
+                Line((wide, low), corner.start, "cone"),
+                corner,
+                Line(corner.end, edge.end, "top"),
+                Line(edge.end, edge.start, "edge"),
+            )
+        ),
+    )
+
+
+def core(size: MouldSize, material: Material) -> Solid:
+    """The core that forms the inner wall, the rim inside the flange and, with its foot, the flange's underside."""
+    faces, low, bottom, clearance = size.faces, size.low, size.foot_low, size.shape.clearance
+    rim = faces.rim
+    outline: tuple[Segment, ...] = (
+        Line((0.0, bottom), (size.seat(bottom) - clearance, bottom), "foot underside"),
+        Line((size.seat(bottom) - clearance, bottom), (size.seat(low) - clearance, low), "cone"),
+        Line((size.seat(low) - clearance, low), rim.end, "foot"),
+        Line(rim.end, rim.start, "rim"),
+        Arc(faces.inner.centre, faces.inner.radius, faces.inner.last, faces.inner.first, "inner wall"),
+    )
+    return Solid("mould-core", ROLE, material, Meridian(outline), _handle(size), cuts=channels(size))
+
+
+def base(size: MouldSize, material: Material) -> Solid:
+    """The plate that presses the feet; silicone that runs over gathers in its windows."""
+    low, high = size.base_low, size.foot_low
+    ledge = CLIP_LEDGE if size.shape.fastener == "clips" else 0.0
+    radius = 0.5 * (SCREW.clearance_diameter + size.shape.hole_undersize)
+    windows = [Bore(x, y, size.window, low, high) for x, y in size.places]
+    screws = [Bore(x, y, radius, low, high) for x, y in screw_places(size)]
+    return Solid("mould-base", ROLE, material, Prism(plate(size, ledge), low, high), (*windows, *screws))
+
+
+def pocket_meridian(size: MouldSize, past: float) -> Meridian:
+    """What is cut from the cap for one cavity, from ``past`` mm below its face up."""
+    faces, low = size.faces, size.cap_low - past
+    corner = _corner(size.seat_radius, FILLET)
+    return Meridian(
+        (
+            Line((0.0, low), (size.seat(low), low), "mouth"),
+            Line((size.seat(low), low), corner.start, "cone"),
+            corner,
+            Line(corner.end, faces.top.end, "face"),
+            faces.outer,
+        )
+    )
+
+
+def channels(size: MouldSize) -> tuple[Feature, ...]:
+    """The pour channel with its funnel, and the vents, through the foot; they widen towards the cavity."""
+    first, *others = size.gate_angles
+    spread = [(sprue_meridian(size), first), *((vent_meridian(size), angle) for angle in others)]
+    nets = [sprue_meridian(size, 0.0).volume(), *[vent_meridian(size, 0.0).volume()] * len(others)]
+    radius = size.channel_radius
+    return tuple(
+        Feature(Turned(tool, Frame((radius * math.cos(angle), radius * math.sin(angle), 0.0))), net)
+        for (tool, angle), net in zip(spread, nets, strict=True)
+    )
+
+
+def vent_meridian(size: MouldSize, past: float = _PAST) -> Meridian:
+    """A vent about its axis."""
+    return _cones([_taper(size, 0.5 * size.shape.vent_diameter, size.foot_low - past), *_gate(size, past, "vent")])
+
+
+def sprue_meridian(size: MouldSize, past: float = _PAST) -> Meridian:
+    """The pour channel about its axis: a funnel of 45 degrees down to the neck, then up to the flange."""
+    funnel: list[Point] = [(size.mouth + past, size.foot_low - past), (size.neck, size.neck_height)]
+    return _cones([*funnel, *_gate(size, past, "sprue")])
+
+
+def _gate(size: MouldSize, past: float, which: str) -> list[Point]:
+    """Where a channel meets the cavity."""
+    radius = 0.5 * (size.shape.sprue_diameter if which == "sprue" else size.shape.vent_diameter)
+    return [_taper(size, radius, size.low + past)]
+
+
+def _taper(size: MouldSize, radius: float, z: float) -> Point:
+    """A point of a channel's wall that has ``radius`` at the flange and widens upwards by the draft."""
+    return radius + (z - size.low) * math.tan(size.shape.draft), z
+
+
+def _cones(points: list[Point]) -> Meridian:
+    """A solid of revolution through points of its wall, from below up."""
+    path: TracedPath = [("channel", point) for point in points]
+    return trace((0.0, points[0][1]), [*path, ("channel", (0.0, points[-1][1]))])
+
+
+def plug_meridian(size: MouldSize, which: str) -> Meridian:
+    """What fills a channel inside the foot: ``sprue`` or ``vent``, about its axis."""
+    return sprue_meridian(size, 0.0) if which == "sprue" else vent_meridian(size, 0.0)
+
+
+def screw_places(size: MouldSize) -> tuple[tuple[float, float], ...]:
+    """Where screws stand: between the cavities, at every corner of the plates and at every second place within."""
+    if size.shape.fastener != "screws":
+        return ()
+    columns, rows, half = size.columns, size.rows, 0.5 * size.pitch
+    corners = {(0, 0), (columns, 0), (0, rows), (columns, rows)}
+    return tuple(
+        (size.pitch * i - half, size.pitch * j - half)
+        for j in range(rows + 1)
+        for i in range(columns + 1)
+        if (i + j) % 2 == 0 or (i, j) in corners
+    )
+
+
+def plate(size: MouldSize, ledge: float = 0.0) -> tuple[Segment, ...]:
+    """The outline of cap and base: a rectangle with rounded corners, ``ledge`` mm wider at the ends of x."""
+    half = 0.5 * size.pitch + size.margin
+    low = (-half - ledge, -half)
+    high = (size.pitch * (size.columns - 1) + half + ledge, size.pitch * (size.rows - 1) + half)
+    return _rounded(low, high, CORNER)
+
+
+def _rounded(low: Point, high: Point, radius: float) -> tuple[Segment, ...]:
+    """A rectangle with round corners, counter-clockwise."""
+    (x0, y0), (x1, y1), right = low, high, 0.5 * math.pi
+    centres = [(x1 - radius, y0 + radius), (x1 - radius, y1 - radius), (x0 + radius, y1 - radius)]
+    centres.append((x0 + radius, y0 + radius))
+    arcs = [Arc(centre, radius, (k - 1) * right, k * right, "corner") for k, centre in enumerate(centres)]
+    pieces: list[Segment] = []
+    for k, arc in enumerate(arcs):
+        pieces += [arc, Line(arc.end, arcs[(k + 1) % 4].start, "side")]
+    return tuple(pieces)
+
+
+def _corner(radius: float, fillet: float) -> Arc:
+    """The arc between the face z = 0 and a cone that has ``radius`` there and opens downwards at `TAPER`."""
+    along = fillet / math.tan(0.5 * (0.5 * math.pi + TAPER))
+    return Arc((radius - along, -fillet), fillet, TAPER, 0.5 * math.pi, "fillet")
+
+
+def _handle(size: MouldSize) -> tuple[Bore, ...]:
+    """A blind hole in the foot for a screw by which the core is drawn; none where the core is too small for it."""
+    radius = 0.5 * (SCREW.core_diameter + size.shape.hole_undersize)
+    if size.faces.inner.radius < 3 * radius:
+        return ()
+    return (Bore(0.0, 0.0, radius, size.foot_low, size.foot_low + min(_HANDLE_DEPTH, size.foot), closed="high"),)

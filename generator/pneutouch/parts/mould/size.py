@@ -1,0 +1,174 @@
+"""Where everything of a mould lies: radii, heights and the places of its cavities. Lengths in mm.
+
+The frame is the design's, the first cavity's axis being z and the membrane's base plane z = 0. It is poured turned
+over, with the flange's underside up: air leaves there, and neither a vent nor a parting line meets the sensing face.
+
+    cap        ______________________
+              |      .-------.      |     outer wall and top of the flange
+              |    .' .-----. '.    |
+    z = 0     |___|__/       \\__|___|     parting line 1
+    ring      \\ ring |  core  | ring /     edge of the flange
+              /__________________\\        parting line 2: the core's foot forms the flange's underside
+    core     /_____|________|_____\\       the foot's cone centres the core in the cap
+    base     |______| window |______|     presses the foot; its window holds what runs over
+"""
+
+import math
+from dataclasses import dataclass
+
+from pneutouch.meridian import Arc, Line, Meridian, Point, Segment
+
+TAPER = math.radians(10.0)
+"""Slope of the cones that centre core and ring in the cap: own choice; above about 7 degrees a cone does not jam."""
+
+LAND = 2.5
+"""Least width in mm of the flat faces that close on the cavity: own choice."""
+
+FILLET = 1.0
+"""Radius in mm of the fillet at the bottom of the cap's seat: own choice."""
+
+PROUD = 0.3
+"""How far in mm the core's foot stands out of the cap, so that the base presses the foot: own choice."""
+
+SHOULDER = 2.5
+"""Width in mm on which the base presses the foot: own choice."""
+
+VENT_PITCH = 15.0
+"""Greatest distance in mm from vent to vent along the flange: own choice."""
+
+CORNER = 3.0
+"""Radius in mm of the plates' upright edges: own choice."""
+
+
+@dataclass(frozen=True, slots=True)
+class MouldShape:
+    """What a design states of its mould; lengths in mm, ``draft`` in rad, ``shrinkage`` a share of the length."""
+
+    cavities: int
+    wall: float
+    draft: float
+    fastener: str
+    vent_diameter: float
+    sprue_diameter: float
+    clearance: float
+    shrinkage: float
+    hole_undersize: float = 0.0
+
+    @property
+    def factor(self) -> float:
+        """Length of the mould over that of the cured membrane."""
+        return 1.0 / (1.0 - self.shrinkage)
+
+
+@dataclass(frozen=True, slots=True)
+class CavityFaces:
+    """The faces of the membrane that each part of the mould forms, as the meridian of the membrane orders them."""
+
+    inner: Arc
+    rim: Line
+    underside: Line
+    edge: Line
+    top: Line
+    outer: Arc
+
+    @staticmethod
+    def of(membrane: Meridian, factor: float) -> "CavityFaces":
+        """The faces of a membrane's meridian, every length times ``factor``."""
+        inner, rim, underside, edge, top, outer = (scaled(piece, factor) for piece in membrane.pieces)
+        assert isinstance(inner, Arc) and isinstance(outer, Arc)
+        assert isinstance(rim, Line) and isinstance(underside, Line) and isinstance(edge, Line)
+        assert isinstance(top, Line)
+        return CavityFaces(inner, rim, underside, edge, top, outer)
+
+    @property
+    def meridian(self) -> Meridian:
+        """The cavity: what the silicone fills."""
+        return Meridian((self.inner, self.rim, self.underside, self.edge, self.top, self.outer))
+
+
+def scaled(piece: Segment, factor: float) -> Segment:
+    """A piece of a meridian, every length times ``factor``, about the origin."""
+
+    def moved(point: Point) -> Point:
+        return factor * point[0], factor * point[1]
+
+    if isinstance(piece, Arc):
+        return Arc(moved(piece.centre), factor * piece.radius, piece.first, piece.last, piece.tag)
+    return Line(moved(piece.start), moved(piece.end), piece.tag)
+
+
+@dataclass(frozen=True, slots=True)
+class MouldSize:
+    """All lengths of a mould in mm; heights are z coordinates.
+
+    ``seat_radius`` is that of the cap's seat at z = 0; it opens downwards at `TAPER`. ``columns`` along x and ``rows``
+    along y are ``pitch`` apart, the first cavity at the origin. ``channel_radius`` is that of the circle of the vents.
+    """
+
+    shape: MouldShape
+    faces: CavityFaces
+    foot: float
+    seat_radius: float
+    channel_radius: float
+    gates: int
+    neck: float
+    mouth: float
+    window: float
+    pitch: float
+    columns: int
+    rows: int
+    margin: float
+
+    @property
+    def low(self) -> float:
+        """The flange's underside, where the core's foot begins."""
+        return self.faces.underside.start[1]
+
+    @property
+    def foot_low(self) -> float:
+        """Underside of the core's foot, where the base begins."""
+        return self.low - self.foot
+
+    @property
+    def cap_low(self) -> float:
+        """Lower face of the cap."""
+        return self.foot_low + PROUD
+
+    @property
+    def cap_high(self) -> float:
+        """Upper face of the cap."""
+        return self.faces.outer.radius + self.shape.wall
+
+    @property
+    def base_low(self) -> float:
+        """Lower face of the base."""
+        return self.foot_low - self.shape.wall
+
+    def seat(self, z: float) -> float:
+        """Radius of the cap's seat at a height."""
+        return self.seat_radius - z * math.tan(TAPER)
+
+    @property
+    def neck_height(self) -> float:
+        """Height of the pour channel's neck, where it is torn off; below it the funnel opens downwards."""
+        return self.low - 0.5 * self.foot
+
+    @property
+    def places(self) -> tuple[tuple[float, float], ...]:
+        """Axes of the cavities (x, y), row by row; the last row may be short."""
+        grid = [(self.pitch * i, self.pitch * j) for j in range(self.rows) for i in range(self.columns)]
+        return tuple(grid[: self.shape.cavities])
+
+    @property
+    def gate_angles(self) -> tuple[float, ...]:
+        """Angles in rad of the pour channel, the first, and of the vents around the axis."""
+        return tuple(2 * math.pi * k / self.gates for k in range(self.gates))
+
+    @property
+    def wall_error(self) -> float:
+        """Greatest change in mm of the wall at the rim where core and cap stand apart by all their clearance.
+
+        The core moves sideways by the clearance of its cone; the wall at polar angle t from the axis changes by the
+        clearance times sin t, most at the rim, and not at the pole.
+        """
+        return self.shape.clearance
