@@ -81,23 +81,22 @@ class Evaluation:
     @cached_property
     def findings(self) -> list[Finding]:
         """Findings of the print rules."""
-        from pneutouch.evaluation.subject import glued_seat, subject_of
-        from pneutouch.printability import SensorContext, check
+        from pneutouch.evaluation.findings import sensor_findings
+        from pneutouch.printability import SensorContext
 
         # What is printed is the wall as drawn, whatever wall a calibration gives the model.
         drawn = self.sensor.replace(wall_thickness=self.assembly.layout.wall)
         calibrated = self.scene.calibration is not None
-        seat, gauge = glued_seat(self.scene), self.scene.gauge
-        context = SensorContext(self.prediction, drawn, self.rating, calibrated=calibrated, gauge=gauge, glued=seat)
-        return check(subject_of(self.assembly), context)
+        context = SensorContext(self.prediction, drawn, self.rating, calibrated=calibrated, gauge=self.scene.gauge)
+        return sensor_findings(self.assembly, context)
 
     @cached_property
     def estimates(self) -> tuple[JobEstimate, ...]:
         """What each print job takes: resin, support, layers, time."""
-        from pneutouch.evaluation.subject import subject_of
+        from pneutouch.evaluation.subject import made_of
         from pneutouch.printability.estimate import estimate
 
-        return tuple(estimate(subject_of(self.assembly)))
+        return tuple(estimate(made_of(self.assembly)))
 
     def deep_findings(self) -> list[Finding]:
         """Findings of pymeshlab, an independent reader, on the meshes. Raises InputError where it is not installed."""

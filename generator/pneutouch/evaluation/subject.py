@@ -1,6 +1,7 @@
 """A sensor as the print rules look at it: its bodies on their machines, and where they must meet."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,8 +9,10 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts import Assembly
 from pneutouch.parts.glue import glue_of, glue_surfaces
+from pneutouch.printability.measure.mould import LEAVES
+from pneutouch.printability.mould import mould_subject
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
-from pneutouch.printability.view import GluedSeat
+from pneutouch.printability.view import GluedSeat, WettedSurface
 
 _HINTS = {
     "membrane": {
@@ -58,6 +61,24 @@ def glued_seat(scene: ResolvedDesign) -> GluedSeat | None:
     """The glue of the flange with the surfaces that it joins; None without one, or where the design leaves it open."""
     name, surfaces = glue_of(scene), glue_surfaces(scene)
     return None if name is None or surfaces is None else GluedSeat(name, *surfaces)
+
+
+def made_of(assembly: Assembly) -> PrintSubject:
+    """The bodies of a sensor and, where its membrane is cast, the parts of the mould, one of each."""
+    subject, mould = subject_of(assembly), assembly.mould
+    if mould is None:
+        return subject
+    printed = mould_subject(mould).items
+    return replace(subject, items=(*subject.items, *printed))
+
+
+def wetted(assembly: Assembly) -> tuple[WettedSurface, ...]:
+    """The parts of a mould that a cast membrane cures against; none of a printed one."""
+    mould = assembly.mould
+    if mould is None:
+        return ()
+    label, process = mould.material.label, mould.printer.process
+    return tuple(WettedSurface(solid.name, label, process) for solid in mould.solids if solid.name in LEAVES)
 
 
 def _outer_wall(assembly: Assembly) -> Callable[[Array], Flags]:

@@ -13,6 +13,7 @@ from pneutouch.parts.connector import rigid_solids
 from pneutouch.parts.gas import glue_volume, internal_volume
 from pneutouch.parts.layout import Layout, lay_out
 from pneutouch.parts.membrane import INNER_WALL, membrane_meridian
+from pneutouch.parts.mould import MouldAssembly, mould_of
 from pneutouch.parts.seat import SEAT
 from pneutouch.parts.space import check_space
 from pneutouch.spec.part import ClampedFlange, OnePiece
@@ -38,6 +39,11 @@ class Assembly:
     def bodies(self) -> tuple[Body, ...]:
         """Print meshes within the scene's tolerance, in the design frame."""
         return tuple(solid.mesh(self.scene.mesh_tolerance) for solid in self.solids)
+
+    @cached_property
+    def mould(self) -> MouldAssembly | None:
+        """The mould of a cast membrane, None of a printed one. Raises InputError where a detail has no space."""
+        return None if self.scene.mould_printer is None else mould_of(self.scene, self.layout)
 
     def solid(self, name: str) -> Solid:
         """The solid of a name: membrane, connector, ring or plug."""

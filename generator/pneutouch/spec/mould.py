@@ -34,7 +34,7 @@ class Mould(Table):
     vent_diameter_mm: float = number(
         1.5, unit="mm", low=0.5, high=10, help="Vents at the flange's underside, the highest place as poured."
     )
-    sprue_diameter_mm: float = number(2.0, unit="mm", low=0.5, high=20, help="Pour channel where it meets the flange.")
+    sprue_diameter_mm: float = number(1.8, unit="mm", low=0.5, high=20, help="Pour channel where it meets the flange.")
     clearance_mm: float = number(
         0.1, unit="mm", low=0.05, high=1, help="Clearance per side of the cones that centre core and cap."
     )

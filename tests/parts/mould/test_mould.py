@@ -122,7 +122,7 @@ def test_parts_against_formulas_of_their_own():
 def test_an_undercut_and_an_overlap_are_seen():
     made = mould()
     size, edge = made.size, made.size.faces.edge
-    # A ring whose edge leans the other way holds the flange back.
+    # A ring whose edge leans to the other side holds the flange back.
     wide, narrow = edge.start[0], edge.end[0]
     lean = replace(
         size.faces,

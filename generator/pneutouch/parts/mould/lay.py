@@ -7,7 +7,7 @@ from pneutouch.parts.mould.screws import SCREW
 from pneutouch.parts.mould.size import FILLET, LAND, SHOULDER, TAPER, VENT_PITCH, CavityFaces, MouldShape, MouldSize
 
 LEAST_GATES = 4
-"""Fewest pour channels and vents together: one pour channel, a vent across and one at each side."""
+"""Fewest pour channels and vents together: one pour channel, a vent across and one at each side; always even."""
 
 _RIM = 0.5
 """Space in mm between a channel and the edge of the window: own choice."""
@@ -39,7 +39,7 @@ def lay_out_mould(membrane: Meridian, shape: MouldShape) -> MouldSize:
         foot=foot,
         seat_radius=seat,
         channel_radius=middle,
-        gates=max(LEAST_GATES, math.ceil(2 * math.pi * middle / VENT_PITCH)),
+        gates=max(LEAST_GATES, 2 * math.ceil(math.pi * middle / VENT_PITCH)),
         neck=neck,
         mouth=mouth,
         window=window,

@@ -83,23 +83,23 @@ def cavity_match(size: MouldSize, closed: Sequence[Body], tolerance: float) -> C
     reach, low, high = size.faces.edge.start[0] + _REACH, size.low - 1e-3, size.faces.outer.radius + 1e-3
     window = Manifold.cylinder(high - low, reach, reach, _SIDES).translate((0.0, 0.0, low))
     void = window - whole
-    wanted = _manifold(Turned(size.faces.meridian), tolerance)
+    membrane = _manifold(Turned(size.faces.meridian), tolerance)
     return CavityMatch(
         void=float(void.volume()),
-        membrane=float(wanted.volume()),
-        missing=float((wanted - void).volume()),
-        extra=float((void - wanted).volume()),
-        area=float(wanted.surface_area()),
+        membrane=float(membrane.volume()),
+        missing=float((membrane - void).volume()),
+        extra=float((void - membrane).volume()),
+        area=float(membrane.surface_area()),
     )
 
 
 def undercuts(size: MouldSize, bodies: Sequence[Body], tolerance: float) -> list[UndercutPlace]:
-    """Places where a part of the first cavity holds the silicone back, found by rays along the draw.
+    """Places where a part of the first cavity holds the silicone back, places by rays along the draw.
 
-    A ray starts ``tolerance`` mm off each point of the faces that form the silicone and runs the way that the silicone
+    A ray starts ``tolerance`` mm off each point of the faces that form the silicone and runs as the silicone
     leaves the part; what meets the part again is an undercut.
     """
-    found: list[UndercutPlace] = []
+    places: list[UndercutPlace] = []
     for body in bodies:
         if body.name not in LEAVES:
             continue
@@ -109,8 +109,8 @@ def undercuts(size: MouldSize, bodies: Sequence[Body], tolerance: float) -> list
             along = -direction if back else direction
             if solid.ray_cast(tuple(start), tuple(start + length * along)):
                 x, y, z = (float(value) for value in point)
-                found.append(UndercutPlace(body.name, (x, y, z)))
-    return found
+                places.append(UndercutPlace(body.name, (x, y, z)))
+    return places
 
 
 def _starts(size: MouldSize, body: Body, tolerance: float) -> list[tuple[Array, Array, bool]]:

@@ -25,6 +25,7 @@ from pneutouch.report.pressed import pressed_files
 from pneutouch.report.print_sheet import print_sheet
 from pneutouch.report.shown import shown
 from pneutouch.units import ML
+from pneutouch.workflows.build.mould import mould_files, mould_record
 
 StepReport = Callable[[str], None]
 
@@ -59,6 +60,9 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
     progress("STEP")
     exact, left_out = step_files(scene.name, assembly.solids, assembly.print_offset)
     files |= exact
+    if assembly.mould is not None:
+        made, absent = mould_files(assembly.mould)
+        files, left_out = files | made, left_out | absent
     progress("datasheet")
     sheet = sheet_data(evaluation, input_hash(evaluation))
     files |= datasheet(sheet)
@@ -67,6 +71,8 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
     files["print-sheet.md"] = print_sheet(sheet, left_out).encode()
     progress("files")
     about = {**_measured(evaluation, bodies), **({"left_out": left_out} if left_out else {})}
+    if assembly.mould is not None:
+        about["mould"] = mould_record(assembly.mould)
     write_folder(folder, with_manifest(files, scene.name, inputs(evaluation), **about))
     return folder
 

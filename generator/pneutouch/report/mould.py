@@ -1,0 +1,87 @@
+"""The closed mould as a drawing: the section through the axis of one cavity, as it is poured, with labels."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pneutouch.body import Solid
+from pneutouch.body.outline import section_outline
+from pneutouch.parts.mould import MouldAssembly
+from pneutouch.parts.mould.lay import lay_out_mould
+from pneutouch.parts.mould.pieces import mould_solids
+from pneutouch.parts.mould.size import MouldSize
+from pneutouch.report.dimension import CENTRE, THIN, leader
+from pneutouch.report.style import INK, MUTED, figure, svg
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_TOLERANCE = 5e-3
+_THICK = 0.9
+_WIDE, _HIGH = 150.0, 72.0
+"""Size of the drawing in mm."""
+
+_HATCHES = {"mould-cap": "////////", "mould-ring": "----", "mould-core": "\\\\\\\\", "mould-base": "||||"}
+_SILICONE = "0.78"
+"""Gray of the silicone: every part is hatched, it is not."""
+
+
+def mould_section(mould: MouldAssembly) -> str:
+    """One cavity of the closed mould in section, turned over as it is poured, as SVG."""
+    size = lay_out_mould(mould.membrane, replace(mould.size.shape, cavities=1))
+    with figure(_WIDE, _HIGH) as drawn:
+        ax = drawn.add_subplot()
+        silicone = Solid("silicone", "membrane", mould.material, size.faces.meridian)
+        for solid in (*mould_solids(size, mould.material), silicone):
+            _fill(ax, solid)
+        _labels(ax, size)
+        ax.set_aspect("equal")
+        ax.axis("off")
+        return svg(drawn)
+
+
+def _fill(ax: Axes, solid: Solid) -> None:
+    """The section of a part, turned over: the drawing's heights are -z."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    loops = [loop * np.array([1.0, -1.0]) for loop in section_outline(solid, _TOLERANCE)]
+    shape = Path.make_compound_path(*(Path(np.vstack([loop, loop[:1]]), closed=True) for loop in loops))
+    hatch = _HATCHES.get(solid.name)
+    if hatch is None:
+        ax.add_patch(PathPatch(shape, facecolor=_SILICONE, edgecolor="none"))
+    else:
+        ax.add_patch(PathPatch(shape, facecolor="white", edgecolor=MUTED, hatch=hatch, lw=0))
+    ax.add_patch(PathPatch(shape, facecolor="none", edgecolor=INK, lw=_THICK, joinstyle="miter"))
+
+
+def _labels(ax: Axes, size: MouldSize) -> None:
+    """Names of the parts and of what the silicone passes, from above down on either side."""
+    shape, wide = size.shape, 0.5 * size.pitch + size.margin
+    low, high, foot = -size.cap_high, -size.base_low, -size.foot_low
+    step, outer = (high - low) / 6, size.seat(size.foot_low)
+    edge, dome = 0.5 * (size.faces.edge.start[0] + size.seat_radius), size.faces.outer.radius
+    wall = 0.5 * (size.faces.inner.radius + dome)
+    right = [
+        (f"pour channel Ø{shape.sprue_diameter:g}, with funnel", (size.channel_radius, foot - 0.1 * size.foot)),
+        (f"base, {shape.wall:g} thick", (0.5 * (size.window + outer), foot + 0.5 * shape.wall)),
+        ("cone that centres core and cap", (outer - 0.5, 0.5 * (foot - size.low))),
+        ("ring", (edge, -0.5 * size.low)),
+        ("parting line, at the flange", (size.faces.edge.end[0], 0.0)),
+        ("cap", (0.85 * wide, 0.6 * low)),
+    ]
+    left = [
+        ("window: silicone runs over here", (-0.6 * size.window, foot + 0.3 * shape.wall)),
+        (f"vents Ø{shape.vent_diameter:g}, {size.gates - 1} of them", (-size.channel_radius, foot - 0.2 * size.foot)),
+        ("core with its foot", (-0.6 * size.faces.inner.radius, 0.1 * low)),
+        ("silicone", (-0.7071 * wall, -0.7071 * wall)),
+    ]
+    for notes, x, side in ((right, 1.2 * wide, "left"), (left, -1.2 * wide, "right")):
+        for k, (text, at) in enumerate(notes):
+            leader(ax, at, (x, high + (0.5 - 1.1 * k) * step), text, side)
+    ax.plot([0, 0], [low - 0.4 * step, high + 0.4 * step], color=MUTED, lw=THIN, ls=CENTRE)
+    ax.set_xlim(-2.5 * wide, 2.5 * wide)
+    ax.set_ylim(low - 0.6 * step, high + step)
