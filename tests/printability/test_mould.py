@@ -62,7 +62,7 @@ def test_a_core_turned_into_an_undercut_is_an_error():
 def test_filling_is_judged_by_viscosity_and_pot_life():
     (note,) = findings("mould filling")
     assert note.severity == "note" and "syringe" in note.message
-    assert findings("mould filling", "mould.sprue_diameter_mm=3.2") == []
+    assert findings("mould filling", "mould.sprue_diameter_mm=3.5") == []
     (many,) = findings("mould filling", "mould.cavities=16", "mould.sprue_diameter_mm=0.8")
     assert many.severity == "warning" and "sprue_diameter_mm" in many.fix
 

@@ -2,16 +2,16 @@
 
 from pneutouch.evaluation.sheet_data import SiliconePour
 from pneutouch.parts import Assembly
-from pneutouch.units import ML, grams
+from pneutouch.parts.mould import silicone_batch
 
 
 def silicone_pour(assembly: Assembly) -> SiliconePour | None:
-    """The batch for one membrane; None where it is not cast."""
-    solid = assembly.solid("membrane")
-    casting = solid.material.casting
-    if casting is None or not assembly.scene.printer.is_casting:
+    """The batch that fills the mould once; None where the membrane is not cast."""
+    if assembly.mould is None:
         return None
-    volume_mL = solid.volume / ML
-    mass_g = grams(solid.volume, solid.material.density_g_per_cm3.nominal)
-    note = f"the membrane alone takes {volume_mL:.2f} mL; add what stays in sprue, vents and cup"
-    return SiliconePour(volume_mL, mass_g, tuple(casting.masses_g(mass_g)), note)
+    batch = silicone_batch(assembly.mould)
+    note = (
+        f"{batch.volume_mL:.1f} mL, {batch.cavities} x (cavity {batch.cavity_mL:.2f} + channels "
+        f"{batch.channels_mL:.2f} + overflow {batch.overflow_mL:.2f} mL) and {batch.loss_mL:.1f} mL left in the cup"
+    )
+    return SiliconePour(batch.volume_mL, batch.mass_g, batch.parts_g, note)

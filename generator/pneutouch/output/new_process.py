@@ -39,7 +39,7 @@ def process_values(process: str | None, material: str | None, library: Library) 
     profile, chosen = next(iter(runs.items()))
     values: dict[str, dict[str, Any]] = {"membrane": {"material": chosen}, "print": {"profile": profile}}
     if printers[profile].is_casting:
-        values["connector"] = {"seat": _CAST_SEAT}
+        values |= {"connector": {"seat": _CAST_SEAT}, "mould": {}}
     pressures_kPa = _pressures_kPa(library.load("materials", chosen), default)
     if pressures_kPa is not None:
         values["pneumatics"] = {"driving_pressures_kPa": pressures_kPa}

@@ -10,6 +10,8 @@ from pneutouch.report.anywhere import contact_figures
 from pneutouch.report.certainty import ends, shares
 from pneutouch.report.drawing import section_drawing
 from pneutouch.report.graded_sheet import CAPTIONS, graded_figures
+from pneutouch.report.mould import CAPTION as MOULD_CAPTION
+from pneutouch.report.mould import mould_rows, mould_section
 from pneutouch.report.picture import picture
 from pneutouch.report.pressed import caption, pressed_figure
 from pneutouch.report.shares import share_bars
@@ -41,6 +43,10 @@ def datasheet(sheet: SheetData) -> dict[str, bytes]:
         images["pressed.png"] = drawn.image
         more |= {"pressed_view": drawn.data, "pressed_picture": _base64(drawn.image)}
         content["captions"]["pressed"] = caption(sheet.pressed)
+    mould = sheet.assembly.mould
+    content["mould"] = [] if mould is None else mould_rows(mould)
+    if mould is not None:
+        figures["mould"], content["captions"]["mould"] = mould_section(mould), MOULD_CAPTION
     content["figures"] = sorted(figures)
     return {
         "datasheet.html": pages.html("datasheet.html.j2", content, figures, **more).encode(),

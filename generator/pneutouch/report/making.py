@@ -51,12 +51,14 @@ def casting_steps(scene: ResolvedDesign, pour: SiliconePour) -> list[str]:
     ratio = ":".join(f"{part:g}" for part in casting.parts_by_mass)
     pot, cure = casting.pot_life_min.text(), casting.cure_h.text()
     return [
-        f"Mould: clean and dry. {casting.release[0].upper()}{casting.release[1:]}, on every face that the silicone "
+        "Mould: print its parts; they lie in their files as they are printed. Drill what came out narrow, clean, dry. "
+        f"{casting.release[0].upper()}{casting.release[1:]}, on every face that the silicone "
         f"touches. These stop its cure: {', '.join(casting.inhibited_by)}; wear nitrile gloves, not latex.",
         f"Weigh {masses} of {silicone.title} into one cup, {ratio} by mass, {pour.mass_g:.1f} g together: {pour.note}.",
         f"Mix 3 min and scrape sides and bottom. Degas under vacuum until the froth has fallen, about 5 min. From the "
         f"start of mixing it flows for {pot} min at room temperature.",
-        "Close the mould. Pour in a thin stream, or inject with a syringe, at one place, until silicone without "
+        "Close the mould: ring into the cap, core on the ring, base on the core's foot; fasten it and lay it "
+        "with the base up. Pour in a thin stream, or inject with a syringe, at one place, until silicone without "
         "bubbles stands in every vent.",
         f"Cure for {cure} h at room temperature, vents up; a cup with the rest of the batch shows whether it is cured.",
         "Demould: open the mould, peel the flange off all round, then roll the dome off the core. Cut sprue and vents "

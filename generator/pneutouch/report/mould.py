@@ -9,20 +9,22 @@ import numpy as np
 
 from pneutouch.body import Solid
 from pneutouch.body.outline import section_outline
-from pneutouch.parts.mould import MouldAssembly
+from pneutouch.parts.mould import MouldAssembly, silicone_batch
 from pneutouch.parts.mould.lay import lay_out_mould
-from pneutouch.parts.mould.pieces import mould_solids
-from pneutouch.parts.mould.size import MouldSize
+from pneutouch.parts.mould.pieces import LEDGE_HEIGHT, mould_solids, screw_places
+from pneutouch.parts.mould.release import release_of
+from pneutouch.parts.mould.screws import SCREW
+from pneutouch.parts.mould.size import PROUD, MouldSize
 from pneutouch.report.dimension import CENTRE, THIN, leader
-from pneutouch.report.style import INK, MUTED, figure, svg
+from pneutouch.report.style import INK, MM, MUTED, figure, svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _TOLERANCE = 5e-3
 _THICK = 0.9
-_WIDE, _HIGH = 150.0, 72.0
-"""Size of the drawing in mm."""
+_WIDE = 150.0
+"""Width of the drawing in mm; it is as high as the section needs."""
 
 _HATCHES = {"mould-cap": "////////", "mould-ring": "----", "mould-core": "\\\\\\\\", "mould-base": "||||"}
 _SILICONE = "0.78"
@@ -32,7 +34,7 @@ _SILICONE = "0.78"
 def mould_section(mould: MouldAssembly) -> str:
     """One cavity of the closed mould in section, turned over as it is poured, as SVG."""
     size = lay_out_mould(mould.membrane, replace(mould.size.shape, cavities=1))
-    with figure(_WIDE, _HIGH) as drawn:
+    with figure(_WIDE, _WIDE) as drawn:
         ax = drawn.add_subplot()
         silicone = Solid("silicone", "membrane", mould.material, size.faces.meridian)
         for solid in (*mould_solids(size, mould.material), silicone):
@@ -40,7 +42,40 @@ def mould_section(mould: MouldAssembly) -> str:
         _labels(ax, size)
         ax.set_aspect("equal")
         ax.axis("off")
+        drawn.set_figheight(_WIDE * float(np.ptp(ax.get_ylim()) / np.ptp(ax.get_xlim())) * MM)
         return svg(drawn)
+
+
+CAPTION = (
+    "The closed mould in section, turned over as it is poured: air leaves at the flange's underside, and parting lines "
+    "meet the flange alone. Lengths in mm; own design, untested."
+)
+
+
+def mould_rows(mould: MouldAssembly) -> list[list[str]]:
+    """What the mould is and takes, as rows of name and text."""
+    size, shape, batch = mould.size, mould.size.shape, silicone_batch(mould)
+    release = release_of(mould.membrane, size)
+    parts = ", ".join(f"{count} x {name.removeprefix('mould-')}" for name, count in mould.counts.items())
+    masses = " + ".join(f"{part:.1f} g" for part in batch.parts_g)
+    broken = mould.scene.membrane_material.elongation_at_break_percent
+    limit = "not known" if broken is None else f"{broken.text()} %"
+    return [
+        ["Parts", f"{parts}; {mould.material.label} on the {mould.printer.title}, {mould.mode.label}"],
+        ["Scale", f"{shape.factor:.5f}, for a linear shrinkage of {100 * shape.shrinkage:.3g} %"],
+        ["Wall", f"±{size.wall_error:.2f} mm at the rim by the clearance of the cones, none at the pole"],
+        ["Silicone to mix", f"{batch.volume_mL:.1f} mL, {batch.mass_g:.1f} g ({masses}), loss included"],
+        ["Leaving the core", f"strain of {100 * release.strain:.0f} %; elongation at break {limit}"],
+        ["Closed by", _fastening(mould)],
+    ]
+
+
+def _fastening(mould: MouldAssembly) -> str:
+    size = mould.size
+    if size.shape.fastener == "clips":
+        return f"spring clips on the ledges at both ends, opening {size.shape.wall + PROUD + LEDGE_HEIGHT:.1f} mm"
+    length = size.shape.wall + PROUD + SCREW.depth - 1.0
+    return f"{len(screw_places(size))} screws {SCREW.name}, at most {length:.0f} mm long, cut into the plastic"
 
 
 def _fill(ax: Axes, solid: Solid) -> None:

@@ -6,6 +6,7 @@ from pneutouch.body import Body
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.report.making import making
+from pneutouch.report.mould import mould_rows
 from pneutouch.report.ordering import part_number
 from pneutouch.units import ML
 from pneutouch.wording import counted
@@ -45,7 +46,7 @@ the names: **choose the resin of each body by hand**.
 {missing}Chord tolerance {1e3 * scene.mesh_tolerance:g} µm, the finest step of the machines; greatest measured \
 distance between mesh and exact surface {1e3 * deviation:.1f} µm.
 
-{_calibrated(scene)}## Steps
+{_calibrated(scene)}{_mould(sheet)}## Steps
 
 {steps}
 
@@ -69,6 +70,23 @@ def _calibrated(scene: ResolvedDesign) -> str:
         f"{_escaped(source.sensor)} as it was measured ({_escaped(source.campaign or 'unnamed campaign')}). The bodies "
         "are those of the design as drawn; a sensor printed again is another specimen and has to be calibrated itself."
         "\n\n"
+    )
+
+
+def _mould(sheet: SheetData) -> str:
+    """The parts of the mould of a cast membrane, and what there is to state of it."""
+    mould = sheet.assembly.mould
+    if mould is None:
+        return ""
+    rows = [
+        f"| {body.name} | {mould.counts[body.name]} | mould/{body.name}.stl | {_size(body)} | {solid.mass:.1f} g |"
+        for body, solid in zip(mould.printed, mould.solids, strict=True)
+    ]
+    table = "\n".join(["| part | number | file | size, mm | mass each |", "|---|---|---|---|---|", *rows])
+    facts = "\n".join(f"- {name}: {text}." for name, text in mould_rows(mould))
+    return (
+        "## Mould\n\nThe files lie as they are printed; the 3MF in `mould/` holds all parts on build plates.\n\n"
+        f"{table}\n\n{facts}\n\n"
     )
 
 

@@ -19,9 +19,9 @@ CONTENTS: tuple[tuple[tuple[str, ...], str], ...] = (
         "the pressed dome in three dimensions, with the contact pressure on it (models `solid` and `harmonic`)",
     ),
     (
-        ("mould/*.stl", "mould/*.3mf", "mould/*.step", "mould/*.glb", "mould/*.svg"),
-        "the mould of a cast membrane: each part as it is printed, all on build plates, closed for CAD, apart for "
-        "viewers, and in section",
+        ("mould/*",),
+        "of a cast design: its mould, each part as it is printed, all on build plates, closed for CAD, apart for "
+        "viewers, in section",
     ),
     (("prediction.json",), "every figure and curve, with units in the names"),
     (("print-sheet.md",), "which body takes which resin, orientation, cleaning, fits"),

@@ -58,6 +58,7 @@ def inputs(ordered: CouponOrder) -> dict[str, Any]:
                 "copies": item.copies,
                 "printer": item.printer_name,
                 "material": item.material.model_dump(mode="json"),
+                **({} if item.mould is None else {"mould": item.mould.model_dump(mode="json")}),
             }
             for item in ordered.items
         ],
@@ -88,7 +89,7 @@ def _coupons(trays: Mapping[str, tuple[CouponPiece, ...]]) -> list[dict[str, Any
         {
             "coupon": piece.item.coupon.name,
             "piece": piece.body.name,
-            "material": piece.item.material.title,
+            "material": piece.solid.material.title,
             "printer": name,
             "copies": len(piece.places),
             "places_mm": [list(place) for place in piece.places],

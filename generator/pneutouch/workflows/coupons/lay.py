@@ -42,7 +42,7 @@ def lay(printer_name: str, items: tuple[CouponItem, ...]) -> tuple[CouponPiece, 
     """The pieces of one machine with their places. Raises InputError for what does not fit, or not in one job."""
     printer = items[0].printer
     mode = job_mode(printer_name, items)
-    pieces = [_piece(item, solid, printer, mode) for item in items for solid in item.coupon.draw(item.context)]
+    pieces = [_piece(item, solid, printer, mode) for item in items for solid in item.solids()]
     envelope = printer.envelope
     # The deepest first, so that a row wastes little; equal ones stay in the order of the sheet.
     order = [
@@ -66,7 +66,7 @@ def lay(printer_name: str, items: tuple[CouponItem, ...]) -> tuple[CouponPiece, 
 def job_mode(printer_name: str, items: tuple[CouponItem, ...]) -> Mode:
     """The mode that prints everything in one job. Raises InputError where there is none."""
     printer = items[0].printer
-    mode = printer.mode_for(*(item.material for item in items))
+    mode = printer.mode_for(*(item.printed for item in items))
     if mode is None:
         names = ", ".join(dict.fromkeys(item.about for item in items))
         raise InputError(

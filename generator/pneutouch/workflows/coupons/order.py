@@ -3,11 +3,14 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from pneutouch.body import Solid
 from pneutouch.catalogue import Library, ResolvedDesign, load_scene
 from pneutouch.errors import InputError, nearest
 from pneutouch.parts.coupons import COUPONS, Coupon, CouponContext, Nominal
+from pneutouch.parts.mould.open_mould import open_mould
 from pneutouch.spec.design import Membrane, Print
 from pneutouch.spec.material import Material
+from pneutouch.spec.mould import Mould
 from pneutouch.spec.printer import Printer
 from pneutouch.workflows.coupons.blends import CouponMix, blends
 
@@ -36,7 +39,8 @@ class CouponOptions:
 class CouponItem:
     """One coupon to print: ``about`` is the material or design that the results file files it under.
 
-    ``blend`` is given where it is of two resins in a known fraction, and then states where it is filed.
+    ``blend`` is given where it is of two resins in a known fraction, and then states where it is filed. ``mould`` is
+    the material of the mould of one that is cast; ``printer`` then is that of the mould.
     """
 
     coupon: Coupon
@@ -46,11 +50,25 @@ class CouponItem:
     context: CouponContext
     copies: int
     blend: CouponMix | None = None
+    mould: Material | None = None
 
     @property
     def material(self) -> Material:
-        """What it is printed in."""
+        """What it is of."""
         return self.context.material
+
+    @property
+    def printed(self) -> Material:
+        """What is printed: the coupon's material, or that of the mould that it is cast in."""
+        return self.mould or self.material
+
+    def solids(self) -> tuple[Solid, ...]:
+        """What is printed: the coupon, or the open mould that it is cast in."""
+        drawn, casting = self.coupon.draw(self.context), self.material.casting
+        if self.mould is None or casting is None:
+            return drawn
+        factor = 1.0 / (1.0 - 0.01 * casting.shrinkage_percent.nominal)
+        return tuple(open_mould(solid, self.mould, factor) for solid in drawn)
 
     @property
     def nominals(self) -> tuple[Nominal, ...]:
@@ -92,6 +110,9 @@ def order(options: CouponOptions, library: Library | None = None) -> CouponOrder
                 value=name,
                 remedy=f"it runs {', '.join(printer.resins)}",
             )
+        if printer.is_casting:
+            items += _cast(options, name, CouponContext(material, scene), families, library)
+            continue
         items += [
             CouponItem(coupon, name, profile, printer, CouponContext(material, scene), _copies(options, coupon))
             for coupon in families
@@ -104,6 +125,20 @@ def order(options: CouponOptions, library: Library | None = None) -> CouponOrder
     pairs = dict.fromkeys(item.blend.pair for item in items if item.blend is not None)
     names = ["coupons", profile, *([scene.name] if scene else []), *pairs]
     return CouponOrder("-".join(names), profile, scene, tuple(items))
+
+
+def _cast(
+    options: CouponOptions, about: str, context: CouponContext, families: list[Coupon], library: Library
+) -> list[CouponItem]:
+    """Moulds of the coupons of a material that is cast, on the printer that the design names for moulds."""
+    chosen = Mould() if context.scene is None else context.scene.design.mould
+    printer: Printer = library.load("printers", chosen.profile, key="mould.profile")
+    mould: Material = library.load("materials", chosen.material, key="mould.material")
+    return [
+        CouponItem(coupon, about, chosen.profile, printer, context, _copies(options, coupon), mould=mould)
+        for coupon in families
+        if coupon.belongs == "material" and context.material.kind in coupon.kinds
+    ]
 
 
 def _families(options: CouponOptions) -> list[Coupon]:

@@ -9,6 +9,11 @@ from pneutouch.workflows.coupons.order import CouponItem, CouponOrder
 _CELLS = 5
 """Readings on one line."""
 
+CAST_EXCESS = 1.3
+"""Silicone mixed over that of the coupons: what is struck off and what stays in the cup; own choice."""
+
+_CAST = "Cast as stated above. Clean, dry, and wait 24 h after the cure; note the age."
+
 _MIXES = (
     "Mixed pieces are composites of two base resins in the 3MF, in volume fractions. No catalogue material has a known "
     "fraction: do not choose one in their place. Where the machine's program takes no composites, print them droplet "
@@ -41,7 +46,7 @@ def _printing(name: str, pieces: tuple[CouponPiece, ...], order: CouponOrder) ->
     printer = pieces[0].item.printer
     mode = job_mode(name, tuple(piece.item for piece in pieces))
     rows = [
-        f"| {piece.body.name} | {len(piece.places)} | stl/{stl_name(piece, order)} | {piece.item.material.label} | "
+        f"| {piece.body.name} | {len(piece.places)} | stl/{stl_name(piece, order)} | {piece.solid.material.label} | "
         f"{' x '.join(f'{length:.1f}' for length in piece.size)} | {piece.solid.mass:.2f} g | {_places(piece)} |"
         for piece in pieces
     ]
@@ -55,8 +60,27 @@ def _printing(name: str, pieces: tuple[CouponPiece, ...], order: CouponOrder) ->
         "differ by their place on the tray alone, so bag and label them as they come off.",
         "\n".join([head, "|---|---|---|---|---|---|---|", *rows]),
         *mixes,
+        *_casting([piece.item for piece in pieces if piece.item.mould is not None]),
         f"Support: {printer.support}. Do not turn the pieces.",
     ]
+
+
+def _casting(items: list[CouponItem]) -> list[str]:
+    """How the coupons are cast in the moulds that are printed, and what to weigh."""
+    if not items:
+        return []
+    lines = ["The pieces above are open moulds; cast the coupons in them before you measure:"]
+    for item in items:
+        casting = item.material.casting
+        assert casting is not None
+        mass_g = CAST_EXCESS * item.copies * sum(solid.mass for solid in item.coupon.draw(item.context))
+        parts = " + ".join(f"{part:.1f} g" for part in casting.masses_g(mass_g))
+        lines.append(
+            f"- {item.coupon.title}, {item.about}: mix {mass_g:.1f} g ({parts}) for {item.copies}, degas, pour until "
+            "it stands above the top, strike it off along the top with a straight edge, cure "
+            f"{casting.cure_h.text()} h, peel it out. Release: {casting.release}."
+        )
+    return ["\n".join(lines)]
 
 
 def stl_name(piece: CouponPiece, order: CouponOrder) -> str:
@@ -73,7 +97,9 @@ def _places(piece: CouponPiece) -> str:
 
 
 def _measuring(coupon: Coupon, items: list[CouponItem]) -> list[str]:
-    steps = "\n".join(f"{k}. {step}" for k, step in enumerate(coupon.steps, start=1))
+    # The first step of a coupon is how it is printed.
+    listed = (_CAST, *coupon.steps[1:]) if items[0].mould is not None else coupon.steps
+    steps = "\n".join(f"{k}. {step}" for k, step in enumerate(listed, start=1))
     parts = [f"### {coupon.title[0].upper()}{coupon.title[1:]}", steps]
     for item in items:
         on = f" on {item.printer_name}" if coupon.belongs == "printer" else ""
