@@ -65,12 +65,15 @@ def _mark_limits(ax: Axes, prediction: SensorPrediction) -> None:
         ax.axhline(gauge_kPa, color=MUTED, lw=0.8, ls=LINES[4])
         middle = float(np.median(curve.apex_inner))
         note(ax, f"gauge range {gauge_kPa:g} kPa", (middle, gauge_kPa), color=MUTED)
-    ruptured = prediction.limits.break_strain
-    if ruptured is not None:
-        rising = slice(0, int(np.argmax(p)) + 1)
-        height = float(np.interp(ruptured / KPA, p[rising], curve.apex_inner[rising]))
-        ax.plot(height, ruptured / KPA, "X", color=INK, ms=5)
-        note(ax, "break strain", (height, ruptured / KPA), (0, -1))
+    rising = slice(0, int(np.argmax(p)) + 1)
+    for name, pressure, marker in (
+        ("break strain", prediction.limits.break_strain, "X"),
+        ("law range", prediction.limits.law_range, "D"),
+    ):
+        if pressure is not None:
+            height = float(np.interp(pressure / KPA, p[rising], curve.apex_inner[rising]))
+            ax.plot(height, pressure / KPA, marker, color=INK, ms=5)
+            note(ax, name, (height, pressure / KPA), (0, -1))
 
 
 def shapes(prediction: SensorPrediction) -> list[str]:

@@ -120,16 +120,16 @@ def _warnings(sheet: SheetData) -> list[str]:
 
 def _condition(sheet: SheetData, k: int) -> str:
     """Condition and interval of a state's sensitivity."""
-    width = interval(sheet.uncertainty[k])
-    text = f"{width} (k = 2)" if width else "interval not known, see Uncertainty"
+    text = f"{width} (k = 2)" if (width := interval(sheet.uncertainty[k])) else "interval not known, see Uncertainty"
     return f"at {sheet.prediction.states[k].driving_pressure / KPA:g} kPa; {text}"
 
 
 def _captions(sheet: SheetData) -> dict[str, str]:
     """Captions of the figures that depend on the prediction, and words in the place of those left out."""
-    graded = "the atlas has no graded membranes" if sheet.scene.membrane_material.along is not None else ""
+    resin, why = sheet.scene.membrane_material, "the prediction has no figures at the highest driving pressure"
+    graded = "the atlas has no graded membranes" if resin.along is not None else ""
     unknown = (document["unknown"] for document in sheet.uncertainty if "unknown" in document)
-    why = graded or next(unknown, "the prediction has no figures at the highest driving pressure")
+    why = graded or next(unknown, why if resin.law is None else "the atlas has no fitted laws")
     absent = f"Trade-off and tuning charts are not drawn: {why}."
     chart = sheet.tradeoff
     return {
@@ -235,9 +235,8 @@ def _limits(sheet: SheetData) -> list[list[str]]:
     reach = "none: the pressure goes on rising"
     if point is not None:
         reach = f"dome snaps at {point.apex_inner:.2f} mm inside, {point.apex_outer:.2f} mm outside"
-    peak = DASH if limits.limit_point is None else f"{limits.limit_point / KPA:.2f}"
     rows = [
-        ["limit point", peak, reach],
+        ["limit point", DASH if limits.limit_point is None else f"{limits.limit_point / KPA:.2f}", reach],
         ["break strain", broken, where],
         *(
             []
