@@ -88,6 +88,6 @@ def test_the_command_shows_a_row_a_process_and_saves_the_one_picked(command, tmp
     document = json.loads(done.stdout)
     assert set(document["processes"]) == {"polyjet", "casting"} and document["met"]
     assert document["processes"]["casting"]["designs"][0]["material"] == "DragonSkin20"
-    assert load_scene(document["written"]).printer.is_casting
+    assert load_scene(str(tmp_path / document["written"])).printer.is_casting
     refused = command("select", "--sensitivity", "1.9", "--process", "casting", "--charts", "charts")
     assert refused.returncode == 2 and "--charts cannot be given with --process" in refused.stderr

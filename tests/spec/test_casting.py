@@ -78,7 +78,7 @@ def test_casting_has_no_pixels_no_layers_and_no_envelope(library):
     assert mode is not None and mode.label == "room temperature cure"
     assert profile.finest_step(mode) == 0.02
     for figure in (lambda: profile.pixel, lambda: profile.envelope, lambda: mode.layer_um):
-        with pytest.raises(ValueError, match="has no"):
+        with pytest.raises(InputError, match="a cast body is not printed"):
             figure()
     assert profile.mode_for(library.load("materials", "TangoPlus")) is None
     assert library.load("printers", "objet260-connex").mode_for(silicone) is None

@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic import Field, field_validator, model_validator
 
+from pneutouch.errors import InputError
 from pneutouch.spec.fields import MaterialKind, Table
 from pneutouch.spec.material import Material
 from pneutouch.spec.quantity import Quantity
@@ -25,6 +26,10 @@ CAST_STEP_SOURCE = "STL of 0.01 to 0.03 mm is enough, finer prints no better: ve
 """Source of `CAST_STEP_MM`, for printed moulds."""
 
 _INCH_UM = 25400.0
+
+
+def _no_machine(title: str, what: str) -> InputError:
+    return InputError(f"{title}: has no {what}: a cast body is not printed", remedy="take the profile of a printer")
 
 
 class Envelope(Table):
@@ -50,9 +55,9 @@ class Mode(Table):
 
     @property
     def layer_um(self) -> float:
-        """The layer height. Raises ValueError for a mode without layers."""
+        """The layer height. Raises InputError for a mode without layers."""
         if self.layer_height_um is None:
-            raise ValueError(f"{self.name} has no layers")
+            raise _no_machine(self.name, "layers")
         return self.layer_height_um
 
     @property
@@ -168,16 +173,16 @@ class Printer(Table):
 
     @property
     def pixel(self) -> Resolution:
-        """The step in the plane. Raises ValueError for casting, which has none."""
+        """The step in the plane. Raises InputError for casting, which has none."""
         if self.resolution is None:
-            raise ValueError(f"{self.title} has no pixels")
+            raise _no_machine(self.title, "pixels")
         return self.resolution
 
     @property
     def envelope(self) -> Envelope:
-        """The build envelope. Raises ValueError for casting, which has none."""
+        """The build envelope. Raises InputError for casting, which has none."""
         if self.envelope_mm is None:
-            raise ValueError(f"{self.title} has no build envelope")
+            raise _no_machine(self.title, "build volume")
         return self.envelope_mm
 
     @property
