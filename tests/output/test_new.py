@@ -108,7 +108,7 @@ def test_a_material_alone_takes_the_printer_that_runs_it(command, tmp_path):
         (["--process", "cast"], "--process cast: unknown. Did you mean casting?"),
         (["--process", "filament"], "no profile of this process runs an elastomer"),
         (["--process", "casting", "--material", "ABS"], "ABS is rigid"),
-        (["--material", "DragonSkin"], "no such name among the materials. Did you mean DragonSkin20?"),
+        (["--material", "DragonSkn20"], "no such name among the materials. Did you mean DragonSkin20?"),
         (["--from", "paper-dome", "--process", "casting"], "--process cannot be given with a copy"),
     ],
 )

@@ -18,7 +18,7 @@ def test_a_cast_dome_is_weighed_by_its_ratio_poured_cured_and_peeled():
     pour, lines = steps("cast-dome")
     assert pour.parts_g == pytest.approx((pour.mass_g / 2, pour.mass_g / 2))
     text = " ".join(lines)
-    assert f"{pour.parts_g[0]:.1f} g of part A and {pour.parts_g[1]:.1f} g of part B" in text
+    assert f"{pour.parts_g[0]:.2f} g of part A and {pour.parts_g[1]:.2f} g of part B" in text
     order = [text.index(word) for word in ("Release agent", "Weigh", "Degas", "Pour", "Cure", "Demould", "screws")]
     assert order == sorted(order)
     assert "latex" in text and "water jet" not in text and "Aim the jet" not in text and "support" not in lines[0]

@@ -47,14 +47,14 @@ def casting_steps(scene: ResolvedDesign, pour: SiliconePour) -> list[str]:
     casting = silicone.casting
     assert casting is not None
     parts = zip("ABC", pour.parts_g, strict=False)
-    masses = " and ".join(f"{mass:.1f} g of part {name}" for name, mass in parts)
+    masses = " and ".join(f"{mass:.2f} g of part {name}" for name, mass in parts)
     ratio = ":".join(f"{part:g}" for part in casting.parts_by_mass)
     pot, cure = casting.pot_life_min.text(), casting.cure_h.text()
     return [
         "Mould: print its parts; they lie in their files as they are printed. Drill what came out narrow, clean, dry. "
         f"{casting.release[0].upper()}{casting.release[1:]}, on every face that the silicone "
         f"touches. These stop its cure: {', '.join(casting.inhibited_by)}; wear nitrile gloves, not latex.",
-        f"Weigh {masses} of {silicone.title} into one cup, {ratio} by mass, {pour.mass_g:.1f} g together: {pour.note}.",
+        f"Weigh {masses} of {silicone.title} into one cup, {ratio} by mass, {pour.mass_g:.2f} g together: {pour.note}.",
         f"Mix 3 min and scrape sides and bottom. Degas under vacuum until the froth has fallen, about 5 min. From the "
         f"start of mixing it flows for {pot} min at room temperature.",
         "Close the mould: ring into the cap, core on the ring, base on the core's foot; fasten it and lay it "
