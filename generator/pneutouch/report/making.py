@@ -1,10 +1,11 @@
 """How to make a sensor, step by step: printed or cast, cleaned, joined and mounted."""
 
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.evaluation.sheet_data import SiliconePour
+from pneutouch.evaluation.sheet_data import SheetData, SiliconePour
 from pneutouch.parts.glue import GLUES, glue_of
 from pneutouch.report.port_note import port_steps
 from pneutouch.spec.part import ClampedFlange, OnePiece, RobotFlange, Sleeve
+from pneutouch.units import ML
 
 
 def making(scene: ResolvedDesign, pour: SiliconePour | None = None) -> list[str]:
@@ -23,6 +24,16 @@ def making(scene: ResolvedDesign, pour: SiliconePour | None = None) -> list[str]
 def making_title(pour: SiliconePour | None) -> str:
     """Heading of the steps on the sheet."""
     return "Material and print" if pour is None else "How to make it"
+
+
+def body_rows(sheet: SheetData) -> list[list[str]]:
+    """Material and print of each body."""
+    rows = []
+    for solid in sheet.assembly.solids:
+        printer, mode = sheet.assembly.machine(solid.name)
+        size, machine = f"{solid.volume / ML:.3f} mL, {solid.mass:.2f} g", f"{printer.title}, {mode.label}"
+        rows.append([solid.name, solid.material.label, size, machine, printer.support])
+    return rows
 
 
 def _printed(scene: ResolvedDesign, grown: bool) -> list[str]:

@@ -10,7 +10,7 @@ from pneutouch.report.anywhere import contact_section
 from pneutouch.report.certainty import interval, uncertainty_section
 from pneutouch.report.environment import NOT_TESTED, environment
 from pneutouch.report.gauge import detection, gauge_range, gauge_volume
-from pneutouch.report.making import making, making_title
+from pneutouch.report.making import body_rows, making, making_title
 from pneutouch.report.off_axis import CAPTION, OFF_AXIS, SHEAR, SHEAR_CAPTION, off_axis_rows, shear_rows
 from pneutouch.report.speed import speed_rows
 from pneutouch.units import KPA, ML
@@ -66,7 +66,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "environment": [*detection(sheet), *environment(sheet)],
         "speed": speed_rows(sheet),
         "reliability": [[what, NOT_TESTED] for what in prose.RELIABILITY],
-        "bodies": _bodies(sheet),
+        "bodies": body_rows(sheet),
         "making": {"title": making_title(sheet.pour), "lines": making(sheet.scene, sheet.pour)},
         "method": prose.method(sheet.scene),
         "ordering": ordering.code_table(sheet.scene),
@@ -251,16 +251,6 @@ def _limits(sheet: SheetData) -> list[list[str]]:
             limit = spread[row[0]]
             row[2] = f"{limit.low / KPA:.1f} to {limit.high / KPA:.1f} kPa at k = 2; {row[2]}"
     return [[*row, "binds" if row[0] == sheet.rating.limit.name else ""] for row in rows]
-
-
-def _bodies(sheet: SheetData) -> list[list[str]]:
-    """Material and print of each body."""
-    rows = []
-    for solid in sheet.assembly.solids:
-        printer, mode = sheet.assembly.machine(solid.name)
-        size, machine = f"{solid.volume / ML:.3f} mL, {solid.mass:.2f} g", f"{printer.title}, {mode.label}"
-        rows.append([solid.name, solid.material.label, size, machine, printer.support])
-    return rows
 
 
 def _sources(sheet: SheetData) -> list[list[str]]:
