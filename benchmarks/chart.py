@@ -106,7 +106,7 @@ def contact_section(cells: list[Cell]) -> list[str]:
         "",
         "Possible reasons for the bad cells: the moduli of FLX9985-DM and FLX9995-DM come from another source than the other five (a "
         "quasi-static E, not a relaxed modulus). The model computes twice the sensitivity for FLX9995-DM, as if its wall were stiffer than "
-        "that modulus, which is unexplained, and a slightly low sensitivity for FLX9985-DM. The membrane has no bending "
+        "that modulus, as the other published moduli of it are ([hard-resins.md](hard-resins.md)), and a slightly low sensitivity for FLX9985-DM. The membrane has no bending "
         "stiffness, so the resin has little effect on "
         "its sensitivity; at zero driving pressure F = p pi rho^2 even bounds S from below by 1/(pi R0^2) = 3.72 kPa/N, above "
         "every measured value. Use the membrane for inflation, limits and trends; choose a resin by the solid. What friction, the "

@@ -1,21 +1,13 @@
-"""The mixing chart: the modulus of a mix over its fraction, between the bounds that no mix can leave."""
+"""The mixing chart: the modulus of a mix over its fraction by every curve of the pair, with two limits of structure."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchmarks.mixing_theory import (
-    THRESHOLD,
-    Law,
-    hashin_shtrikman_high,
-    hashin_shtrikman_low,
-    percolation,
-    reuss,
-    voigt,
-)
+from benchmarks.mixing_theory import THRESHOLD, hashin_shtrikman_low, percolation
 from pneutouch.arrays import Array
 from pneutouch.catalogue.mixture import ResolvedMixingCurve
 from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, figure, halo, plain_ticks, svg
@@ -23,103 +15,85 @@ from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, figur
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_COUNT = 601
+_COUNT = 401
+_WIDEST = 0.7
+"""Greatest fraction shown: the softest curve ends at 0.668."""
 
-_OUTER: dict[str, Any] = {"color": MUTED, "lw": 0.8, "ls": LINES[4]}
-_INNER: dict[str, Any] = {"color": INK, "lw": 0.9, "ls": LINES[1]}
-_LOOKS = (_OUTER, _OUTER, _INNER, _INNER, {"color": INK, "lw": 0.7, "ls": LINES[3]})
-_PLACES = ((0.78, 0.1), (0.02, 0.95), (0.56, 0.5), (0.3, 0.95), (0.27, 0.6))
-"""Positions of the labels of the lines, in shares of the axes, where nothing else stands."""
-_ORDER = (1, 3, 4, 2, 0)
-
-
-class MixingLine(NamedTuple):
-    """A bound or model of a mix: moduli (n,) in MPa over the chart's fractions, and the point of its label."""
-
-    label: str
-    modulus: Array
-    mark: tuple[float, float]
+_LOOKS: dict[str, dict[str, Any]] = {
+    "fraction": {"color": ACCENT, "lw": 2.2, "ls": "-"},
+    "fraction_low": {"color": INK, "lw": 1.3, "ls": LINES[1]},
+    "fraction_high": {"color": INK, "lw": 1.3, "ls": LINES[3]},
+}
 
 
 @dataclass(frozen=True)
 class MixingChart:
-    """A mixing curve between its bounds.
+    """Every curve of a pair.
 
     Attributes:
-        law: The curve.
-        stiff: Greatest modulus of its stiff resin, MPa.
-        names: Labels of its points.
-        fraction: Volume fractions of the lines, (n,).
-        lines: Reuss, Voigt, Hashin and Shtrikman low and high, percolation.
+        laws: The curves by name, the one in use first.
+        stiff: Least shear modulus of the stiff resin, MPa.
+        names: Labels of the points.
     """
 
-    law: ResolvedMixingCurve
+    laws: dict[str, ResolvedMixingCurve]
     stiff: float
     names: tuple[str, ...]
-    fraction: Array
-    lines: tuple[MixingLine, ...]
-
-
-def mixing_data(law: ResolvedMixingCurve, stiff: tuple[float, float], names: tuple[str, ...]) -> MixingChart:
-    """The chart of a curve; ``stiff`` are the least and greatest modulus of its stiff resin, MPa, ``names`` its points.
-
-    Of each bound the widest that the range of the stiff resin makes.
-    """
-    soft, fraction = float(law.modulus[0]), np.linspace(0.0, 1.0, _COUNT)
-
-    def line(label: str, bound: Law, modulus: float, at: float) -> MixingLine:
-        return MixingLine(label, bound(fraction, soft, modulus), (at, float(bound(np.array(at), soft, modulus))))
-
-    low, high = stiff
-    lines = (
-        line("Reuss: equal stress", reuss, low, 0.88),
-        line("Voigt: equal strain", voigt, high, 0.12),
-        line("Hashin and Shtrikman, softest isotropic mix", hashin_shtrikman_low, low, 0.88),
-        line("Hashin and Shtrikman, stiffest isotropic mix", hashin_shtrikman_high, high, 0.36),
-        line(f"droplets that touch beyond {100 * THRESHOLD:g} %", percolation, low, 0.2),
-    )
-    return MixingChart(law, high, names, fraction, lines)
 
 
 def mixing_chart(chart: MixingChart, size: tuple[float, float]) -> str:
-    """Shear modulus over fraction with bounds, curve, band and named points, as SVG; ``size`` is width and height in
-    mm."""
-    law = chart.law
+    """Shear modulus over fraction as SVG; ``size`` is width and height in mm."""
+    used = next(iter(chart.laws.values()))
     with figure(*size) as drawn:
         ax = drawn.add_subplot()
-        for line, look in zip(chart.lines, _LOOKS, strict=True):
-            ax.plot(chart.fraction, line.modulus, **look)
-        _curve(ax, law)
-        fraction = f"volume fraction of {law.curve.stiff} in {law.curve.soft}  (-)"
-        limits = (0.6 * float(law.modulus[0]), 2 * chart.stiff)
-        ax.set(yscale="log", xlim=(0, 1), ylim=limits, ylabel="shear modulus  (MPa)", xlabel=fraction)
+        _limits(ax, float(used.modulus[0]), chart.stiff)
+        _curves(ax, chart)
+        ax.set(yscale="log", xlim=(0, _WIDEST), ylim=(0.12, 40))
+        ax.set(xlabel=f"volume fraction of {used.curve.stiff} in {used.curve.soft}  (-)", ylabel="shear modulus  (MPa)")
         plain_ticks(ax.yaxis)
-        _labels(ax, chart)
+        _points(ax, used, chart.names)
         return svg(drawn)
 
 
-def _curve(ax: Axes, law: ResolvedMixingCurve) -> None:
-    """The band, the curve and its points."""
-    # The ends of the points' ranges too: the band steps there.
-    ends = [end for point in law.curve.points for end in (point.low, point.high)]
-    along = np.unique([*np.linspace(0.0, law.fraction[-1], _COUNT), *(end for end in ends if end <= law.fraction[-1])])
-    if law.curve.is_assumed:
-        low, high = law.band_at(along)
-        ax.fill_between(along, low, high, fc=FAINT, alpha=0.6, ec=MUTED, lw=0.5, zorder=1)
-    ax.plot(along, law.modulus_at(along), color=ACCENT, lw=2.0, zorder=4)
+def _text(**more: Any) -> dict[str, Any]:
+    return {"fontsize": 7, "color": INK, "path_effects": halo(), "zorder": 6, **more}
+
+
+def _limits(ax: Axes, soft: float, stiff: float) -> None:
+    """The softest isotropic mix, and droplets that touch: neither is data."""
+    f = np.linspace(0.0, _WIDEST, _COUNT)
+    look: dict[str, Any] = {"color": MUTED, "lw": 0.8, "ls": LINES[2], "zorder": 2}
+    ax.plot(f, hashin_shtrikman_low(f, soft, stiff), **look)
+    ax.text(0.5, 0.42, "softest isotropic mix: separate droplets", rotation=6, **_text(color=MUTED))
+    beyond = f[f > THRESHOLD - 0.004]
+    ax.plot(beyond, percolation(beyond, soft, stiff), **look)
+    ax.text(THRESHOLD + 0.012, 31, f"glassy droplets that touch beyond {100 * THRESHOLD:g} %", **_text(color=MUTED))
+
+
+def _curves(ax: Axes, chart: MixingChart) -> None:
+    used = next(iter(chart.laws.values()))
+    names = used.curve.curves
+    assert names is not None
+    top = used.curve.points[-1].high
+    along: Array = np.unique([*np.linspace(0.0, top, _COUNT), used.curve.common_top])
+    low, high = (_band(used, along, side) for side in ("high", "low"))
+    ax.fill_between(along, low, high, fc=FAINT, alpha=0.6, ec="none", zorder=1)
+    for name, law in chart.laws.items():
+        f = np.linspace(0.0, float(law.fraction[-1]), _COUNT)
+        ax.plot(f, law.modulus_at(f), zorder=4, **_LOOKS[names.by_name[name]])
+        at = (float(law.fraction[-1]), float(law.modulus[-1]))
+        words = f"{name}\n(in use)" if law is used else name
+        ax.annotate(words, at, xytext=(0, 6), textcoords="offset points", ha="center", va="bottom", **_text(**BOLD))
+
+
+def _band(law: ResolvedMixingCurve, along: Array, side: str) -> Array:
+    ends = [getattr(point, side) for point in law.curve.points]
+    return np.asarray(np.exp(np.interp(along, ends, np.log(law.modulus))))
+
+
+def _points(ax: Axes, law: ResolvedMixingCurve, names: tuple[str, ...]) -> None:
+    """The catalogue's resins on the curve in use, each with its range from curve to curve."""
+    for name, point, mu in zip(names, law.curve.points, law.modulus, strict=True):
+        ax.plot([point.low, point.high], [mu, mu], color=INK, lw=0.6, zorder=3)
+        ax.text(point.high + 0.012, float(mu), name, va="center", **_text())
     ax.plot(law.fraction, law.modulus, "o", color=INK, mfc="white", ms=4.2, zorder=5, clip_on=False)
-
-
-def _labels(ax: Axes, chart: MixingChart) -> None:
-    """Names of the points and of the lines."""
-    law = chart.law
-    text: dict[str, Any] = {"fontsize": 6.5, "color": INK, "path_effects": halo(), "zorder": 6}
-    for name, x, y in zip(chart.names, law.fraction, law.modulus, strict=True):
-        ax.annotate(name, (x, y), xytext=(6, -4), textcoords="offset points", va="top", **text, **BOLD)
-    arrow: dict[str, Any] = {"arrowstyle": "-", "lw": 0.4, "color": MUTED, "shrinkA": 1, "shrinkB": 1}
-    side: dict[str, Any] = {"textcoords": "axes fraction", "va": "center", "ha": "left", "arrowprops": arrow}
-    for k in _ORDER:
-        ax.annotate(chart.lines[k].label, chart.lines[k].mark, xytext=_PLACES[k], **side, **text)
-    if law.curve.is_assumed:
-        above: dict[str, Any] = {"xytext": (0, 4), "textcoords": "offset points", "va": "bottom", "ha": "center"}
-        ax.annotate("where the curve may be", (0.42, float(law.modulus[-1])), **above, **text)

@@ -19,6 +19,8 @@ Agilus30 and VeroWhite (HELPER_MaterialsFE.m). It is the filling of spheres on a
 of that lattice, pi/6 x 0.3116; Scher and Zallen (J. Chem. Phys. 53, 3759, 1970, DOI 10.1063/1.1674565) found near 0.16
 for every lattice."""
 
+VOXEL_THRESHOLD = 0.3116
+"""`THRESHOLD` for voxels that fill their cells and touch by faces: site threshold of the simple cubic lattice."""
 
 EXPONENT = 0.4
 """Exponent of the share of the stiff solid that is connected, in three dimensions (De Gennes, Scaling Concepts in

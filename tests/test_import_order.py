@@ -58,6 +58,7 @@ def test_imports_run_one_way():
 
 
 DRAWN_FROM = {
+    "pneutouch.mechanics.curve_outcome",
     "pneutouch.mechanics.prediction",
     "pneutouch.mechanics.uncertainty.record",
     "pneutouch.evaluation.chart_data",

@@ -86,4 +86,4 @@ def test_the_mixing_pages_command_prints_eight_mixes_and_their_results_make_a_cu
     entered = run("--results", "results.toml")
     assert entered.exit_code == 0, entered.stderr
     assert "written: printprofiles/mixing/TangoPlus+VeroClear.toml" in entered.stdout
-    assert "shear_modulus_MPa at 10 %" in entered.stdout
+    assert "shear_modulus_MPa at 6 %" in entered.stdout

@@ -8,16 +8,15 @@ import tomllib
 
 import numpy as np
 import pytest
-from benchmarks.mixing_chart import mixing_chart, mixing_data
-from benchmarks.mixing_laws import fraction_of, placings
-from benchmarks.mixing_page import DOCS, STIFF, WHERE, measure, page
-from benchmarks.mixing_theory import hashin_shtrikman_low
+from benchmarks import hard_resins
+from benchmarks.mixing_chart import mixing_chart
+from benchmarks.mixing_page import DOCS, STIFF, measure, page
 
 from pneutouch.catalogue import load_scene
 
 
 @pytest.fixture(scope="module")
-def found(library):
+def chart(library):
     return measure(library)
 
 
@@ -26,31 +25,40 @@ def text():
     return (DOCS / "mixing.md").read_text(encoding="utf-8")
 
 
-def test_the_page_is_what_the_code_gives(found, text):
-    assert text == page(*found)
+def test_the_page_is_what_the_code_gives(chart, text, library):
+    assert text == page(chart, library)
 
 
-def test_the_chart_names_every_line_and_repeats_its_bytes(found):
-    chart = mixing_data(*found)
-    drawn = mixing_chart(chart, (178, 110))
-    assert drawn == mixing_chart(chart, (178, 110))
+def test_the_chart_names_every_curve_and_repeats_its_bytes(chart):
+    drawn = mixing_chart(chart, (178, 105))
+    assert drawn == mixing_chart(chart, (178, 105))
     assert drawn == (DOCS / "mixing.svg").read_text(encoding="utf-8")
 
 
-def test_the_pages_sentences_hold(found, text):
-    law, stiff, _ = found
-    f = np.array(WHERE)
-    ratio = law.modulus_at(f) / hashin_shtrikman_low(f, law.modulus[0], stiff[0])
-    assert ratio.min() > 1.2
-    assert "FLX9985 would be at 80 %, and FLX9995 would have no fraction" in text
-    series = np.array([(0.5, 5.34 / 0.30), (1.0, 8.47 / 0.30)])
-    at = np.interp(np.log(4.0 / 0.17), np.log(series[:, 1]), series[:, 0])
-    assert at == pytest.approx(0.80, abs=0.005)
-    assert series[1, 1] < 5.33 / 0.17
-    assert placings(0.17, 0.17, stiff[0]) == pytest.approx(
-        dict.fromkeys(placings(0.17, 0.17, stiff[0]), 0.0), abs=1e-12
-    )
-    assert fraction_of(hashin_shtrikman_low, 5.33, 0.17, stiff[0]) > 0.9
+def test_the_page_on_the_hard_resins_is_what_the_code_gives(library):
+    assert hard_resins.PAGE.read_text(encoding="utf-8") == hard_resins.page(library)
+
+
+@pytest.mark.parametrize("name", hard_resins.RESINS)
+def test_the_range_in_a_hard_resins_file_is_that_of_the_published_values(name, library):
+    modulus = library.load("materials", name).shear_modulus_MPa
+    entries = hard_resins.published(name, library)
+    assert modulus.low == pytest.approx(min(entry.low for entry in entries), rel=5e-3)
+    assert modulus.high == pytest.approx(max(entry.high for entry in entries), rel=5e-3)
+    assert modulus.low <= modulus.value <= modulus.high
+
+
+def test_a_secant_undoes_the_neo_hookean_stress():
+    stretch = 1.4
+    assert hard_resins.secant(2.0 * (stretch - stretch**-2), stretch - 1) == pytest.approx(2.0)
+
+
+def test_the_fits_that_are_quoted_begin_near_zero_stress_and_rise():
+    """What their reading as stress over strain rests on."""
+    for name in hard_resins.RESINS:
+        stress = [hard_resins.fitted_stress(name, x) for x in np.linspace(0.05, 0.45, 9)]
+        assert 0 < stress[0] < 0.35 * stress[-1]
+        assert (np.diff(stress) > 0).all()
 
 
 def test_the_designs_of_the_page_are_mixes(text, tmp_path, library):

@@ -93,7 +93,8 @@ def test_levels_are_even_in_the_logarithm_of_the_modulus(library: Library):
     law = pair_of("TangoPlus+VeroClear", library.load("printers", "j735"), library, "test").law
     at = levels(law, 9)
     assert at[0] == 0
-    assert at[-1] == law.fraction[-1]
+    # Not to the last point: beyond this the stiffest curve of the pair states no modulus.
+    assert at[-1] == law.curve.common_top < law.fraction[-1]
     steps = np.diff(np.log(law.modulus_at(at)))
     np.testing.assert_allclose(steps, steps.mean(), rtol=5e-3)
 
@@ -109,7 +110,7 @@ def test_a_fraction_is_found_at_which_the_sensitivity_is_met_exactly():
     best = mixed.answer.designs[0]
     assert float(best.pool.response.lines.sensitivity_kPa_per_N[0]) == pytest.approx(1.8, rel=5e-4)
     assert mixed.confirmed[0].sensitivity_kPa_per_N == pytest.approx(1.8, rel=0.012)
-    assert 0.151 < best.resin.grade.fractions[0] < 0.229
+    assert 0.121 < best.resin.grade.fractions[0] < 0.173
     law = pair_of("TangoPlus+VeroClear", mixed.base.printer, Library.default(), "test").law
     fraction = np.array(best.resin.grade.fractions[0])
     assert best.resin.shear_modulus == pytest.approx(float(law.modulus_at(fraction)))

@@ -12,10 +12,14 @@ from pneutouch.printability import Finding
 
 @dataclass(frozen=True, repr=False)
 class CheckResult(show.Shown):
-    """The findings of a check; it is ``passed`` where none of them is an error."""
+    """The findings of a check; it is ``passed`` where none of them is an error.
+
+    ``curves`` are the figures by every mixing curve of a mix, as data.
+    """
 
     name: str
     findings: tuple[Finding, ...]
+    curves: tuple[dict[str, Any], ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -24,7 +28,8 @@ class CheckResult(show.Shown):
 
     def to_dict(self) -> dict[str, Any]:
         """As the command ``check`` prints it as JSON."""
-        return {"design": self.name, "passed": self.passed, "findings": [f.document() for f in self.findings]}
+        content = {"design": self.name, "passed": self.passed, "findings": [f.document() for f in self.findings]}
+        return {**content, "mixing_curves": list(self.curves)} if self.curves else content
 
     def _head(self) -> str:
         verdict = "passed" if self.passed else "not passed"

@@ -11,8 +11,9 @@ from pneutouch.catalogue.along import ArcProfile
 from pneutouch.catalogue.library import Library
 from pneutouch.errors import InputError, shown
 from pneutouch.spec.grade import Grade
-from pneutouch.spec.material import ArcGrading, Material
+from pneutouch.spec.material import ArcGrading, Material, MixByCurve
 from pneutouch.spec.mixing import MixingCurve, MixingPoint
+from pneutouch.spec.quantity import Quantity
 
 FROM_CURVE = "mixing curve"
 """First words of the source of a modulus that a mixing curve gave."""
@@ -63,9 +64,15 @@ class ResolvedMixingCurve:
 
 
 def mixing(
-    soft: str, stiff: str, library: Library, *, file: str | None = None, key: str | None = None
+    soft: str,
+    stiff: str,
+    library: Library,
+    *,
+    curve: str | None = None,
+    file: str | None = None,
+    key: str | None = None,
 ) -> ResolvedMixingCurve:
-    """The curve of two base resins.
+    """The curve of two base resins, the one in use where no ``curve`` is named.
 
     Raises InputError where there is none, where it is another pair's, and where its modulus falls with the fraction.
     """
@@ -75,16 +82,16 @@ def mixing(
         hint = f"the soft resin goes first: {stiff}" if turned else f"known: {', '.join(paths) or 'none'}"
         remedy = f"{hint} (printprofiles/mixing)"
         raise InputError(f"no mixing curve of {stiff} in {soft}", file=file, key=key, remedy=remedy)
-    curve: MixingCurve = library.load("mixing", f"{soft}+{stiff}", file=file, key=key)
+    content: MixingCurve = library.load("mixing", f"{soft}+{stiff}", file=file, key=key)
     where = str(paths[f"{soft}+{stiff}"])
-    if (curve.soft, curve.stiff) != (soft, stiff):
+    if (content.soft, content.stiff) != (soft, stiff):
         raise InputError(
-            f"soft = {shown(curve.soft)}, stiff = {shown(curve.stiff)}: must be {shown(soft)} and "
+            f"soft = {shown(content.soft)}, stiff = {shown(content.stiff)}: must be {shown(soft)} and "
             f"{shown(stiff)}, as the file's name",
             file=where,
         )
-    rows = np.array([_resolved(point, curve, library, where) for point in curve.points])
-    fraction = np.array([point.fraction for point in curve.points])
+    rows = np.array([_resolved(point, content, library, where) for point in content.points])
+    fraction = np.array(content.through(_key(content, curve, file, key)))
     for (f, a), (g, b) in pairwise(zip(fraction, rows[:, 0], strict=True)):
         if b <= a:
             raise InputError(
@@ -92,7 +99,23 @@ def mixing(
                 file=where,
                 remedy=f"it must rise with the fraction of {stiff}",
             )
-    return ResolvedMixingCurve(curve, fraction, *rows.T)
+    return ResolvedMixingCurve(content, fraction, *rows.T)
+
+
+def _key(content: MixingCurve, curve: str | None, file: str | None, key: str | None) -> str:
+    """The key of the points' fractions on the curve of this name."""
+    known = {} if content.curves is None else content.curves.by_name
+    if curve is not None and curve not in known:
+        pair = f"{content.soft}+{content.stiff}"
+        remedy = f"known: {', '.join(known)}" if known else f"leave it out: {pair} has one curve, without a name"
+        raise InputError(
+            f"{pair} has no mixing curve of this name",
+            file=file,
+            key=f"{key or 'membrane.material'}.curve",
+            value=curve,
+            remedy=remedy,
+        )
+    return "fraction" if curve is None else known[curve]
 
 
 def _resolved(point: MixingPoint, curve: MixingCurve, library: Library, where: str) -> tuple[float, float, float]:
@@ -134,7 +157,7 @@ def mixed_material(grade: Grade, library: Library, *, file: str | None, key: str
     # The names first: of an unknown resin there is no curve either, and the error would name the pair.
     soft: Material = library.load("materials", grade.from_, file=file, key=f"{key}.from")
     stiff: Material = library.load("materials", grade.to, file=file, key=f"{key}.to")
-    law = mixing(grade.from_, grade.to, library, file=file, key=key)
+    law = mixing(grade.from_, grade.to, library, curve=grade.curve, file=file, key=key)
     top = float(law.fraction[-1])
     for value in grade.fractions:
         if value > top + _SLACK:
@@ -149,11 +172,37 @@ def mixed_material(grade: Grade, library: Library, *, file: str | None, key: str
     content = _content(grade, soft, stiff, share)
     content["shear_modulus_MPa"] = _modulus(law, fraction, weight)
     content["elongation_at_break_percent"] = _elongation(law, fraction)
+    content["curves"] = _by_curves(grade, library, law, fraction, weight)
     if not grade.is_constant:
         content["along"] = ArcGrading(
             arc=arc.tolist(), stiff_fraction=fraction.tolist(), shear_modulus_MPa=law.modulus_at(fraction).tolist()
         ).model_dump()
     return Material.model_validate({name: value for name, value in content.items() if value is not None})
+
+
+def _by_curves(
+    grade: Grade, library: Library, used: ResolvedMixingCurve, fraction: Array, weight: Array
+) -> list[dict[str, Any]]:
+    """The mix by every curve of the pair, the softest first; beyond a curve's last point it has that one's modulus."""
+    names = {} if used.curve.curves is None else used.curve.curves.by_name
+    laws = {name: mixing(grade.from_, grade.to, library, curve=name) for name in names}
+    entries, last = [], float(used.fraction[-1])
+    for name, law in sorted(laws.items(), key=lambda item: -float(item[1].fraction[-1])):
+        top = float(law.fraction[-1])
+        by_curve = MixByCurve(
+            curve=name,
+            place="in use" if top == last else "stiffer" if top < last else "softer",
+            shear_modulus_MPa=Quantity.model_validate(_modulus(law, fraction, weight)),
+            elongation_at_break_percent=_quantity(_elongation(law, fraction)),
+            along_MPa=None if grade.is_constant else law.modulus_at(fraction).tolist(),
+            beyond=bool(fraction.max() > top + _SLACK),
+        )
+        entries.append(by_curve.model_dump(exclude_none=True))
+    return entries
+
+
+def _quantity(content: dict[str, Any] | None) -> Quantity | None:
+    return None if content is None else Quantity.model_validate(content)
 
 
 def _modulus(law: ResolvedMixingCurve, fraction: Array, weight: Array) -> dict[str, Any]:

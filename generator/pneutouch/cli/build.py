@@ -132,19 +132,25 @@ def check(
             from pneutouch.workflows.specimen.build import check_specimen
 
             refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
+            curves: list[dict[str, Any]] = []
             with bar("checking the specimen"):
                 findings = check_specimen(design, changes(set_, calibration), deep=deep)
         else:
+            from pneutouch.evaluation.document import curves_document
+
             evaluation = _evaluated(design, changes(set_, calibration))
             with bar("checking printability and limits"):
                 findings = [*evaluation.findings, *(evaluation.deep_findings() if deep else [])]
+                curves = curves_document(evaluation)
                 if voxels:
                     from pneutouch.workflows.build.voxels import plan_voxels
 
                     findings += plan_voxels(evaluation.assembly).findings
         broken = any(finding.severity == "error" for finding in findings)
         if json:
-            print_json({"design": design, "passed": not broken, "findings": [f.document() for f in findings]})
+            by_curve = {"mixing_curves": curves} if curves else {}
+            listed = [f.document() for f in findings]
+            print_json({"design": design, "passed": not broken, "findings": listed, **by_curve})
         else:
             from pneutouch.cli.text import findings_text
 

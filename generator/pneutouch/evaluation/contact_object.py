@@ -186,3 +186,19 @@ def _object_error(scene: ResolvedDesign, problem: str, remedy: str, which: int =
     """An error of the object, on one of the keys that shape it; the last is that of its least radius."""
     key, value = list[tuple[str, Any]](scene.design.contact.sizes().items())[which]
     return InputError(problem, file=scene.where, key=f"contact.{key}", value=value, remedy=remedy)
+
+
+def check_plate(scene: ResolvedDesign, prediction: SensorPrediction) -> None:
+    """Refuse a plate whose edge would dig into the dome within the depth."""
+    for state in prediction.states:
+        ending = [event for event in state.events if event.ends_range]
+        if ending and ending[0].kind == "plate edge":
+            safe = 2 * scene.design.membrane.inner_radius_mm
+            raise InputError(
+                f"the contact reaches the plate's edge at {ending[0].indentation:.2f} mm of indentation; it must be "
+                f"wider than the contact (twice membrane.inner_radius_mm = {safe:g} mm is safe), or "
+                "indentation.depth_mm less",
+                file=scene.where,
+                key="indentation.plate_diameter_mm",
+                value=scene.design.indentation.plate_diameter_mm,
+            )

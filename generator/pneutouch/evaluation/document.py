@@ -48,6 +48,7 @@ class PredictionRecord(SensorRecord):
     dynamics: NotRequired[dict[str, Any]]
     calibration: NotRequired[dict[str, Any]]
     aged: NotRequired[AgedRecord]
+    mixing_curves: NotRequired[list[dict[str, Any]]]
 
 
 def viscous(evaluation: Evaluation) -> dict[str, Any]:
@@ -59,6 +60,12 @@ def viscous(evaluation: Evaluation) -> dict[str, Any]:
 def rating_document(evaluation: Evaluation) -> RatingRecord:
     """The rated pressure, what it follows from and what would raise it; driving pressures above it are findings."""
     return evaluation.rating.document([state.driving_pressure for state in evaluation.prediction.states])
+
+
+def curves_document(evaluation: Evaluation) -> list[dict[str, Any]]:
+    """The sensor by every mixing curve of its mix, the softest first."""
+    content: list[dict[str, Any]] = rounded([outcome.document() for outcome in evaluation.curves], _DIGITS)
+    return content
 
 
 def prediction_document(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
@@ -87,13 +94,15 @@ def prediction_document(evaluation: Evaluation, samples: int = 0) -> PredictionR
 
 
 def full_document(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
-    """`prediction_document` with ``viscous`` and ``dynamics``; with ``gauge`` where the design names one, and ``aged``
-    where the prediction is of an aged sensor."""
+    """`prediction_document` with ``viscous`` and ``dynamics``; with ``gauge`` where the design names one, ``aged``
+    where the prediction is of an aged sensor, and ``mixing_curves`` where its mix has several."""
     content = prediction_document(evaluation, samples)
     content["viscous"] = viscous(evaluation)
     content["dynamics"] = rounded(dynamics_document(evaluation.bandwidth), _DIGITS)
     if evaluation.scene.gauge is not None:
         content["gauge"] = gauge_document(evaluation)
+    if evaluation.curves:
+        content["mixing_curves"] = curves_document(evaluation)
     calibration = evaluation.scene.calibration
     if calibration is not None:
         content["calibration"] = {

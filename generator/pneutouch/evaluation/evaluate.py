@@ -13,7 +13,7 @@ import numpy as np
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.evaluation.calibrated import assumption, calibrated_error, calibrated_sensor, check_options, unmeasured
-from pneutouch.evaluation.contact_object import check_first_touch, check_object, contact_object, rigid_base
+from pneutouch.evaluation.contact_object import check_first_touch, check_object, check_plate, contact_object, rigid_base
 from pneutouch.evaluation.elastomers import Resins, alike, elastomers
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
@@ -28,6 +28,7 @@ from pneutouch.units import KPA
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.dynamics import SensorBandwidth
+    from pneutouch.mechanics.curve_outcome import CurveOutcome
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
     from pneutouch.mechanics.viscous.describe import ViscousRuns
@@ -87,7 +88,9 @@ class Evaluation:
         # What is printed is the wall as drawn, whatever wall a calibration gives the model.
         drawn = self.sensor.replace(wall_thickness=self.assembly.layout.wall)
         calibrated = self.scene.calibration is not None
-        context = SensorContext(self.prediction, drawn, self.rating, calibrated=calibrated, gauge=self.scene.gauge)
+        context = SensorContext(
+            self.prediction, drawn, self.rating, calibrated=calibrated, gauge=self.scene.gauge, curves=self.curves
+        )
         return sensor_findings(self.assembly, context)
 
     @cached_property
@@ -123,6 +126,16 @@ class Evaluation:
         scene = self.scene
         known = (scene.membrane_material, scene.printer, scene.calibration)
         return rating(self.prediction.limits, self.sensor, *known, numerical=error)
+
+    @cached_property
+    def curves(self) -> tuple[CurveOutcome, ...]:
+        """The sensor by every mixing curve of its mix; empty for a resin, and for a calibrated sensor."""
+        from pneutouch.mechanics.mixing_curves import curve_outcomes
+
+        if self.scene.calibration is not None:
+            return ()
+        known = (self.scene.membrane_material, self.scene.printer)
+        return curve_outcomes(self.sensor, *known, self.prediction, self.rating)
 
     @cached_property
     def bandwidth(self) -> SensorBandwidth:
@@ -194,7 +207,7 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
         if error.file is None and (error.key or "").startswith("contact."):
             error.file = scene.where
         raise
-    _check_plate(scene, prediction)
+    check_plate(scene, prediction)
     check_first_touch(scene, prediction)
     more = [shift] if options.aged else []
     if scene.calibration:
@@ -278,20 +291,3 @@ def _beyond_limit(scene: ResolvedDesign, error: BeyondLimitError) -> InputError:
         key=f"pneumatics.driving_pressures_kPa[{k}]",
         value=pressures_kPa[k],
     )
-
-
-def _check_plate(scene: ResolvedDesign, prediction: SensorPrediction) -> None:
-    """Refuse a plate whose edge would dig into the dome within the depth."""
-    for state in prediction.states:
-        ending = [event for event in state.events if event.ends_range]
-        if ending and ending[0].kind == "plate edge":
-            safe = 2 * scene.design.membrane.inner_radius_mm
-            raise InputError(
-                f"the contact reaches the plate's edge at {ending[0].indentation:.2f} mm of indentation; it must be "
-                "wider "
-                f"than the contact (twice membrane.inner_radius_mm = {safe:g} mm is safe), or indentation.depth_mm "
-                "less",
-                file=scene.where,
-                key="indentation.plate_diameter_mm",
-                value=scene.design.indentation.plate_diameter_mm,
-            )

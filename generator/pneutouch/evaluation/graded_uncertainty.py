@@ -11,14 +11,14 @@ from pneutouch.mechanics import Sensor
 
 GAP, STEEP_GAP = 0.2, 0.45
 """How far the derivatives d ln sensitivity / d ln modulus and wall of the even wall were found from those of the graded
-solid, with the paper's sensor: with 0 to 25 % of the stiff resin in either direction, and with 0 to 40 %
-(`tests/evaluation/test_graded_uncertainty.py`)."""
+solid, with the paper's sensor: with one end 6 times as stiff as the other, either one, and with the rim 13 times as
+stiff as the pole (`tests/evaluation/test_graded_uncertainty.py`)."""
 
 _NOTE = (
     "the wall is graded: the figures are the solid's, their relative uncertainty is that of an even wall of its mean "
-    f"modulus, whose logarithmic derivatives by modulus and wall were found within {GAP:g} of a graded one's (0 to 25 "
-    f"% of the stiff resin; {STEEP_GAP:g} for 0 to 40 %); all of the wall is taken stiffer, or all of it softer, than "
-    "its mixing curve states"
+    f"modulus, whose logarithmic derivatives by modulus and wall were found within {GAP:g} of a graded one's (one end "
+    f"6 times as stiff as the other; {STEEP_GAP:g} for 13 times); all of the wall is taken stiffer, or all of it "
+    "softer, than its mixing curve states"
 )
 
 

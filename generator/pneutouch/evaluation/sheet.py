@@ -56,6 +56,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         pressed=pressed_view(prediction),
         speed=speed_data(evaluation.bandwidth),
         pour=silicone_pour(evaluation.assembly),
+        curves=evaluation.curves,
     )
     if unknown(sensor, prediction.model) is not None:
         return sheet

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
         TradeOff,
         TuningChart,
     )
+    from pneutouch.mechanics.curve_outcome import CurveOutcome
     from pneutouch.mechanics.prediction import SensorPrediction
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.uncertainty import GasNotes
@@ -200,6 +201,7 @@ class SheetData:
         pressed: The pressed dome in three dimensions; None by a model without its surface.
         speed: How fast the sensor reads; None where that was not computed.
         pour: The silicone to weigh; None where the membrane is not cast.
+        curves: The sensor by every mixing curve of its mix, the softest first.
     """
 
     scene: ResolvedDesign
@@ -227,3 +229,4 @@ class SheetData:
     pressed: PressedView | None = None
     speed: SpeedData | None = None
     pour: SiliconePour | None = None
+    curves: tuple[CurveOutcome, ...] = ()

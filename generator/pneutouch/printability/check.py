@@ -18,6 +18,7 @@ from pneutouch.printability.rules import (
     layers,
     matte,
     mesh,
+    mixing_curve,
     resins,
 )
 from pneutouch.printability.subject import PrintSubject
@@ -46,6 +47,7 @@ RULES: dict[str, Rule] = {
     "inhibition": casting.inhibition,
     "glue": glue.check,
     "driving": driving.check,
+    "mixing curve": mixing_curve.check,
     "freedom": freedom.check,
 }
 
@@ -54,7 +56,7 @@ def check(subject: PrintSubject, sensor_context: SensorContext | None = None) ->
     """All findings, errors first.
 
     Bodies whose mesh bounds no solid get the findings that need none: mesh, envelope and resins. Rules on the sensor's
-    working (driving, layers) and on casting report nothing without ``sensor_context``.
+    working (driving, layers, mixing curve) and on casting report nothing without ``sensor_context``.
     """
     view = PrintView(subject, sensor_context)
     return sorted((finding for rule in RULES.values() for finding in rule(view)), key=lambda finding: finding.rank)

@@ -23,6 +23,7 @@ from pneutouch.spec.printer import FeatureSize, Printer
 
 if TYPE_CHECKING:
     from pneutouch.mechanics import Sensor, SensorPrediction
+    from pneutouch.mechanics.curve_outcome import CurveOutcome
     from pneutouch.mechanics.rating import Rating
     from pneutouch.spec.gauge import Gauge
 
@@ -50,6 +51,7 @@ class SensorContext:
     ``membrane`` is the name of the item whose wall the sensor presses; ``calibrated``: the sensor is a printed one.
     ``gauge`` is the one that the design names; None stands for the paper's. ``wetted``: what a cast membrane cures
     against. ``glued``: what joins membrane and connector, None where the seat or the design leaves it open.
+    ``curves``: the sensor by every mixing curve of its mix.
     """
 
     prediction: SensorPrediction
@@ -60,6 +62,7 @@ class SensorContext:
     gauge: Gauge | None = None
     wetted: tuple[WettedSurface, ...] = ()
     glued: GluedSeat | None = None
+    curves: tuple[CurveOutcome, ...] = ()
 
 
 NARROW = 3.0

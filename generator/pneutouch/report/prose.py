@@ -4,6 +4,7 @@ from math import isfinite
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.spec.contact import ContactTable
+from pneutouch.wording import SIMULATED, counted
 
 PAPER = (
     "He, Herzig, Nanayakkara, Maiolino: 3D-printed soft sensors for adaptive sensing with online and offline "
@@ -169,3 +170,14 @@ def method(scene: ResolvedDesign) -> tuple[str, ...]:
         "Sensitivity is the slope of the least-squares line, with intercept, of pressure rise over force.",
         "Measure the dead volume: close the sensor, inject a known volume of air, read the pressure.",
     )
+
+
+def status(scene: ResolvedDesign) -> str:
+    """What the figures rest on: the design alone, or the runs of one specimen, measured or simulated."""
+    calibration = scene.calibration
+    if calibration is None:
+        return "Predicted. No unit has been built or tested."
+    source = calibration.source
+    if source.simulated:
+        return f"{SIMULATED}: calibrated on simulated runs of sensor {source.sensor}. No unit has been tested."
+    return f"Predicted for sensor {source.sensor} alone, calibrated on {counted(source.curves, 'measured curve')}."

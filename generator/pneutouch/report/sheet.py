@@ -11,10 +11,10 @@ from pneutouch.report.certainty import interval, uncertainty_section
 from pneutouch.report.environment import NOT_TESTED, environment
 from pneutouch.report.gauge import detection, gauge_range, gauge_volume
 from pneutouch.report.making import body_rows, making, making_title
+from pneutouch.report.mixing_curves import curves_section
 from pneutouch.report.off_axis import CAPTION, OFF_AXIS, SHEAR, SHEAR_CAPTION, off_axis_rows, shear_rows
 from pneutouch.report.speed import speed_rows
 from pneutouch.units import KPA, ML
-from pneutouch.wording import SIMULATED, counted
 
 DASH = "–"
 
@@ -46,7 +46,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "date": date,
         "tool": f"pneutouch {__version__}",
         "input_hash": sheet.input_hash,
-        "status": _status(sheet),
+        "status": prose.status(sheet.scene),
         "description": prose.description(sheet.scene),
         "limits_of_use": prose.limits_of_use(sheet.scene),
         "warnings": _warnings(sheet),
@@ -60,6 +60,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "contact": contact_section(sheet.contact),
         "shear": {"head": SHEAR, "rows": shear_rows(sheet.prediction.states), "caption": SHEAR_CAPTION},
         "model_error": _model_error(sheet),
+        "mixing_curves": curves_section(sheet),
         "uncertainty": uncertainty_section(sheet),
         "captions": _captions(sheet),
         "limits": _limits(sheet),
@@ -77,17 +78,6 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "sources": _sources(sheet),
         "revisions": [[document.revision, date, "As predicted; first issue of this revision."]],
     }
-
-
-def _status(sheet: SheetData) -> str:
-    """What the figures rest on: the design alone, or the runs of one specimen, measured or simulated."""
-    calibration = sheet.scene.calibration
-    if calibration is None:
-        return "Predicted. No unit has been built or tested."
-    source = calibration.source
-    if source.simulated:
-        return f"{SIMULATED}: calibrated on simulated runs of sensor {source.sensor}. No unit has been tested."
-    return f"Predicted for sensor {source.sensor} alone, calibrated on {counted(source.curves, 'measured curve')}."
 
 
 def _key_figures(sheet: SheetData) -> list[list[str]]:

@@ -12,6 +12,7 @@ from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.limits import RATED_SHARE, Limits
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.selection.grade_search import GradeTarget, GradeTrial, cost
+from pneutouch.selection.mixes import greatest
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
 _FRACTIONS = 401
@@ -68,7 +69,7 @@ def nearest_fraction(
     target: GradeTarget, problem: SelectionProblem, law: ResolvedMixingCurve, size: tuple[float, float]
 ) -> float | None:
     """The constant fraction nearest to a target at inner radius and wall (mm), by the atlas; None without an answer."""
-    at = np.linspace(0.0, float(law.fraction[-1]), _FRACTIONS)
+    at = np.linspace(0.0, greatest(law), _FRACTIONS)
     strain = law.elongation_at(at) / 100.0
     resins = tuple(
         CandidateResin("", problem.resins[0].material, float(modulus), float(stretch))

@@ -10,7 +10,7 @@ from pneutouch.catalogue.mixture import ResolvedMixingCurve
 from pneutouch.selection.pool import CandidatePool, evaluated, margins
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
-LEVELS = 24
+LEVELS = 15
 """Fractions tried, even in the logarithm of the modulus: 16 % apart for TangoPlus and VeroClear."""
 _KEPT = 6
 """Candidates whose fraction is refined."""
@@ -22,9 +22,17 @@ MixedResin = Callable[[float], CandidateResin]
 """The mix of a fraction as a resin."""
 
 
+def greatest(law: ResolvedMixingCurve) -> float:
+    """The greatest fraction to which a mix is offered: that of the curve, and of every other curve of its pair."""
+    return min(float(law.fraction[-1]), law.curve.common_top)
+
+
 def levels(law: ResolvedMixingCurve, count: int = LEVELS) -> Array:
-    """Fractions (count,) from the soft resin to the last point of the curve, even in the logarithm of the modulus."""
-    fine = np.linspace(0.0, float(law.fraction[-1]), 2001)
+    """Fractions (count,) even in the logarithm of the modulus, from the soft resin to where every curve ends.
+
+    Beyond the last point of the stiffest curve a mix may be rigid, if that curve is true: it is not offered.
+    """
+    fine = np.linspace(0.0, greatest(law), 2001)
     logs = np.log(law.modulus_at(fine))
     return np.interp(np.linspace(logs[0], logs[-1], count), logs, fine)
 

@@ -27,7 +27,8 @@ class Grade(Table):
     """[membrane] material as a table: ``{ from = "TangoPlus", to = "VeroClear", fraction = 0.2 }``.
 
     ``fraction`` is the volume fraction of ``to``: one number, or values at knots along the arc from the pole (0) to
-    the rim (1), monotone cubic between them. ``at`` are the knots; left out, they are even.
+    the rim (1), monotone cubic between them. ``at`` are the knots; left out, they are even. ``curve`` names one of the
+    pair's mixing curves; left out, it is the first.
     """
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False, populate_by_name=True)
@@ -38,6 +39,9 @@ class Grade(Table):
         description="from 0 to 1, the volume fraction of the stiff one, or a list of them."
     )
     at: list[float] | None = Field(default=None, description="Knots along the arc, 0 at the pole, 1 at the rim.")
+    curve: str | None = Field(
+        default=None, min_length=1, description="Mixing curve by name, where the pair's file states more than one."
+    )
 
     @model_validator(mode="after")
     def _sound(self) -> Grade:

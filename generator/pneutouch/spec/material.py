@@ -91,6 +91,21 @@ class ArcGrading(Table):
         return self
 
 
+class MixByCurve(Table):
+    """A mix by one of the mixing curves of its pair: what the wall is if that curve is true."""
+
+    curve: str = Field(min_length=1, description="Name of the mixing curve.")
+    place: Literal["softer", "in use", "stiffer"] = Field(description="Against the curve in use.")
+    shear_modulus_MPa: Quantity
+    elongation_at_break_percent: Quantity | None = None
+    along_MPa: list[float] | None = Field(
+        default=None, min_length=2, description="Moduli of a graded membrane, at along.arc."
+    )
+    beyond: bool = Field(
+        default=False, description="Whether a fraction is beyond the curve's last point, whose modulus is then taken."
+    )
+
+
 class RelaxationTerm(Table):
     """One term of a Prony series."""
 
@@ -146,6 +161,9 @@ class Material(Table):
     measured: PaperMeasurements | None = None
     mix: Mix | None = None
     along: ArcGrading | None = Field(default=None, description="Of a graded membrane; its numbers are means then.")
+    curves: list[MixByCurve] = Field(
+        default=[], description="Of a mix whose pair has several mixing curves: the same by each, the softest first."
+    )
     relaxation: list[Relaxation] = Field(default=[], max_length=8, description="One entry a source.")
     shear_modulus_is: Literal["relaxed", "instantaneous"] | None = Field(
         default=None, description="Which modulus shear_modulus_MPa is: relaxed (long-term) or instantaneous."
@@ -190,11 +208,10 @@ class Material(Table):
         return self
 
     @model_serializer(mode="wrap")
-    def _without_no_casting(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _without_what_it_has_not(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        # What a result follows from is hashed: a resin that is neither cast nor a mix reads as before there were these.
         content: dict[str, Any] = handler(self)
-        if content.get("casting") is None:
-            content.pop("casting", None)
-        return content
+        return {key: value for key, value in content.items() if key not in ("casting", "curves") or value}
 
     @property
     def is_cast(self) -> bool:
@@ -205,6 +222,16 @@ class Material(Table):
     def kind_shown(self) -> str:
         """The kind as users read it: a cast elastomer is ``cast``."""
         return "cast" if self.is_cast else self.kind
+
+    def by_curve(self, other: MixByCurve) -> Material:
+        """This mix as a mixing curve has it; ``other`` is one of `curves`."""
+        changes: dict[str, Any] = {
+            "shear_modulus_MPa": other.shear_modulus_MPa,
+            "elongation_at_break_percent": other.elongation_at_break_percent,
+        }
+        if self.along is not None:
+            changes["along"] = self.along.model_copy(update={"shear_modulus_MPa": other.along_MPa})
+        return self.model_copy(update=changes)
 
     @property
     def is_digital(self) -> bool:

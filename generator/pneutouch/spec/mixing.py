@@ -51,6 +51,25 @@ class MixingPoint(Table):
         return self.fraction if self.fraction_high is None else self.fraction_high
 
 
+class MixingCurveNames(Table):
+    """Names of the curves that one file states: the one in use, and those through the ends of every point's range."""
+
+    fraction: str = Field(min_length=1, description="The curve through the points, used where none is named.")
+    fraction_low: str = Field(min_length=1, description="The stiffer curve, through the points' fraction_low.")
+    fraction_high: str = Field(min_length=1, description="The softer curve, through the points' fraction_high.")
+
+    @model_validator(mode="after")
+    def _apart(self) -> MixingCurveNames:
+        if len(set(self.by_name)) < len(type(self).model_fields):
+            raise ValueError(f"curves: {', '.join(self.by_name)}; every curve must have a name of its own")
+        return self
+
+    @property
+    def by_name(self) -> dict[str, str]:
+        """The key of a point's fraction, by the name of the curve; the one in use first."""
+        return {getattr(self, key): key for key in type(self).model_fields}
+
+
 class MixingCurve(Table):
     """How stiff a mix of two base resins is; one file a pair, ``SOFT+STIFF.toml``."""
 
@@ -58,6 +77,9 @@ class MixingCurve(Table):
     soft: str = Field(min_length=1, description="Soft base resin.")
     stiff: str = Field(min_length=1, description="Stiff base resin.")
     assumption: str = Field(min_length=8, description="What the curve rests on.")
+    curves: MixingCurveNames | None = Field(
+        default=None, description="Names of the curves, where sources differ; a measured curve has none."
+    )
     points: list[MixingPoint] = Field(min_length=2, max_length=50)
 
     @model_validator(mode="after")
@@ -77,9 +99,36 @@ class MixingCurve(Table):
             raise ValueError(f"stiff = {shown(self.stiff)}: must be another resin than soft")
         if fractions[0] != 0:
             raise ValueError(f"points: the first fraction is {fractions[0]:g}; must be 0, the soft resin alone")
+        if self.curves is not None:
+            self._check_ends()
+            if not self.points[-1].low < fractions[-1] < self.points[-1].high:
+                raise ValueError(
+                    "curves: the last point's fraction must lie between its fraction_low and its fraction_high; leave "
+                    "[curves] out of a curve that was measured"
+                )
         return self
+
+    def _check_ends(self) -> None:
+        """Each end of the ranges must be a curve itself: it begins with the soft resin and its fractions rise."""
+        for side in ("low", "high"):
+            ends = [getattr(point, side) for point in self.points]
+            if ends[0] != 0 or any(b <= a for a, b in pairwise(ends)):
+                raise ValueError(
+                    f"points: fraction_{side} = {', '.join(f'{end:g}' for end in ends)}; with names for the curves "
+                    "they must begin with 0 and rise"
+                )
 
     @property
     def is_assumed(self) -> bool:
         """Whether some fraction is not known but placed between ``fraction_low`` and ``fraction_high``."""
         return any(point.low < point.high for point in self.points)
+
+    def through(self, key: str) -> list[float]:
+        """Fractions of the points on the curve of a key of `MixingCurveNames`."""
+        side = {"fraction": "fraction", "fraction_low": "low", "fraction_high": "high"}[key]
+        return [getattr(point, side) for point in self.points]
+
+    @property
+    def common_top(self) -> float:
+        """The greatest fraction at which every curve of the file states a modulus."""
+        return self.points[-1].low

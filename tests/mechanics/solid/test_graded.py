@@ -29,7 +29,7 @@ from pneutouch.spec.grade import Grade
 from pneutouch.units import KPA
 from tests.mechanics.solid.derivatives import assert_derivatives
 
-TOP = 0.668
+TOP = 0.356
 """Last fraction of the mixing curve: 31 times the soft resin's modulus."""
 PLACES = np.linspace(0.0, 1.0, 65)
 
@@ -143,7 +143,7 @@ def test_a_smooth_grade_converges_as_fast_as_an_even_wall():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("fractions", [(0.0, 0.25), (0.25, 0.0), (0.05, 0.4), (0.0, 0.15, 0.05)])
+@pytest.mark.parametrize("fractions", [(0.0, 0.25), (0.25, 0.0), (0.05, 0.27), (0.0, 0.15, 0.05)])
 def test_the_default_mesh_is_within_its_stated_error(fractions):
     one, pressures = sensor(*fractions), np.array([0.0, 0.022])
     fine = SolidModel(
@@ -181,7 +181,7 @@ def figures_of(modulus: np.ndarray, pressure: float, travel: float = 2.0) -> dic
 
 def stiffened(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """Moduli of a random grade, and the same with a bump on top somewhere."""
-    modulus = moduli(sensor(*rng.uniform(0.0, 0.5, int(rng.integers(2, 5)))))
+    modulus = moduli(sensor(*rng.uniform(0.0, 0.3, int(rng.integers(2, 5)))))
     bump = rng.uniform(0.1, 1.0) * np.exp(-(((PLACES - rng.uniform()) / rng.uniform(0.1, 0.5)) ** 2))
     return modulus, modulus * (1.0 + bump)
 
@@ -209,13 +209,13 @@ def test_the_first_slope_is_concave_in_the_modulus():
     """The least energy of a sum is no less than the sum of the least energies; both are quadratic at rest."""
     rng = np.random.default_rng(3)
     for _ in range(6):
-        one, other = (moduli(sensor(*rng.uniform(0.0, 0.6, 2))) for _ in range(2))
+        one, other = (moduli(sensor(*rng.uniform(0.0, 0.35, 2))) for _ in range(2))
         slopes = [inflate(solid_of(m), to_pressure=1e-4).states[0].stiffness for m in (one, other, 0.5 * (one + other))]
         assert slopes[2] >= 0.5 * (slopes[0] + slopes[1]) * (1 - 1e-9)
 
 
 def test_a_grade_of_two_knots_bears_a_pressure_between_its_ends():
-    for pole, rim in ((0.0, 0.229), (0.229, 0.0), (0.05, 0.4)):
+    for pole, rim in ((0.0, 0.173), (0.173, 0.0), (0.05, 0.27)):
         low, here, high = (
             figures_of(np.full(PLACES.size, one.wall.shear_modulus) if one.wall.grade is None else moduli(one), 0.012)
             for one in (sensor(min(pole, rim)), sensor(pole, rim), sensor(max(pole, rim)))
@@ -230,10 +230,10 @@ def test_the_sensitivity_of_a_grade_need_not_lie_between_its_ends():
         fractions: solid_result(sensor(*fractions), np.array([0.0]), past_limit=1.0)
         .states[0]
         .figures.sensitivity_kPa_per_N
-        for fractions in ((0.0,), (0.229,), (0.0, 0.229), (0.229, 0.0))
+        for fractions in ((0.0,), (0.173,), (0.0, 0.173), (0.173, 0.0))
     }
-    assert found[(0.229,)] < found[(0.0, 0.229)] < found[(0.0,)]
-    assert found[(0.229, 0.0)] > 1.02 * found[(0.0,)]
+    assert found[(0.173,)] < found[(0.0, 0.173)] < found[(0.0,)]
+    assert found[(0.173, 0.0)] > 1.02 * found[(0.0,)]
 
 
 # ------------------------------------------------------------------------------------------------ robustness

@@ -34,7 +34,7 @@ from pneutouch.workflows.select.passing import judge, source_of
 from pneutouch.workflows.select.run import grade_text, problem_of
 
 _LEVELS = 4
-"""Fractions of the scan at pole and rim: moduli 3 times apart for TangoPlus and VeroClear, 16 trials."""
+"""Fractions of the scan at pole and rim: moduli twice apart for TangoPlus and VeroClear, 16 trials."""
 _TRIALS = 48
 _WALL_ROUNDS = 2
 """Corrections of the wall under a contact that the atlas does not cover; the grade is searched for by the solid."""

@@ -1,0 +1,56 @@
+"""A sensor in a mix of two resins by every mixing curve of the pair: what it does if another curve is true."""
+
+from __future__ import annotations
+
+from pneutouch.errors import BeyondLimitError, ComputationError
+from pneutouch.mechanics.curve_outcome import CurveOutcome
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.predict import predict
+from pneutouch.mechanics.prediction import SensorPrediction
+from pneutouch.mechanics.rating import Rating, rating
+from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
+from pneutouch.spec.material import Material, MixByCurve
+from pneutouch.spec.printer import Printer
+
+
+def curve_outcomes(
+    sensor: Sensor, material: Material, printer: Printer, prediction: SensorPrediction, rated: Rating
+) -> tuple[CurveOutcome, ...]:
+    """The sensor by every mixing curve of its mix, the softest first; empty where its material has not several.
+
+    ``prediction`` and ``rated`` are by the curve in use. The others are predicted by the same model, without the
+    search for waves, which changes no figure; contact off the axis is left out for its cost.
+    """
+    if sensor.protocol.off_axis is not None:
+        return ()
+    outcomes = []
+    for by_curve in material.curves:
+        if by_curve.place == "in use":
+            outcomes.append(CurveOutcome(by_curve, prediction.states, rated.pressure))
+        else:
+            outcomes.append(_outcome(by_curve, sensor, material.by_curve(by_curve), printer, prediction))
+    return tuple(outcomes)
+
+
+def _outcome(
+    by_curve: MixByCurve, sensor: Sensor, material: Material, printer: Printer, prediction: SensorPrediction
+) -> CurveOutcome:
+    there = sensor.replace(wall=material_sensor(material).wall, correction=ResponseCorrection(), waves=0)
+    pressures = [state.driving_pressure for state in prediction.states]
+    answer = _predicted(there, pressures, prediction)
+    if answer is None:
+        return CurveOutcome(by_curve, (), None)
+    error = abs(answer.error_estimate["limit_pressure_relative"])
+    return CurveOutcome(
+        by_curve, answer.states, rating(answer.limits, there, material, printer, numerical=error).pressure
+    )
+
+
+def _predicted(sensor: Sensor, pressures: list[float], like: SensorPrediction) -> SensorPrediction | None:
+    """The prediction at as many of the pressures as can be solved; None where there are none."""
+    for count in range(len(pressures), 0, -1):
+        try:
+            return predict("", sensor, pressures[:count], model=like.model, closure=like.closure or "variational")
+        except (BeyondLimitError, ComputationError):
+            continue
+    return None
