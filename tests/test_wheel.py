@@ -135,12 +135,23 @@ def test_no_page_names_an_example_by_its_place_in_the_checkout():
         assert "docs/examples" not in page.read_text(encoding="utf-8"), page
 
 
-PATH = ["select", "select", "check", "build", "plan", "simulate", "characterize", "calibrate", "compare"]
-"""From a target to a sensor that is measured and calibrated; the second `select` saves the design."""
+PATH = [
+    "select",
+    "select",
+    "check",
+    "build",
+    "plan",
+    "simulate",
+    "characterize",
+    "calibrate",
+    "compare",
+    "export-reader",
+]
+"""From a target to a reader of a sensor that is measured and calibrated; the second `select` saves the design."""
 
 
 @pytest.mark.slow
-def test_a_target_leads_to_a_calibrated_sensor_by_typing_what_each_command_prints(unpacked, tmp_path):
+def test_a_target_leads_to_the_reader_of_a_calibrated_sensor_by_typing_what_each_command_prints(unpacked, tmp_path):
     words, typed = shlex.split("pneutouch select --sensitivity 3 --at 10 --fits finger:20"), []
     while words:
         assert words[0] == "pneutouch", words
