@@ -68,9 +68,9 @@ def casting_steps(scene: ResolvedDesign, pour: SiliconePour) -> list[str]:
         f"Weigh {masses} of {silicone.title} into one cup, {ratio} by mass, {pour.mass_g:.2f} g together: {pour.note}.",
         f"Mix 3 min and scrape sides and bottom. Degas under vacuum until the froth has fallen, about 5 min. From the "
         f"start of mixing it flows for {pot} min at room temperature.",
-        "Close the mould: ring into the cap, core on the ring, base on the core's foot; fasten it and lay it "
-        "with the base up. Pour in a thin stream, or inject with a syringe, at one place, until silicone without "
-        "bubbles stands in every vent.",
+        "Pour in a thin stream into cap and ring, the ring in the cap, and lower the core slowly; or close the mould "
+        "and press the silicone in with a syringe at one place. The core stands on the ring, the base on the core's "
+        "foot; fasten it, base up. Silicone without bubbles must stand in every vent.",
         f"Cure for {cure} h at room temperature, vents up; a cup with the rest of the batch shows whether it is cured.",
         "Demould: open the mould, peel the flange off all round, then roll the dome off the core. Cut sprue and vents "
         "off flush. Wash with soap and dry: release agent spoils every joint.",
