@@ -15,7 +15,16 @@ from pneutouch.report.datasheet import _figures
 from pneutouch.report.style import ACCENT, figure, label_ends, note, svg
 from tests.report.overlaps import overlaps
 
-SHIPPED = ("agilus-dome", "fingertip-dome", "graded-dome", "long-tube", "paper-dome", "soft-pad", "stiff-dome")
+SHIPPED = (
+    "agilus-dome",
+    "cast-dome",
+    "fingertip-dome",
+    "graded-dome",
+    "long-tube",
+    "paper-dome",
+    "soft-pad",
+    "stiff-dome",
+)
 EVERYDAY = ("paper-dome",)
 DESIGNS = [pytest.param(name, marks=() if name in EVERYDAY else pytest.mark.slow) for name in SHIPPED]
 
