@@ -35,8 +35,8 @@ def check(mould: MouldAssembly) -> list[Finding]:
     if times.pour_s > limit:
         severity: Severity = "warning" if syringe > limit else "note"
         text = (
-            f"poured through the channel it fills in {times.pour_s / 60:.0f} min, of {limit / 60:.0f} min; by a "
-            f"syringe at {SYRINGE_KPA:g} kPa in {syringe:.0f} s"
+            f"poured through the channel it fills in {times.pour_s / 60:.0f} min; half the pot life is "
+            f"{limit / 60:.0f} min; a syringe at {SYRINGE_KPA:g} kPa fills it in {syringe:.0f} s"
         )
         fix = "fill the open cap and ring and lower the core, or press the silicone in with a syringe"
         if severity == "warning":
@@ -46,8 +46,8 @@ def check(mould: MouldAssembly) -> list[Finding]:
         )
     if times.bubble_s > limit:
         text = (
-            f"a bubble as wide as a vent takes {times.bubble_s / 60:.0f} min to rise out, of {limit / 60:.0f} min: "
-            "smaller ones stay in the wall"
+            f"a bubble as wide as a vent takes {times.bubble_s / 60:.0f} min to rise out, half the pot life is "
+            f"{limit / 60:.0f} min: smaller ones stay in the wall"
         )
         fix = "degas the mixed silicone in vacuum, or widen mould.vent_diameter_mm"
         excess = Excess(times.bubble_s, limit, "s")
