@@ -24,7 +24,7 @@ from pneutouch.workflows.show.voxels import draw
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
-SHOWN = 0.25
+SHOWN = 0.19
 """Fraction in the picture of the dithers: what the shipped grade reaches at its rim."""
 
 
