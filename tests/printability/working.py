@@ -11,7 +11,7 @@ from pneutouch.printability import Finding, PrintSubject, SensorContext, check
 from pneutouch.units import KPA
 from tests.printability.gallery import cup, item, material
 
-WORKING = ("layers", "driving", "freedom", "filling", "bubbles", "inhibition", "glue")
+WORKING = ("layers", "driving", "freedom", "filling", "bubbles", "inhibition", "glue", "mixing curve")
 """Rules that need a sensor's prediction."""
 
 
