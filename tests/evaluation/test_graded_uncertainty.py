@@ -39,7 +39,7 @@ def graded(sensor: Sensor, fractions: list[float], library) -> Sensor:
         ("shear_modulus", [0.19, 0.0], 12 * KPA, GAP),
         ("wall_thickness", [0.19, 0.0], 12 * KPA, GAP),
         pytest.param("wall_thickness", [0.0, 0.08, 0.265], 0.0, STEEP_GAP, marks=pytest.mark.slow),
-        pytest.param("shear_modulus", [0.0, 0.08, 0.265], 0.0, GAP, marks=pytest.mark.slow),
+        pytest.param("shear_modulus", [0.0, 0.08, 0.265], 0.0, STEEP_GAP, marks=pytest.mark.slow),
     ],
 )
 def test_the_even_walls_derivatives_are_near_the_graded_solids(evaluated, library, name, fractions, pressure, gap):
