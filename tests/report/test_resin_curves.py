@@ -23,14 +23,13 @@ def test_a_resin_that_cannot_be_solved_does_not_stop_the_sheet(evaluated, librar
 
 
 def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library):
+    from pneutouch.evaluation.elastomers import elastomers
     from pneutouch.evaluation.variants import in_resin, resin_curves
     from pneutouch.mechanics.atlas.respond import respond
     from pneutouch.mechanics.uncertainty import batch_of
-    from pneutouch.spec.material import Material
 
-    sensor, materials = evaluated("paper-dome").sensor, library.all("materials", Material)
-    elastic = {name: m for name, m in materials.items() if m.kind == "elastomer"}
-    found = resin_curves(sensor, materials, 0.022, "solid", None)
+    sensor, elastic = evaluated("paper-dome").sensor, elastomers(library)
+    found = resin_curves(sensor, elastic, 0.022, "solid", None)
     assert set(found) == {m.title for m in elastic.values()}
     assert curves.drawn_by(found) == "drawn by the atlas"
     for material in elastic.values():
