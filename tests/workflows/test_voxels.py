@@ -164,8 +164,8 @@ def test_a_catalogue_mix_takes_its_assumed_fraction_and_says_so(library):
     plan = plan_voxels(small_assembly("membrane.material=FLX9960"), mode="High Mix", library=library)
     blend = plan.job.bodies[0].blend
     assert blend.resins == ("TangoPlus", "VeroClear")
-    assert blend.most == pytest.approx(0.229)
-    assert blend.assumed.startswith("FLX9960 is 22.9% VeroClear: assumed")
+    assert blend.most == pytest.approx(0.173)
+    assert blend.assumed.startswith("FLX9960 is 17.3% VeroClear: assumed")
 
 
 def test_a_mix_on_no_curve_is_refused(library):

@@ -44,7 +44,7 @@ class ProcessSelection:
         return self.best[row - 1][1]
 
     def document(self) -> dict[str, Any]:
-        """The answers as ``select --process`` prints them."""
+        """The answers as a JSON document."""
         shown = {process: {"profile": self.profiles[process], **document(run)} for process, run in self.runs.items()}
         return {"met": bool(self.best), "processes": shown, "left_out": self.left_out}
 
