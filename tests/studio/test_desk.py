@@ -155,6 +155,10 @@ def test_the_words_on_files_are_those_of_the_readme():
     rows = [line.split("|")[1:3] for line in lines]
     table = {names.strip(): words.strip() for names, words in rows}
     for patterns, words in CONTENTS:
+        if patterns == ("mould/*",):
+            # Only a cast design has one: it stands below the table.
+            assert words.partition("its mould, ")[2] in " ".join(text.split())
+            continue
         files = ["stl/membrane.stl", "stl/connector.stl"] if patterns == ("stl/*.stl",) else patterns
         assert table.pop(", ".join(f"`{each}`" for each in files).replace("NAME", "paper-dome")) == words
     assert table == {}
