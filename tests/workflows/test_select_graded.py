@@ -117,7 +117,8 @@ def test_a_grade_widens_the_force_range_at_a_sensitivity():
     }
     found = select_graded(Target.model_validate(content), "test")
     assert found.search.met
-    assert found.search.best.reach > 1.01 * found.nearest.trial.reach
+    # Little, as docs/graded.md states: 50.8 N against 50.3 N.
+    assert 1.005 < found.search.best.reach / found.nearest.trial.reach < 1.02
     assert found.meets(found.nearest.trial)
 
 
