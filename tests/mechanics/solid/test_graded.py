@@ -17,7 +17,6 @@ from pneutouch.mechanics.models import models_for
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.contact import Plate
-from pneutouch.mechanics.solid.errors import NoConvergenceError
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
@@ -240,28 +239,20 @@ def test_the_sensitivity_of_a_grade_need_not_lie_between_its_ends():
 # ------------------------------------------------------------------------------------------------ robustness
 
 
-def assert_solved(seed: int, count: int, refused: int = 0) -> None:
-    """Random grades to the greatest contrast, thin and thick: an answer, its figures before any loss of equilibrium.
-
-    ``refused`` is how many have none and state so: a thick wall that is 31 times as stiff next to its pole.
-    """
-    rng, without = np.random.default_rng(seed), 0
+def assert_solved(seed: int, count: int) -> None:
+    """Random grades to the greatest contrast, thin and thick: an answer, its figures before any loss of equilibrium."""
+    rng = np.random.default_rng(seed)
     for k in range(count):
         fractions = rng.uniform(0.0, TOP, int(rng.integers(2, 7)))
         if k % 3 == 0:
             fractions = np.where(rng.random(fractions.size) < 0.5, 0.0, TOP)
         one = sensor(*fractions).replace(wall_thickness=9.25 * rng.uniform(0.06, 0.3), depth=4.0, steps=8)
-        try:
-            result = solid_result(one, np.array([0.0, 4 * KPA]), past_limit=1.0)
-        except NoConvergenceError:
-            without += 1
-            continue
+        result = solid_result(one, np.array([0.0, 4 * KPA]), past_limit=1.0)
         assert result.limits.limit_point > 4 * KPA
         for state in result.states:
             assert np.all(np.diff(state.force[state.indentation <= state.range_end]) > 0)
             lost = [e.indentation for e in state.events if e.kind == "no equilibrium found"]
             assert state.range_end <= min(lost, default=np.inf)
-    assert without == refused
 
 
 def test_random_grades_are_solved():
@@ -270,7 +261,7 @@ def test_random_grades_are_solved():
 
 @pytest.mark.slow
 def test_many_random_grades_are_solved():
-    assert_solved(seed=12, count=200, refused=1)
+    assert_solved(seed=12, count=200)
 
 
 # ------------------------------------------------------------------------------------------------ the choice of the model

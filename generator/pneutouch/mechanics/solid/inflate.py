@@ -181,16 +181,25 @@ def find_limit(solid: SolidModel, before: FreeState, after: FreeState, tolerance
     middle = before
     for _ in range(30):
         a, b = before.unit.volume, after.unit.volume
-        root = _slope_root(before, after)
-        solved = at_volume(solid, [before], root, between(before, after, root))
-        if isinstance(solved, NewtonFailure):
-            raise NoConvergenceError("the limit point", solved.why, "a finer mesh")
-        middle = solved
+        middle = _towards(solid, before, after, _slope_root(before, after))
         moved = abs(middle.stiffness) * abs(b - a) <= tolerance * (abs(before.stiffness) + abs(after.stiffness)) * a
         if moved or abs(b - a) < tolerance * a:
             return middle
         before, after = (middle, after) if middle.stiffness > 0.0 else (before, middle)
     return middle
+
+
+def _towards(solid: SolidModel, before: FreeState, after: FreeState, volume: float) -> FreeState:
+    """The state at a volume between two, or nearer to the first where the cubic through both is too far from it."""
+    start, share = before.unit.volume, 1.0
+    while True:
+        at = start + share * (volume - start)
+        solved = at_volume(solid, [before], at, between(before, after, at))
+        if not isinstance(solved, NewtonFailure):
+            return solved
+        share *= 0.4
+        if share * (volume - start) < _SMALLEST_GROWTH * start:
+            raise NoConvergenceError("the limit point", solved.why, "a finer mesh")
 
 
 def _slope_root(before: FreeState, after: FreeState) -> float:
