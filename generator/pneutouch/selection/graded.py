@@ -66,9 +66,17 @@ def trial_of(
 
 
 def nearest_fraction(
-    target: GradeTarget, problem: SelectionProblem, law: ResolvedMixingCurve, size: tuple[float, float]
-) -> float | None:
-    """The constant fraction nearest to a target at inner radius and wall (mm), by the atlas; None without an answer."""
+    target: GradeTarget,
+    problem: SelectionProblem,
+    law: ResolvedMixingCurve,
+    size: tuple[float, float],
+    factor: Array | float = 1.0,
+) -> tuple[float, Array] | None:
+    """The constant fraction nearest to a target at inner radius and wall (mm), by the atlas, with its sensitivities
+    (kPa/N) by pressure; None without an answer.
+
+    ``factor`` is the solid's sensitivity over the atlas's, by pressure.
+    """
     at = np.linspace(0.0, greatest(law), _FRACTIONS)
     strain = law.elongation_at(at) / 100.0
     resins = tuple(
@@ -81,6 +89,7 @@ def nearest_fraction(
         for pressure in target.pressures
     ]
     lines = [answer.lines for answer in answers]
+    sensitivity_kPa_per_N = np.stack([line.sensitivity_kPa_per_N for line in lines], axis=1) * factor
     costs = np.array(
         [
             cost(
@@ -88,7 +97,7 @@ def nearest_fraction(
                 GradeTrial(
                     at[k],
                     at[k],
-                    tuple(float(line.sensitivity_kPa_per_N[k]) for line in lines),
+                    tuple(sensitivity_kPa_per_N[k].tolist()),
                     tuple(float(np.fmin(line.force_high[k], line.saturation_force[k])) for line in lines),
                     RATED_SHARE * float(np.fmin(answers[0].limit_pressure[k], problem.gauge_limit)),
                 ),
@@ -97,8 +106,11 @@ def nearest_fraction(
             for k in range(at.size)
         ]
     )
-    known = np.all([np.isfinite(line.sensitivity_kPa_per_N) for line in lines], axis=0)
-    return float(at[np.argmin(np.where(known, costs, np.inf))]) if known.any() else None
+    known = np.isfinite(sensitivity_kPa_per_N).all(axis=1)
+    if not known.any():
+        return None
+    best = int(np.argmin(np.where(known, costs, np.inf)))
+    return float(at[best]), sensitivity_kPa_per_N[best]
 
 
 def middle_wall(target: GradeTarget, problem: SelectionProblem, radius: float, thickest: float) -> float | None:

@@ -16,7 +16,15 @@ from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import rating
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.parts import assemble
-from pneutouch.selection.grade_search import GradeSearch, GradeTarget, GradeTrial, TrialReport, grade_search, shares
+from pneutouch.selection.grade_search import (
+    GradeSearch,
+    GradeTarget,
+    GradeTrial,
+    TrialReport,
+    cost,
+    grade_search,
+    shares,
+)
 from pneutouch.selection.graded import UniformMembrane, middle_wall, nearest_fraction, trial_of
 from pneutouch.selection.mixes import levels
 from pneutouch.selection.pool import evaluated
@@ -254,21 +262,36 @@ def _nearest(
     printer: Printer,
     search: GradeSearch,
 ) -> UniformMembrane:
-    """The constant mix nearest to the target: by the atlas, else the nearest of those tried; solved by the solid."""
+    """The constant mix nearest to the target: by the atlas, else the nearest of those tried; solved by the solid.
+
+    Where the solid then has it outside of a tolerance, the atlas looks once more, corrected by that solve.
+    """
+
+    def solved(fraction: float) -> UniformMembrane:
+        grade = pair.grade(round(fraction, 4))
+        trial = _trial(sensor, pair.material(grade), printer, grade_target)
+        return UniformMembrane(grade.label, grade.fractions[0], trial)
+
+    size = sensor.dome.inner_radius, sensor.dome.wall_thickness
+    found = nearest_fraction(grade_target, problem, pair.law, size) if _atlas_covers(problem, pair, sensor) else None
+    if found is None:
+        even = [trial for trial in search.trials if trial.pole == trial.rim]
+        return solved(min(even, key=lambda trial: max(shares(grade_target, trial).values())).pole)
+    nearest = solved(found[0])
+    factor = np.array(nearest.trial.sensitivity_kPa_per_N) / found[1]
+    if max(shares(grade_target, nearest.trial).values()) <= 1.0 or not np.isfinite(factor).all():
+        return nearest
+    again = nearest_fraction(grade_target, problem, pair.law, size, factor)
+    others = [nearest] if again is None else [nearest, solved(again[0])]
+    return min(others, key=lambda membrane: cost(grade_target, membrane.trial))
+
+
+def _atlas_covers(problem: SelectionProblem, pair: ResinPair, sensor: Sensor) -> bool:
+    """Whether the atlas answers for the constant mixes of a pair."""
     middle, recipe = problem.resins[0].material, shipped().recipe
-    fraction = None
     soft = float(pair.law.modulus_at(np.array(0.0)))
-    if (
+    return (
         other_contact(sensor) is None
         and material_sensor(middle).wall.poisson_ratio == recipe.poisson_ratio
         and sensor.gas.ambient_pressure <= recipe.stiffest * soft
-    ):
-        fraction = nearest_fraction(
-            grade_target, problem, pair.law, (sensor.dome.inner_radius, sensor.dome.wall_thickness)
-        )
-    if fraction is None:
-        even = [trial for trial in search.trials if trial.pole == trial.rim]
-        fraction = min(even, key=lambda trial: max(shares(grade_target, trial).values())).pole
-    grade = pair.grade(round(fraction, 4))
-    trial = _trial(sensor, pair.material(grade), printer, grade_target)
-    return UniformMembrane(grade.label, grade.fractions[0], trial)
+    )
