@@ -124,6 +124,16 @@ def test_a_finished_sweep_that_lacks_a_column_is_refused(library, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["x.nc"]
 
 
+def test_a_dataset_of_an_earlier_version_is_refused_with_the_reason(swept, tmp_path):
+    content = load(swept)
+    del content.attrs["content_hash"]
+    content.to_netcdf(tmp_path / "x.nc", engine="scipy")
+    with pytest.raises(
+        InputError, match=r"x\.nc: the dataset has no content_hash: it was written by an earlier version"
+    ):
+        write_companions(tmp_path / "x.nc")
+
+
 @pytest.mark.parametrize("name", ["sensitivity_high_kPa_per_N", "membrane_wall_thickness_mm", "status", "message"])
 def test_a_dataset_with_one_changed_value_is_refused(swept, tmp_path, name):
     content = load(swept)

@@ -273,12 +273,12 @@ def _nearest(
         return UniformMembrane(grade.label, grade.fractions[0], trial)
 
     size = sensor.dome.inner_radius, sensor.dome.wall_thickness
-    found = nearest_fraction(grade_target, problem, pair.law, size) if _atlas_covers(problem, pair, sensor) else None
-    if found is None:
+    by_atlas = nearest_fraction(grade_target, problem, pair.law, size) if _atlas_covers(problem, pair, sensor) else None
+    if by_atlas is None:
         even = [trial for trial in search.trials if trial.pole == trial.rim]
         return solved(min(even, key=lambda trial: max(shares(grade_target, trial).values())).pole)
-    nearest = solved(found[0])
-    factor = np.array(nearest.trial.sensitivity_kPa_per_N) / found[1]
+    nearest = solved(by_atlas[0])
+    factor = np.array(nearest.trial.sensitivity_kPa_per_N) / by_atlas[1]
     if max(shares(grade_target, nearest.trial).values()) <= 1.0 or not np.isfinite(factor).all():
         return nearest
     again = nearest_fraction(grade_target, problem, pair.law, size, factor)

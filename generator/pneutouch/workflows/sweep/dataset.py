@@ -110,20 +110,18 @@ def stored_dataset(path: Path) -> xarray.Dataset:
     """A finished sweep's dataset. Raises InputError where it is not as it was written."""
     import xarray
 
+    why = "the dataset is damaged: its content is not what the sweep wrote"
     try:
         with xarray.open_dataset(path, engine="scipy") as opened:
             content = opened.load()
-        intact = content.attrs[_CONTENT_HASH] == _content_hash(content)
+        if _CONTENT_HASH not in content.attrs:
+            why = f"the dataset has no {_CONTENT_HASH}: it was written by an earlier version, or damaged"
+        elif content.attrs[_CONTENT_HASH] == _content_hash(content):
+            return content
     # What was changed can be anything: a text that is no text, a number that is a date.
     except Exception:
-        intact = False
-    if not intact:
-        raise InputError(
-            "the dataset is damaged: its content is not what the sweep wrote",
-            file=path,
-            remedy="move it, or compute it again with `fresh`",
-        )
-    return content
+        pass
+    raise InputError(why, file=path, remedy="move it, or compute it again with `fresh`")
 
 
 def _by_pressure(
