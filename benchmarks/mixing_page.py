@@ -29,8 +29,8 @@ ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
 SOFT, STIFF = "TangoPlus", "VeroClear"
 WHERE = (0.03, 0.06, 0.1, 0.15, 0.2, 0.3)
-FORMER_LEVELS = 24
-"""Fractions that ``select`` tried when the mixture tool's curve was the only one."""
+WHOLE_LEVELS = 24
+"""Fractions to the end of the mixture tool's curve, about as far apart as those that are offered."""
 
 
 def measure(library: Library) -> MixingChart:
@@ -149,18 +149,18 @@ def _spread(chart: MixingChart, library: Library) -> list[str]:
     used, tool = _used(chart), chart.laws["mixture-tool"]
     fine = np.linspace(0.0, float(tool.fraction[-1]), 2001)
     logs = np.log(tool.modulus_at(fine))
-    former = np.interp(np.linspace(logs[0], logs[-1], FORMER_LEVELS), logs, fine)
+    whole = np.interp(np.linspace(logs[0], logs[-1], WHOLE_LEVELS), logs, fine)
     rows = [
-        _spread_row("before", former, chart, "mixture-tool", library),
-        _spread_row("today", levels(used, LEVELS), chart, next(iter(chart.laws)), library),
+        _spread_row("all of `mixture-tool`", whole, chart, "mixture-tool", library),
+        _spread_row("offered", levels(used, LEVELS), chart, next(iter(chart.laws)), library),
     ]
     return [
         "## Grades that are useful by every curve",
         "",
         f"`select --mix` and `--graded` offer fractions up to {100 * used.curve.common_top:.3g} %, where the stiffest curve "
         "ends. Beyond it a wall may be rigid if that curve is true; for a stiffer wall choose a catalogue resin, whose "
-        "modulus was measured. The paper's sensor at 0 kPa by the atlas, in all fractions that are tried; before, with "
-        "the mixture tool's curve in use, to its end:",
+        "modulus was measured. The paper's sensor at 0 kPa by the atlas, in all fractions that are tried, next to "
+        f"{WHOLE_LEVELS} to the end of the mixture tool's curve:",
         "",
         "| fractions | number | to | no modulus by some curve | S off by the farthest curve, median | worst |",
         "|---|---|---|---|---|---|",
