@@ -8,6 +8,7 @@ from pneutouch.catalogue import Library
 from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.inflation import LIMIT_HEIGHT, pressure
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.spec.casting import CAST_SEAT
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer, Process
@@ -19,9 +20,6 @@ PROCESSES: tuple[str, ...] = get_args(Process)
 _SHARE = 0.4
 """Highest driving pressure of a new design over the closed-form limit pressure: below the rating of a resin whose
 modulus is known to a factor of two."""
-
-_CAST_SEAT = "clamped-flange-M2"
-"""Seat of a new cast design: no glue but silicone's bonds silicone."""
 
 
 def process_values(process: str | None, material: str | None, library: Library) -> dict[str, dict[str, Any]]:
@@ -39,7 +37,7 @@ def process_values(process: str | None, material: str | None, library: Library) 
     profile, chosen = next(iter(runs.items()))
     values: dict[str, dict[str, Any]] = {"membrane": {"material": chosen}, "print": {"profile": profile}}
     if printers[profile].is_casting:
-        values |= {"connector": {"seat": _CAST_SEAT}, "mould": {}}
+        values |= {"connector": {"seat": CAST_SEAT}, "mould": {}}
     pressures_kPa = _pressures_kPa(library.load("materials", chosen), default)
     if pressures_kPa is not None:
         values["pneumatics"] = {"driving_pressures_kPa": pressures_kPa}

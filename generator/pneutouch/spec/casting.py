@@ -13,6 +13,9 @@ SHRINKAGE_PERCENT = (0.0, 10.0)
 """Bounds of `Casting.shrinkage_percent`, linear: addition-cured silicones shrink by about 0.1 %, condensation-cured
 ones by up to some percent; more is a number in another unit."""
 
+CAST_SEAT = "clamped-flange-M2"
+"""Seat of a cast membrane where nothing else is stated: no glue but silicone's own bonds silicone."""
+
 _MOST = {"pot_life_min": 1e4, "cure_h": 1e4, "mixed_viscosity_Pa_s": 1e5}
 
 

@@ -78,7 +78,9 @@ def core(size: MouldSize, material: Material) -> Solid:
         Line(rim.end, rim.start, "rim"),
         Arc(faces.inner.centre, faces.inner.radius, faces.inner.last, faces.inner.first, "inner wall"),
     )
-    return Solid("mould-core", ROLE, material, Meridian(outline), _handle(size), cuts=channels(size))
+    drills = zip(channels(size, _PAST), channels(size), strict=True)
+    cuts = tuple(Feature(drill, filled.volume()) for drill, filled in drills)
+    return Solid("mould-core", ROLE, material, Meridian(outline), _handle(size), cuts=cuts)
 
 
 def base(size: MouldSize, material: Material) -> Solid:
@@ -106,33 +108,28 @@ def pocket_meridian(size: MouldSize, past: float) -> Meridian:
     )
 
 
-def channels(size: MouldSize) -> tuple[Feature, ...]:
-    """The pour channel with its funnel, and the vents, through the foot; they widen towards the cavity."""
-    first, *others = size.gate_angles
-    spread = [(sprue_meridian(size), first), *((vent_meridian(size), angle) for angle in others)]
-    nets = [sprue_meridian(size, 0.0).volume(), *[vent_meridian(size, 0.0).volume()] * len(others)]
-    radius = size.channel_radius
+def channels(size: MouldSize, past: float = 0.0) -> tuple[Turned, ...]:
+    """What fills the pour channel with its funnel, the first, and the vents; they widen towards the cavity.
+
+    They reach ``past`` mm beyond the foot's faces.
+    """
+    radius, sprue, vent = size.channel_radius, _sprue_meridian(size, past), _vent_meridian(size, past)
     return tuple(
-        Feature(Turned(tool, Frame((radius * math.cos(angle), radius * math.sin(angle), 0.0))), net)
-        for (tool, angle), net in zip(spread, nets, strict=True)
+        Turned(vent if k else sprue, Frame((radius * math.cos(angle), radius * math.sin(angle), 0.0)))
+        for k, angle in enumerate(size.gate_angles)
     )
 
 
-def vent_meridian(size: MouldSize, past: float = _PAST) -> Meridian:
+def _vent_meridian(size: MouldSize, past: float) -> Meridian:
     """A vent about its axis."""
-    return _cones([_taper(size, 0.5 * size.shape.vent_diameter, size.foot_low - past), *_gate(size, past, "vent")])
+    radius = 0.5 * size.shape.vent_diameter
+    return _cones([_taper(size, radius, size.foot_low - past), _taper(size, radius, size.low + past)])
 
 
-def sprue_meridian(size: MouldSize, past: float = _PAST) -> Meridian:
+def _sprue_meridian(size: MouldSize, past: float) -> Meridian:
     """The pour channel about its axis: a funnel of 45 degrees down to the neck, then up to the flange."""
-    funnel: list[Point] = [(size.mouth + past, size.foot_low - past), (size.neck, size.neck_height)]
-    return _cones([*funnel, *_gate(size, past, "sprue")])
-
-
-def _gate(size: MouldSize, past: float, which: str) -> list[Point]:
-    """Where a channel meets the cavity."""
-    radius = 0.5 * (size.shape.sprue_diameter if which == "sprue" else size.shape.vent_diameter)
-    return [_taper(size, radius, size.low + past)]
+    gate = _taper(size, 0.5 * size.shape.sprue_diameter, size.low + past)
+    return _cones([(size.mouth + past, size.foot_low - past), (size.neck, size.neck_height), gate])
 
 
 def _taper(size: MouldSize, radius: float, z: float) -> Point:
@@ -144,11 +141,6 @@ def _cones(points: list[Point]) -> Meridian:
     """A solid of revolution through points of its wall, from below up."""
     path: TracedPath = [("channel", point) for point in points]
     return trace((0.0, points[0][1]), [*path, ("channel", (0.0, points[-1][1]))])
-
-
-def plug_meridian(size: MouldSize, which: str) -> Meridian:
-    """What fills a channel inside the foot: ``sprue`` or ``vent``, about its axis."""
-    return sprue_meridian(size, 0.0) if which == "sprue" else vent_meridian(size, 0.0)
 
 
 def screw_places(size: MouldSize) -> tuple[tuple[float, float], ...]:

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from pneutouch.parts.mould.assembly import MouldAssembly
-from pneutouch.parts.mould.pieces import sprue_meridian, vent_meridian
+from pneutouch.parts.mould.pieces import channels
 from pneutouch.units import ML, grams
 
 FILM = 0.5
@@ -76,11 +76,10 @@ class SiliconeBatch:
 def silicone_batch(mould: MouldAssembly) -> SiliconeBatch:
     """The batch that fills a mould once."""
     size, material = mould.size, mould.scene.membrane_material
-    vents = (size.gates - 1) * vent_meridian(size, 0.0).volume()
     return SiliconeBatch(
         cavities=size.shape.cavities,
         cavity_mL=size.faces.meridian.volume() / ML,
-        channels_mL=(sprue_meridian(size, 0.0).volume() + vents) / ML,
+        channels_mL=sum(channel.volume() for channel in channels(size)) / ML,
         overflow_mL=math.pi * size.window**2 * FILM / ML,
         density_g_per_cm3=material.density_g_per_cm3.nominal,
         parts_by_mass=() if material.casting is None else tuple(material.casting.parts_by_mass),

@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.body import Body, Frame, Turned
-from pneutouch.meridian import Meridian
-from pneutouch.parts.mould.pieces import plug_meridian
+from pneutouch.body import Body, Turned
+from pneutouch.parts.mould.pieces import channels
 from pneutouch.parts.mould.size import MouldSize
 
 UP, DOWN = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
@@ -78,7 +77,7 @@ def cavity_match(size: MouldSize, closed: Sequence[Body], tolerance: float) -> C
     """What the closed mould leaves in its first cavity, channels plugged, less the membrane, and the reverse."""
     from manifold3d import Manifold, OpType
 
-    plugs = [_manifold(tool, tolerance) for tool in _plugs(size)]
+    plugs = [_manifold(tool, tolerance) for tool in channels(size)]
     whole = Manifold.batch_boolean([*(body.manifold() for body in closed), *plugs], OpType.Add)
     reach, low, high = size.faces.edge.start[0] + _REACH, size.low - 1e-3, size.faces.outer.radius + 1e-3
     window = Manifold.cylinder(high - low, reach, reach, _SIDES).translate((0.0, 0.0, low))
@@ -124,7 +123,7 @@ def _starts(size: MouldSize, body: Body, tolerance: float) -> list[tuple[Array, 
     forms = _whole(size.faces.meridian.distance(points) <= 2 * tolerance, count)
     back = np.zeros(len(points), bool)
     if body.name == "mould-core":
-        for k, tool in enumerate(_plugs(size)):
+        for k, tool in enumerate(channels(size)):
             inside = (points[:, 2] < size.low - tolerance) & (points[:, 2] > size.foot_low + tolerance)
             channel = inside & _whole(tool.distance(points) <= 2 * tolerance, count)
             forms |= channel
@@ -138,14 +137,6 @@ def _starts(size: MouldSize, body: Body, tolerance: float) -> list[tuple[Array, 
 def _whole(near: Flags, count: int) -> Flags:
     """Of points, ``count`` on each triangle, those of triangles all of whose points are ``near``."""
     return np.repeat(near.reshape(-1, count).all(axis=1), count)
-
-
-def _plugs(size: MouldSize) -> list[Turned]:
-    """What fills the channels within the core's foot, the pour channel first."""
-    radius = size.channel_radius
-    frames = [Frame((radius * math.cos(a), radius * math.sin(a), 0.0)) for a in size.gate_angles]
-    kinds: list[Meridian] = [plug_meridian(size, "sprue"), *[plug_meridian(size, "vent")] * (size.gates - 1)]
-    return [Turned(meridian, frame) for meridian, frame in zip(kinds, frames, strict=True)]
 
 
 def _manifold(shape: Turned, tolerance: float) -> Any:

@@ -9,6 +9,7 @@ from typing import Any, get_args
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.cached_library import CachedLibrary
 from pneutouch.errors import InputError, nearest
+from pneutouch.spec.casting import CAST_SEAT
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer, Process
 from pneutouch.spec.target import Target
@@ -19,9 +20,6 @@ from pneutouch.workflows.select.run import SelectionRun
 
 ANY = ("any",)
 """Instead of names: every process by which a profile makes an elastomer."""
-
-_CAST_SEAT = "connector.seat=clamped-flange-M2"
-"""A cast flange is clamped: no glue but silicone's bonds it. What the target sets comes after it."""
 
 
 @dataclass(frozen=True)
@@ -111,6 +109,7 @@ def _of(target: Target, process: str, profile: str, resins: list[str] | None) ->
     """The target on one profile."""
     changes: dict[str, Any] = {"profile": profile}
     if process == "casting":
-        changes["assignments"] = [_CAST_SEAT, *target.setting.assignments]
+        # What the target sets comes after it.
+        changes["assignments"] = [f"connector.seat={CAST_SEAT}", *target.setting.assignments]
     given = target.given.model_copy(update={"materials": resins})
     return target.model_copy(update={"setting": target.setting.model_copy(update=changes), "given": given})
