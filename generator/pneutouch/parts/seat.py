@@ -25,9 +25,10 @@ def seat_faces(seat: AnySeat, layout: Layout) -> TracedPath:
             (SEAT, (inner, high)),
             (SEAT, (inner, 0.0)),
         ]
+    # A cast flange leans: at its underside, where it rests, it is that much wider inside too.
     floor: TracedPath = [
         ("groove floor", (flange, high)),
-        (SEAT, (inner, high)),
+        (SEAT, (inner + layout.flange_draft, high)),
         ("groove floor", (layout.groove_inner, high)),
         ("groove inner", (layout.groove_inner, 0.0)),
     ]

@@ -25,6 +25,7 @@ from pneutouch.parts.mould.pieces import core, mould_solids, ring, screw_places
 from pneutouch.parts.mould.release import release_of
 from pneutouch.parts.mould.screws import SCREW
 from pneutouch.printability.measure.mould import cavity_match, overlaps, undercuts
+from pneutouch.printability.rules.contact_faces import overlap_volume, shared_area
 from pneutouch.units import ML
 from tests.parts.space import measured_volume
 
@@ -177,6 +178,18 @@ def test_the_gaps_around_a_flange_that_leans_are_exact(library):
     groove = math.pi * (layout.groove_outer**2 - layout.groove_inner**2) * layout.flange_thickness
     assert glued.glue_volume == pytest.approx(groove - (membrane.volume - dome), rel=1e-9)
     assert measured_volume(clamped) == pytest.approx(clamped.internal_volume, rel=2e-3)
+
+
+@pytest.mark.parametrize("draft_deg", [0.5, 2.0, 8.0])
+def test_a_flange_that_leans_rests_on_the_floor_of_its_groove(draft_deg, library):
+    glued = assemble(
+        load_scene("cast-dome", {"connector.seat": "glued-flange", "mould.draft_deg": draft_deg}, library)
+    )
+    layout = glued.layout
+    rim = layout.inner_radius + layout.flange_draft
+    assert glued.seat_area == pytest.approx(math.pi * (layout.flange_radius**2 - rim**2), rel=1e-12)
+    assert shared_area(*glued.bodies) == pytest.approx(glued.seat_area, rel=1e-3)
+    assert overlap_volume(*glued.bodies) < 1e-6
 
 
 def test_a_printed_design_has_no_mould_and_keeps_its_form(library):
