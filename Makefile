@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page contact-table simulator-page lock clean
+.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page contact-table simulator-page lock clean
 
 venv: $(VENV)/.dev
 
@@ -29,8 +29,8 @@ pytest: $(VENV)/.dev
 	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 lint: $(VENV)/.dev
-	$(BIN)/ruff check generator tests benchmarks
-	$(BIN)/ruff format --check generator tests benchmarks
+	$(BIN)/ruff check generator tests benchmarks docs
+	$(BIN)/ruff format --check generator tests benchmarks docs/conf.py docs/gallery
 	$(BIN)/mypy
 
 # What CI requires in addition to the tests; pre-commit needs a clone, and its hooks are programs of the virtual environment.
@@ -46,6 +46,11 @@ ratios: $(VENV)/.dev
 check-slow: $(VENV)/.dev
 	$(BIN)/python -m pytest -m slow -n 2 --dist worksteal
 
+# The site, in docs/_build/html; offline, and a warning is an error.
+docs: $(VENV)/.dev
+	$(BIN)/sphinx-build --quiet --fail-on-warning --nitpicky --fresh-env docs docs/_build/html
+	@echo docs/_build/html/index.html
+
 # Needs uv; writes the locked dependencies with hashes for every platform.
 lock:
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url \
@@ -56,39 +61,39 @@ lock:
 clean:
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache
 
-# Speed against accuracy, measured now; writes docs/accuracy.md and its charts.
+# Speed against accuracy, measured now; writes docs/background/accuracy.md and its charts.
 chart: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.chart
 
-# Friction between wall and plate: sensitivity, the loop it makes, convergence and time; writes docs/friction.md.
+# Friction between wall and plate: sensitivity, the loop it makes, convergence and time; writes docs/background/friction.md.
 friction-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.friction_page
 
-# All elastomers with their laws and what they make of the paper's dome; writes docs/materials.md.
+# All elastomers with their laws and what they make of the paper's dome; writes docs/reference/materials.md.
 materials-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.materials_page
 
-# The paper's Table S1 under what the paper leaves open; writes docs/table-s1.md and its chart.
+# The paper's Table S1 under what the paper leaves open; writes docs/background/table-s1.md and its chart.
 table-s1-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.table_s1_page
 
-# The print meshes compared with other kernels; writes docs/meshing.md and its chart.
+# The print meshes compared with other kernels; writes docs/background/meshing.md and its chart.
 chart-meshes: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.mesh_page
 
-# The scan model and finite elements on Figure 9 of the paper; writes docs/texture.md and its charts.
+# The scan model and finite elements on Figure 9 of the paper; writes docs/background/texture.md and its charts.
 texture-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.texture_page
 
-# How often the intervals of simulated campaigns hold the truth; writes docs/coverage.json and the table of docs/measuring.md.
+# How often the intervals of simulated campaigns hold the truth; writes docs/background/coverage.json and the table of docs/howto/measuring.md.
 coverage-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.coverage
 
-# Where a pressed dome leaves its axis; writes docs/sway.md with its map. CalculiX's part: python -m benchmarks.sway_calculix.
+# Where a pressed dome leaves its axis; writes docs/background/sway.md with its map. CalculiX's part: python -m benchmarks.sway_calculix.
 sway-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.sway_page
 
-# The mixing curve between its bounds; writes docs/mixing.md and its chart.
+# The mixing curve between its bounds; writes docs/background/mixing.md and its chart.
 mixing-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.mixing_page
 
@@ -103,10 +108,10 @@ atlas-page: $(VENV)/.dev
 contact-table: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.contact_table
 
-# Voxel stacks: the dithers and the rasters, measured; writes docs/voxels.md and its pictures.
+# Voxel stacks: the dithers and the rasters, measured; writes docs/background/voxels.md and its pictures.
 voxel-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.voxel_page
 
-# The exported model pressed in MuJoCo; writes the chart and the table of docs/simulators.md.
+# The exported model pressed in MuJoCo; writes the chart and the table of docs/howto/simulators.md.
 simulator-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.simulator_page

@@ -1,4 +1,4 @@
-"""Write docs/atlas.md with its map of errors: ``python -m benchmarks.atlas_page`` (minutes, every core)."""
+"""Write docs/background/atlas.md with its map of errors: ``python -m benchmarks.atlas_page`` (minutes, every core)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pneutouch.mechanics.atlas.recipe import RECIPE, axes
 from pneutouch.mechanics.atlas.table import SHIPPED
 from pneutouch.report.style import INK, figure, svg
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
+DOCS = Path(__file__).resolve().parents[1] / "docs" / "background"
 COUNT, SEED = 500, 2000
 KEYS = ("wall", "share", "ambient", "dead", "depth")
 ERRORS = {
@@ -230,7 +230,7 @@ def main() -> None:
     data = measure()
     for name, text in (("atlas.json", json.dumps(data) + "\n"), ("atlas.svg", draw(data)), ("atlas.md", page(data))):
         (DOCS / name).write_text(text, encoding="utf-8")
-        print(f"wrote docs/{name}")
+        print(f"wrote docs/background/{name}")
 
 
 if __name__ == "__main__":

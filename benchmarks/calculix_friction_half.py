@@ -1,8 +1,8 @@
 """The press with friction by CalculiX in three dimensions (an optional peer, found on PATH).
 
 ``python -m benchmarks.calculix_friction_half`` presses the paper's dome in FLX9960 centrally with the axisymmetric solid and
-with half a dome of C3D20R cells, each with its own gas. Stores docs/friction-calculix.json, and writes its section into
-docs/validation.md. CalculiX counts slip from the beginning of its computation (`calculix_grip`): the coefficient is one at
+with half a dome of C3D20R cells, each with its own gas. Stores docs/background/friction-calculix.json, and writes its section into
+docs/background/validation.md. CalculiX counts slip from the beginning of its computation (`calculix_grip`): the coefficient is one at
 which nearly all points slip.
 """
 
@@ -28,7 +28,7 @@ from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.units import KPA
 
 ROOT = Path(__file__).resolve().parents[1]
-STORED, PAGE = ROOT / "docs" / "friction-calculix.json", ROOT / "docs" / "validation.md"
+STORED, PAGE = ROOT / "docs" / "background" / "friction-calculix.json", ROOT / "docs" / "background" / "validation.md"
 HEADING = "## CalculiX: friction in three dimensions"
 SENSOR = paper(0.91)
 DEPTH, STEPS = 2.4, 2

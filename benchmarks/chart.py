@@ -1,4 +1,4 @@
-"""Write docs/accuracy.md with its charts: ``python -m benchmarks.chart``."""
+"""Write docs/background/accuracy.md with its charts: ``python -m benchmarks.chart``."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from pneutouch.mechanics.exact_membrane import RISING_BRANCH, limit_point_errors
 from pneutouch.mechanics.inflation import LIMIT_PRESSURE, relative_height
 
 ROOT = Path(__file__).resolve().parents[1]
-DOCS = ROOT / "docs"
+DOCS = ROOT / "docs" / "background"
 
 HEAD = [
     "# Accuracy and cost, measured",
@@ -60,7 +60,7 @@ def main() -> None:
 
 def _write(name: str, text: str) -> None:
     (DOCS / name).write_text(text, encoding="utf-8")
-    print(f"wrote docs/{name}")
+    print(f"wrote docs/background/{name}")
 
 
 def inflation_section() -> list[str]:

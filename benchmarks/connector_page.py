@@ -1,4 +1,4 @@
-"""Draw docs/connectors.svg: each seat and mount in section, each port."""
+"""Draw docs/howto/connectors.svg: each seat and mount in section, each port."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def main() -> None:
             ax.set_ylim(-31, 13)
             ax.axis("off")
             ax.set_title(f"seat {seat}\nport {port}\nmount {mount}", fontsize=6.5, loc="left")
-        (ROOT / "docs" / "connectors.svg").write_text(svg(drawn), encoding="utf-8")
+        (ROOT / "docs" / "howto" / "connectors.svg").write_text(svg(drawn), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -145,7 +145,7 @@ def _first_stiffness(run: IndentationPath) -> float:
 
 
 def balls() -> list[str]:
-    """The section of docs/validation.md."""
+    """The section of docs/background/validation.md."""
     begun = process_time()
     blocks = [(contact, hertz(contact)) for contact in (0.02, 0.01, 0.005)]
     middle = process_time()

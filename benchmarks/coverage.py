@@ -1,7 +1,7 @@
 """Do stated intervals hold what they say? Simulated campaigns of the paper, read and made figures, against their truth.
 
 Each campaign: seven resins, three specimens, two driving pressures, three steps runs, one loop and one relaxation run. Writes
-docs/coverage.json and the table of docs/measuring.md.
+docs/background/coverage.json and the table of docs/howto/measuring.md.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from pneutouch.units import KPA
 RESINS = ("TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985", "FLX9995")
 PRESSURES = (0.0, 22.0)
 CAMPAIGNS, SPECIMENS, RUNS = 200, 3, 3
-PAGE, MARKS = DOCS / "measuring.md", ("<!-- coverage -->", "<!-- end of coverage -->")
+PAGE, MARKS = DOCS.parent / "howto" / "measuring.md", ("<!-- coverage -->", "<!-- end of coverage -->")
 STORED = DOCS / "coverage.json"
 
 RATE, LOOP_RATE = 100.0, 2000.0

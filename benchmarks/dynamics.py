@@ -1,4 +1,4 @@
-"""Figures and chart of docs/dynamics.md: ``python -m benchmarks.dynamics`` prints the tables and draws the chart."""
+"""Figures and chart of docs/background/dynamics.md: ``python -m benchmarks.dynamics`` prints the tables and draws the chart."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pneutouch.mechanics.line.dynamics import SensorDynamics
 from pneutouch.mechanics.line.elements import Duct, GasVolume
 from pneutouch.report.response_chart import GainCurve, gain_chart
 
-DOCS = Path(__file__).parents[1] / "docs"
+DOCS = Path(__file__).parents[1] / "docs" / "background"
 
 LENGTHS = (50.0, 300.0, 1000.0)
 """Tubes of the chart, mm."""

@@ -1,4 +1,4 @@
-"""Processor time of random presses with friction over the same presses without, for docs/friction.md.
+"""Processor time of random presses with friction over the same presses without, for docs/background/friction.md.
 
 ``python -m benchmarks.friction_cost [COUNT]`` prints a row a press (120), and their mean, greatest and count above 2.
 """

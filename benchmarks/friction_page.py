@@ -1,4 +1,4 @@
-"""Write docs/friction.md, every number computed: ``make friction-page`` (a few minutes)."""
+"""Write docs/background/friction.md, every number computed: ``make friction-page`` (a few minutes)."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def page(library: Library) -> str:
 
 
 def main() -> None:
-    (ROOT / "docs" / "friction.md").write_text(page(Library.default()), encoding="utf-8")
+    (ROOT / "docs" / "background" / "friction.md").write_text(page(Library.default()), encoding="utf-8")
 
 
 TEXT = {

@@ -1,4 +1,4 @@
-"""How far the fronts of a datasheet's trade-off under another contact lie off the solid, for docs/contact.md.
+"""How far the fronts of a datasheet's trade-off under another contact lie off the solid, for docs/background/contact.md.
 
 ``python -m benchmarks.front_error [DESIGN kPa KEY=VALUE ...]`` presses random places of each front with the solid and
 prints a row a place; without words it does so for three contacts.

@@ -1,4 +1,4 @@
-"""The paper's sensor refined over its whole depth: ``python -m benchmarks.full_depth`` writes this part of docs/accuracy.md."""
+"""The paper's sensor refined over its whole depth: ``python -m benchmarks.full_depth`` writes this part of docs/background/accuracy.md."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid_states import KINDS, curve_between
 from pneutouch.units import KPA
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "accuracy.md"
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "background" / "accuracy.md"
 HEADING = "## The paper's sensor over its whole depth"
 FLANGE = 2.25
 """Width and thickness of the flange of a glued seat around this wall, mm."""
@@ -127,7 +127,7 @@ def main() -> None:
     else:
         after = rest[rest.index("\n## ") + 1 :]
     PAGE.write_text(before + "\n".join(section()) + "\n" + after, encoding="utf-8")
-    print(f"wrote {HEADING.removeprefix('## ')} of docs/{PAGE.name}")
+    print(f"wrote {HEADING.removeprefix('## ')} of docs/background/{PAGE.name}")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""docs/gauges.md from the files of the gauges: ``python -m benchmarks.gauges_page`` writes it."""
+"""docs/reference/gauges.md from the files of the gauges: ``python -m benchmarks.gauges_page`` writes it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pneutouch.spec.fields import declaration
 from pneutouch.spec.gauge import FIGURES, Gauge
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs/gauges.md"
+PAGE = ROOT / "docs/reference/gauges.md"
 TEXT = ROOT / "benchmarks/gauges_text.md"
 """What the files do not hold: how gauges are used, three targets, how to add one; ``{table}`` and ``{sources}``."""
 

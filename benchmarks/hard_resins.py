@@ -1,4 +1,4 @@
-"""Write docs/hard-resins.md, published shear moduli of FLX9985 and FLX9995: ``python -m benchmarks.hard_resins``."""
+"""Write docs/background/hard-resins.md, published shear moduli of FLX9985 and FLX9995: ``python -m benchmarks.hard_resins``."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs" / "hard-resins.md"
+PAGE = ROOT / "docs" / "background" / "hard-resins.md"
 RESINS = ("FLX9985", "FLX9995")
 PRESSURES_KPA = (0.0, 22.0)
 
@@ -152,7 +152,7 @@ def page(library: Library) -> str:
 
 def main() -> None:
     PAGE.write_text(page(Library((ROOT,))), encoding="utf-8")
-    print("wrote docs/hard-resins.md")
+    print("wrote docs/background/hard-resins.md")
 
 
 if __name__ == "__main__":

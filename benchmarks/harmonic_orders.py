@@ -1,6 +1,6 @@
 """How a press off the axis settles with the order of its harmonics, and what it costs over a central one.
 
-``python -m benchmarks.harmonic_orders [ORDER ...]`` prints the tables of docs/off-axis.md: a ball of 6 mm radius 3 mm off
+``python -m benchmarks.harmonic_orders [ORDER ...]`` prints the tables of docs/background/off-axis.md: a ball of 6 mm radius 3 mm off
 the axis of a dome of the paper's size.
 """
 

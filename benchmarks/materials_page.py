@@ -1,4 +1,4 @@
-"""Write docs/materials.md: ``python -m benchmarks.materials_page`` (a minute of processor time).
+"""Write docs/reference/materials.md: ``python -m benchmarks.materials_page`` (a minute of processor time).
 
 ``--reach`` prints how far the wall of the shipped domes is stretched instead (`pneutouch.bench.tensile.reach`).
 """
@@ -25,7 +25,7 @@ from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE, TEXT = ROOT / "docs/materials.md", ROOT / "benchmarks/materials_text.md"
+PAGE, TEXT = ROOT / "docs/reference/materials.md", ROOT / "benchmarks/materials_text.md"
 PRESSURES_KPA = (0.0, 22.0)
 
 

@@ -1,4 +1,4 @@
-"""Write docs/meshing.md with its chart: ``make chart-meshes``."""
+"""Write docs/background/meshing.md with its chart: ``make chart-meshes``."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, figure, s
 from pneutouch.spec.read import parse_changes
 
 ROOT = Path(__file__).resolve().parents[1]
-DOCS = ROOT / "docs"
+DOCS = ROOT / "docs" / "background"
 
 BODIES = {
     "membrane": ("paper-dome", []),

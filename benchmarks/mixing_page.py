@@ -1,4 +1,4 @@
-"""Write docs/mixing.md with its chart: ``python -m benchmarks.mixing_page`` (seconds)."""
+"""Write docs/background/mixing.md with its chart: ``python -m benchmarks.mixing_page`` (seconds)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from pneutouch.spec.material import Material
 from pneutouch.workflows.coupons.blends import FRACTIONS
 
 ROOT = Path(__file__).resolve().parents[1]
-DOCS = ROOT / "docs"
+DOCS = ROOT / "docs" / "background"
 SOFT, STIFF = "TangoPlus", "VeroClear"
 WHERE = (0.03, 0.06, 0.1, 0.15, 0.2, 0.3)
 WHOLE_LEVELS = 24
@@ -229,7 +229,7 @@ def main() -> None:
     chart = measure(library)
     for name, text in (("mixing.svg", mixing_chart(chart, (178, 105))), ("mixing.md", page(chart, library))):
         (DOCS / name).write_text(text, encoding="utf-8")
-        print(f"wrote docs/{name}")
+        print(f"wrote docs/background/{name}")
 
 
 if __name__ == "__main__":

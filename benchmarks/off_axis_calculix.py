@@ -3,7 +3,7 @@
 ``python -m benchmarks.off_axis_calculix [SCENE ...]`` presses the paper's sensor in the scenes of these numbers, or in all
 of them, with the harmonic solid and with half a dome of C3D20R cells, without the base. Compared are the force, the
 sideways force and the pressure rise of both, each with its own gas, and their processor times. Stores
-docs/off-axis-calculix.json, and writes its section into docs/validation.md.
+docs/background/off-axis-calculix.json, and writes its section into docs/background/validation.md.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from benchmarks.page_section import replace_section
 from pneutouch.units import KPA
 
 ROOT = Path(__file__).resolve().parents[1]
-STORED, PAGE = ROOT / "docs" / "off-axis-calculix.json", ROOT / "docs" / "validation.md"
+STORED, PAGE = ROOT / "docs" / "background" / "off-axis-calculix.json", ROOT / "docs" / "background" / "validation.md"
 HEADING = "## CalculiX: contact off the axis"
 FIGURES = ("force_N", "sideways_N", "rise_kPa")
 _STRAIGHT = 1e-4

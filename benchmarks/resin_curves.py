@@ -1,4 +1,4 @@
-"""How far the datasheet's curves of other resins under friction lie off the solid, for docs/contact.md.
+"""How far the datasheet's curves of other resins under friction lie off the solid, for docs/background/contact.md.
 
 ``python -m benchmarks.resin_curves [DESIGN ...]`` prints the greatest difference of each curve at nine pressures.
 """

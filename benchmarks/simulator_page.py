@@ -1,4 +1,4 @@
-"""The exported model pressed in MuJoCo and the prediction; writes docs/simulators.svg and the table of docs/simulators.md."""
+"""The exported model pressed in MuJoCo and the prediction; writes docs/howto/simulators.svg and the table of docs/howto/simulators.md."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pneutouch.evaluation import evaluate
 from pneutouch.workflows.simulator import make_simulator, write_simulator
 from pneutouch.workflows.simulator.run import press_tables
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
+DOCS = Path(__file__).resolve().parents[1] / "docs" / "howto"
 DESIGN = "paper-dome"
 BEGIN, END = "<!-- comparison -->", "<!-- end of comparison -->"
 

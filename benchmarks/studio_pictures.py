@@ -1,4 +1,4 @@
-"""The studio's pictures of the documentation: ``python -m benchmarks.studio_pictures`` writes docs/studio-*.png."""
+"""The studio's pictures of the documentation: ``python -m benchmarks.studio_pictures`` writes docs/howto/studio-*.png."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from playwright.sync_api import Page
 from tests.browser import WITH_WEBGL, Pages, launched, until
 from tests.studio.served import SOLVED, Studio, served
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
+DOCS = Path(__file__).resolve().parents[1] / "docs" / "howto"
 
 _LONGEST = 300_000
 """Milliseconds that a build may take."""
@@ -31,11 +31,11 @@ _PRESSED = """(slider => { slider.value = Math.round(0.6 * slider.max); slider.d
 
 
 def write(name: str, page: Page) -> None:
-    """What the window of a page shows, as docs/studio-NAME.png with few colours."""
+    """What the window of a page shows, as docs/howto/studio-NAME.png with few colours."""
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
     path = DOCS / f"studio-{name}.png"
     picture.quantize(_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(path, optimize=True)
-    print(f"wrote docs/{path.name}: {path.stat().st_size} bytes")
+    print(f"wrote docs/howto/{path.name}: {path.stat().st_size} bytes")
 
 
 def main() -> None:

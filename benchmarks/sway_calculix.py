@@ -3,7 +3,7 @@
 Half of the paper's dome as a three-dimensional body of C3D20R cells, clamped at its base, with the pressure that the solid
 finds at each depth in it, is pressed by a flat plate without friction. A small sideways force on a ring at 45 degrees stands for
 an imperfection: force over the displacement of the pole is a stiffness that falls to zero where the dome sways. The same stiffness
-follows from the second variation of the solid. Writes docs/sway-calculix.json.
+follows from the second variation of the solid. Writes docs/background/sway-calculix.json.
 """
 
 from __future__ import annotations
@@ -196,7 +196,9 @@ def main(arc: int = 24, through: int = 2, around: int = 10) -> None:
     ]
     events = {event.kind: event.indentation for event in run.events if event.kind in ("sway", "lobes")}
     data = {"cells": [arc, through, around], "solid_events_mm": events, "rows": rows}
-    (ROOT / "docs" / "sway-calculix.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    (ROOT / "docs" / "background" / "sway-calculix.json").write_text(
+        json.dumps(data, indent=1) + "\n", encoding="utf-8"
+    )
     for row in rows:
         print(" ".join(f"{name}={value:.5g}" for name, value in row.items()))
 

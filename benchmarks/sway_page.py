@@ -1,4 +1,4 @@
-"""Write docs/sway.md with its map: ``make sway-page`` (a few minutes)."""
+"""Write docs/background/sway.md with its map: ``make sway-page`` (a few minutes)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.supply import Regulator
 from pneutouch.mechanics.solid.sway import unstable_waves
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
+DOCS = Path(__file__).resolve().parents[1] / "docs" / "background"
 PUBLISHED = 0.8
 SHELLS = (0.01, 0.02, 0.03, 0.05)
 
@@ -140,7 +140,7 @@ def _lobes(rows: list[dict[str, Any]]) -> str:
 
 
 def page(data: dict[str, Any], calculix: dict[str, Any]) -> str:
-    """docs/sway.md."""
+    """docs/background/sway.md."""
     counts = Counter((row["gas"], row["outcome"]) for row in data["map"])
     lines = [
         f"| {gas} | " + " | ".join(str(counts[gas, outcome]) for outcome in sway_map.LOOKS) + " |"
@@ -220,7 +220,7 @@ def main() -> None:
     (DOCS / "sway.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
     (DOCS / "sway.svg").write_text(sway_map.draw(data["map"]), encoding="utf-8")
     (DOCS / "sway.md").write_text(page(data, calculix), encoding="utf-8")
-    print("wrote docs/sway.md, sway.json and sway.svg")
+    print("wrote docs/background/sway.md, sway.json and sway.svg")
 
 
 if __name__ == "__main__":

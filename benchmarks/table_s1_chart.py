@@ -1,4 +1,4 @@
-"""The chart of docs/table-s1.md: every cell of the table by friction, with the span of all assumptions."""
+"""The chart of docs/background/table-s1.md: every cell of the table by friction, with the span of all assumptions."""
 
 from __future__ import annotations
 

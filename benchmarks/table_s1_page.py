@@ -1,4 +1,4 @@
-"""Write docs/table-s1.md with its chart: ``python -m benchmarks.table_s1_page`` (some 10 minutes of processor time)."""
+"""Write docs/background/table-s1.md with its chart: ``python -m benchmarks.table_s1_page`` (some 10 minutes of processor time)."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from pneutouch.catalogue import Library
 from pneutouch.wording import counted
 
 ROOT = Path(__file__).resolve().parents[1]
-DOCS = ROOT / "docs"
+DOCS = ROOT / "docs" / "background"
 
 OTHER_SOURCE = "FLX9995-DM"
-"""Left out of the summary figures, as in docs/accuracy.md: twice its measured sensitivity under every assumption."""
+"""Left out of the summary figures, as in docs/background/accuracy.md: twice its measured sensitivity under every assumption."""
 
 FACTORS = {
     "friction 0.3": Assumptions(friction=0.3),
@@ -241,7 +241,7 @@ def main() -> None:
     stored = DOCS / "table-s1.json"
     stored.write_text(json.dumps(raw(cells(Library((ROOT,)))), indent=1) + "\n", encoding="utf-8")
     write(read(stored.read_text(encoding="utf-8")))
-    print("wrote docs/table-s1.md")
+    print("wrote docs/background/table-s1.md")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The section of docs/texture.md that compares the reduced model with finite elements."""
+"""The section of docs/background/texture.md that compares the reduced model with finite elements."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The section of docs/texture.md on the paper's claim."""
+"""The section of docs/background/texture.md on the paper's claim."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Write docs/texture.md with its charts: ``make texture-page`` (a few minutes)."""
+"""Write docs/background/texture.md with its charts: ``make texture-page`` (a few minutes)."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from pneutouch.workflows.scan.run import ScanOptions, run_scan
 from pneutouch.workflows.scan.separate import separating
 
 ROOT = Path(__file__).resolve().parents[1]
-DOCS = ROOT / "docs"
+DOCS = ROOT / "docs" / "background"
 CELL, LENGTH, HEIGHT = 0.5, 24.0, 8.0
 DEPTHS, KINDS = (0.0, 1.0, 2.0, 3.0), {3.0: (1.5, 1.0), 6.0: (3.0, 1.5)}
 SURFACE = Row(3.0, 1.5, 1.0, 0.0, 0.75)
@@ -271,7 +271,7 @@ def main() -> None:
     }
     for name, text in files.items():
         (DOCS / name).write_text(text, encoding="utf-8")
-        print(f"wrote docs/{name}")
+        print(f"wrote docs/background/{name}")
 
 
 if __name__ == "__main__":

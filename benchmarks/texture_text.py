@@ -1,4 +1,4 @@
-"""The text of docs/texture.md from measured numbers."""
+"""The text of docs/background/texture.md from measured numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Write docs/validation.md: the solid against exact results, other programs and the paper's table."""
+"""Write docs/background/validation.md: the solid against exact results, other programs and the paper's table."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs" / "validation.md"
+PAGE = ROOT / "docs" / "background" / "validation.md"
 
 SPHERES = ((1.0, 2.0), (10.0, 11.0), (9.25, 10.75), (8.5, 10.0))
 """Inner and outer radii of the thick spheres."""

@@ -1,4 +1,4 @@
-"""Write docs/voxels.md with its pictures: ``make voxel-page`` (about two minutes)."""
+"""Write docs/background/voxels.md with its pictures: ``make voxel-page`` (about two minutes)."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from pneutouch.workflows.build.voxels import plan_voxels, write_voxels
 from pneutouch.workflows.show.voxels import draw
 
 ROOT = Path(__file__).resolve().parents[1]
-DOCS = ROOT / "docs"
+DOCS = ROOT / "docs" / "background"
 SHOWN = 0.19
 """Fraction in the picture of the dithers: what the shipped grade reaches at its rim."""
 

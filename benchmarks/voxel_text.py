@@ -1,4 +1,4 @@
-"""The text and tables of docs/voxels.md."""
+"""The text and tables of docs/background/voxels.md."""
 
 from __future__ import annotations
 

@@ -119,7 +119,7 @@ def test_the_peers_are_given_a_fair_outline(evaluated):
 def test_intervals_of_simulated_campaigns_hold_what_they_say():
     """The stored coverage is on the page; every figure's intervals hold the truth in 90 to 99 % of the campaigns."""
     data = stored("coverage.json")
-    assert "\n".join(coverage.table(data)) in (DOCS / "measuring.md").read_text(encoding="utf-8")
+    assert "\n".join(coverage.table(data)) in (DOCS.parent / "howto" / "measuring.md").read_text(encoding="utf-8")
     assert set(data["resins"]) == set(coverage.RESINS) and data["campaigns"] == 200
     for key in BY_KEY:
         held = [f[key]["held"] for pressures in data["resins"].values() for f in pressures.values() if key in f]

@@ -1,4 +1,4 @@
-"""docs/gauges.md is made from the files of the gauges, and states the source of every number."""
+"""docs/reference/gauges.md is made from the files of the gauges, and states the source of every number."""
 
 from benchmarks.gauges_page import PAGE, gauges, page
 

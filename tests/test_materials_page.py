@@ -1,4 +1,4 @@
-"""docs/materials.md is made from the material files, and its figures are what the solid gives."""
+"""docs/reference/materials.md is made from the material files, and its figures are what the solid gives."""
 
 from __future__ import annotations
 

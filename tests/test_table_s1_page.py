@@ -1,4 +1,4 @@
-"""docs/table-s1.md: its numbers are what the solid gives today, its text and chart are those of its numbers."""
+"""docs/background/table-s1.md: its numbers are what the solid gives today, its text and chart are those of its numbers."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from benchmarks.theory import resins
 from pneutouch.catalogue import Library
 from tests.conftest import ROOT
 
-DOCS = ROOT / "docs"
+DOCS = ROOT / "docs" / "background"
 ROWS = read((DOCS / "table-s1.json").read_text(encoding="utf-8"))
 
 

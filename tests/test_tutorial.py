@@ -1,4 +1,4 @@
-"""The tutorial of docs/measuring.md, run as it stands; its campaign file is read."""
+"""The tutorial of docs/howto/measuring.md, run as it stands; its campaign file is read."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pneutouch.spec.read import validate
 from tests.conftest import ROOT
 from tests.running import in_process
 
-TEXT = (ROOT / "docs" / "measuring.md").read_text(encoding="utf-8")
+TEXT = (ROOT / "docs" / "howto" / "measuring.md").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +81,7 @@ def test_what_is_predicted_again_is_the_sensor_in_hand(walked):
 
 def test_the_campaign_file_of_the_page_is_one():
     (block,) = re.findall(r"```toml\n(.*?)```", TEXT, re.DOTALL)
-    campaign = validate(Campaign, tomllib.loads(block), "docs/measuring.md")
+    campaign = validate(Campaign, tomllib.loads(block), "docs/howto/measuring.md")
     assert campaign.columns.position.unit == "um" and len(campaign.runs) == 2
 
 

@@ -1,4 +1,4 @@
-"""The package and its documentation use the words of docs/vocabulary.md; tests/vocabulary.py reads them."""
+"""The package and its documentation use the words of docs/reference/vocabulary.md; tests/vocabulary.py reads them."""
 
 from __future__ import annotations
 

@@ -117,7 +117,7 @@ def test_the_installed_package_predicts_without_the_checkout(unpacked, tmp_path)
 
 
 def test_every_example_that_the_docs_name_is_reached_from_the_installed_package(unpacked, tmp_path):
-    pages = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    pages = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
     named = {name for page in pages for name in re.findall(r"new .*?--from ([\w-]+)", page.read_text(encoding="utf-8"))}
     assert {"fingertip", "seven-resins", "wall-and-resin", "campaign"} <= named
     code = (
@@ -131,7 +131,7 @@ def test_every_example_that_the_docs_name_is_reached_from_the_installed_package(
 
 
 def test_no_page_names_an_example_by_its_place_in_the_checkout():
-    for page in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))):
+    for page in (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))):
         assert "docs/examples" not in page.read_text(encoding="utf-8"), page
 
 

@@ -1,4 +1,4 @@
-"""Find words in the package and its documentation that docs/vocabulary.md replaces by others.
+"""Find words in the package and its documentation that docs/reference/vocabulary.md replaces by others.
 
 Run as ``python tests/vocabulary.py [PATHS...]``; without paths, everything that the test covers. One line for each
 place: file, line, word, what to use instead. Exit code 1 where there is one.
@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "generator" / "pneutouch"
-VOCABULARY = ROOT / "docs" / "vocabulary.md"
+VOCABULARY = ROOT / "docs" / "reference" / "vocabulary.md"
 TEXTS = (".md", ".j2", ".html", ".typ", ".css", ".js")
 _HEADING = "## Words not used"
 _CAPITALS = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
@@ -134,7 +134,7 @@ def files(path: Path) -> list[Path]:
 def covered() -> dict[str, list[Path]]:
     """All files that must be clean, by their top-level part: a folder of the package, a module, ``docs``."""
     parts = {path.name.removesuffix(".py"): files(path) for path in PACKAGE.iterdir() if path.name != "__pycache__"}
-    pages = sorted((ROOT / "docs").glob("*.md"))
+    pages = sorted((ROOT / "docs").rglob("*.md"))
     return {**parts, "docs": [*pages, ROOT / "README.md", ROOT / "CONTRIBUTING.md"]}
 
 

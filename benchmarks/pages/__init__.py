@@ -1,1 +1,1 @@
-"""Sections of docs/accuracy.md: text and figures from what the benchmarks measured."""
+"""Sections of docs/background/accuracy.md: text and figures from what the benchmarks measured."""

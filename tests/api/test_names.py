@@ -42,7 +42,7 @@ def test_the_stub_declares_the_names_that_are_there():
 
 
 def test_the_page_runs_and_names_every_public_name(capsys):
-    text = (PACKAGE.parents[1] / "docs" / "python.md").read_text()
+    text = (PACKAGE.parents[1] / "docs" / "reference" / "python.md").read_text()
     (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     exec(compile(block, "python.md", "exec"), {})
     assert "kPa/N" in capsys.readouterr().out

@@ -73,7 +73,7 @@ def test_bad_words_exit_2(words, said):
 
 
 def test_the_mixing_pages_command_prints_eight_mixes_and_their_results_make_a_curve(here, root):
-    page = (root / "docs/mixing.md").read_text()
+    page = (root / "docs/background/mixing.md").read_text()
     line = next(line for line in page.splitlines() if line.startswith("pneutouch coupons --mixing"))
     result = run(*line.split()[2:], "--json")
     assert result.exit_code == 0, result.stderr

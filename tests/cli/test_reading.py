@@ -29,7 +29,7 @@ from tests.tables.instruments import INSTRUMENTS, logger, zwick
 
 assert calibrate and characterize and plan
 
-PAGE = (ROOT / "docs" / "measuring.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "howto" / "measuring.md").read_text(encoding="utf-8")
 ASKED = SimulationOptions(
     specimens=1, driving_pressures_kPa=(0.0,), runs=1, kinds=("steps",), model="atlas", truth=SimulationTruth(rest=5.0)
 )

@@ -1,4 +1,4 @@
-"""``pneutouch sweep`` as a user meets it; the commands and the Python of docs/sweep.md are run."""
+"""``pneutouch sweep`` as a user meets it; the commands and the Python of docs/howto/sweep.md are run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.workflows.sweep.conftest import cluster
 
 __all__ = ["cluster"]
 
-TEXT = (ROOT / "docs/sweep.md").read_text(encoding="utf-8")
+TEXT = (ROOT / "docs/howto/sweep.md").read_text(encoding="utf-8")
 
 
 def blocks(language):

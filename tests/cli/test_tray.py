@@ -1,4 +1,4 @@
-"""``pneutouch tray`` as a user meets it; what docs/tray.md shows is what the commands say."""
+"""``pneutouch tray`` as a user meets it; what docs/howto/tray.md shows is what the commands say."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 from tests.cli.test_commands import modules_after
 from tests.conftest import ROOT
 
-TEXT = (ROOT / "docs/tray.md").read_text(encoding="utf-8")
+TEXT = (ROOT / "docs/howto/tray.md").read_text(encoding="utf-8")
 (CONSOLE,) = re.findall(r"```console\n(.*?)```", TEXT, re.DOTALL)
 SHOWN = re.findall(r"\$ (pneutouch .*)\n((?:(?!\$ ).*\n)*)", CONSOLE)
 EXAMPLE = "seven-resins.toml"

@@ -170,7 +170,9 @@ def test_the_line_on_ageing(library):
     "table", [agilus_table, wall_table, paper_table, pytest.param(friction_table, marks=pytest.mark.slow)]
 )
 def test_the_page_has_the_tables_of_today(table):
-    assert "\n".join(table(Library((ROOT,)))) in (ROOT / "docs" / "viscous.md").read_text(encoding="utf-8")
+    assert "\n".join(table(Library((ROOT,)))) in (ROOT / "docs" / "background" / "viscous.md").read_text(
+        encoding="utf-8"
+    )
 
 
 @pytest.mark.slow

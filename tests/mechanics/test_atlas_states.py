@@ -110,7 +110,7 @@ def test_warnings_on_the_way_are_the_solids():
         {e.kind: e.indentation for e in f.states[0].events if not e.ends_range}
         for f in (atlas_result(deep, PRESSURES[:1])[0], solid_result(deep, PRESSURES[:1]))
     ]
-    # The table holds no pressure on the base: docs/atlas.md.
+    # The table holds no pressure on the base: docs/background/atlas.md.
     assert set(found[1]) - set(found[0]) == {"wall on its base"} and found[0].keys() <= found[1].keys() and found[0]
     del found[1]["wall on its base"]
     for kind, where in found[1].items():
@@ -177,7 +177,7 @@ def test_a_thin_wall_meets_the_ring_and_the_solid_is_preferred():
     assert found.model == "solid" and "ring that clamps" in found.error_estimate["model_choice"]
     assert "ring that clamps" in asked.error_estimate["model_choice"]
     low, high = (one.states[0].figures.sensitivity_kPa_per_N for one in (found, asked))
-    assert 0.02 < high / low - 1 < 0.10  # docs/atlas.md states the bound
+    assert 0.02 < high / low - 1 < 0.10  # docs/background/atlas.md states the bound
 
 
 def test_the_document_is_complete():

@@ -166,7 +166,7 @@ def test_a_wall_on_its_base_is_stated_and_changes_the_deep_press_alone():
     through = predict("paper", PAPER.replace(base=None), [0.0])
     events = [{event.kind for event in one.states[0].events} for one in (on_base, through)]
     assert events[0] - events[1] == {"wall on its base"} and events[1] - events[0] == {"wall below the base plane"}
-    # Extrapolated from meshes of up to 128 x 8 cells over the same depth: docs/accuracy.md.
+    # Extrapolated from meshes of up to 128 x 8 cells over the same depth: docs/background/accuracy.md.
     assert on_base.states[0].figures.sensitivity_kPa_per_N == pytest.approx(2.3218, rel=0.002)
     assert any("lies down" in line for line in on_base.assumptions)
     assert not any("lies down" in line for line in through.assumptions)
@@ -180,6 +180,6 @@ def test_the_flange_of_a_printed_rim_carries_the_wall():
         predict("paper", one, [0.0]).states[0] for one in (sensor.replace(base=RigidBase()), sensor.replace(base=None))
     ]
     assert "wall on its base" in {event.kind for event in found[0].events}
-    # Without it the wall passes through the flange: docs/accuracy.md.
+    # Without it the wall passes through the flange: docs/background/accuracy.md.
     assert found[0].figures.sensitivity_kPa_per_N == pytest.approx(2.366, rel=0.003)
     assert found[1].figures.sensitivity_kPa_per_N > 1.05 * found[0].figures.sensitivity_kPa_per_N

@@ -1,4 +1,4 @@
-"""docs/printing.md: its design builds, its commands run, and its tables name what there is."""
+"""docs/howto/printing.md: its design builds, its commands run, and its tables name what there is."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pneutouch.parts import assemble
 from pneutouch.printability.check import RULES
 from tests.conftest import ROOT
 
-TEXT = (ROOT / "docs/printing.md").read_text(encoding="utf-8")
+TEXT = (ROOT / "docs/howto/printing.md").read_text(encoding="utf-8")
 
 
 def test_the_design_of_the_page_can_be_drawn(library, tmp_path):

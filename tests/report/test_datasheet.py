@@ -163,7 +163,7 @@ def test_sheet_and_text_warn_of_the_sway(evaluated, page):
     from pneutouch.cli.text import prediction_text
     from pneutouch.evaluation.document import full_document
 
-    # A wall that passes through its base sways; one that lies down on it does not: docs/sway.md.
+    # A wall that passes through its base sways; one that lies down on it does not: docs/background/sway.md.
     evaluation = evaluated("paper-dome", "pneumatics.driving_pressures_kPa=[0]", "contact.base=false")
     prediction = full_document(evaluation)
     (event,) = [event for event in prediction["states"][0]["events"] if event["kind"] == "sway"]

@@ -247,7 +247,7 @@ def test_tiles_name_the_worst_group(campaign):
 
 
 def test_docs_define_every_figure_with_its_key(root):
-    text = (root / "docs" / "measuring.md").read_text(encoding="utf-8")
+    text = (root / "docs" / "howto" / "measuring.md").read_text(encoding="utf-8")
     section = text[text.index("## Definitions") :]
     assert set(definition.LINES) == {figure.key for figure in FIGURES}
     for figure in FIGURES:

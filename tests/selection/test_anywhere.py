@@ -22,7 +22,7 @@ from pneutouch.workflows.select.connector import base_sensor
 from pneutouch.workflows.select.run import _resins, problem_of, select
 
 FIGURES = TargetFigures(sensitivity_kPa_per_N=1.9, driving_pressure_kPa=12, force_range_N=15, max_diameter_mm=25)
-"""The target of docs/off-axis.md."""
+"""The target of docs/background/off-axis.md."""
 
 
 @pytest.fixture(scope="module")

@@ -224,5 +224,5 @@ def test_random_targets_under_friction_and_balls(tmp_path, capsys):
         print(f"\n{fates}")  # noqa: T201
     met = [rounds for what, rounds in fates if what == "met"]
     assert len(met) >= LEAST_MET
-    # docs/select.md states three or four.
+    # docs/howto/select.md states three or four.
     assert np.median(met) <= 4

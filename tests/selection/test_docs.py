@@ -1,4 +1,4 @@
-"""The commands of docs/select.md run, and its example file is the README's target."""
+"""The commands of docs/howto/select.md run, and its example file is the README's target."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 from tests.conftest import ROOT
 from tests.selection.targets import FINGERTIP
 
-TEXT = (ROOT / "docs" / "select.md").read_text(encoding="utf-8")
+TEXT = (ROOT / "docs" / "howto" / "select.md").read_text(encoding="utf-8")
 COMMANDS = [line for block in re.findall(r"```sh\n(.*?)```", TEXT, re.DOTALL) for line in block.splitlines()]
 
 

@@ -1,4 +1,4 @@
-"""Attacks on the studio by single requests, and what each gets. docs/studio.md has them as a table."""
+"""Attacks on the studio by single requests, and what each gets. docs/howto/studio.md has them as a table."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ def test_an_attack_gets_what_the_table_says(attack, studio):
 
 
 def test_the_table_of_the_docs_is_this_one(root):
-    text = (root / "docs" / "studio.md").read_text()
+    text = (root / "docs" / "howto" / "studio.md").read_text()
     assert "\n".join(attack.row() for attack in ATTACKS) in text
 
 

@@ -31,7 +31,7 @@ FIELDS = {
     "target.force_range_N": "15",
     "target.max_diameter_mm": "25",
 }
-"""The first command of docs/select.md."""
+"""The first command of docs/howto/select.md."""
 
 
 def asked(values, base="paper-dome", report=lambda done, total, what: None):

@@ -1,4 +1,4 @@
-"""docs/texture.md is made of the stored numbers, and they are what the reduced model gives today."""
+"""docs/background/texture.md is made of the stored numbers, and they are what the reduced model gives today."""
 
 from __future__ import annotations
 

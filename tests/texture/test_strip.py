@@ -1,4 +1,4 @@
-"""The finite elements that the reduced model is measured against, and the error that docs/texture.md states."""
+"""The finite elements that the reduced model is measured against, and the error that docs/background/texture.md states."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ def test_a_calibrated_sensor_is_surer_and_holds_the_truth(folder):
 
 @pytest.mark.slow
 def test_of_100_campaigns_at_least_95_are_surer_and_90_to_99_hold_the_truth(folder):
-    """Sensors with a model error of 6 % of their own; the numbers found stand in docs/uncertainty.md."""
+    """Sensors with a model error of 6 % of their own; the numbers found stand in docs/background/uncertainty.md."""
     results = campaigns(100, folder)
     for pressure in (*MEASURED, UNSEEN):
         at = [result[pressure] for result in results]

@@ -35,7 +35,7 @@ FLAT = [
     "--base",
     "paper-dome",
 ]
-"""The command of docs/graded.md."""
+"""The command of docs/background/graded.md."""
 
 
 def run(*arguments: str):
@@ -116,7 +116,7 @@ WIDEST = {
     "given": {"graded": True, "wall_thickness_mm": 1.5},
     "setting": {"base": "paper-dome"},
 }
-"""The third command of docs/graded.md."""
+"""The third command of docs/background/graded.md."""
 
 
 @pytest.mark.slow

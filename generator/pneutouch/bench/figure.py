@@ -32,7 +32,7 @@ class FigureDefinition:
 
 _WIDTH_READING, _AREA_READING = 0.03, 0.04
 """Biases found in the hysteresis of simulated loops of known sensors, recorded at 2 kHz with 0.2 to 0.4 % of it
-(docs/coverage.json: ``off`` of the loop's figures)."""
+(docs/background/coverage.json: ``off`` of the loop's figures)."""
 
 FIGURES = (
     FigureDefinition("sensitivity_kPa_per_N", "Sensitivity, line with intercept", "kPa/N", digits=4),
@@ -62,7 +62,7 @@ FIGURES = (
     FigureDefinition("noise_pressure_kPa", "Noise of a pressure sample", "kPa rms"),
     FigureDefinition("resolution_N", "Resolution of the force read from the pressure", "N"),
 )
-"""In the order of every table. Definitions with formula and source: docs/measuring.md."""
+"""In the order of every table. Definitions with formula and source: docs/howto/measuring.md."""
 
 BY_KEY = {figure.key: figure for figure in FIGURES}
 

@@ -20,7 +20,7 @@ def contact_notes(sensor: Sensor, contact: ContactModel | None) -> tuple[str, ..
         f"{sensor.protocol.other_contact}: the figures and their derivatives by modulus and friction are the solid's, "
         "the other derivatives those of a plate without friction; what the latter may miss is the source contact "
         "correction. The error of the model is that of a plate without friction against Table S1, of which the "
-        "friction in those measurements is a part, so that it may count twice (docs/uncertainty.md)"
+        "friction in those measurements is a part, so that it may count twice (docs/background/uncertainty.md)"
     ]
     friction = contact.friction
     if friction is not None and not np.isfinite(friction.standard).any(axis=0).all():

@@ -138,7 +138,7 @@ def gauge_rate_Hz(scene: ResolvedDesign) -> float | None:
 
 
 def dynamics_document(figures: SensorBandwidth) -> dict[str, Any]:
-    """The figures as data, see docs/dynamics.md."""
+    """The figures as data, see docs/background/dynamics.md."""
     note = {} if figures.note is None else {"note": figures.note}
     return {
         "basis": list(BASIS),

@@ -139,7 +139,7 @@ class Evaluation:
 
     @cached_property
     def bandwidth(self) -> SensorBandwidth:
-        """How fast the sensor reads; see docs/dynamics.md."""
+        """How fast the sensor reads; see docs/background/dynamics.md."""
         from pneutouch.evaluation.dynamics import sensor_bandwidth
 
         return sensor_bandwidth(self.assembly, self.sensor, self.prediction)
@@ -167,7 +167,7 @@ def evaluate(
 
     ``tolerance`` is what ``model="auto"`` must meet. ``clamp`` is where the solid is held: at the
     "base" plane, as in the paper, or at the "flange", as printed.
-    ``aged`` shifts the resin's modulus by its hardness after a year (docs/ageing.md).
+    ``aged`` shifts the resin's modulus by its hardness after a year (docs/background/ageing.md).
     """
     if clamp not in CLAMPS:
         raise InputError(f"unknown.{nearest(clamp, CLAMPS)}", key="clamp", value=clamp)

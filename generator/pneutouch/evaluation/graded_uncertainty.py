@@ -24,7 +24,7 @@ _NOTE = (
 
 _LAW_NOTE = (
     "the wall has a fitted law: the figures are the solid's, their relative uncertainty is that of the neo-Hookean "
-    "wall with the modulus fitted over the same stretches (docs/materials.md sets both side by side)"
+    "wall with the modulus fitted over the same stretches (docs/reference/materials.md sets both side by side)"
 )
 
 

@@ -139,7 +139,8 @@ class SheetGauge(NamedTuple):
 
 
 class SpeedState(NamedTuple):
-    """How fast a sensor reads at a driving pressure (MPa): Hz and s, None where there is none; see docs/dynamics.md."""
+    """How fast a sensor reads at a driving pressure (MPa): Hz and s, None where there is none
+    (docs/background/dynamics.md)."""
 
     driving_pressure: float
     resonance: float | None

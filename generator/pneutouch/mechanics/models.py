@@ -22,18 +22,21 @@ HARMONICS_SETTLED = 0.01
 """The last raise of the harmonics changes sensitivity, force and pressure by less than this share."""
 
 DISCRETISATION: ErrorEstimate = {"sensitivity_discretisation_relative": 0.011, "limit_pressure_relative": 0.002}
-"""Greatest relative errors of the solid at its default resolution against a refined mesh (docs/accuracy.md)."""
+"""Greatest relative errors of the solid at its default resolution against a refined mesh
+(docs/background/accuracy.md)."""
 
 OBJECT_DISCRETISATION = 0.02
 """Greatest relative error of the solid's sensitivity under an object that is no plate, at the resolution it takes,
-against a refined mesh (docs/contact.md): 0.002 where the range ends at the depth, more where an event ends it."""
+against a refined mesh (docs/background/contact.md): 0.002 where the range ends at the depth, more where an
+event ends it."""
 
 TABULATION = 0.0075
 """Greatest relative error of the atlas's sensitivity against the solid where `auto` takes it: away from buckling and
-tearing (docs/atlas.md); held by `make check-slow`."""
+tearing (docs/background/atlas.md); held by `make check-slow`."""
 
 _MEMBRANE = 17.0
-"""Greatest relative error of the membrane's sensitivity against the solid (docs/accuracy.md): no bending stiffness."""
+"""Greatest relative error of the membrane's sensitivity against the solid: no bending stiffness
+(docs/background/accuracy.md)."""
 
 NUMERICAL = {
     "membrane": _MEMBRANE,

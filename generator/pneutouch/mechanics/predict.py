@@ -38,7 +38,7 @@ _DISCRETISATION_SUMMARY = (
 )
 _OBJECT_SUMMARY = (
     f"Discretisation: sensitivity within {OBJECT_DISCRETISATION:.0%}, limit pressure within "
-    f"{DISCRETISATION['limit_pressure_relative']:.1%} of a refined mesh (docs/contact.md)."
+    f"{DISCRETISATION['limit_pressure_relative']:.1%} of a refined mesh (docs/background/contact.md)."
 )
 _TABULATION_SUMMARY = (
     f"Tabulation: sensitivity within {TABULATION:.1%} of the solid, that is within {NUMERICAL['atlas']:.1%} "
@@ -66,7 +66,7 @@ _BODY = "axisymmetric hyperelastic solid with the wall's full stiffness"
 _HARMONIC_BODY = "hyperelastic solid with Fourier sums around the axis and the wall's full stiffness"
 _HARMONIC_SUMMARY = (
     f"Discretisation: sensitivity within {OBJECT_DISCRETISATION:.0%} by the mesh; the last raise of the harmonics "
-    f"changed sensitivity, force and pressure by less than {HARMONICS_SETTLED:.0%} (docs/off-axis.md)."
+    f"changed sensitivity, force and pressure by less than {HARMONICS_SETTLED:.0%} (docs/background/off-axis.md)."
 )
 
 _SOLID_ASSUMPTIONS = (

@@ -87,7 +87,7 @@ def solid_result(
 ) -> ModelResult:
     """Inflate through the limit point, then press at every driving pressure (MPa, ascending).
 
-    ``cells`` is the number of cells along the arc; left out, the wall ratio decides (reasons in docs/accuracy.md).
+    ``cells`` is the number of cells along the arc; left out, the wall ratio decides (docs/background/accuracy.md).
     ``past_limit`` is the multiple of the limit volume to which inflation goes on: 1 where only the figures are needed.
     ``pressed_state`` presses at a driving pressure in place of the axisymmetric solid.
     Raises BeyondLimitError beyond the limit point, ComputationError where no equilibrium is found.

@@ -13,7 +13,7 @@ DASH = "–"
 _CAPTION = (
     "The fraction of the stiff resin is printed exactly; its modulus is assumed. The published characterizations of "
     "such mixes differ, and none is of these two resins: each column states what this design does if its curve is true "
-    "(docs/mixing.md). A curve measured on coupons of the printer in use replaces all of them."
+    "(docs/background/mixing.md). A curve measured on coupons of the printer in use replaces all of them."
 )
 _BEYOND = (
     "{curves}: the wall holds more of the stiff resin than this curve covers. The column takes its "

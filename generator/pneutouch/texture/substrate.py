@@ -13,8 +13,8 @@ and
     field           all of it in the field of the specimen with its bars: times mean compliance over bare compliance.
 
 Both filters and both compliances are exact for their layers (Airy's function; Johnson, Contact Mechanics, 1985, ch.
-13); how they are put together is an approximation, which docs/texture.md measures against finite elements. Linear, no
-friction, uniform pressure over a disc, no surface relief.
+13); how they are put together is an approximation, which docs/background/texture.md measures against finite elements.
+Linear, no friction, uniform pressure over a disc, no surface relief.
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""docs/voxels.md says what was measured, and what was measured is what the code gives today; times are left alone."""
+"""docs/background/voxels.md says what was measured, and what was measured is what the code gives today; times are left alone."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from tests.conftest import ROOT
 
 @pytest.fixture(scope="module")
 def stored():
-    return json.loads((ROOT / "docs/voxels.json").read_text())
+    return json.loads((ROOT / "docs/background/voxels.json").read_text())
 
 
 def test_the_page_is_made_of_the_stored_numbers(stored):
-    assert (ROOT / "docs/voxels.md").read_text() == page(stored)
+    assert (ROOT / "docs/background/voxels.md").read_text() == page(stored)
 
 
 @pytest.mark.parametrize("fraction", [0.1, 0.5])

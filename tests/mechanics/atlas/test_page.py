@@ -1,4 +1,4 @@
-"""docs/atlas.md is made of its stored numbers, and those are what both say today."""
+"""docs/background/atlas.md is made of its stored numbers, and those are what both say today."""
 
 from __future__ import annotations
 

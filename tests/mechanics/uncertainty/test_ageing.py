@@ -75,5 +75,5 @@ def test_hardness_explains_less_than_a_tenth_of_what_was_measured(name, library)
 
 
 def test_the_page_has_the_table_of_today():
-    page = (ROOT / "docs" / "ageing.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "background" / "ageing.md").read_text(encoding="utf-8")
     assert "\n".join(ageing_table(Library((ROOT,)))) in page

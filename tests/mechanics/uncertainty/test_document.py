@@ -46,7 +46,7 @@ def test_the_sentence_names_the_greatest_share(paper):
 
 
 def test_the_page_says_what_the_code_gives(library, root):
-    page = (root / "docs/uncertainty.md").read_text(encoding="utf-8")
+    page = (root / "docs/background/uncertainty.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (\d+) kPa \| ([\d.]+) \| ([\d.]+) to ([\d.]+) \| (\d+) % \| (\d+) % \|", page, re.MULTILINE)
     assert [row[0] for row in rows] == ["0", "12", "22"]
     found = budget_for(library, batch_of(PAPER, [0.0, 0.012, 0.022]), "TangoPlus", True)
@@ -62,7 +62,7 @@ def test_the_page_says_what_the_code_gives(library, root):
 
 
 def test_the_pages_example_runs_and_says_what_it_says(root, capsys):
-    page = (root / "docs/uncertainty.md").read_text(encoding="utf-8")
+    page = (root / "docs/background/uncertainty.md").read_text(encoding="utf-8")
     examples = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", page, re.DOTALL)
     assert len(examples) == 2
     for code, said in examples:

@@ -1,4 +1,4 @@
-"""The tables of docs/viscous.md and docs/ageing.md, from the code as it is."""
+"""The tables of docs/background/viscous.md and docs/background/ageing.md, from the code as it is."""
 
 from __future__ import annotations
 

@@ -182,9 +182,7 @@ def test_the_gaps_around_a_flange_that_leans_are_exact(library):
 
 @pytest.mark.parametrize("draft_deg", [0.5, 2.0, 8.0])
 def test_a_flange_that_leans_rests_on_the_floor_of_its_groove(draft_deg, library):
-    glued = assemble(
-        load_scene("cast-dome", {"connector.seat": "glued-flange", "mould.draft_deg": draft_deg}, library)
-    )
+    glued = assemble(load_scene("cast-dome", {"connector.seat": "glued-flange", "mould.draft_deg": draft_deg}, library))
     layout = glued.layout
     rim = layout.inner_radius + layout.flange_draft
     assert glued.seat_area == pytest.approx(math.pi * (layout.flange_radius**2 - rim**2), rel=1e-12)

@@ -16,7 +16,7 @@ from pneutouch.spec.campaign import Rig
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 
 ATLAS_FORCE, ATLAS_PRESSURE = 0.0011, 0.0004
-"""The atlas's own error over full scale: medians of 500 presses at their worst state (docs/atlas.md)."""
+"""The atlas's own error over full scale: medians of 500 presses at their worst state (docs/background/atlas.md)."""
 
 READING = 0.05 * KPA
 """Least standard deviation of a pressure point, MPa: our choice, half of the 0.1 kPa that such gauges show; the paper

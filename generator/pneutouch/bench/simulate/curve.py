@@ -17,7 +17,7 @@ STEPS = 56
 
 OFF_AXIS_STEPS = 14
 """Plate steps off the axis, where a step costs as much as a central press: with the cubics between them force and rise
-are within 1 % of full scale of those of 56 steps (docs/off-axis.md)."""
+are within 1 % of full scale of those of 56 steps (docs/background/off-axis.md)."""
 
 _ROUNDING = 1e-9
 _LEAST_POINTS = 3

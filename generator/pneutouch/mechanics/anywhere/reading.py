@@ -13,7 +13,8 @@ SMALLEST_BALL, FARTHEST, STEEPEST_TILT = 0.3, 0.6, float(np.radians(20.0))
 dome's in R0, and a plate that leans by this angle at most."""
 
 TABLE_ERROR = 0.05
-"""Greatest error of the logarithm of the force found in presses that the table was not made from (docs/off-axis.md)."""
+"""Greatest error of the logarithm of the force found in presses that the table was not made from
+(docs/background/off-axis.md)."""
 
 _POINTS, _FEWER = 4, 3
 _LEVELS = 8

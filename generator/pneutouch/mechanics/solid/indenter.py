@@ -20,7 +20,7 @@ Up to here the force does not depend on it (`tests/mechanics/solid/test_indenter
 
 CELLS_PER_RADIUS = 4
 """Cells of the outer wall that the least radius of an object spans. With fewer the wall appears to leave a ball at its
-lowest point; with these the force is within 1 % of that on a refined mesh (docs/contact.md)."""
+lowest point; with these the force is within 1 % of that on a refined mesh (docs/background/contact.md)."""
 
 _PER_EDGE = 4.0
 

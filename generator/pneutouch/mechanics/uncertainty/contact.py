@@ -1,7 +1,8 @@
 """A sensor under another contact than the atlas's plate without friction: what the solid has of it.
 
 The atlas gives the derivatives by wall, radius, gas and driving pressure. The derivative by the modulus, which is
-uncertain by far the most, and that by the friction are the solid's, with the contact itself (docs/contact.md).
+uncertain by far the most, and that by the friction are the solid's, with the contact itself
+(docs/background/contact.md).
 """
 
 from collections.abc import Sequence

@@ -6,7 +6,10 @@ from pneutouch.printability.view import PrintView
 from pneutouch.rounding import tenths_below
 from pneutouch.units import KPA
 
-_SOURCE = "printprofiles/mixing, docs/mixing.md: the published characterizations differ, none is of these two resins"
+_SOURCE = (
+    "printprofiles/mixing, docs/background/mixing.md: the published characterizations differ, "
+    "none is of these two resins"
+)
 
 
 def check(view: PrintView) -> list[Finding]:

@@ -1,8 +1,8 @@
-"""What each figure means, in one line; formulas and sources are in docs/measuring.md."""
+"""What each figure means, in one line; formulas and sources are in docs/howto/measuring.md."""
 
 from pneutouch.bench.figure import FIGURES
 
-WHERE = "Formulas, units and sources: docs/measuring.md, section Definitions."
+WHERE = "Formulas, units and sources: docs/howto/measuring.md, section Definitions."
 
 LINES = {
     "sensitivity_kPa_per_N": "Slope of the least-squares line of pressure rise over force, with intercept, over a run.",

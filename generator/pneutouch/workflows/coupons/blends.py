@@ -11,7 +11,7 @@ from pneutouch.spec.material import Material
 FRACTIONS = (0.0, 0.03, 0.06, 0.1, 0.15, 0.2, 0.27, 0.35)
 """Volume fractions of the stiff resin that are printed: our own choice for TangoPlus with VeroClear, whose curve ends
 at 35.6 %. By each curve of that pair the modulus rises by less than 2.5 times from one to the next, as far as the curve
-is known (docs/mixing.md)."""
+is known (docs/background/mixing.md)."""
 
 
 @dataclass(frozen=True, slots=True)

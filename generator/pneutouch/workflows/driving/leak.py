@@ -58,7 +58,7 @@ def _of_cap(path: Path, design: str) -> LeakSource:
     cap: LeakCap | None = results.leak_cap.get(design)
     if cap is None:
         known = ", ".join(results.leak_cap)
-        remedy = f"it holds leak-cap of {known}" if known else "measure the coupon leak-cap: docs/coupons.md"
+        remedy = f"it holds leak-cap of {known}" if known else "measure the coupon leak-cap: docs/howto/coupons.md"
         raise InputError("no leak of this design", file=path, key=f"leak-cap.{design}", remedy=remedy)
     findings = CouponFindings()
     try:
@@ -84,7 +84,7 @@ def _of_campaign(path: Path, design: str) -> LeakSource:
         raise InputError(f"measured {measured}, not this design", file=path, key="design", value=measured)
     rates = [(rate, pressure_kPa) for rate, pressure_kPa in rates if pressure_kPa > 0]
     if not rates:
-        raise InputError("holds no leak run above 0 kPa", file=path, remedy="plan one: docs/measuring.md")
+        raise InputError("holds no leak run above 0 kPa", file=path, remedy="plan one: docs/howto/measuring.md")
     # The conductance is rate over pressure: its mean over the runs at their mean pressure.
     mean_kPa = float(np.mean([pressure_kPa for _, pressure_kPa in rates]))
     share = float(np.mean([rate / pressure_kPa for rate, pressure_kPa in rates]))

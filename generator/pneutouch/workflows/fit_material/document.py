@@ -23,7 +23,7 @@ from pneutouch.workflows.fit_material.fitted import FittedMaterial
 
 HARDNESS_SHARE = (0.4, 0.65)
 """Young's modulus over that of Gent's relation where nothing is odd: TangoPlus by the paper's modulus has 0.50, eight
-of the nine shipped silicones 0.44 to 0.52 (docs/materials.md)."""
+of the nine shipped silicones 0.44 to 0.52 (docs/reference/materials.md)."""
 
 _MOST_BYTES = 100_000_000
 _GRID = 200

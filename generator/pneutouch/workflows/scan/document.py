@@ -24,7 +24,7 @@ ASSUMPTIONS = (
     "relief",
     "amplitudes of single patterns are 1.15 to 1.35 times those of finite elements at pitch 6 mm under a small patch "
     "and up to 4.4 times at "
-    "3 mm; near a zero of the patch filter they mean no more than 'small' (docs/texture.md)",
+    "3 mm; near a zero of the patch filter they mean no more than 'small' (docs/background/texture.md)",
     f"noise: white, {NOISE / KPA:g} kPa rms a sample unless given, in steps of {STEP / KPA:.4f} kPa: assumed, the "
     "paper states none",
     "air at constant temperature (Boyle) with the design's dead volume",

@@ -13,7 +13,7 @@ _MUJOCO = """\
     data.sensor("{name}_pressure_kPa").data, data.sensor("{name}_force_N").data, data.sensor("{name}_status").data
 
 The dome is a sphere on the sliding joint {name}_indentation (m, inwards). Valid to {depth} mm; status is 1 beyond.
-Without `install` the joint has no force. No shear, no rate, no contact off the axis: docs/simulators.md.
+Without `install` the joint has no force. No shear, no rate, no contact off the axis: docs/howto/simulators.md.
 """
 
 _URDF = """\

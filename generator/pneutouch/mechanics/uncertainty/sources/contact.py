@@ -11,7 +11,7 @@ FRICTION, CORRECTION = "friction", "contact correction"
 
 WALL_GAP, OBJECT_WALL_GAP = 0.4, 0.7
 """Greatest difference found of d ln figure / d ln wall between the plate without friction and one with friction, and
-other objects (docs/contact.md)."""
+other objects (docs/background/contact.md)."""
 
 
 def contact_sources(contact: ContactModel, others: list[UncertaintySource]) -> list[UncertaintySource]:

@@ -1,0 +1,64 @@
+"""How Sphinx makes the site from this folder: ``make docs``. Nothing is loaded from elsewhere while it builds."""
+
+from __future__ import annotations
+
+import os
+
+import pneutouch
+
+project = "pneutouch"
+author = "the pneutouch authors"
+project_copyright = "the pneutouch authors, Apache-2.0"
+version = release = pneutouch.__version__
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.napoleon",
+    "sphinx_gallery.gen_gallery",
+]
+exclude_patterns = ["_build", "examples", "**/README.rst", "gallery/*.ipynb"]
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+nitpicky = True
+keep_warnings = False
+
+myst_enable_extensions = ["dollarmath", "deflist", "fieldlist"]
+myst_heading_anchors = 4
+
+autosummary_generate = True
+autodoc_typehints = "description"
+autodoc_member_order = "bysource"
+napoleon_google_docstring = True
+
+html_theme = "pydata_sphinx_theme"
+html_title = "pneutouch"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_show_sphinx = False
+html_copy_source = False
+html_theme_options = {
+    "navigation_depth": 2,
+    "show_toc_level": 2,
+    "header_links_before_dropdown": 6,
+    "navbar_align": "left",
+    "footer_start": ["copyright"],
+    "footer_end": [],
+    "secondary_sidebar_items": ["page-toc"],
+}
+
+sphinx_gallery_conf = {
+    "examples_dirs": ["gallery"],
+    "gallery_dirs": ["auto_gallery"],
+    "filename_pattern": r".*\.py",
+    "ignore_pattern": r"__init__\.py",
+    "abort_on_example_error": True,
+    "only_warn_on_example_error": False,
+    "remove_config_comments": True,
+    "download_all_examples": True,
+    "show_memory": False,
+    "min_reported_time": 1e9,
+    "within_subsection_order": "FileNameSortKey",
+    "parallel": int(os.environ.get("PNEUTOUCH_DOCS_JOBS", "2")),
+    "image_srcset": [],
+}
