@@ -25,6 +25,22 @@ def test_a_target_file_is_taken_and_keywords_come_first(tmp_path):
     assert not found.met and found.designs == ()
 
 
+@pytest.mark.slow
+def test_the_best_of_each_process_is_a_design_named_after_it(printed):
+    given = {"inner_radius_mm": 9.25, "wall_thickness_mm": 1.5, "materials": ["TangoPlus", "DragonSkin20"]}
+    found = pt.select(sensitivity_kPa_per_N=1.9, processes=["polyjet", "casting"], **given)
+    words = "--inner-radius 9.25 --wall 1.5 --material TangoPlus,DragonSkin20 --process polyjet,casting"
+    said = printed("select", "--sensitivity", 1.9, *words.split())
+    assert found.to_dict() == {key: value for key, value in said.items() if key != "written"}
+    assert [design.name for design in found.designs] == ["selected-polyjet", "selected-casting"]
+    assert [design.material for design in found.designs] == ["TangoPlus", "DragonSkin20"]
+    for design, process in zip(found.designs, ("polyjet", "casting"), strict=True):
+        assert design.profile == said["processes"][process]["profile"]
+    with pytest.raises(pt.InputError) as caught:
+        pt.select(sensitivity_kPa_per_N=1.9, processes=["cast"])
+    assert (caught.value.file, caught.value.key) == (None, "processes")
+
+
 @pytest.mark.parametrize(
     ("fields", "key"), [({"sensitivity": 1.9}, "sensitivity"), ({"force_range_N": -1.0}, "force_range_N")]
 )

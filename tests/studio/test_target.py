@@ -148,6 +148,12 @@ def test_where_nothing_is_found_it_says_so_in_the_words_of_select(command):
             ["--sensitivity", "1.9", "--set", "connector.port=none-such"],
         ),
         ({**FIELDS, "setting.assignments": '["membrane.material=Agilus30"]'}, "setting.assignments", None),
+        (
+            {**FIELDS, "setting.processes": '["any","casting"]'},
+            "setting.processes",
+            ["--sensitivity", "1", "--process", "any,casting"],
+        ),
+        ({**FIELDS, "setting.processes": '["casting"]', "setting.profile": "j735"}, "setting.profile", None),
         ({**FIELDS, "setting.base": '"/etc/passwd"'}, "setting.base", None),
         ({**FIELDS, "setting.colour": "1"}, "setting.colour", None),
     ],
@@ -215,8 +221,9 @@ STATED = {
             "given": {"materials": ["TangoPlus", "FLX9950"]},
             "weights": {"contact_anywhere": True},
         },
+        {"target": {"force_range_N": 3.0}, "setting": {"processes": ["polyjet", "casting"]}},
     ],
-    ids=["a grade", "resins"],
+    ids=["a grade", "resins", "processes"],
 )
 def test_the_words_of_a_target_give_it_to_the_command(content, command, monkeypatch):
     from pneutouch.cli.select_fields import target_words
@@ -228,6 +235,7 @@ def test_the_words_of_a_target_give_it_to_the_command(content, command, monkeypa
         raise InputError("taken")
 
     monkeypatch.setattr("pneutouch.workflows.select.gauged.select", take)
+    monkeypatch.setattr("pneutouch.workflows.select.processes.select_processes", take)
     monkeypatch.setattr("pneutouch.workflows.select.graded.select_graded", take)
     target = Target.model_validate(content)
     said = command("select", *target_words(target))
@@ -263,6 +271,44 @@ def test_a_target_is_a_job_of_the_studio():
     answer = answered({"kind": "select", "arguments": arguments, "folder": "."}, lambda *progress: None)
     problem = {"message": "must be from 0.0001 to 100000 N", "fields": ["target.force_range_N"]}
     assert answer == {"status": 422, "content": {"problems": [problem]}}
+
+
+@pytest.mark.slow
+def test_the_best_of_each_process_is_a_card_that_is_the_row_saved(command, tmp_path, library):
+    values = {
+        "target.sensitivity_kPa_per_N": "1.9",
+        "given.inner_radius_mm": "9.25",
+        "given.wall_thickness_mm": "1.5",
+        "given.materials": '["TangoPlus","DragonSkin20"]',
+        "setting.processes": '["casting","filament","polyjet"]',
+    }
+    steps = []
+    content = asked(values, report=lambda done, total, what: steps.append((done, total, what)))
+    assert content["headline"] == "2 of 3 processes with a design that meets the target"
+    assert [card["label"] for card in content["cards"]] == ["casting", "polyjet"]
+    assert [row[:3] for row in content["table"]["rows"]] == [
+        ["1", "casting", "DragonSkin20"],
+        ["2", "polyjet", "TangoPlus"],
+    ]
+    second = content["cards"][1]
+    said = command(*shlex.split(second["command"])[1:], "--json", "--out", str(tmp_path))
+    printed = json.loads(said.stdout)
+    assert {**json.loads(json.dumps(content["selection"])), "written": printed["written"]} == printed
+    assert opened(second["state"], library) == DesignSource.of(printed["written"], library).changed({})
+    assert second["passes"] and ("Profile", "Stratasys Objet260 Connex", "") in second["rows"]
+    assert steps[0] == (0, 12, "casting, base") and [done for done, _, _ in steps] == sorted(
+        done for done, _, _ in steps
+    )
+    assert content["remarks"][-1].startswith("filament: left out: ")
+
+
+def test_a_process_in_which_nothing_meets_the_target_shows_what_is_nearest():
+    fixed = {"given.inner_radius_mm": "9.25", "given.wall_thickness_mm": "1.5", "given.materials": '["TangoPlus"]'}
+    content = asked({**FIELDS, **fixed, "target.sensitivity_kPa_per_N": "9", "setting.processes": '["polyjet"]'})
+    (card,) = content["cards"]
+    assert (card["kind"], card["command"], card["passes"], content["table"]) == ("nearest", None, False, None)
+    assert card["note"].removeprefix("it misses: ") in content["remarks"][0]
+    assert content["headline"] == "none of 1 processes with a design that meets the target"
 
 
 @pytest.mark.slow

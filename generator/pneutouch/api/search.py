@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from pneutouch.api import show
 from pneutouch.api.design import Design, source_of
 from pneutouch.api.fields import WHERE, changes, named_by_keyword
-from pneutouch.catalogue import DesignSource
+from pneutouch.catalogue import DesignSource, ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.holding import temporary_folder
 from pneutouch.spec.design import DesignFile
@@ -20,6 +20,7 @@ from pneutouch.workflows.select.gauged import select as run_select
 from pneutouch.workflows.select.graded import select_graded
 from pneutouch.workflows.select.graded_document import graded_document
 from pneutouch.workflows.select.passing import assigned
+from pneutouch.workflows.select.processes import select_processes
 
 if TYPE_CHECKING:
     import xarray
@@ -58,27 +59,35 @@ class Selection(show.Shown):
 def select(target: str | Path | None = None, **fields: Any) -> Selection:
     """Designs for a target: a target file, keyword arguments named as its keys, or both (keywords first).
 
-    ``select(sensitivity_kPa_per_N=1.9, driving_pressure_kPa=12)``. Raises InputError naming the keyword.
+    ``select(sensitivity_kPa_per_N=1.9, driving_pressure_kPa=12)``. With ``processes=["polyjet", "casting"]`` or
+    ``"any"`` the designs are the best of each process, named after it. Raises InputError naming the keyword.
     """
     with named_by_keyword(Target):
         content = override({} if target is None else read_toml(Path(target)), changes(Target, fields), Target)
         where = WHERE if target is None else str(target)
         goal = validate(Target, {"target": {}, **content}, where)
         where = "select" if target is None else where
-        if goal.given.graded:
+        if goal.setting.processes is not None:
+            by_process = select_processes(goal, where)
+            chosen = [(process, run.base, run.assignments(run.answer.designs[0])) for process, run in by_process.best]
+            content = by_process.document()
+        elif goal.given.graded:
             graded = select_graded(goal, where)
-            sets, content = [graded.assignments()] if graded.passes else [], graded_document(graded)
-            base = graded.base
+            chosen = [("1", graded.base, graded.assignments())] if graded.passes else []
+            content = graded_document(graded)
         else:
             selection = run_select(goal, where)
-            sets = [selection.assignments(choice) for choice in selection.answer.designs]
-            content, base = document(selection), selection.base
-    stem = base.name if goal.setting.base else "selected"
-    names = [f"{stem}-{rank}" for rank in range(1, len(sets) + 1)]
-    sources = [
-        DesignSource(name, assigned(base.design, fields, name), WHERE) for name, fields in zip(names, sets, strict=True)
-    ]
-    return Selection(tuple(Design.of(source) for source in sources), content)
+            ranked = enumerate(selection.answer.designs, start=1)
+            chosen = [(str(rank), selection.base, selection.assignments(choice)) for rank, choice in ranked]
+            content = document(selection)
+    designs = (_selected(goal, *each) for each in chosen)
+    return Selection(tuple(designs), content)
+
+
+def _selected(goal: Target, label: str, base: ResolvedDesign, changed: list[str]) -> Design:
+    """A base with what makes it a design that was found; named after a base that the target names."""
+    name = f"{base.name if goal.setting.base else 'selected'}-{label}"
+    return Design.of(DesignSource(name, assigned(base.design, changed, name), WHERE))
 
 
 def sweep(

@@ -44,18 +44,10 @@ def select(
     write: Annotated[
         str | None, typer.Option(metavar="NAME", help="Save the design picked as designs/NAME.toml.")
     ] = None,
-    pick: Annotated[int, typer.Option(help="Rank of the design to save.")] = 1,
+    pick: Annotated[int, typer.Option(help="Rank of the design to save; its row with --process.")] = 1,
     overwrite: ForceOption = False,
     charts: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Folder for the trade-off and tuning charts, SVG.")
-    ] = None,
-    process: Annotated[
-        str | None,
-        typer.Option(
-            "--process",
-            metavar="PROCESS,...|any",
-            help="The best design of each process: polyjet, casting ...; or any. --pick is then its row.",
-        ),
     ] = None,
     out: DesignFolderOption = None,
     json: JsonOption = False,
@@ -73,18 +65,17 @@ def select(
         if write is not None:
             check_free(write, folder, overwrite=overwrite)
         request = _target(target, fields, set_ or [])
-        if process is not None:
-            place = None if write is None else DesignPlace(write, folder, overwrite)
-            select_over(request, where, process, place, pick, json=json, charts=charts is not None)
+        place = None if write is None else DesignPlace(write, folder, overwrite)
+        if request.setting.processes is not None:
+            select_over(request, where, place, pick, json=json, charts=charts is not None)
             return
         if request.given.graded:
-            place = None if write is None else DesignPlace(write, folder, overwrite)
             _graded(request, where, place, charts=charts is not None, pick=pick != 1, json=json)
             return
         if charts is not None:
             check_writable(charts / "chart", key="charts")
         selection = _run(request, where, None if write is None else pick)
-        _report(selection, pick, None if write is None else DesignPlace(write, folder, overwrite), charts, json=json)
+        _report(selection, pick, place, charts, json=json)
 
 
 def _run(request: Target, where: str, written: int | None) -> SelectionRun:

@@ -23,6 +23,10 @@ def _pressures(text: str) -> list[float]:
         raise InputError("write two driving pressures in kPa, such as 0,22", key="same_at", value=text) from None
 
 
+def _names(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
 SELECT_FIELDS = {
     "sensitivity": FieldOption("target", "sensitivity_kPa_per_N"),
     "tolerance": FieldOption("target", "tolerance_percent", _percent, "SHARE"),
@@ -43,6 +47,7 @@ SELECT_FIELDS = {
     "widest_range": FieldOption("target", "widest_range"),
     "base": FieldOption("setting", "base"),
     "profile": FieldOption("setting", "profile"),
+    "process": FieldOption("setting", "processes", _names, "PROCESS,...|any"),
     "tube_length": FieldOption("setting", "tube_length_mm"),
     "dead_volume": FieldOption("setting", "dead_volume_mL"),
     "gauge": FieldOption("setting", "gauge", metavar="NAME|any"),

@@ -19,18 +19,15 @@ if TYPE_CHECKING:
     from pneutouch.workflows.select.processes import ProcessSelection
 
 
-def select_over(
-    target: Target, where: str, processes: str, place: DesignPlace | None, pick: int, *, json: bool, charts: bool
-) -> None:
+def select_over(target: Target, where: str, place: DesignPlace | None, pick: int, *, json: bool, charts: bool) -> None:
     """Search each process, show the best designs and save the one picked. Exits 1 where no process has one."""
     from pneutouch.workflows.select.document import write_choice
     from pneutouch.workflows.select.processes import select_processes
 
     if charts:
         raise InputError("--charts cannot be given with --process", remedy="draw them for one `profile`")
-    names = [name.strip() for name in processes.split(",")]
     with bar("") as report:
-        selection = select_processes(target, where, names, progress=lambda name: report(0, 1, name))
+        selection = select_processes(target, where, progress=report)
     path = None
     if selection.best and (place is not None or pick != 1):
         run = selection.pick(pick)
@@ -52,15 +49,29 @@ def select_over(
 
 def processes_text(selection: ProcessSelection) -> str:
     """A row for the best design of each process, and why others have none."""
-    from pneutouch.cli.select_text import HEAD, row_of
-    from pneutouch.workflows.select.words import headline, missed_text
+    head, rows = processes_table(selection)
+    return "\n".join([*([table_text(head, rows), ""] if rows else []), *processes_lines(selection)])
 
-    rows, lines = [], []
+
+def processes_table(selection: ProcessSelection) -> tuple[list[str], list[list[str]]]:
+    """The best design of each process that has one: columns and rows."""
+    from pneutouch.cli.select_text import HEAD, row_of
+
+    rows = []
     for number, (process, run) in enumerate(selection.best, start=1):
         best = run.answer.designs[0]
-        solid = best.contact is not None or run.confirmed[0].within
-        cells = [str(number), process, *row_of(run, best)]
-        rows.append([*cells, "solid" if best.contact is not None else f"{run.confirmed[0].sensitivity_kPa_per_N:.3f}"])
+        solid = "solid" if best.contact is not None else f"{run.confirmed[0].sensitivity_kPa_per_N:.3f}"
+        rows.append([str(number), process, *row_of(run, best), solid])
+    return [HEAD[0], "process", *HEAD[1:]], rows
+
+
+def processes_lines(selection: ProcessSelection) -> list[str]:
+    """Profile and confirmation of each best design, and why a process has none."""
+    from pneutouch.workflows.select.words import headline, missed_text
+
+    lines = []
+    for process, run in selection.best:
+        solid = run.answer.designs[0].contact is not None or run.confirmed[0].within
         others = len({choice.resin.name for choice in run.answer.designs}) - 1
         confirmed = "confirmed by the solid" if solid else "the solid is outside its interval"
         lines.append(f"{process}: {run.base.printer.title}, {confirmed}; {others} other resins meet the target")
@@ -69,6 +80,4 @@ def processes_text(selection: ProcessSelection) -> str:
             nearest = run.answer.nearest
             why = "" if nearest is None else f"; the nearest misses {missed_text(run, nearest)} ({nearest.resin.name})"
             lines.append(f"{process}: {headline(run)}{why}")
-    lines += [f"{process}: left out: {why}" for process, why in selection.left_out.items()]
-    head = [HEAD[0], "process", *HEAD[1:]]
-    return "\n".join([*([table_text(head, rows), ""] if rows else []), *lines])
+    return lines + [f"{process}: left out: {why}" for process, why in selection.left_out.items()]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
+from pydantic import Field, SerializerFunctionWrapHandler, field_validator, model_serializer, model_validator
 
 from pneutouch.spec.fields import Table, number
+from pneutouch.spec.printer import Process
 
 Names = Annotated[list[str], Field(min_length=1, max_length=50)]
 
@@ -130,6 +131,10 @@ class Given(Table):
         return self
 
 
+_LEFT_OUT = ("gauge", "processes")
+"""Keys of a setting that a document has where they are given alone."""
+
+
 class Setting(Table):
     """[setting]: the design that gives everything else: connector, tube, plate, ambient pressure, printer."""
 
@@ -145,6 +150,12 @@ class Setting(Table):
     profile: str | None = Field(
         default=None, min_length=1, description="Printer of the membrane.", json_schema_extra={"registry": "printers"}
     )
+    processes: list[Literal["any", Process]] | None = Field(
+        default=None,
+        min_length=1,
+        description="Show the best design of each of these processes, such as polyjet,casting; any: of all that make "
+        "an elastomer.",
+    )
     tube_length_mm: float | None = number(None, unit="mm", low=0, high=20000, help="Tube to the pressure sensor.")
     dead_volume_mL: float | None = number(
         None, unit="mL", low=0, high=1000, help="Total gas volume behind the cavity; left out: computed."
@@ -156,12 +167,25 @@ class Setting(Table):
         json_schema_extra={"registry": "gauges"},
     )
 
+    @field_validator("processes", mode="before")
+    @classmethod
+    def _listed(cls, given: Any) -> Any:
+        return [given] if isinstance(given, str) else given
+
+    @model_validator(mode="after")
+    def _processes_without_others(self) -> Setting:
+        if self.processes is None:
+            return self
+        if "any" in self.processes and len(self.processes) > 1:
+            raise ValueError("processes: any stands for all of them; give it alone, or leave it out")
+        if self.profile is not None:
+            raise ValueError("processes and profile contradict each other: a profile is of one process; leave one out")
+        return self
+
     @model_serializer(mode="wrap")
-    def _without_no_gauge(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _without_what_is_not_given(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         content: dict[str, Any] = handler(self)
-        if content.get("gauge") is None:
-            content.pop("gauge", None)
-        return content
+        return {key: value for key, value in content.items() if value is not None or key not in _LEFT_OUT}
 
 
 class Weights(Table):
@@ -194,6 +218,15 @@ class Target(Table):
             raise ValueError(
                 f"target.max_diameter_mm = {largest:g} and given.inner_radius_mm = {radius:g} contradict each other: "
                 f"the dome alone is {2 * (radius + wall):g} mm wide"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _mix_on_one_machine(self) -> Target:
+        if self.setting.processes is not None and (self.given.mix is not None or self.given.graded):
+            mixed = "given.graded" if self.given.graded else "given.mix"
+            raise ValueError(
+                f"setting.processes and {mixed} contradict each other: a mix is printed on one machine; leave one out"
             )
         return self
 

@@ -119,6 +119,11 @@ def _kind(kinds: list[Any], declared: Declaration) -> str:
     """number, whole, numbers, flag, choice, names, texts, date or text: how the page shows a field."""
     if list[str] in kinds:
         return "names" if declared.registry else "texts"
+    if any(
+        typing.get_origin(kind) is list and typing.get_origin(*typing.get_args(kind)) is typing.Literal
+        for kind in kinds
+    ):
+        return "names"
     if declared.registry or any(typing.get_origin(kind) is typing.Literal for kind in kinds):
         return "choice"
     if bool in kinds:

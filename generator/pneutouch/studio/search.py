@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from pneutouch.catalogue import Library, ResolvedDesign
+from pneutouch.catalogue import Library
 from pneutouch.catalogue.cached_library import CachedLibrary
 from pneutouch.cli.graded import graded_lines, graded_table
-from pneutouch.cli.select_fields import saving_command
-from pneutouch.errors import InputError
-from pneutouch.output.new import free_name
 from pneutouch.rounding import rounded
-from pneutouch.spec.design import DesignFile
-from pneutouch.spec.read import validate
+from pneutouch.studio.by_process import by_process
 from pneutouch.studio.candidate import candidate_card, graded_card
+from pneutouch.studio.candidate_state import CandidateStates
 from pneutouch.studio.question import PAGE, Question
-from pneutouch.studio.state import state_of
 from pneutouch.studio.target import at_its_fields, target_of
 from pneutouch.workflows.select import words
 from pneutouch.workflows.select.charts import tradeoff
@@ -23,7 +19,6 @@ from pneutouch.workflows.select.document import document
 from pneutouch.workflows.select.gauged import select
 from pneutouch.workflows.select.graded import select_graded
 from pneutouch.workflows.select.graded_document import graded_document
-from pneutouch.workflows.select.passing import assigned
 from pneutouch.workflows.select.run import STEPS, SelectionRun
 
 if TYPE_CHECKING:
@@ -38,26 +33,6 @@ _DIGITS = 6
 _CHART = "trade-off chart"
 
 
-class _Page:
-    """What turns designs that were found into states of the page and commands that save them under a free name."""
-
-    def __init__(self, question: Question, bases: Mapping[str, str], library: Library, target: Target) -> None:
-        self._bases, self._library, self._target, self._name = bases, library, target, free_name()
-        if question.base not in bases:
-            raise InputError("unknown design", key="base", value=question.base)
-        named = (name for name, design in bases.items() if design == target.setting.base)
-        self._base = question.base if target.setting.base is None else next(named)
-
-    def state(self, base: ResolvedDesign, changes: list[str]) -> dict[str, Any]:
-        """The state of the page that is the design that ``select`` saves: a base with assignments."""
-        design = validate(DesignFile, assigned(base.design, changes, self._name), PAGE)
-        return state_of(design, self._base, self._bases, self._library)
-
-    def command(self, rank: int) -> str:
-        """The command that saves the design of a rank."""
-        return saving_command(self._target, rank, self._name)
-
-
 def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> dict[str, Any]:
     """Search for the target that ``values`` state; where it names no base, its designs are those of ``base`` changed.
 
@@ -67,13 +42,15 @@ def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> dict[s
     question = Question.of({key: arguments.get(key) for key in ("base", "values")})
     with at_its_fields():
         target = target_of(question, bases)
-        page = _Page(question, bases, library, target)
+        page = CandidateStates(question, bases, library, target)
+        if target.setting.processes is not None:
+            return by_process(target, page, library, report)
         return (
             _graded(target, page, library, report) if target.given.graded else _selected(target, page, library, report)
         )
 
 
-def _selected(target: Target, page: _Page, library: Library, report: Report) -> dict[str, Any]:
+def _selected(target: Target, page: CandidateStates, library: Library, report: Report) -> dict[str, Any]:
     total = len(STEPS) + 1
     run = select(target, PAGE, library, progress=lambda step: report(STEPS.index(step), total, step))
     report(len(STEPS), total, _CHART)
@@ -88,7 +65,7 @@ def _selected(target: Target, page: _Page, library: Library, report: Report) -> 
     }
 
 
-def _cards(run: SelectionRun, page: _Page) -> list[dict[str, Any]]:
+def _cards(run: SelectionRun, page: CandidateStates) -> list[dict[str, Any]]:
     """The designs by rank; where there are none, what is nearest and what fits without one of the requirements."""
 
     def card(choice: Candidate, kind: str, label: str, *, rank: int | None = None, note: str = "") -> dict[str, Any]:
@@ -145,7 +122,7 @@ def _chart(run: SelectionRun, library: Library) -> dict[str, Any]:
     return result
 
 
-def _graded(target: Target, page: _Page, library: Library, report: Report) -> dict[str, Any]:
+def _graded(target: Target, page: CandidateStates, library: Library, report: Report) -> dict[str, Any]:
     """The search for a grade, with the constant membranes of its size as a table in place of the chart."""
     run = select_graded(target, PAGE, library, lambda trial, done, most: report(done, most, "searching grades"))
     head, rows = graded_table(run)
@@ -167,5 +144,5 @@ def _graded(target: Target, page: _Page, library: Library, report: Report) -> di
         "cards": [card],
         "remarks": [*rejected, *remarks],
         "chart": None,
-        "table": {"head": head, "rows": rows},
+        "table": {"caption": "The grade, and constant membranes of its size", "head": head, "rows": rows},
     }

@@ -4,6 +4,7 @@ import { TradeOff } from "./tradeoff.js";
 
 const TITLES = {
   best: "Best of its resin",
+  process: "Best of its process",
   "runner-up": "Runner-up of its resin",
   nearest: "Nearest to the target",
   dropped: "Fits without one requirement",
@@ -47,7 +48,7 @@ export class Candidates {
       cards.length ? list(first) : null,
       this.others,
       cards.length > 1 ? this.compared(cards) : null,
-      content.table ? element("section", { class: "card" }, table("The grade, and constant membranes of its size", content.table.head, content.table.rows)) : null,
+      content.table ? element("section", { class: "card" }, table(content.table.caption, content.table.head, content.table.rows)) : null,
       remarks.length ? element("ul", { class: "remarks muted" }, ...remarks.map((words) => element("li", {}, words))) : null,
     ];
     this.host.replaceChildren(...parts.filter(Boolean));

@@ -12,6 +12,7 @@ const MAIN = [
   "target.force_range_N",
   "target.max_diameter_mm",
   "target.fits",
+  "setting.processes",
   "setting.profile",
   "setting.base",
 ];

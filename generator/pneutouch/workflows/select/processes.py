@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, get_args
 
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.cached_library import CachedLibrary
-from pneutouch.errors import InputError, nearest
+from pneutouch.errors import InputError
 from pneutouch.spec.casting import CAST_SEAT
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer, Process
@@ -16,10 +16,7 @@ from pneutouch.spec.target import Target
 from pneutouch.workflows.select.base import setting_changes, settled_base
 from pneutouch.workflows.select.document import document
 from pneutouch.workflows.select.gauged import select
-from pneutouch.workflows.select.run import SelectionRun
-
-ANY = ("any",)
-"""Instead of names: every process by which a profile makes an elastomer."""
+from pneutouch.workflows.select.run import STEPS, SelectionRun
 
 
 @dataclass(frozen=True)
@@ -50,44 +47,40 @@ class ProcessSelection:
 def select_processes(
     target: Target,
     where: str,
-    processes: Sequence[str],
     library: Library | None = None,
     *,
-    progress: Callable[[str], None] = lambda step: None,
+    progress: Callable[[int, int, str], None] = lambda done, total, step: None,
 ) -> ProcessSelection:
-    """Answer a target once for each process. Raises InputError for a process that no profile has.
+    """Answer a target once for each of its ``setting.processes``. Raises InputError as `gauged.select` does.
 
     A process takes the base's profile where that is one of it, else the first that makes an elastomer; resins that the
     target names count for the processes that make them.
     """
     library = CachedLibrary((library or Library.default()).folders)
-    if target.setting.profile is not None:
-        problem, given = "a profile is of one process", target.setting.profile
-        raise InputError(problem, key="setting.profile", value=given, remedy="leave it out, or the processes")
-    if target.given.mix is not None or target.given.graded:
-        raise InputError("a mix is printed on one machine", key="process", remedy="leave out `mix`, or the processes")
-    names = _named(processes, library)
+    names = _named(target, library)
     usual = settled_base(target, setting_changes(target, library), library).print.profile
     runs, profiles, left_out = {}, {}, {}
-    for process in names:
+    for number, process in enumerate(names):
         offered = _profile(process, usual, target.given.materials, library)
         if offered is None:
             left_out[process] = f"no profile of it makes {' or '.join(target.given.materials or ['an elastomer'])}"
             continue
         profiles[process], resins = offered
-        progress(process)
-        runs[process] = select(_of(target, process, profiles[process], resins), where, library, written=1)
+
+        def report(step: str, process: str = process, before: int = number * len(STEPS)) -> None:
+            progress(before + STEPS.index(step), len(names) * len(STEPS), f"{process}, {step}")
+
+        one = _of(target, process, profiles[process], resins)
+        runs[process] = select(one, where, library, written=1, progress=report)
     return ProcessSelection(runs, profiles, left_out)
 
 
-def _named(processes: Sequence[str], library: Library) -> list[str]:
-    known = get_args(Process)
-    if tuple(processes) == ANY:
-        return [process for process in known if _profile(process, "", None, library) is not None]
-    for process in processes:
-        if process not in known:
-            raise InputError(f"unknown.{nearest(process, [*known, *ANY])}", key="process", value=process)
-    return list(dict.fromkeys(processes))
+def _named(target: Target, library: Library) -> list[str]:
+    """The processes of a target once each; all that make an elastomer in place of any."""
+    names = list(dict.fromkeys(target.setting.processes or ()))
+    if names == ["any"]:
+        return [process for process in get_args(Process) if _profile(process, "", None, library) is not None]
+    return [str(process) for process in names]
 
 
 _Offer = tuple[str, list[str] | None]
@@ -107,7 +100,7 @@ def _profile(process: str, usual: str, resins: list[str] | None, library: Librar
 
 def _of(target: Target, process: str, profile: str, resins: list[str] | None) -> Target:
     """The target on one profile."""
-    changes: dict[str, Any] = {"profile": profile}
+    changes: dict[str, Any] = {"profile": profile, "processes": None}
     if process == "casting":
         # What the target sets comes after it.
         changes["assignments"] = [f"connector.seat={CAST_SEAT}", *target.setting.assignments]
