@@ -30,7 +30,7 @@ pytest: $(VENV)/.dev
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check generator tests benchmarks docs
-	$(BIN)/ruff format --check generator tests benchmarks docs/conf.py docs/gallery
+	$(BIN)/ruff format --check generator tests benchmarks docs/conf.py docs/_ext docs/gallery
 	$(BIN)/mypy
 
 # What CI requires in addition to the tests; pre-commit needs a clone, and its hooks are programs of the virtual environment.

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import os
+import sys
+from pathlib import Path
 
 import pneutouch
+
+sys.path.insert(0, str(Path(__file__).parent / "_ext"))
 
 project = "pneutouch"
 author = "the pneutouch authors"
@@ -17,8 +21,9 @@ extensions = [
     "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
     "sphinx_gallery.gen_gallery",
+    "page_titles",
 ]
-exclude_patterns = ["_build", "examples", "**/README.rst", "gallery/*.ipynb"]
+exclude_patterns = ["_build", "_ext", "examples", "**/README.rst", "gallery/*.ipynb"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 nitpicky = True
 keep_warnings = False
