@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page contact-table simulator-page lock clean
+.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page contact-table simulator-page dist lock clean
 
 venv: $(VENV)/.dev
 
@@ -50,6 +50,12 @@ check-slow: $(VENV)/.dev
 docs: $(VENV)/.dev
 	$(BIN)/sphinx-build --quiet --fail-on-warning --nitpicky --fresh-env docs docs/_build/html
 	@echo docs/_build/html/index.html
+
+# Wheel and source archive, the same bytes in every folder and at every time: all dates in them are this one.
+dist: $(VENV)/.run
+	rm -rf dist
+	SOURCE_DATE_EPOCH=1580601600 $(BIN)/python -m hatchling build --directory dist
+	cd dist && sha256sum pneutouch-*
 
 # Needs uv; writes the locked dependencies with hashes for every platform.
 lock:

@@ -5,56 +5,22 @@ from __future__ import annotations
 import json
 import re
 import shlex
-import shutil
 import subprocess
 import sys
-import tarfile
 import tomllib
 import zipfile
 
 import pytest
 
 from tests.conftest import ROOT
+from tests.packaging import copied, packed, tracked
 
 SHIPPED = ("designs", "printprofiles", "docs/examples")
-PRIVATE = (
-    "designs/private.toml",
-    "designs/specimens/private.toml",
-    "designs/designs/private.toml",
-    "printprofiles/materials/private.toml",
-    "docs/examples/private.toml",
-    "user/designs/private.toml",
-    "calibrations/private.toml",
-)
-
-
-def tracked(*folders):
-    """Files that git knows, by their paths in the checkout."""
-    done = subprocess.run(["git", "ls-files", "-z", *folders], cwd=ROOT, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        pytest.skip("no git checkout")
-    return {name for name in done.stdout.split("\0") if name and (ROOT / name).is_file()}
 
 
 @pytest.fixture(scope="module")
 def checkout(tmp_path_factory):
-    """A copy of the checkout with private files in it, which no .gitignore hides."""
-    folder = tmp_path_factory.mktemp("checkout")
-    for name in tracked("generator", "tests", "README.md", "LICENSE", "pyproject.toml", *SHIPPED):
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / name, folder / name)
-    for name in PRIVATE:
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / "designs/paper-dome.toml", folder / name)
-    return folder
-
-
-def packed(checkout, kind, folder):
-    """The archive of a kind that is built from the checkout."""
-    words = [sys.executable, "-m", "hatchling", "build", "-t", kind, "-d", str(folder)]
-    subprocess.run(words, cwd=checkout, check=True, capture_output=True)
-    (archive,) = folder.iterdir()
-    return archive
+    return copied(tmp_path_factory.mktemp("checkout"), "generator", "README.md", "LICENSE", "pyproject.toml", *SHIPPED)
 
 
 @pytest.fixture(scope="module")
@@ -81,22 +47,6 @@ def test_the_wheel_holds_the_shipped_files_and_nothing_private(unpacked):
     known = {name.removeprefix("generator/") for name in tracked("generator/pneutouch")}
     assert {name for name in code if (unpacked / name).is_file()} == known
     assert not list(unpacked.rglob("*private*"))
-
-
-@pytest.mark.slow
-def test_the_source_archive_holds_nothing_that_git_does_not_know_and_makes_the_same_wheel(
-    checkout, unpacked, tmp_path_factory
-):
-    with tarfile.open(packed(checkout, "sdist", tmp_path_factory.mktemp("sdist"))) as archive:
-        folder = tmp_path_factory.mktemp("source")
-        archive.extractall(folder, filter="data")
-    (top,) = folder.iterdir()
-    held = {path.relative_to(top).as_posix() for path in top.rglob("*") if path.is_file()}
-    assert held - tracked() == {"PKG-INFO"}
-    assert set(listed()) <= held
-    with zipfile.ZipFile(packed(top, "wheel", tmp_path_factory.mktemp("again"))) as archive:
-        names = {name for name in archive.namelist() if name.startswith("pneutouch/")}
-    assert names == {p.relative_to(unpacked).as_posix() for p in (unpacked / "pneutouch").rglob("*") if p.is_file()}
 
 
 def run(unpacked, folder, code):
