@@ -84,7 +84,9 @@ def written(tmp_path, name):
 
 def test_a_process_brings_a_profile_a_seat_without_glue_and_pressures_that_it_stands(command, tmp_path):
     done = command("new", "mine", "--process", "casting", "--material", "DragonSkin20")
-    assert (done.returncode, done.stdout, done.stderr) == (0, "designs/mine.toml\n", "next: pneutouch check mine\n")
+    assert (done.returncode, done.stdout) == (0, "designs/mine.toml\n")
+    taken = "profile silicone-casting (Silicone casting in printed moulds) runs DragonSkin20"
+    assert done.stderr == f"{taken}\nnext: pneutouch check mine\n"
     design = written(tmp_path, "mine")
     assert design["membrane"]["material"] == "DragonSkin20"
     assert design["print"] == {**design["print"], "profile": "silicone-casting", "connector_profile": "abs-filament"}
@@ -95,10 +97,24 @@ def test_a_process_brings_a_profile_a_seat_without_glue_and_pressures_that_it_st
 
 
 def test_a_material_alone_takes_the_printer_that_runs_it(command, tmp_path):
-    assert command("new", "mine", "--material", "Agilus30").returncode == 0
+    done = command("new", "mine", "--material", "Agilus30")
+    assert done.returncode == 0 and done.stderr.startswith("profile j735 (Stratasys J735) runs Agilus30\n")
     assert written(tmp_path, "mine")["print"]["profile"] == "j735"
-    assert command("new", "other", "--process", "polyjet").returncode == 0
+    done = command("new", "other", "--process", "polyjet")
+    assert "runs TangoPlus, the resin taken because none is given" in done.stderr
     assert written(tmp_path, "other")["membrane"]["material"] == "TangoPlus"
+
+
+def test_of_several_profiles_that_run_a_resin_the_first_is_stated_and_the_others_named(command, tmp_path):
+    own = (ROOT / "printprofiles/j735.toml").read_text().replace("Stratasys J735", "The printer next door")
+    (tmp_path / "printprofiles").mkdir()
+    (tmp_path / "printprofiles/next-door.toml").write_text(own)
+    done = command("new", "mine", "--material", "Agilus30")
+    taken = written(tmp_path, "mine")["print"]["profile"]
+    other = ({"j735", "next-door"} - {taken}).pop()
+    assert f"profile {taken} (" in done.stderr
+    assert f"runs Agilus30; so does {other}, set by print.profile\n" in done.stderr
+    assert command("new", "plain").stderr == "next: pneutouch check plain\n"
 
 
 @pytest.mark.parametrize(

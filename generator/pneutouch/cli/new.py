@@ -7,7 +7,7 @@ import typer
 from pneutouch.cli.app import DesignFolderOption, SetOption, app, changes, design_folder, reporting
 from pneutouch.cli.complete import names
 from pneutouch.cli.next_step import report_next
-from pneutouch.cli.terminal import echo
+from pneutouch.cli.terminal import echo, notify
 from pneutouch.errors import InputError
 
 
@@ -38,7 +38,7 @@ def new(
     with reporting():
         from pneutouch.output.new import NewFile, new_design, new_from
 
-        started = {"--process": process, "--material": material}
+        note, started = None, {"--process": process, "--material": material}
         if from_ is not None:
             given = " and ".join(flag for flag, value in started.items() if value is not None)
             if given:
@@ -47,9 +47,11 @@ def new(
         elif set_:
             raise InputError("no design to change", key="set", remedy="give one with `from`")
         elif name is not None:
-            path = new_design(name, design_folder(out), process, material)
+            path, note = new_design(name, design_folder(out), process, material)
             made = NewFile(path, ("check", name if out is None else str(path)))
         else:
             raise InputError("no name for the new design", remedy="give a name, or an example with `from`")
         echo(str(made.path))
+        if note is not None:
+            notify(note)
         report_next(*made.command, first=made.first)

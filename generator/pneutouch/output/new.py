@@ -28,18 +28,23 @@ class NewFile:
     first: str = ""
 
 
-def new_design(name: str, folder: Path, process: str | None = None, material: str | None = None) -> Path:
+def new_design(
+    name: str, folder: Path, process: str | None = None, material: str | None = None
+) -> tuple[Path, str | None]:
     """Write ``folder/name.toml`` with every key, its default, unit, bounds and help; never over a file.
 
-    With ``process`` or ``material`` the design starts with a profile that runs it. Raises InputError where none does.
+    With ``process`` or ``material`` the design starts with a profile that runs it, and which that is is stated next to
+    the path. Raises InputError where none does.
     """
     if process is None and material is None:
-        return write_design(name, folder, design_template(name))
-    from pneutouch.output.new_process import process_values
+        return write_design(name, folder, design_template(name)), None
+    from pneutouch.output.new_process import process_values, profile_note
 
-    values = process_values(process, material, Library.default())
+    library = Library.default()
+    values = process_values(process, material, library)
     note = "Every key may be left out; shown are the defaults but for what process and resin need."
-    return write_design(name, folder, design_template(name, values, note))
+    path = write_design(name, folder, design_template(name, values, note))
+    return path, profile_note(values, library, process=process, material=material)
 
 
 def new_changed(source: DesignSource, name: str, folder: Path, *, overwrite: bool = False) -> Path:

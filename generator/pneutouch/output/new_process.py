@@ -44,6 +44,24 @@ def process_values(process: str | None, material: str | None, library: Library) 
     return values
 
 
+def profile_note(
+    values: dict[str, dict[str, Any]], library: Library, *, process: str | None, material: str | None
+) -> str:
+    """Which profile, and where none was given which resin, `process_values` took, with other profiles of that resin."""
+    profile, chosen = str(values["print"]["profile"]), str(values["membrane"]["material"])
+    resin: Material = library.load("materials", chosen)
+    printers = library.all("printers", Printer)
+    others = [
+        name
+        for name, one in printers.items()
+        if name != profile and process in (None, one.process) and one.mode_for(resin) is not None
+    ]
+    taken = f"profile {profile} ({printers[profile].title}) runs {chosen}"
+    unnamed = "" if material is not None else ", the resin taken because none is given"
+    also = f"; so does {', '.join(others)}, set by print.profile" if others else ""
+    return f"{taken}{unnamed}{also}"
+
+
 def _soft(name: str, library: Library) -> Material:
     material: Material = library.load("materials", name, key="material")
     if material.kind != "elastomer":
