@@ -118,6 +118,8 @@ def test_the_form_is_made_of_the_declared_fields(client):
             assert is_declared(field, declared)
     assert not fields
     assert form["first"] == "paper-dome"
+    # Their membranes alone have a mould, so the page shows its table for them.
+    assert form["castings"] == ["silicone-casting"]
     assert {"paper-dome", "soft-pad"} <= {one["name"] for one in form["designs"]}
 
 

@@ -46,6 +46,25 @@ def test_a_resin_takes_a_printer_that_runs_it(screen, pages):
     until(screen, "location.hash === '#paper-dome' && document.querySelectorAll('.faulty').length === 0")
 
 
+def test_the_mould_is_shown_for_a_cast_membrane_alone(screen):
+    mould = screen.locator("#form details", has_text="Mould: more")
+    assert mould.is_hidden()
+    screen.evaluate("location.hash = '#cast-dome'")
+    until(screen, "document.getElementById('field-print-profile').value === 'silicone-casting'")
+    mould.locator("summary").wait_for()
+    # The design leaves the table out: the fields show what it then is.
+    until(screen, "document.getElementById('field-mould-profile').value === 'abs-filament'")
+    assert screen.locator("#field-mould-cavities").input_value() == "1"
+    screen.evaluate("location.hash = '#paper-dome&mould.cavities=17'")
+    until(screen, "document.getElementById('field-print-profile').value === 'objet260-connex'")
+    # What is changed there all the same stays in sight, with what is wrong.
+    until(screen, "document.getElementById('field-mould-cavities-wrong').textContent")
+    assert mould.is_visible() and mould.get_by_label("Cavities", exact=True).input_value() == "17"
+    screen.get_by_role("button", name="Reset").click()
+    solved(screen, "#paper-dome")
+    assert mould.is_hidden()
+
+
 def test_an_error_stands_at_its_field_and_goes_again(screen):
     screen.evaluate("location.hash = '#paper-dome&membrane.wall_thickness_mm=14'")
     until(screen, "document.querySelectorAll('.faulty').length === 2")

@@ -30,9 +30,15 @@ Option = dict[str, str]
 
 def form_document(library: Library) -> dict[str, Any]:
     """Groups of fields with label, unit, bounds, help and the names to choose from; sizes by object; printers by
-    material."""
+    material; profiles that cast, which alone need a mould."""
     sizes = {kind: [f"contact.{key}" for key in keys] for kind, keys in SIZES.items()}
-    return {"groups": _groups(DesignFile, library), "sizes": sizes, "printers": _printers(library)}
+    castings = [name for name, one in library.all("printers", Printer).items() if one.is_casting]
+    return {
+        "groups": _groups(DesignFile, library),
+        "sizes": sizes,
+        "printers": _printers(library),
+        "castings": castings,
+    }
 
 
 def target_form_document(library: Library, bases: Mapping[str, str]) -> dict[str, Any]:

@@ -42,7 +42,9 @@ function boxes(field, linked, send) {
   const all = field.options.map((one) => element("input", { type: "checkbox", value: one.name, onchange: () => send(given(), true) }));
   const given = () => all.filter((box) => box.checked).map((box) => box.value);
   const labels = field.options.map((one, k) => element("label", {}, all[k], ` ${one.name}`));
-  const group = element("div", { ...linked, class: "boxes", role: "group", "aria-labelledby": `${linked.id}-label` }, ...labels);
+  // The field in focus keeps it while a box is pressed: its help would go, and the box move from under the pointer.
+  const held = (event) => event.preventDefault();
+  const group = element("div", { ...linked, class: "boxes", role: "group", "aria-labelledby": `${linked.id}-label`, onmousedown: held }, ...labels);
   const list = (text) => (text ? JSON.parse(text) : []);
   Object.defineProperty(group, "value", {
     get: () => JSON.stringify(given()),
@@ -54,7 +56,7 @@ function boxes(field, linked, send) {
 export class Fields {
   /** `changed(name, text, settled)`: a field has a new text, null where it is left out; settled when a move ends. */
   constructor(groups, changed) {
-    Object.assign(this, { groups, changed, fields: new Map() });
+    Object.assign(this, { groups, changed, fields: new Map(), folded: new Map() });
     for (const { fields } of groups) for (const field of fields) this.fields.set(field.name, { field });
   }
 
@@ -68,7 +70,9 @@ export class Fields {
   more(name, fields) {
     if (!fields.length) return null;
     const title = name.charAt(0).toUpperCase() + name.slice(1);
-    return element("details", {}, element("summary", {}, `${title}: more`), ...fields.map((field) => this.row(field)));
+    const folded = element("details", {}, element("summary", {}, `${title}: more`), ...fields.map((field) => this.row(field)));
+    this.folded.set(name, folded);
+    return folded;
   }
 
   row(field) {
@@ -153,7 +157,7 @@ export class Fields {
       if (at.has(name)) {
         if (input.role !== "group") input.setAttribute("aria-invalid", "true");
         row.hidden = false;
-        if (row.parentElement.tagName === "DETAILS") row.parentElement.open = true;
+        if (row.parentElement.tagName === "DETAILS") Object.assign(row.parentElement, { open: true, hidden: false });
       } else input.removeAttribute("aria-invalid");
     }
     return without;

@@ -28,7 +28,7 @@ const toPlace = (field, value) => {
 export class Form extends Fields {
   constructor(declared, changed) {
     super(declared.groups, changed);
-    this.sizes = declared.sizes;
+    Object.assign(this, { sizes: declared.sizes, castings: declared.castings });
     const measures = [...new Set(Object.values(declared.sizes).flat())].filter((name) => this.fields.has(name));
     const main = [...MAIN];
     main.splice(main.indexOf("contact.object") + 1, 0, ...measures);
@@ -66,7 +66,8 @@ export class Form extends Fields {
     for (const [name, { field, input, slider, row }] of this.fields) {
       const [table, key] = name.split(".");
       const given = name in state.values;
-      const known = answer?.values[table]?.[key];
+      // A table that the design leaves out is as declared.
+      const known = answer && !answer.values[table] ? field.default : answer?.values[table]?.[key];
       const text = given ? untyped(field, state.values[name]) : asText(known);
       row.classList.toggle("changed", given);
       if (document.activeElement !== input || ["choice", "flag"].includes(field.kind)) this.fill(field, input, text);
@@ -80,6 +81,9 @@ export class Form extends Fields {
     for (const [kind, names] of Object.entries(this.sizes)) {
       for (const name of names) if (this.fields.has(name)) this.fields.get(name).row.hidden = kind !== object;
     }
+    // A printed membrane has no mould; what is changed there all the same stays in sight.
+    const cast = this.castings.includes(this.fields.get("print.profile").input.value);
+    this.folded.get("mould").hidden = !cast && !Object.keys(state.values).some((name) => name.startsWith("mould."));
   }
 
   /** What stands in place of values that are left out. */
