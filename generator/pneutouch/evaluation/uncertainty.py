@@ -64,6 +64,24 @@ def unknown(sensor: Sensor, model: str) -> str | None:
     return None if why is None else f"the sensor is outside the atlas: {why}"
 
 
+def _softer_unknown(sensor: Sensor) -> str | None:
+    """Why the derivatives of a wall too soft for the atlas itself are unknown, or None where they are known."""
+    from pneutouch.mechanics.atlas_states import outside_atlas
+    from pneutouch.mechanics.uncertainty.neighbours import softer_walls
+
+    why = outside_atlas(sensor, softer_walls())
+    return None if why is None else f"the sensor is outside the atlas: {why}"
+
+
+def _soft_note(sensor: Sensor) -> str:
+    """What the derivatives of a wall are that is softer than those that the atlas answers for."""
+    gas = sensor.gas.ambient_pressure / sensor.wall.shear_modulus
+    return (
+        f"the ambient pressure is {gas:.3g} times the modulus, more than the atlas answers for: the figures are the "
+        "solid's, their relative uncertainty is by the derivatives of the atlas's tables, whose states hold without gas"
+    )
+
+
 def known(
     sensor: Sensor,
     pressures: Sequence[float],
@@ -123,6 +141,9 @@ def documents(
     states, model = prediction.states, prediction.model
     notes_of_wall, sensor = notes_on(sensor), even_wall(sensor)
     why = unknown(sensor, model)
+    if why is not None and model == "solid" and sensor.protocol.other_contact is None:
+        why = _softer_unknown(sensor)
+        notes_of_wall += (_soft_note(sensor),)
     if why is not None:
         return tuple({"unknown": why} for _ in states)
     from pneutouch.mechanics.uncertainty import FIGURES, document, gas_text, text

@@ -57,7 +57,10 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
         (dome.base is None, "the wall passes through its base plane"),
         (not inside, f"wall {ratio:.3g} R0, not {recipe.thinnest:g} to {recipe.thickest:g}"),
         (depth > recipe.deepest * (1 + 1e-9), f"depth {depth:.3g} R0, more than {recipe.deepest:g}"),
-        (gas > recipe.stiffest, f"ambient pressure {gas:.3g} mu, more than {recipe.stiffest:g}"),
+        (
+            gas > recipe.stiffest,
+            f"the wall is too soft: the ambient pressure is {gas:.3g} times its modulus, more than {recipe.stiffest:g}",
+        ),
     ]
     return next((why for applies, why in reasons if applies), None)
 

@@ -117,6 +117,8 @@ def _condition(sheet: SheetData, k: int) -> str:
 def _captions(sheet: SheetData) -> dict[str, str]:
     """Captions of the figures that depend on the prediction, and words in the place of those left out."""
     resin, why = sheet.scene.membrane_material, "the prediction has no figures at the highest driving pressure"
+    if sheet.prediction.states[-1].figures is not None:
+        why = "the atlas does not answer for the sensor"
     graded = "the atlas has no graded membranes" if resin.along is not None else ""
     unknown = (document["unknown"] for document in sheet.uncertainty if "unknown" in document)
     why = graded or next(unknown, why if resin.law is None else "the atlas has no fitted laws")
