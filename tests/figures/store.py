@@ -61,6 +61,7 @@ SLOW = {
     "list": ("list",),
     "build paper-dome": ("build paper-dome", "show outputs/paper-dome/paper-dome.3mf"),
     "build texture-specimen": ("build texture-specimen",),
+    "cast-dome": (*(f"predict cast-dome --model {model}" for model in MODELS), "check cast-dome", "build cast-dome"),
 }
 SLOW["predict paper-dome"] = SLOW["predict paper-dome"][1:]
 GROUPS = EVERYDAY | {(f"{name}, other models" if name in EVERYDAY else name): runs for name, runs in SLOW.items()}
