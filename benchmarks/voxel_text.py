@@ -13,12 +13,10 @@ _HEAD = """# Voxel stacks
 A graded membrane cannot be printed body by body, since no printer has a resin for every point of it. GrabCAD Voxel Print takes
 a stack of images instead, one for each layer, in which every pixel is one droplet of one base resin. `--voxels` writes it in addition to the build:
 
-```console
-$ pneutouch build graded-dome --voxels --voxel-mode "High Mix"
-outputs/graded-dome
-outputs/graded-dome-voxels
-$ pneutouch show outputs/graded-dome-voxels --out section.png
-$ pneutouch check graded-dome --voxels
+```sh
+pneutouch build graded-dome --voxels --voxel-mode "High Mix"    # outputs/graded-dome and outputs/graded-dome-voxels
+pneutouch show outputs/graded-dome-voxels --out section.png
+pneutouch check graded-dome --voxels
 ```
 
 `--voxel-mode` is the print mode whose layers are written; the default is the finest mode of the design. The utility must be set

@@ -13,6 +13,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from types import SimpleNamespace
 from unittest import mock
 
 import pytest
@@ -31,6 +32,42 @@ def captured() -> Iterator[tuple[io.BytesIO, io.BytesIO]]:
         yield out, err
     for text in texts:
         text.detach()
+
+
+class _Terminal(io.TextIOWrapper):
+    """A stream that states that it is a terminal."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+@contextlib.contextmanager
+def captured_together(kind: type[io.TextIOWrapper] = io.TextIOWrapper) -> Iterator[io.BytesIO]:
+    """The bytes that ``sys.stdout`` and ``sys.stderr`` take in the order of their writing."""
+    out = io.BytesIO()
+    text = kind(out, encoding="utf-8", errors="backslashreplace", write_through=True)
+    with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text):
+        yield out
+    text.detach()
+
+
+def on_a_terminal(words: Sequence[str], folder: Path, columns: int) -> tuple[int, str]:
+    """Exit code of ``pneutouch WORDS`` in this process, and what a terminal keeps: lines fitted to it, and no bar."""
+    from pneutouch.cli import command_line, progress
+    from pneutouch.cli.stop import stop_signals
+
+    with (
+        contextlib.chdir(folder),
+        mock.patch.object(sys, "argv", ["pneutouch", *words]),
+        mock.patch.dict(os.environ, {"COLUMNS": str(columns), "NO_COLOR": "1"}),
+        # A bar is gone from a terminal when its stage is done.
+        mock.patch.object(progress, "sys", SimpleNamespace(stderr=io.StringIO())),
+        mock.patch.object(progress, "_lines", lambda what: lambda done, total, what=None: None),
+        captured_together(_Terminal) as out,
+        stop_signals() as stop,
+    ):
+        code = command_line(stop)
+    return code, out.getvalue().decode()
 
 
 def in_process(words: Sequence[str], folder: Path) -> subprocess.CompletedProcess[str]:

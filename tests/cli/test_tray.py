@@ -1,10 +1,9 @@
-"""``pneutouch tray`` as a user meets it; what docs/howto/tray.md shows is what the commands say."""
+"""``pneutouch tray`` as a user meets it; tests/test_pages.py runs the commands of docs/howto/tray.md."""
 
 from __future__ import annotations
 
 import json
 import re
-import shlex
 import shutil
 
 import pytest
@@ -13,8 +12,6 @@ from tests.cli.test_commands import modules_after
 from tests.conftest import ROOT
 
 TEXT = (ROOT / "docs/howto/tray.md").read_text(encoding="utf-8")
-(CONSOLE,) = re.findall(r"```console\n(.*?)```", TEXT, re.DOTALL)
-SHOWN = re.findall(r"\$ (pneutouch .*)\n((?:(?!\$ ).*\n)*)", CONSOLE)
 EXAMPLE = "seven-resins.toml"
 
 
@@ -23,14 +20,6 @@ def bench(tmp_path):
     """A folder with the example in it that the page names."""
     shutil.copy(ROOT / "docs/examples" / EXAMPLE, tmp_path)
     return tmp_path
-
-
-@pytest.mark.parametrize(("line", "output"), SHOWN)
-def test_the_page_s_commands_say_what_it_shows(line, output, command, bench):
-    result = command(*shlex.split(line)[1:])
-    assert result.returncode == 0, result.stderr
-    assert result.stdout == output
-    assert (bench / output.splitlines()[-1] / "labels.md").is_file()
 
 
 def test_the_page_s_file_runs(command, bench):
