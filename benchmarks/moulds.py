@@ -1,6 +1,7 @@
-"""Every mould of random cast designs: closed, apart, no undercut, volumes exact. ``python -m benchmarks.moulds [COUNT]``.
+"""Moulds of random cast designs: closed, apart, no undercut, volumes exact.
 
-The designs are drawn with a fixed seed over what a design file may state of a membrane and its mould.
+``python -m benchmarks.moulds [COUNT [SEAT]]``. The designs are drawn with a fixed seed over what a design file may
+state of a membrane and its mould.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ class MouldCheck:
         return self.closed and not self.overlaps and not self.undercuts and right
 
 
-def random_moulds(count: int = COUNT, seed: int = SEED) -> Iterator[MouldAssembly]:
+def random_moulds(count: int = COUNT, seed: int = SEED, seat: str = "glued-flange") -> Iterator[MouldAssembly]:
     """Moulds of random cast designs: radius 3 to 20 mm, walls of 0.05 to 0.3 of it, 1 to 6 cavities."""
     draw = np.random.default_rng(seed)
     for k in range(count):
@@ -58,7 +59,7 @@ def random_moulds(count: int = COUNT, seed: int = SEED) -> Iterator[MouldAssembl
         content = {
             "membrane": {"inner_radius_mm": radius, "wall_thickness_mm": wall * radius, "material": "DragonSkin20"},
             "indentation": {"depth_mm": 0.3 * radius},
-            "connector": {"mount": "plain"},
+            "connector": {"mount": "plain", "seat": seat},
             "print": {"profile": "silicone-casting"},
             "mould": mould,
         }
@@ -67,7 +68,7 @@ def random_moulds(count: int = COUNT, seed: int = SEED) -> Iterator[MouldAssembl
 
 def checked(mould: MouldAssembly) -> MouldCheck:
     """Measure one mould."""
-    match, exact = cavity_match(mould.size, mould.closed, mould.tolerance), mould.size.faces.meridian.volume()
+    match, exact = cavity_match(mould.size, mould.closed, mould.tolerance), mould.size.cavity_volume
     membrane, shape = mould.scene.design.membrane, mould.size.shape
     return MouldCheck(
         design=(
@@ -105,4 +106,6 @@ def table(checks: list[MouldCheck]) -> str:
 
 
 if __name__ == "__main__":
-    print(table([checked(mould) for mould in random_moulds(int(sys.argv[1]) if len(sys.argv) > 1 else COUNT)]))
+    chosen = sys.argv[2] if len(sys.argv) > 2 else "glued-flange"
+    drawn = random_moulds(int(sys.argv[1]) if len(sys.argv) > 1 else COUNT, seat=chosen)
+    print(table([checked(mould) for mould in drawn]))

@@ -22,6 +22,15 @@ SMALL = ("membrane.inner_radius_mm=8", "membrane.wall_thickness_mm=1.2")
 """A dome that every seat, port and mount has room for."""
 
 
+CAST = {"cast-ring": ("print.profile=silicone-casting", "membrane.material=DragonSkin20")}
+"""What the base design needs for seats that only a cast membrane takes."""
+
+
+def printed_combinations(library: Library) -> list[tuple[str, str, str]]:
+    """Those of `combinations` that a printed membrane takes."""
+    return [parts for parts in combinations(library) if parts[1] not in CAST]
+
+
 def combinations(library: Library) -> list[tuple[str, str, str]]:
     """Every port with every seat and every mount."""
     return list(itertools.product(*(library.paths(kind) for kind in KINDS.values())))
@@ -30,6 +39,7 @@ def combinations(library: Library) -> list[tuple[str, str, str]]:
 def assembled(library: Library, parts: tuple[str, str, str], *more: str) -> Assembly:
     """The base design with a combination of parts and further overrides."""
     chosen = [f"connector.{key}={value}" for key, value in zip(KINDS, parts, strict=True)]
+    chosen += CAST.get(parts[1], ())
     return assemble(load_scene(BASE, parse_changes([*chosen, *more]), library))
 
 

@@ -35,6 +35,9 @@ def measured_volume(assembly):
     if assembly.scene.seat.family == "glued-flange":
         cuts.append(ring(layout.groove_inner, layout.inner_radius, layout.plate_high, 0.0))
         cuts.append(ring(layout.flange_radius, layout.groove_outer, layout.plate_high, 0.0))
+    if assembly.scene.seat.family == "cast-ring":
+        cuts.append(ring(layout.groove_inner, layout.inner_radius + layout.flange_draft, layout.plate_high, 0.0))
+        cuts.append(ring(layout.held_radius, layout.groove_outer, layout.plate_high, 0.0))
     if port.engaged:
         rear_frame = Frame((0.0, 0.0, layout.under), (0.0, 0.0, -1.0))
         frame = (

@@ -11,8 +11,10 @@ from pneutouch.parts.air_path import air_path
 
 ONE_PIECE = {"print.profile": "j735", "print.connector_profile": "j735", "membrane.material": "Agilus30"}
 
+CAST = {"print.profile": "silicone-casting", "membrane.material": "DragonSkin20"}
 
-@pytest.mark.parametrize("seat", ["glued-flange", "clamped-flange-M2", "one-piece"])
+
+@pytest.mark.parametrize("seat", ["glued-flange", "clamped-flange-M2", "one-piece", "cast-ring"])
 @pytest.mark.parametrize("mount", ["bolt-circle-4xM3", "finger-16", "robot-50-4-M6"])
 def test_the_pieces_hold_the_volume_of_connector_and_tube(library, mount, seat):
     built = 0
@@ -20,6 +22,8 @@ def test_the_pieces_hold_the_volume_of_connector_and_tube(library, mount, seat):
         changes = {"connector.port": port, "connector.mount": mount, "connector.seat": seat}
         if seat == "one-piece":
             changes |= {**ONE_PIECE, "connector.material": "VeroClear"}
+        if seat == "cast-ring":
+            changes |= {**CAST, "membrane.inner_radius_mm": 7.0}
         try:
             assembly = assemble(load_scene("paper-dome", changes, library))
         except PneutouchError:

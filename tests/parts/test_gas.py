@@ -14,6 +14,7 @@ from pneutouch.body import crossing
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes
+from tests.catalogue.store import CAST
 from tests.conftest import ROOT
 from tests.parts.space import measured_volume
 
@@ -28,7 +29,13 @@ CASES = [
 
 
 def assembly(port, seat, mount, *more):
-    chosen = [f"connector.port={port}", f"connector.seat={seat}", f"connector.mount={mount}", *more]
+    chosen = [
+        f"connector.port={port}",
+        f"connector.seat={seat}",
+        f"connector.mount={mount}",
+        *CAST.get(seat, ()),
+        *more,
+    ]
     return assemble(load_scene("stiff-dome", parse_changes(chosen), LIBRARY))
 
 
@@ -78,7 +85,12 @@ def test_dead_volume_counts_connector_and_tube_and_the_tube_named(library):
 @pytest.mark.parametrize("port", ["luer-female", "thread-M5", "barb-6x4"])
 @pytest.mark.parametrize(
     ("seat", "mount"),
-    [("one-piece", "rear-3xM2"), ("clamped-flange-M2", "finger-16"), ("glued-flange", "robot-50-4-M6")],
+    [
+        ("one-piece", "rear-3xM2"),
+        ("clamped-flange-M2", "finger-16"),
+        ("glued-flange", "robot-50-4-M6"),
+        ("cast-ring", "plain"),
+    ],
 )
 def test_exact_volumes_are_those_of_the_cad_kernel(port, seat, mount):
     import cadquery as cq

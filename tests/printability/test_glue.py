@@ -52,6 +52,16 @@ def test_the_glue_of_a_cast_flange_is_silicones_and_of_a_printed_one_the_makers_
     assert glued_seat(load_scene("cast-dome")) is None
 
 
+def test_a_cast_ring_is_glued_rigid_on_rigid():
+    ring = load_scene("cast-dome", {"connector.seat": "cast-ring"})
+    assert glued_seat(ring) == ("epoxy", "thermoplastic", "thermoplastic")
+    assert glue_of(load_scene("cast-dome", {"connector.seat": "cast-ring", "connector.glue": "cyanoacrylate"})) == (
+        "cyanoacrylate"
+    )
+    assert [one.severity for one in findings(*glued_seat(ring))] == []
+    assert [one.severity for one in findings("silicone-adhesive", "thermoplastic", "thermoplastic")] == ["error"]
+
+
 def test_a_seat_without_glue_refuses_one_and_a_design_without_one_reads_as_before():
     with pytest.raises(InputError, match="has no glue at the flange"):
         load_scene("cast-dome", {"connector.glue": "epoxy"})

@@ -25,6 +25,16 @@ def test_a_cast_dome_is_weighed_by_its_ratio_poured_cured_and_peeled():
     assert making_title(pour) == "How to make it"
 
 
+def test_a_ring_is_printed_put_into_the_mould_cast_around_and_glued():
+    _, lines = steps("cast-dome", {"connector.seat": "cast-ring", "mould.cavities": 4})
+    text = " ".join(lines)
+    order = [
+        text.index(word) for word in ("make 4", "degrease", "into the mould's ring", "Pour", "straight off", "epoxy")
+    ]
+    assert order == sorted(order)
+    assert "peel the flange" not in text and "0.40 mm a side" in text
+
+
 def test_a_printed_dome_has_nothing_to_pour():
     pour, lines = steps("paper-dome")
     assert pour is None and making_title(pour) == "Material and print"

@@ -22,12 +22,12 @@ from pneutouch.spec.target import Target
 from pneutouch.workflows.build import build
 from pneutouch.workflows.select.document import write_choice
 from pneutouch.workflows.select.run import SelectionRun, select
-from tests.catalogue.store import combinations
+from tests.catalogue.store import printed_combinations
 from tests.conftest import ROOT
 from tests.selection.targets import target
 
 LIBRARY = Library((ROOT,))
-PARTS = combinations(LIBRARY)
+PARTS = printed_combinations(LIBRARY)
 SOFT = ["TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985"]
 """Resins of the default printer; one or two are chosen from, so that a target costs less than the search of all."""
 

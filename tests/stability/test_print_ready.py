@@ -8,10 +8,10 @@ import pytest
 from pneutouch.catalogue import load_scene
 from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes
-from tests.catalogue.store import combinations
+from tests.catalogue.store import printed_combinations
 from tests.stability.prints import LIBRARY, RESINS, outcome, strict_warnings
 
-PARTS = combinations(LIBRARY)
+PARTS = printed_combinations(LIBRARY)
 SIZES = {6.0: 1.0, 9.25: 1.5, 15.0: 2.0}
 """Inner radius and wall of three domes, mm."""
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pneutouch.catalogue.cast_ring import check_cast_ring
 from pneutouch.catalogue.gauge import named_gauge
 from pneutouch.catalogue.library import Library
 from pneutouch.catalogue.mixture import mixed_material
@@ -18,7 +19,7 @@ from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.names import name_of
-from pneutouch.spec.part import AnyMount, AnySeat, GluedFlange, OnePiece, Port, Tube
+from pneutouch.spec.part import AnyMount, AnySeat, CastRing, GluedFlange, OnePiece, Port, Tube
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.spec.read import Changes, override, read_toml, validate
 
@@ -85,8 +86,12 @@ class ResolvedDesign:
 
     @property
     def fit_clearance(self) -> float:
-        """Clearance per side in mm between two bodies: the printers' stated accuracies added up."""
-        return self.printer.accuracy_mm.nominal + self.connector_printer.accuracy_mm.nominal
+        """Clearance per side in mm between two bodies: the printers' stated accuracies added up.
+
+        The membrane goes into the seat, or the ring that it is cast around, which the connector's printer makes.
+        """
+        held = self.connector_printer if isinstance(self.seat, CastRing) else self.printer
+        return held.accuracy_mm.nominal + self.connector_printer.accuracy_mm.nominal
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,6 +195,7 @@ def check_scene(scene: ResolvedDesign) -> None:
     _check_runs(scene, "print.connector_profile", scene.connector_printer, scene.connector_material)
     _check_one_piece(scene)
     _check_glue(scene)
+    check_cast_ring(scene.design, scene.where, scene.seat, scene.printer)
     _check_calibration(scene)
     _check_mould(scene)
 
@@ -240,9 +246,9 @@ def _check_one_piece(scene: ResolvedDesign) -> None:
 
 
 def _check_glue(scene: ResolvedDesign) -> None:
-    """A glue is named for a flange that is glued."""
+    """A glue is named for a flange that is glued, or a ring."""
     named = scene.design.connector.glue
-    if named is not None and not isinstance(scene.seat, GluedFlange):
+    if named is not None and not isinstance(scene.seat, GluedFlange | CastRing):
         problem = f"connector.seat = {shown(scene.design.connector.seat)} has no glue at the flange"
         remedy = "leave it out, or take connector.seat = glued-flange"
         raise InputError(problem, file=scene.where, key="connector.glue", value=named, remedy=remedy)

@@ -8,7 +8,9 @@ import numpy as np
 from pneutouch.arrays import Array, Flags
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts import Assembly
+from pneutouch.parts.cast_ring import RING
 from pneutouch.parts.glue import glue_of, glue_surfaces
+from pneutouch.parts.layout import Layout
 from pneutouch.printability.measure.mould import LEAVES
 from pneutouch.printability.mould import mould_subject
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
@@ -31,10 +33,17 @@ _HINTS = {
 }
 """Remedies in the design for each kind of finding, by body; a ring and a plug are designed as the connector is."""
 
+_RING_HINTS = {
+    **_HINTS["connector"],
+    "walls": "raise cast_ring.width_mm or cast_ring.thickness_mm, or lower cast_ring.hole_count",
+    "holes": "drill after printing, or raise cast_ring.hole_diameter_mm",
+}
+"""The same for the ring that a flange is cast around."""
+
 
 def subject_of(assembly: Assembly) -> PrintSubject:
-    """The bodies of a sensor with their machines, as they stand in them, and the faces that membrane and connector
-    share."""
+    """The bodies of a sensor with their machines, as they stand in them, and the faces that membrane, connector
+    and a ring share."""
     scene, layout = assembly.scene, assembly.layout
     items = []
     for body, solid in zip(assembly.bodies, assembly.solids, strict=True):
@@ -48,13 +57,22 @@ def subject_of(assembly: Assembly) -> PrintSubject:
                 up=(0.0, 0.0, 1.0 if assembly.stands_up(body.name) else -1.0),
                 job=assembly.job(body.name),
                 sensing=_outer_wall(assembly) if body.name == "membrane" else None,
-                hints=_HINTS.get(body.name, _HINTS["connector"]),
+                hints=_hints(body.name, layout),
+                insert=assembly.solid(RING) if body.name == "membrane" and layout.ring is not None else None,
             )
         )
     where = (layout.flange_radius, 0.0, layout.plate_high)
     area = assembly.seat_area
-    joints = (Joint("membrane", "connector", area, where),) if area > 0 else ()
-    return PrintSubject(tuple(items), joints, scene.name)
+    joints = [Joint("membrane", "connector", area, where)] if area > 0 else []
+    if layout.ring is not None:
+        joints.append(Joint(RING, "connector", layout.ring.foot_area, where))
+    return PrintSubject(tuple(items), tuple(joints), scene.name)
+
+
+def _hints(body: str, layout: Layout) -> dict[str, str]:
+    if body == RING and layout.ring is not None:
+        return _RING_HINTS
+    return _HINTS.get(body, _HINTS["connector"])
 
 
 def glued_seat(scene: ResolvedDesign) -> GluedSeat | None:
@@ -73,12 +91,16 @@ def made_of(assembly: Assembly) -> PrintSubject:
 
 
 def wetted(assembly: Assembly) -> tuple[WettedSurface, ...]:
-    """The parts of a mould that a cast membrane cures against; none of a printed one."""
+    """The parts of a mould that a cast membrane cures against, and the ring in its flange; none of a printed one."""
     mould = assembly.mould
     if mould is None:
         return ()
     label, process = mould.material.label, mould.printer.process
-    return tuple(WettedSurface(solid.name, label, process) for solid in mould.solids if solid.name in LEAVES)
+    surfaces = [WettedSurface(solid.name, label, process) for solid in mould.solids if solid.name in LEAVES]
+    if mould.insert is not None:
+        process = assembly.scene.connector_printer.process
+        surfaces.append(WettedSurface(mould.insert.name, mould.insert.material.label, process))
+    return tuple(surfaces)
 
 
 def _outer_wall(assembly: Assembly) -> Callable[[Array], Flags]:

@@ -12,7 +12,7 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.connector import rigid_solids
 from pneutouch.parts.gas import glue_volume, internal_volume
 from pneutouch.parts.layout import Layout, lay_out
-from pneutouch.parts.membrane import INNER_WALL, membrane_meridian
+from pneutouch.parts.membrane import INNER_WALL, membrane_solid
 from pneutouch.parts.mould import MouldAssembly, mould_of
 from pneutouch.parts.seat import SEAT
 from pneutouch.parts.space import check_space
@@ -136,5 +136,5 @@ def assemble(scene: ResolvedDesign) -> Assembly:
     """Draw the membrane and the rigid bodies of a scene. Raises InputError where a part has no space."""
     layout = lay_out(scene)
     check_space(scene, layout)
-    membrane = Solid("membrane", "membrane", scene.membrane_material, membrane_meridian(layout))
+    membrane = membrane_solid(layout, scene.membrane_material)
     return Assembly(scene, layout, (membrane, *rigid_solids(scene, layout)))

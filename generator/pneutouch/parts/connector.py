@@ -19,7 +19,7 @@ _UNDER_PORT = 0.3
 
 
 def rigid_solids(scene: ResolvedDesign, layout: Layout) -> tuple[Solid, ...]:
-    """The connector first, then the clamping ring or the plug."""
+    """The connector first, then the clamping ring, the ring in the flange or the plug."""
     material, seat = scene.connector_material, scene.seat
     bores = (*mounting_bores(scene, layout), *clamping_bores(seat, layout, scene.hole_undersize))
     adds, cuts = [], list(mount_cuts(scene, layout))
@@ -33,6 +33,8 @@ def rigid_solids(scene: ResolvedDesign, layout: Layout) -> tuple[Solid, ...]:
     if isinstance(seat, ClampedFlange):
         holes = clearing_bores(seat, layout, scene.hole_undersize)
         return connector, Solid("ring", "ring", material, ring_meridian(seat, layout), holes)
+    if layout.ring is not None:
+        return connector, layout.ring.solid(material)
     if isinstance(seat, OnePiece):
         lugs = () if layout.port_axis is not None else tuple(rear_lugs(layout))
         return connector, Solid("plug", "plug", material, plug_meridian(scene, layout), adds=lugs)

@@ -6,7 +6,7 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.connector import plug_neck, plug_radius
 from pneutouch.parts.layout import Layout
 from pneutouch.parts.side_port import side_volume
-from pneutouch.spec.part import ClampedFlange, GluedFlange, OnePiece
+from pneutouch.spec.part import CastRing, ClampedFlange, GluedFlange, OnePiece
 
 
 def internal_volume(scene: ResolvedDesign, layout: Layout) -> float:
@@ -26,7 +26,7 @@ def channel_volume(layout: Layout) -> float:
 
 
 def gap_volume(scene: ResolvedDesign, layout: Layout) -> float:
-    """Volume in mm3 of the gap inside a clamped flange or around a plug; a glued flange's gaps are full of glue."""
+    """Volume in mm3 of the gap inside a clamped flange or around a plug; other gaps are full of glue."""
     seat = scene.seat
     if isinstance(seat, ClampedFlange):
         return _inside_flange(layout)
@@ -40,8 +40,11 @@ def gap_volume(scene: ResolvedDesign, layout: Layout) -> float:
 
 
 def glue_volume(scene: ResolvedDesign, layout: Layout) -> float:
-    """Volume in mm3 of the gaps that glue fills: around a glued flange, or around a plug's shoulder."""
+    """Volume in mm3 of the gaps that glue fills: around a glued flange or a cast one with its ring, or around a plug's
+    shoulder."""
     seat = scene.seat
+    if isinstance(seat, CastRing):
+        return _inside_flange(layout) + _annulus(layout.held_radius, layout.groove_outer, layout.flange_thickness)
     if isinstance(seat, GluedFlange):
         outside = _annulus(layout.flange_radius, layout.groove_outer, layout.flange_thickness)
         return _inside_flange(layout) + outside + _draft(layout.flange_radius, -layout.flange_draft, layout)

@@ -3,7 +3,7 @@
 from typing import Literal, NamedTuple
 
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.spec.part import GluedFlange
+from pneutouch.spec.part import CastRing, GluedFlange
 from pneutouch.spec.printer import Printer
 
 GlueSurface = Literal["silicone", "photopolymer", "thermoplastic"]
@@ -78,17 +78,25 @@ def surface_of(printer: Printer) -> GlueSurface:
 
 
 def glue_surfaces(scene: ResolvedDesign) -> tuple[GlueSurface, GlueSurface] | None:
-    """The surfaces that glue joins at the seat, membrane first; None for a seat without glue there."""
+    """The surfaces that glue joins at the seat, the connector's last; None for a seat without glue there.
+
+    The ring that a flange is cast around is made as the connector is: silicone holds it by its holes, not by glue.
+    """
+    if isinstance(scene.seat, CastRing):
+        return surface_of(scene.connector_printer), surface_of(scene.connector_printer)
     if not isinstance(scene.seat, GluedFlange):
         return None
     return surface_of(scene.printer), surface_of(scene.connector_printer)
 
 
 def glue_of(scene: ResolvedDesign) -> str | None:
-    """Name of the glue at the seat: the design's, else silicone's own for a cast membrane; None where it is open."""
+    """Name of the glue at the seat: the design's, else silicone's own for a cast flange, and for a cast ring the one
+    that fills the gap of a fit; None where it is open."""
     surfaces, named = glue_surfaces(scene), scene.design.connector.glue
     if surfaces is None or named is not None:
         return named
+    if isinstance(scene.seat, CastRing):
+        return "epoxy"
     return "silicone-adhesive" if "silicone" in surfaces else None
 
 

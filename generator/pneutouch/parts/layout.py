@@ -15,8 +15,9 @@ import math
 from dataclasses import dataclass
 
 from pneutouch.catalogue import ResolvedDesign
+from pneutouch.parts.cast_ring import RingSize, ring_size
 from pneutouch.parts.port import PortShape, port_shape
-from pneutouch.spec.part import BoltCircle, ClampedFlange, OnePiece, RobotFlange, Sleeve
+from pneutouch.spec.part import BoltCircle, CastRing, ClampedFlange, OnePiece, RobotFlange, Sleeve
 
 HEAD_GAP = 0.5
 """Space in mm around a screw head, for the driver."""
@@ -32,6 +33,7 @@ class Layout:
     ``under`` is the rearmost face around the axis: ``plate_low``, or lower where the mount has a boss there.
     ``opening_radius`` is the hole that a plug closes, 0 without one. ``port_axis`` is the height of a side port.
     ``flange_draft`` is how much wider both sides of a cast flange are at its underside than at the base plane.
+    ``ring`` is what the flange is cast around, None without one.
     """
 
     inner_radius: float
@@ -50,6 +52,7 @@ class Layout:
     port: PortShape
     port_axis: float | None
     flange_draft: float = 0.0
+    ring: RingSize | None = None
 
     @property
     def outer_radius(self) -> float:
@@ -62,14 +65,19 @@ class Layout:
         return self.outer_radius + self.flange_width
 
     @property
+    def held_radius(self) -> float:
+        """Outer radius of what the seat holds: the flange, or the collar of the ring that it is cast around."""
+        return self.flange_radius if self.ring is None else self.ring.collar_radius
+
+    @property
     def groove_inner(self) -> float:
         """Radius of the spigot that carries the rim from inside."""
         return self.inner_radius - self.clearance
 
     @property
     def groove_outer(self) -> float:
-        """Radius of the ring that carries the flange from outside."""
-        return self.flange_radius + self.clearance
+        """Radius of the wall that carries the flange, or its collar, from outside."""
+        return self.held_radius + self.clearance
 
     @property
     def ring_inner(self) -> float:
@@ -103,23 +111,24 @@ def lay_out(scene: ResolvedDesign) -> Layout:
 def lay_out_dome(scene: ResolvedDesign, port: PortShape, inner_radius: float, wall: float) -> Layout:
     """The layout of a scene around a dome of another size, mm."""
     seat, mount = scene.seat, scene.mount
-    flange = max(seat.least_flange_mm, seat.flange_over_wall * wall)
+    flange, deep = _flange(scene, wall)
     clearance = 0.0 if isinstance(seat, OnePiece) else scene.fit_clearance
-    groove = inner_radius + wall + flange + clearance
+    inside = None if not isinstance(seat, CastRing) else ring_size(scene, seat, inner_radius + wall + flange, deep)
+    groove = (inner_radius + wall + flange if inside is None else inside.collar_radius) + clearance
     ring = _ring_radius(scene, groove, flange)
     bolts = _bolt_circle(scene, ring)
     thickness = _plate_thickness(scene, port)
-    low = -flange - thickness
+    low = -deep - thickness
     side = mount.port_side == "side"
     return Layout(
         inner_radius=inner_radius,
         wall=wall,
         flange_width=flange,
-        flange_thickness=flange,
+        flange_thickness=deep,
         clearance=clearance,
         ring_radius=ring,
         plate_radius=_plate_radius(scene, ring, bolts),
-        plate_high=-flange,
+        plate_high=-deep,
         plate_low=low,
         under=low - mount.boss_height if isinstance(mount, RobotFlange) else low,
         bolt_circle_radius=bolts,
@@ -127,8 +136,18 @@ def lay_out_dome(scene: ResolvedDesign, port: PortShape, inner_radius: float, wa
         opening_radius=inner_radius - seat.lip_wall_mm if isinstance(seat, OnePiece) else 0.0,
         port=port,
         port_axis=low + _port_height(scene, port) if side else None,
-        flange_draft=_flange_draft(scene, flange),
+        flange_draft=_flange_draft(scene, deep),
+        ring=inside,
     )
+
+
+def _flange(scene: ResolvedDesign, wall: float) -> tuple[float, float]:
+    """Width and thickness of the flange: one length, or what the web of a ring and the silicone around it need."""
+    seat, web = scene.seat, scene.design.cast_ring
+    least = max(seat.least_flange_mm, seat.flange_over_wall * wall)
+    if not isinstance(seat, CastRing):
+        return least, least
+    return max(least, web.width_mm + seat.lip_mm), max(least, web.thickness_mm + 2 * seat.lip_mm)
 
 
 def _flange_draft(scene: ResolvedDesign, thickness: float) -> float:

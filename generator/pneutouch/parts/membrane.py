@@ -2,8 +2,10 @@
 
 import math
 
+from pneutouch.body import Solid
 from pneutouch.meridian import Arc, Line, Meridian
 from pneutouch.parts.layout import Layout
+from pneutouch.spec.material import Material
 
 INNER_WALL = "inner wall"
 OUTER_WALL = "outer wall"
@@ -14,17 +16,27 @@ HELD = "held"
 def membrane_meridian(layout: Layout) -> Meridian:
     """Meridian from the pole inside, round the flange, back to the pole outside.
 
-    A cast flange opens downwards inside and out by its draft, so that it leaves core and ring.
+    A cast flange opens downwards inside and out by its draft, so that it leaves core and ring; one that is cast around
+    a ring keeps its collar, upright outside. The meridian is then the outline of the silicone with the web in it.
     """
     inner, outer, flange = layout.inner_radius, layout.outer_radius, layout.flange_radius
     low, draft = -layout.flange_thickness, layout.flange_draft
+    edge = draft if layout.ring is None else 0.0
     return Meridian(
         (
             Arc((0.0, 0.0), inner, math.pi / 2, 0.0, INNER_WALL),
             Line((inner, 0.0), (inner + draft, low), HELD),
             Line((inner + draft, low), (flange, low), HELD),
-            Line((flange, low), (flange - draft, 0.0), HELD),
-            Line((flange - draft, 0.0), (outer, 0.0), "flange top"),
+            Line((flange, low), (flange - edge, 0.0), HELD),
+            Line((flange - edge, 0.0), (outer, 0.0), "flange top"),
             Arc((0.0, 0.0), outer, 0.0, math.pi / 2, OUTER_WALL),
         )
     )
+
+
+def membrane_solid(layout: Layout, material: Material) -> Solid:
+    """The membrane; without what a ring takes of its flange."""
+    outline = membrane_meridian(layout)
+    if layout.ring is not None:
+        return layout.ring.enclosed("membrane", material, outline)
+    return Solid("membrane", "membrane", material, outline)

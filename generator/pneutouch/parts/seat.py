@@ -27,6 +27,7 @@ def seat_faces(seat: AnySeat, layout: Layout) -> TracedPath:
         ]
     # A cast flange leans: at its underside, where it rests, it is that much wider inside too.
     floor: TracedPath = [
+        *([("groove floor", (layout.held_radius, high))] if layout.ring is not None else []),
         ("groove floor", (flange, high)),
         (SEAT, (inner + layout.flange_draft, high)),
         ("groove floor", (layout.groove_inner, high)),

@@ -50,7 +50,8 @@ class PrintItem:
     ``solid`` is the exact shape where there is one. ``up`` is the build direction in the body's frame. Items with
     the same ``job`` are printed together, standing to one another as in the design frame; "" is a job of its own.
     ``sensing`` selects the (n, 3) surface points that must not be matte. ``hints`` states, by the name of a rule, what
-    in the design would fix what the rule finds.
+    in the design would fix what the rule finds. ``insert`` is a body that this one is cast around: it fills its
+    openings.
     """
 
     body: Body
@@ -61,6 +62,7 @@ class PrintItem:
     job: str = ""
     sensing: Callable[[Array], Flags] | None = None
     hints: Mapping[str, str] = field(default_factory=dict)
+    insert: ExactShape | None = None
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from pneutouch.printability.measure.chords import Chords, Side, chords, refined
 from pneutouch.printability.measure.samples import SurfaceSamples, sample
 from pneutouch.printability.measure.shells import Hollow, voids
 from pneutouch.printability.measure.surface import SurfaceMesh
-from pneutouch.printability.measure.thin import ThinPlace, thin_places
+from pneutouch.printability.measure.thin import OPENINGS, ThinPlace, thin_places
 from pneutouch.printability.measure.voxels import PartVoxels, build_frame, fill
 from pneutouch.printability.subject import Point3, PrintItem, PrintSubject
 from pneutouch.spec.printer import FeatureSize, Printer
@@ -132,7 +132,15 @@ class PrintPart:
         """Thin places, narrowest first."""
         solid = self.item.solid
         exact = None if solid is None else lambda chords: refined(chords, solid.distance)
-        return thin_places(self.manifold, self.surface, self.chords, self._limits, exact)
+        places = thin_places(self.manifold, self.surface, self.chords, self._limits, exact)
+        return [place for place in places if not self._filled(place)]
+
+    def _filled(self, place: ThinPlace) -> bool:
+        """Whether a place is an opening that the item's insert fills, which no tool has to make."""
+        insert = self.item.insert
+        if insert is None or place.kind not in OPENINGS:
+            return False
+        return bool(insert.distance(np.array([place.where]))[0] <= 0.5 * place.size + self.surface.chord_error[0])
 
     def slack(self, size: float, turn: float) -> float:
         """How far a measured size (mm) may be off, mm, between curves whose faces turn by ``turn`` (radians).

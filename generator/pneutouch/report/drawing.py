@@ -9,6 +9,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.parts import Assembly
+from pneutouch.parts.cast_ring import RING
 from pneutouch.report.dimension import CENTRE, NEIGHBOUR, THIN, circle, horizontal, leader, polar, vertical
 from pneutouch.report.port_note import port_note
 from pneutouch.report.section import draw_bores, draw_section
@@ -124,6 +125,13 @@ class _Section:
             text = f"ring, {seat.screw_count} × {seat.screw}\ncloses {seat.squeeze * layout.flange_thickness:.2f}"
             spot = (-layout.ring_radius + unit, 0.9 * seat.ring_thickness)
             leader(self.ax, spot, (self.left - 0.5 * unit, 6.5 * unit), text, "right")
+        if layout.ring is not None:
+            ring, spot = (
+                layout.ring,
+                (-0.5 * (layout.flange_radius + layout.held_radius), -0.1 * layout.flange_thickness),
+            )
+            text = f"ring in the flange,\n{ring.hole_count} × Ø{2 * ring.hole_radius:.4g}"
+            leader(self.ax, spot, (self.left - 0.5 * unit, 6.5 * unit), text, "right")
         if isinstance(seat, OnePiece):
             spot = (-layout.opening_radius + 0.6 * unit, layout.under + 0.5 * seat.shoulder_thickness)
             leader(self.ax, spot, at, f"plug, opening Ø{2 * layout.opening_radius:g}", "right")
@@ -140,14 +148,15 @@ class _Section:
 def _plan(ax: Axes, assembly: Assembly) -> None:
     layout, scene = assembly.layout, assembly.scene
     unit = layout.plate_radius / 22
-    outlines = [layout.plate_radius, layout.ring_radius, layout.groove_outer, layout.flange_radius, layout.outer_radius]
+    held = dict.fromkeys([layout.held_radius, layout.flange_radius])
+    outlines = [layout.plate_radius, layout.ring_radius, layout.groove_outer, *held, layout.outer_radius]
     if isinstance(scene.seat, ClampedFlange):
         outlines = [layout.plate_radius, layout.ring_radius, layout.outer_radius]
     for radius in dict.fromkeys(outlines):
         circle(ax, 0, 0, radius)
     for solid in assembly.solids:
         if solid.name != "connector" or not isinstance(scene.seat, ClampedFlange):
-            draw_bores(ax, solid)
+            draw_bores(ax, solid, hidden=layout.ring is not None and solid.role == RING)
     if isinstance(scene.seat, ClampedFlange) and isinstance(scene.mount, BoltCircle | RobotFlange):
         draw_bores(ax, assembly.solid("connector"), but=layout.screw_circle)
     reach = layout.plate_radius + 2.5 * unit

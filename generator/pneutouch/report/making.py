@@ -4,7 +4,7 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.sheet_data import SheetData, SiliconePour
 from pneutouch.parts.glue import GLUES, glue_of
 from pneutouch.report.port_note import port_steps
-from pneutouch.spec.part import ClampedFlange, OnePiece, RobotFlange, Sleeve
+from pneutouch.spec.part import CastRing, ClampedFlange, OnePiece, RobotFlange, Sleeve
 from pneutouch.units import ML
 
 
@@ -12,8 +12,11 @@ def making(scene: ResolvedDesign, pour: SiliconePour | None = None) -> list[str]
     """How to make, clean and assemble a sensor, in order; ``pour`` where its membrane is cast."""
     grown = isinstance(scene.seat, OnePiece)
     lines = _printed(scene, grown) if pour is None else casting_steps(scene, pour)
+    if isinstance(scene.seat, CastRing):
+        lines.insert(0, _perforated_ring(scene))
     if not grown:
-        what = "groove, channel and port" if scene.seat.family == "glued-flange" else "channel, screw holes and port"
+        screwed = isinstance(scene.seat, ClampedFlange)
+        what = "channel, screw holes and port" if screwed else "groove, channel and port"
         lines.append(
             f"Connector: print in {scene.connector_material.label}, seat up. Remove support from {what} "
             f"({scene.connector_printer.support})."
@@ -61,6 +64,14 @@ def casting_steps(scene: ResolvedDesign, pour: SiliconePour) -> list[str]:
     masses = " and ".join(f"{mass:.2f} g of part {name}" for name, mass in parts)
     ratio = ":".join(f"{part:g}" for part in casting.parts_by_mass)
     pot, cure = casting.pot_life_min.text(), casting.cure_h.text()
+    around = isinstance(scene.seat, CastRing)
+    insert = (
+        "Put the perforated ring into the mould's ring, dry and without release agent; file it where it stands out of "
+        "either face, for it must let the mould close. "
+        if around
+        else ""
+    )
+    flange = "pull the perforated ring straight off the core's foot" if around else "peel the flange off all round"
     return [
         "Mould: print its parts; they lie in their files as they are printed. Drill what came out narrow, clean, dry. "
         f"{casting.release[0].upper()}{casting.release[1:]}, on every face that the silicone "
@@ -68,11 +79,11 @@ def casting_steps(scene: ResolvedDesign, pour: SiliconePour) -> list[str]:
         f"Weigh {masses} of {silicone.title} into one cup, {ratio} by mass, {pour.mass_g:.2f} g together: {pour.note}.",
         f"Mix 3 min and scrape sides and bottom. Degas under vacuum until the froth has fallen, about 5 min. From the "
         f"start of mixing it flows for {pot} min at room temperature.",
-        "Pour in a thin stream into cap and ring, the ring in the cap, and lower the core slowly; or close the mould "
-        "and press the silicone in with a syringe at one place. The core stands on the ring, the base on the core's "
-        "foot; fasten it, base up. Silicone without bubbles must stand in every vent.",
+        f"{insert}Pour in a thin stream into cap and ring, the ring in the cap, and lower the core slowly; or close "
+        "the mould and press the silicone in with a syringe at one place. The core stands on the ring, the base on the "
+        "core's foot; fasten it, base up. Silicone without bubbles must stand in every vent.",
         f"Cure for {cure} h at room temperature, vents up; a cup with the rest of the batch shows whether it is cured.",
-        "Demould: open the mould, peel the flange off all round, then roll the dome off the core. Cut sprue and vents "
+        f"Demould: open the mould, {flange}, then roll the dome off the core. Cut sprue and vents "
         "off flush. Wash with soap and dry: release agent spoils every joint.",
     ]
 
@@ -114,11 +125,30 @@ def _assembly(scene: ResolvedDesign) -> list[str]:
             "space."
         ]
     glue = glue_of(scene)
+    if isinstance(scene.seat, CastRing):
+        assert glue is not None
+        return [
+            f"{fit} around the ring's collar. Dry-fit. Lay a bead of {GLUES['silicone-adhesive'].title} around the "
+            f"spigot and on the groove's floor under the flange: it seals, the ring carries. Wet underside and outside "
+            f"of the collar with {GLUES[glue].title}, rigid on rigid, and press the ring down until it stands on the "
+            "floor; keep this glue off the silicone, which it does not bond."
+        ]
     what = "a flexible adhesive that wets both materials" if glue is None else GLUES[glue].title
     return [
         f"{fit} between flange and groove, the printers' accuracies added up. Dry-fit, then fill the gap with {what}; "
         "the flange's underside lies on the seat."
     ]
+
+
+def _perforated_ring(scene: ResolvedDesign) -> str:
+    """How to make the ring that a flange is cast around."""
+    cavities = scene.design.mould.cavities
+    number = "" if cavities == 1 else f"; make {cavities}, one for each cavity"
+    return (
+        f"Ring, perforated: print in {scene.connector_material.label}, lying flat{number}. Remove support from under "
+        f"its web ({scene.connector_printer.support}), open every hole, degrease with isopropyl alcohol, dry. Silicone "
+        "does not bond it: it holds by the holes."
+    )
 
 
 def _mounting(scene: ResolvedDesign) -> list[str]:

@@ -9,9 +9,10 @@ import numpy as np
 
 from pneutouch.body import Solid
 from pneutouch.body.outline import section_outline
+from pneutouch.parts.cast_ring import RING, RingSize
 from pneutouch.parts.mould import MouldAssembly, silicone_batch
 from pneutouch.parts.mould.lay import lay_out_mould
-from pneutouch.parts.mould.pieces import LEDGE_HEIGHT, mould_solids, screw_places
+from pneutouch.parts.mould.pieces import LEDGE_HEIGHT, mould_solids, screw_places, silicone
 from pneutouch.parts.mould.release import release_of
 from pneutouch.parts.mould.screws import SCREW
 from pneutouch.parts.mould.size import PROUD, MouldSize
@@ -26,20 +27,28 @@ _THICK = 0.9
 _WIDE = 150.0
 """Width of the drawing in mm; it is as high as the section needs."""
 
-_HATCHES = {"mould-cap": "////////", "mould-ring": "----", "mould-core": "\\\\\\\\", "mould-base": "||||"}
+_HATCHES = {
+    "mould-cap": "////////",
+    "mould-ring": "----",
+    "mould-core": "\\\\\\\\",
+    "mould-base": "||||",
+    RING: "xxxxxx",
+}
 _SILICONE = "0.78"
 """Gray of the silicone: every part is hatched, it is not."""
 
 
 def mould_section(mould: MouldAssembly) -> str:
     """One cavity of the closed mould in section, turned over as it is poured, as SVG."""
-    size = lay_out_mould(mould.membrane, replace(mould.size.shape, cavities=1))
+    size = lay_out_mould(mould.membrane, replace(mould.size.shape, cavities=1), mould.size.insert)
     with figure(_WIDE, _WIDE) as drawn:
         ax = drawn.add_subplot()
-        silicone = Solid("silicone", "membrane", mould.material, size.faces.meridian)
-        for solid in (*mould_solids(size, mould.material), silicone):
+        insert = () if mould.insert is None else (mould.insert,)
+        for solid in (*mould_solids(size, mould.material), *insert, silicone(size, mould.material)):
             _fill(ax, solid)
         _labels(ax, size)
+        if size.insert is not None:
+            _holes(ax, size.insert)
         ax.set_aspect("equal")
         ax.axis("off")
         drawn.set_figheight(_WIDE * float(np.ptp(ax.get_ylim()) / np.ptp(ax.get_xlim())) * MM)
@@ -67,6 +76,17 @@ def mould_rows(mould: MouldAssembly) -> list[list[str]]:
         ["Silicone to mix", f"{batch.volume_mL:.1f} mL, {batch.mass_g:.1f} g ({masses}), loss included"],
         ["Leaving the core", f"strain of {100 * release.strain:.0f} %; elongation at break {limit}"],
         ["Closed by", _fastening(mould)],
+        *_inserted(mould),
+    ]
+
+
+def _inserted(mould: MouldAssembly) -> list[list[str]]:
+    if mould.insert is None:
+        return []
+    cavities = mould.size.shape.cavities
+    each = "one" if cavities == 1 else f"{cavities}, one in each cavity"
+    return [
+        ["Cast around", f"the sensor's perforated ring: {each}; it lies in the mould's ring and stands on the foot"]
     ]
 
 
@@ -93,19 +113,26 @@ def _fill(ax: Axes, solid: Solid) -> None:
     ax.add_patch(PathPatch(shape, facecolor="none", edgecolor=INK, lw=_THICK, joinstyle="miter"))
 
 
+def _holes(ax: Axes, ring: RingSize) -> None:
+    """Holes of the ring, turned into the plane of the section and full of silicone."""
+    z = -np.array([ring.web_low, ring.web_low, ring.web_high, ring.web_high])
+    for x in (-ring.hole_circle, ring.hole_circle):
+        ax.fill(x + ring.hole_radius * np.array([-1.0, 1.0, 1.0, -1.0]), z, facecolor=_SILICONE, edgecolor=INK, lw=THIN)
+
+
 def _labels(ax: Axes, size: MouldSize) -> None:
     """Names of the parts and of what the silicone passes, from above down on either side."""
     shape, wide = size.shape, 0.5 * size.pitch + size.margin
     low, high, foot = -size.cap_high, -size.base_low, -size.foot_low
     step, outer = (high - low) / 6, size.seat(size.foot_low)
-    edge, dome = 0.5 * (size.faces.edge.start[0] + size.seat_radius), size.faces.outer.radius
+    edge, dome = 0.5 * (size.bore.start[0] + size.seat_radius), size.faces.outer.radius
     wall = 0.5 * (size.faces.inner.radius + dome)
     right = [
         (f"pour channel Ø{shape.sprue_diameter:g}, with funnel", (size.channel_radius, foot - 0.1 * size.foot)),
         (f"base, {shape.wall:g} thick", (0.5 * (size.window + outer), foot + 0.5 * shape.wall)),
         ("cone that centres core and cap", (outer - 0.5, 0.5 * (foot - size.low))),
         ("ring", (edge, -0.5 * size.low)),
-        ("parting line, at the flange", (size.faces.edge.end[0], 0.0)),
+        ("parting line, at the flange", (size.bore.end[0], 0.0)),
         ("cap", (0.85 * wide, 0.6 * low)),
     ]
     left = [
@@ -114,6 +141,9 @@ def _labels(ax: Axes, size: MouldSize) -> None:
         ("core with its foot", (-0.6 * size.faces.inner.radius, 0.1 * low)),
         ("silicone", (-0.7071 * wall, -0.7071 * wall)),
     ]
+    if size.insert is not None:
+        collar = 0.5 * (size.insert.flange_radius + size.insert.collar_radius)
+        left.insert(2, (f"ring in the flange, {size.insert.hole_count} holes", (-collar, -0.6 * size.low)))
     for notes, x, side in ((right, 1.2 * wide, "left"), (left, -1.2 * wide, "right")):
         for k, (text, at) in enumerate(notes):
             leader(ax, at, (x, high + (0.5 - 1.1 * k) * step), text, side)

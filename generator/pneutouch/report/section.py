@@ -11,6 +11,7 @@ import numpy as np
 from pneutouch.body import Bore, Solid
 from pneutouch.body.outline import section_outline
 from pneutouch.parts import Assembly
+from pneutouch.parts.cast_ring import RING
 from pneutouch.report.dimension import THIN, circle
 from pneutouch.report.shown import grade_colours
 from pneutouch.report.style import INK, MUTED, figure, svg
@@ -46,8 +47,10 @@ def draw_section(ax: Axes, assembly: Assembly) -> None:
             hatch = _HATCHES.get(solid.role, "xx")
             ax.add_patch(PathPatch(shape, facecolor="white", edgecolor=MUTED, hatch=hatch, lw=0))
         ax.add_patch(PathPatch(shape, facecolor="none", edgecolor=INK, lw=_THICK, joinstyle="miter"))
+        # The holes of a ring within the flange are full of silicone.
+        filled = assembly.layout.ring is not None and solid.role == RING
         for bore in solid.bores:
-            _turned_in(ax, bore, both_sides=assembly.layout.port_axis is None)
+            _turned_in(ax, bore, both_sides=filled or assembly.layout.port_axis is None, filled=filled)
 
 
 def _graded(ax: Axes, wall: PathPatch, grading: ArcGrading, radius: float) -> None:
@@ -78,18 +81,23 @@ def section_picture(assembly: Assembly) -> str:
         return svg(drawn)
 
 
-def draw_bores(ax: Axes, solid: Solid, but: float | None = None) -> None:
-    """The bores of a solid as seen from above; dashed where they are hidden, those on the circle ``but`` left out."""
+def draw_bores(ax: Axes, solid: Solid, but: float | None = None, hidden: bool = False) -> None:
+    """The bores of a solid as seen from above; dashed where they are ``hidden`` or closed above, those on the circle
+    ``but`` left out."""
     for bore in solid.bores:
         if but is not None and math.isclose(math.hypot(bore.x, bore.y), but):
             continue
-        look = {"ls": (0, (3, 1.5))} if bore.closed == "high" else {}
+        look = {"ls": (0, (3, 1.5))} if hidden or bore.closed == "high" else {}
         circle(ax, bore.x, bore.y, bore.radius, **look)
 
 
-def _turned_in(ax: Axes, bore: Bore, both_sides: bool) -> None:
-    """Drawing practice turns the holes of a pattern into the section plane; away from a side port."""
+def _turned_in(ax: Axes, bore: Bore, both_sides: bool, filled: bool = False) -> None:
+    """Drawing practice turns the holes of a pattern into the section plane; away from a side port. ``filled``: with the
+    membrane's silicone."""
     side = (bore.x if abs(bore.x) > 1e-9 else bore.y) if both_sides else -1.0
     x = math.copysign(math.hypot(bore.x, bore.y), side)
     across = [x - bore.radius, x + bore.radius, x + bore.radius, x - bore.radius]
-    ax.fill(across, [bore.low, bore.low, bore.high, bore.high], facecolor="white", edgecolor=INK, lw=THIN)
+    height = [bore.low, bore.low, bore.high, bore.high]
+    ax.fill(across, height, facecolor="white", edgecolor=INK, lw=THIN)
+    if filled:
+        ax.fill(across, height, facecolor="none", edgecolor=MUTED, hatch=_HATCHES["membrane"], lw=0)

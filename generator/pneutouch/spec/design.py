@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from pneutouch.errors import shown
+from pneutouch.spec.cast_ring import PerforatedRing
 from pneutouch.spec.contact import ContactTable
 from pneutouch.spec.fields import EntryError, Table, name, number, numbers
 from pneutouch.spec.grade import ResinOrMix
@@ -83,8 +84,8 @@ class Connector(Table):
     )
     glue: Literal["silicone-adhesive", "cyanoacrylate", "epoxy"] | None = Field(
         default=None,
-        description="Glue of a glued flange: silicone-adhesive, cyanoacrylate or epoxy; left out: silicone-adhesive "
-        "for a cast membrane, else the maker's choice.",
+        description="Glue of a glued flange or a cast ring: silicone-adhesive, cyanoacrylate or epoxy; left out: "
+        "silicone-adhesive for a cast flange, epoxy for a cast ring, else the maker's choice.",
     )
 
     @model_serializer(mode="wrap")
@@ -198,6 +199,7 @@ class DesignFile(Table):
     contact: ContactTable = ContactTable()
     print: Print = Print()
     mould: Mould = Mould()
+    cast_ring: PerforatedRing = PerforatedRing()
 
     @model_validator(mode="before")
     @classmethod
@@ -223,9 +225,11 @@ class DesignFile(Table):
         content: dict[str, Any] = handler(self)
         if content.get(CALIBRATION) is None:
             content.pop(CALIBRATION, None)
-        # Most designs are printed: one that states nothing of a mould reads as before there were moulds.
+        # Most designs are printed: one that states nothing of a mould or a ring reads as before there were any.
         if self.mould == Mould():
             content.pop("mould", None)
+        if self.cast_ring == PerforatedRing():
+            content.pop("cast_ring", None)
         return content
 
     @property

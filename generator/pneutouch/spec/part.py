@@ -126,7 +126,15 @@ class OnePiece(Seat):
     shoulder_thickness: Length
 
 
-AnySeat = GluedFlange | ClampedFlange | OnePiece
+class CastRing(Seat):
+    """A flange cast around the perforated web of a rigid ring, whose collar is glued into the connector's groove."""
+
+    family: Literal["cast-ring"]
+    collar_wall_mm: Length = Field(description="Rigid wall of the ring outside the flange.")
+    lip_mm: float = Field(gt=1, description="Least silicone above, under and inside the web.")
+
+
+AnySeat = GluedFlange | ClampedFlange | OnePiece | CastRing
 
 
 class Mount(Part):
@@ -189,7 +197,12 @@ class Sleeve(Mount):
 AnyMount = PlainPlate | BoltCircle | RobotFlange | Sleeve
 
 PORTS: dict[str, type[Part]] = {"barb": Barb, "thread": Thread, "luer": Luer, "push-in": PushIn}
-SEATS: dict[str, type[Part]] = {"glued-flange": GluedFlange, "clamped-flange": ClampedFlange, "one-piece": OnePiece}
+SEATS: dict[str, type[Part]] = {
+    "glued-flange": GluedFlange,
+    "clamped-flange": ClampedFlange,
+    "one-piece": OnePiece,
+    "cast-ring": CastRing,
+}
 MOUNTS: dict[str, type[Part]] = {
     "plain": PlainPlate,
     "through": BoltCircle,

@@ -19,8 +19,8 @@ def design_template(title: str, values: Mapping[str, Any] | None = None, note: s
     blocks += [f"{key} = {value_text(value)}" for key, value in chosen.items() if not isinstance(value, Mapping)]
     for key in DesignFile.model_fields:
         model = table_of(DesignFile, key)
-        # A mould is for cast membranes: a design that names none is not cluttered by it.
-        if model is None or (key == "mould" and key not in chosen):
+        # Mould and ring are for cast membranes: a design that names none is not cluttered by them.
+        if model is None or (key in ("mould", "cast_ring") and key not in chosen):
             continue
         lines = [f"[{key}]"]
         for entry in declarations(model):

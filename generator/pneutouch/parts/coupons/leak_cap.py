@@ -29,7 +29,7 @@ def cap(context: CouponContext, hollow: TracedPath, top: float) -> Meridian:
     scene, layout = context.design(), context.layout()
     # A membrane grown onto its connector leaves no gap for a part that is glued in its place.
     slack = scene.fit_clearance - layout.clearance
-    inner, flange, low = layout.inner_radius + slack, layout.flange_radius - slack, -layout.flange_thickness
+    inner, flange, low = layout.inner_radius + slack, layout.held_radius - slack, -layout.flange_thickness
     rim, high = rim_radius(context, layout), top + disc_thickness(layout)
     return trace(
         (0.0, top),
@@ -51,7 +51,7 @@ def rim_radius(context: CouponContext, layout: Layout) -> float:
     scene = context.design()
     if isinstance(scene.seat, ClampedFlange):
         return layout.outer_radius
-    return layout.flange_radius - (scene.fit_clearance - layout.clearance)
+    return layout.held_radius - (scene.fit_clearance - layout.clearance)
 
 
 def disc_thickness(layout: Layout) -> float:

@@ -45,7 +45,9 @@ def lettered_faces(assembly: Assembly, solid: Solid) -> list[RingFace]:
     """Faces of a rigid body in the order they are preferred: what can be read once mounted comes first."""
     layout, seat = assembly.layout, assembly.scene.seat
     if solid.role == "ring":
-        assert isinstance(seat, ClampedFlange)
+        # The other ring, that a flange is cast around, is in the mould: its faces close on the cavity.
+        if not isinstance(seat, ClampedFlange):
+            return []
         return [RingFace("ring top", seat.ring_thickness, True, 0.0, layout.ring_radius, False)]
     if solid.role == "plug":
         return [RingFace("plug underside", layout.under, False, 0.0, layout.plate_radius, True)]

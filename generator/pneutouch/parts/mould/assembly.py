@@ -12,6 +12,7 @@ from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.meridian import Meridian
+from pneutouch.parts.cast_ring import RING
 from pneutouch.parts.layout import Layout, lay_out
 from pneutouch.parts.membrane import membrane_meridian
 from pneutouch.parts.mould.lay import lay_out_mould
@@ -27,6 +28,7 @@ class MouldAssembly:
     """The mould of a scene in the design frame, the first cavity about the z axis; every length is compensated.
 
     ``solids`` are cap, ring, core and base, the ring and the core once; ``counts`` states how many of each are made.
+    ``insert`` is the ring of the sensor that the flange is cast around, no part of the mould; None without one.
     """
 
     scene: ResolvedDesign
@@ -35,6 +37,7 @@ class MouldAssembly:
     solids: tuple[Solid, ...]
     printer: Printer
     mode: Mode
+    insert: Solid | None = None
 
     def __repr__(self) -> str:
         return f"MouldAssembly({self.scene.name!r}, {self.size.shape.cavities} cavities)"
@@ -62,10 +65,11 @@ class MouldAssembly:
 
     @cached_property
     def closed(self) -> tuple[Body, ...]:
-        """Every body of the closed mould, ring and core in each cavity; later ones are numbered."""
+        """Every body of the closed mould, ring, core and insert in each cavity; later ones are numbered."""
         every = []
-        for solid, body in zip(self.solids, self.bodies, strict=True):
-            places = self.size.places if repeated(solid) else self.size.places[:1]
+        inserts = () if self.insert is None else (self.insert.mesh(self.tolerance),)
+        for body in (*self.bodies, *inserts):
+            places = self.size.places if repeated(body) else self.size.places[:1]
             for k, (x, y) in enumerate(places):
                 name = body.name if k == 0 else f"{body.name}-{k + 1}"
                 every.append(replace(body, name=name).moved(np.array([x, y, 0.0])))
@@ -90,9 +94,9 @@ class MouldAssembly:
         return self.size.cap_high - self.size.base_low
 
 
-def repeated(solid: Solid) -> bool:
+def repeated(part: Solid | Body) -> bool:
     """Whether every cavity has such a part of its own."""
-    return solid.name in ("mould-ring", "mould-core")
+    return part.name in ("mould-ring", "mould-core", RING)
 
 
 def mould_of(scene: ResolvedDesign, layout: Layout | None = None) -> MouldAssembly:
@@ -103,13 +107,15 @@ def mould_of(scene: ResolvedDesign, layout: Layout | None = None) -> MouldAssemb
     """
     if scene.mould_printer is None or scene.mould_material is None:
         raise TypeError("the membrane of this scene is printed, not cast")
-    membrane = membrane_meridian(layout or lay_out(scene))
-    size = lay_out_mould(membrane, shape_of(scene))
+    layout = layout or lay_out(scene)
+    membrane = membrane_meridian(layout)
+    size = lay_out_mould(membrane, shape_of(scene), layout.ring)
     check_mould_space(scene.where, size)
     mode = scene.mould_printer.mode_for(scene.mould_material)
     assert mode is not None
     solids = mould_solids(size, scene.mould_material)
-    return MouldAssembly(scene, membrane, size, solids, scene.mould_printer, mode)
+    insert = None if layout.ring is None else layout.ring.solid(scene.connector_material)
+    return MouldAssembly(scene, membrane, size, solids, scene.mould_printer, mode, insert)
 
 
 def shape_of(scene: ResolvedDesign) -> MouldShape:

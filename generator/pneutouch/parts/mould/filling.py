@@ -32,7 +32,7 @@ class MouldFilling:
 def filling(size: MouldSize, viscosity_Pa_s: float, density_g_per_cm3: float) -> MouldFilling:
     """Filling of one cavity. A bubble rises at rho g r^2 / (3 mu): Hadamard (1911), Rybczynski (1911), free surface."""
     resistance = viscosity_Pa_s * (_channel(size) + _wall(size)) * 1e9
-    volume = size.faces.meridian.volume() * 1e-9
+    volume = size.cavity_volume * 1e-9
     weight = density_g_per_cm3 * 1e3 * GRAVITY
     head = weight * (size.foot + size.shape.wall) * 1e-3
     rise = weight * (0.5e-3 * size.shape.vent_diameter) ** 2 / (3 * viscosity_Pa_s)

@@ -3,6 +3,7 @@
 import math
 
 from pneutouch.meridian import Meridian
+from pneutouch.parts.cast_ring import RingSize
 from pneutouch.parts.mould.screws import SCREW
 from pneutouch.parts.mould.size import FILLET, LAND, SHOULDER, TAPER, VENT_PITCH, CavityFaces, MouldShape, MouldSize
 
@@ -16,9 +17,12 @@ CLIP_LEDGE = 8.0
 """Width in mm of the ledges that clips hold: own choice."""
 
 
-def lay_out_mould(membrane: Meridian, shape: MouldShape) -> MouldSize:
-    """All lengths of the mould of a membrane; `space.check_mould_space` judges them."""
+def lay_out_mould(membrane: Meridian, shape: MouldShape, insert: RingSize | None = None) -> MouldSize:
+    """All lengths of the mould of a membrane, cast around a ring or not; `space.check_mould_space` judges them."""
     faces = CavityFaces.of(membrane, shape.factor)
+    if insert is not None:
+        cured = CavityFaces.of(membrane, 1.0)
+        faces = faces.keeping(cured.underside, cured.edge)
     flange, foot = -faces.underside.start[1], shape.wall
     middle = 0.5 * (faces.rim.end[0] + faces.edge.start[0])
     neck = 0.5 * shape.sprue_diameter - 0.5 * foot * math.tan(shape.draft)
@@ -27,8 +31,9 @@ def lay_out_mould(membrane: Meridian, shape: MouldShape) -> MouldSize:
     deep = math.tan(TAPER)
     # At z = 0 the cap's seat holds a land and its fillet; at the foot's underside the base's shoulder.
     turn = FILLET / math.tan(0.5 * (0.5 * math.pi + TAPER))
-    at_base = faces.edge.end[0] + LAND + turn
-    at_underside = faces.edge.start[0] + LAND + shape.clearance - flange * deep
+    around = insert.collar_radius + shape.clearance if insert is not None else 0.0
+    at_base = max(faces.edge.end[0], around) + LAND + turn
+    at_underside = max(faces.edge.start[0], around) + LAND + shape.clearance - flange * deep
     under_foot = window + SHOULDER + shape.clearance - (flange + foot) * deep
     seat = max(at_base, at_underside, under_foot)
     widest = seat + (flange + foot) * deep
@@ -47,6 +52,7 @@ def lay_out_mould(membrane: Meridian, shape: MouldShape) -> MouldSize:
         columns=columns,
         rows=math.ceil(shape.cavities / columns),
         margin=SCREW.margin(shape.hole_undersize) if shape.fastener == "screws" else 0.0,
+        insert=insert,
     )
 
 

@@ -46,8 +46,8 @@ def cap(size: MouldSize, material: Material) -> Solid:
 
 
 def ring(size: MouldSize, material: Material) -> Solid:
-    """The ring that forms the flange's edge, from the cap's face to the core's foot."""
-    edge, low, clearance = size.faces.edge, size.low, size.shape.clearance
+    """The ring that forms the flange's edge, or holds the collar that does, from the cap's face to the core's foot."""
+    edge, low, clearance = size.bore, size.low, size.shape.clearance
     rounding = FILLET + clearance
     corner = _corner(size.seat_radius - clearance, rounding)
     wide = size.seat(low) - clearance
@@ -141,6 +141,14 @@ def _cones(points: list[Point]) -> Meridian:
     """A solid of revolution through points of its wall, from below up."""
     path: TracedPath = [("channel", point) for point in points]
     return trace((0.0, points[0][1]), [*path, ("channel", (0.0, points[-1][1]))])
+
+
+def silicone(size: MouldSize, material: Material) -> Solid:
+    """What fills the first cavity."""
+    outline = size.faces.meridian
+    if size.insert is not None:
+        return size.insert.enclosed("silicone", material, outline)
+    return Solid("silicone", "membrane", material, outline)
 
 
 def screw_places(size: MouldSize) -> tuple[tuple[float, float], ...]:

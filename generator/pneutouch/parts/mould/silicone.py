@@ -78,7 +78,7 @@ def silicone_batch(mould: MouldAssembly) -> SiliconeBatch:
     size, material = mould.size, mould.scene.membrane_material
     return SiliconeBatch(
         cavities=size.shape.cavities,
-        cavity_mL=size.faces.meridian.volume() / ML,
+        cavity_mL=size.cavity_volume / ML,
         channels_mL=sum(channel.volume() for channel in channels(size)) / ML,
         overflow_mL=math.pi * size.window**2 * FILM / ML,
         density_g_per_cm3=material.density_g_per_cm3.nominal,

@@ -14,9 +14,10 @@ over, with the flange's underside up: air leaves there, and neither a vent nor a
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pneutouch.meridian import Arc, Line, Meridian, Point, Segment
+from pneutouch.parts.cast_ring import RingSize
 
 TAPER = math.radians(10.0)
 """Slope of the cones that centre core and ring in the cap: own choice; above about 7 degrees a cone does not jam."""
@@ -80,9 +81,21 @@ class CavityFaces:
         assert isinstance(top, Line)
         return CavityFaces(inner, rim, underside, edge, top, outer)
 
+    def keeping(self, underside: Line, edge: Line) -> "CavityFaces":
+        """The same, but for the flange's underside and edge in their heights and outer radius."""
+        low = underside.start[1]
+        foot = self.rim.end[0], low
+        return replace(
+            self,
+            rim=replace(self.rim, end=foot),
+            underside=replace(underside, start=foot),
+            edge=edge,
+            top=replace(self.top, start=edge.end),
+        )
+
     @property
     def meridian(self) -> Meridian:
-        """The cavity: what the silicone fills."""
+        """The outline of the cavity: what the silicone fills, and the web of a ring within its flange."""
         return Meridian((self.inner, self.rim, self.underside, self.edge, self.top, self.outer))
 
 
@@ -103,6 +116,7 @@ class MouldSize:
 
     ``seat_radius`` is that of the cap's seat at z = 0; it opens downwards at `TAPER`. ``columns`` along x and ``rows``
     along y are ``pitch`` apart, the first cavity at the origin. ``channel_radius`` is that of the circle of the vents.
+    ``insert`` is the ring that the flange is cast around, at its own size: it does not shrink, nor does what it holds.
     """
 
     shape: MouldShape
@@ -118,6 +132,20 @@ class MouldSize:
     columns: int
     rows: int
     margin: float
+    insert: RingSize | None = None
+
+    @property
+    def cavity_volume(self) -> float:
+        """Silicone of one membrane, mm3."""
+        return self.faces.meridian.volume() - (0.0 if self.insert is None else self.insert.embedded)
+
+    @property
+    def bore(self) -> Line:
+        """Inside of the ring, from below up: the flange's edge, or clear around the collar that forms it."""
+        if self.insert is None:
+            return self.faces.edge
+        radius = self.insert.collar_radius + self.shape.clearance
+        return Line((radius, self.low), (radius, 0.0), self.faces.edge.tag)
 
     @property
     def low(self) -> float:

@@ -11,9 +11,13 @@ _EDGE = 0.05
 _LEAST_HOLE = 0.3
 """Least diameter in mm of a channel where it is narrowest: own choice."""
 
+_LEAST_GAP = 0.5
+"""Least silicone in mm between core and ring: own choice."""
+
 
 def check_mould_space(where: str, size: MouldSize) -> None:
     """Raise InputError that names the key of the design file ``where`` which leaves a detail no space."""
+    _check_insert(where, size)
     shape, faces = size.shape, size.faces
     width = faces.edge.start[0] - faces.rim.end[0] - 2 * _EDGE
     for key, diameter, narrowest in (
@@ -44,6 +48,22 @@ def check_mould_space(where: str, size: MouldSize) -> None:
             key="mould.clearance_mm",
             value=shape.clearance,
             remedy=f"it must be at most {0.9 * flange - FILLET:.2f} mm",
+        )
+
+
+def _check_insert(where: str, size: MouldSize) -> None:
+    """Silicone must pass between the core and the ring that it is cast around: the mould grows, the ring does not."""
+    if size.insert is None:
+        return
+    gap = size.insert.web_inner - max(size.faces.rim.start[0], size.faces.rim.end[0])
+    if gap < _LEAST_GAP:
+        raise InputError(
+            f"the core leaves {max(gap, 0.0):.2f} mm inside the ring that the flange is cast around; at least "
+            f"{_LEAST_GAP:g} mm lets silicone through",
+            file=where,
+            key="mould.shrinkage_percent",
+            value=round(100 * size.shape.shrinkage, 6),
+            remedy="take a silicone that shrinks less, or less mould.draft_deg",
         )
 
 

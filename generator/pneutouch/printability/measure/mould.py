@@ -12,7 +12,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.body import Body, Turned
-from pneutouch.parts.mould.pieces import channels
+from pneutouch.parts.mould.pieces import channels, silicone
 from pneutouch.parts.mould.size import MouldSize
 
 UP, DOWN = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
@@ -82,7 +82,7 @@ def cavity_match(size: MouldSize, closed: Sequence[Body], tolerance: float) -> C
     reach, low, high = size.faces.edge.start[0] + _REACH, size.low - 1e-3, size.faces.outer.radius + 1e-3
     window = Manifold.cylinder(high - low, reach, reach, _SIDES).translate((0.0, 0.0, low))
     void = window - whole
-    membrane = _manifold(Turned(size.faces.meridian), tolerance)
+    membrane = silicone(size, closed[0].material).mesh(tolerance).manifold()
     return CavityMatch(
         void=float(void.volume()),
         membrane=float(membrane.volume()),

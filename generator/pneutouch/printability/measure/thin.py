@@ -18,6 +18,9 @@ from pneutouch.printability.subject import Point3
 
 FeatureKind = Literal["wall", "pin", "hole", "channel", "gap", "raised", "engraved"]
 
+OPENINGS: tuple[FeatureKind, ...] = ("hole", "channel", "gap", "engraved")
+"""Kinds that are void, not matter."""
+
 ROUND = 2.0
 """An opening at most this many times as wide in one direction as in the other is a hole, else a gap."""
 

@@ -12,6 +12,7 @@ from pneutouch.export.scene import glb, stl
 from pneutouch.export.step import step_files
 from pneutouch.export.threemf_tray import TrayItem, threemf_tray
 from pneutouch.packing import PackingArea, in_rows
+from pneutouch.parts.cast_ring import RING
 from pneutouch.parts.mould import MouldAssembly, silicone_batch
 from pneutouch.parts.mould.release import release_of
 from pneutouch.report.mould import mould_section
@@ -69,6 +70,7 @@ def exploded(mould: MouldAssembly) -> tuple[Body, ...]:
     lifts = {
         "mould-cap": _APART * (size.faces.outer.radius - size.low + size.foot),
         "mould-ring": _APART * size.faces.outer.radius,
+        RING: 0.6 * _APART * size.faces.outer.radius,
         "mould-core": 0.0,
         "mould-base": -_APART * (size.foot + size.shape.wall),
     }
@@ -79,7 +81,7 @@ def exploded(mould: MouldAssembly) -> tuple[Body, ...]:
 
 def _part(name: str) -> str:
     """The part that a numbered body is one of: ``mould-core-2`` is a mould-core."""
-    return "-".join(name.split("-")[:2])
+    return name.rstrip("0123456789").rstrip("-")
 
 
 def _plates(mould: MouldAssembly) -> list[list[TrayItem]]:
