@@ -1,4 +1,4 @@
-"""The README's code is run: its commands, its design file and its Python."""
+"""The README and what it leads to first: the commands, the design file and the Python of the reference are run."""
 
 from __future__ import annotations
 
@@ -10,15 +10,18 @@ import pytest
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import validate
 from tests.conftest import ROOT
+from tests.pages import blocks
 
-TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+REFERENCE = ROOT / "docs" / "reference"
+FILES = (REFERENCE / "files.md").read_text(encoding="utf-8")
+COMMAND_LINE = (REFERENCE / "command-line.md").read_text(encoding="utf-8")
+LINES = 45
+"""One screen."""
 
-
-def blocks(language):
-    return re.findall(rf"```{language}\n(.*?)```", TEXT, re.DOTALL)
-
-
-COMMANDS = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("pneutouch ")]
+COMMANDS = [
+    line for block in blocks(COMMAND_LINE, "sh") for line in block.splitlines() if line.startswith("pneutouch ")
+]
 SERVING = [line for line in COMMANDS if line.startswith("pneutouch studio ")]
 """They run until they are stopped: tests/studio starts and stops the studio."""
 
@@ -33,7 +36,7 @@ def test_command_runs(line, command, built_as_a_user):
 
 def test_the_two_commands_are_targets_of_the_makefile():
     makefile = (ROOT / "Makefile").read_text()
-    for line in blocks("sh")[0].splitlines():
+    for line in blocks(README, "sh")[0].splitlines():
         target = line.split("#")[0].split()[1]
         assert re.search(rf"^{target}:", makefile, re.MULTILINE)
 
@@ -41,22 +44,22 @@ def test_the_two_commands_are_targets_of_the_makefile():
 def test_the_design_file_is_valid():
     import tomllib
 
-    for block in blocks("toml"):
-        assert validate(DesignFile, tomllib.loads(block), "README.md").membrane.inner_radius_mm == 6
+    for block in blocks(FILES, "toml"):
+        assert validate(DesignFile, tomllib.loads(block), "files.md").membrane.inner_radius_mm == 6
 
 
 def test_the_python_runs_builds_and_predicts_a_figure_within_its_interval(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (block,) = blocks("python")
+    block = blocks((REFERENCE / "python.md").read_text(encoding="utf-8"), "python")[1]
     names = {}
-    exec(compile(block, "README.md", "exec"), names)
+    exec(compile(block, "python.md", "exec"), names)
     sensitivity = names["prediction"].at(10).sensitivity
     assert sensitivity.interval[0] < sensitivity.value < sensitivity.interval[1] and sensitivity.unit == "kPa/N"
     assert (tmp_path / "outputs" / "design" / "design.3mf").is_file()
 
 
-def test_every_file_the_readme_names_is_built(built):
-    table = TEXT[TEXT.index("| in `outputs/paper-dome/`") :].split("\n\n")[0]
+def test_every_file_the_reference_names_is_built(built):
+    table = FILES[FILES.index("| in `outputs/paper-dome/`") :].split("\n\n")[0]
     rows = re.findall(r"^\| (`.*?) \|", table, re.MULTILINE)
     files = {part for row in rows for part in re.findall(r"`([^`]+)`", row)}
     folder = built("paper-dome")
@@ -64,5 +67,11 @@ def test_every_file_the_readme_names_is_built(built):
 
 
 def test_every_link_leads_somewhere():
-    for target in re.findall(r"\]\(([^)]+)\)", TEXT):
+    for target in re.findall(r"\]\(([^)]+)\)", README):
         assert (ROOT / target).is_file(), target
+
+
+def test_the_readme_is_one_screen():
+    assert len(README.splitlines()) <= LINES
+    assert max(map(len, README.splitlines())) <= 200
+    assert (ROOT / "docs" / "filmstrip.png").stat().st_size <= 1_000_000

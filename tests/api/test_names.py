@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import pneutouch as pt
+from tests.pages import blocks
 
 PACKAGE = Path(pt.__file__).parent
 
@@ -43,7 +44,7 @@ def test_the_stub_declares_the_names_that_are_there():
 
 def test_the_page_runs_and_names_every_public_name(capsys):
     text = (PACKAGE.parents[1] / "docs" / "reference" / "python.md").read_text()
-    (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    block = blocks(text, "python")[0]
     exec(compile(block, "python.md", "exec"), {})
     assert "kPa/N" in capsys.readouterr().out
     values = {

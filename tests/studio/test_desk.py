@@ -149,8 +149,8 @@ def test_the_end_of_the_studio_ends_a_job_and_removes_what_was_kept():
     assert not here.place.exists()
 
 
-def test_the_words_on_files_are_those_of_the_readme():
-    text = (ROOT / "README.md").read_text()
+def test_the_words_on_files_are_those_of_the_reference():
+    text = (ROOT / "docs" / "reference" / "files.md").read_text()
     lines = text[text.index("| in `outputs/paper-dome/` |") :].split("\n\n")[0].splitlines()[2:]
     rows = [line.split("|")[1:3] for line in lines]
     table = {names.strip(): words.strip() for names, words in rows}
