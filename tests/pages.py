@@ -1,6 +1,6 @@
 """Pages of the documentation are run as a reader types them: ``python -m tests.pages [PAGE...] [--write]``.
 
-A ``console`` block holds lines ``$ command``, each with its output below it, stdout and stderr as a terminal of 100 columns keeps them.
+A ``console`` block holds lines ``$ command``, each with its output below it, stdout and stderr as a terminal of 160 columns keeps them.
 A line ``...`` stands for any number of lines, ``...`` inside a line for any text. In a tutorial ``python`` blocks are run as well, in one
 namespace; a ``text`` block that follows one at once is what it prints. A page starts in an empty folder, which is the user's folder.
 ``--write`` renews what is shown and keeps what is left out.
@@ -27,7 +27,7 @@ from tests.running import captured_together, on_a_terminal
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 TUTORIALS = DOCS / "tutorials"
-COLUMNS = 100
+COLUMNS = 160
 _LEFT_OUT = "..."
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 _SIMILAR = 0.5
@@ -176,7 +176,7 @@ def _ratio(one: str, other: str) -> float:
 
 def walk(path: Path, folder: Path) -> list[Step]:
     """Run a page in an empty folder; the steps with what each of them said."""
-    home = {"PNEUTOUCH_HOME": str(folder), "COLUMNS": str(COLUMNS), "NO_COLOR": "1"}
+    home = {"PNEUTOUCH_HOME": ".", "COLUMNS": str(COLUMNS), "NO_COLOR": "1"}
     run = steps(path)
     with mock.patch.dict(os.environ, home), mock.patch.object(sys, "path", [str(folder), *sys.path]):
         for step in run:

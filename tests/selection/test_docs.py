@@ -1,4 +1,4 @@
-"""The commands of docs/howto/select.md run, and its example file is the README's target."""
+"""The commands of docs/howto/select.md run, and its example file is the target of the command line's page."""
 
 from __future__ import annotations
 
