@@ -63,6 +63,9 @@ sphinx_gallery_conf = {
     "download_all_examples": True,
     "show_memory": False,
     "min_reported_time": 1e9,
+    "subsection_order": [
+        f"gallery/{name}" for name in ("designs", "choosing", "contact", "materials", "making", "measuring")
+    ],
     "within_subsection_order": "FileNameSortKey",
     "parallel": int(os.environ.get("PNEUTOUCH_DOCS_JOBS", "2")),
     "image_srcset": [],

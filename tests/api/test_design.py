@@ -144,3 +144,27 @@ def test_the_bodies_are_closed_and_the_membrane_has_the_volume_of_its_solid():
     design = pt.load("paper-dome")
     membrane = next(body for body in design.bodies if body.name == "membrane")
     assert membrane.volume == pytest.approx(design.assembly.solid("membrane").volume, rel=2e-3)
+
+
+def test_a_section_shows_every_body_at_its_size():
+    design = pt.Design(inner_radius_mm=6, wall_thickness_mm=1, material="Agilus30")
+    ax = design.plot_section()
+    low, high = (
+        np.min([b.bounds[0] for b in design.bodies], axis=0),
+        np.max([b.bounds[1] for b in design.bodies], axis=0),
+    )
+    drawn = np.vstack([patch.get_path().vertices for patch in ax.patches])
+    np.testing.assert_allclose([drawn[:, 0].min(), drawn[:, 0].max()], [low[0], high[0]], atol=0.02)
+    np.testing.assert_allclose([drawn[:, 1].min(), drawn[:, 1].max()], [low[2], high[2]], atol=0.02)
+    assert (ax.get_xlabel(), ax.get_ylabel(), ax.get_aspect()) == ("x (mm)", "z (mm)", 1.0)
+    assert design.plot_section(ax) is ax
+
+
+def test_a_mould_is_drawn_around_the_membrane_and_a_printed_one_has_none():
+    cast = pt.load("cast-dome")
+    drawn = np.vstack([patch.get_path().vertices for patch in cast.plot_mould(labels=False).patches])
+    outer = cast.inner_radius_mm + cast.wall_thickness_mm
+    assert drawn[:, 1].min() < -outer - 1
+    assert np.abs(drawn[:, 0]).max() > outer + 1
+    with pytest.raises(pt.InputError, match="printed, not cast"):
+        pt.load("paper-dome").plot_mould()

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from pneutouch.api import show
+from pneutouch.api import pictures, show
 from pneutouch.api.driving import DrivingResult, tasks_of
 from pneutouch.api.fields import WHERE, changes, keywords, named_by_keyword, plain
 from pneutouch.api.prediction import Prediction
@@ -28,6 +28,9 @@ from pneutouch.spec.names import plain_name
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import override
 from pneutouch.spec.template import design_template
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 def pressures_changed(driving_pressures_kPa: Iterable[float] | None) -> dict[str, Any]:
@@ -213,6 +216,17 @@ class Design(show.Shown):
     def bodies(self) -> tuple[Body, ...]:
         """The print meshes, lengths in mm."""
         return tuple(self.assembly.bodies)
+
+    def plot_section(self, ax: Axes | None = None) -> Axes:
+        """Draw the hatched section of all bodies through the axis, lengths in mm; returns the axes."""
+        return pictures.plot_section(self.assembly, ax)
+
+    def plot_mould(self, ax: Axes | None = None, *, labels: bool = True) -> Axes:
+        """Draw one cavity of the closed mould in section, turned over as it is poured, lengths in mm; returns the axes.
+
+        Raises InputError for a membrane that is printed.
+        """
+        return pictures.plot_mould(self.assembly, ax, labels)
 
     def to_dict(self) -> dict[str, Any]:
         """The tables of the design file, every field with its value."""

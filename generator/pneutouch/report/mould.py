@@ -40,19 +40,25 @@ _SILICONE = "0.78"
 
 def mould_section(mould: MouldAssembly) -> str:
     """One cavity of the closed mould in section, turned over as it is poured, as SVG."""
-    size = lay_out_mould(mould.membrane, replace(mould.size.shape, cavities=1), mould.size.insert)
     with figure(_WIDE, _WIDE) as drawn:
         ax = drawn.add_subplot()
-        insert = () if mould.insert is None else (mould.insert,)
-        for solid in (*mould_solids(size, mould.material), *insert, silicone(size, mould.material)):
-            _fill(ax, solid)
-        _labels(ax, size)
-        if size.insert is not None:
-            _holes(ax, size.insert)
+        draw_mould(ax, mould)
         ax.set_aspect("equal")
         ax.axis("off")
         drawn.set_figheight(_WIDE * float(np.ptp(ax.get_ylim()) / np.ptp(ax.get_xlim())) * MM)
         return svg(drawn)
+
+
+def draw_mould(ax: Axes, mould: MouldAssembly, labels: bool = True) -> None:
+    """The section of one cavity into axes, turned over: heights are those of pouring, lengths in mm."""
+    size = lay_out_mould(mould.membrane, replace(mould.size.shape, cavities=1), mould.size.insert)
+    insert = () if mould.insert is None else (mould.insert,)
+    for solid in (*mould_solids(size, mould.material), *insert, silicone(size, mould.material)):
+        _fill(ax, solid)
+    if labels:
+        _labels(ax, size)
+    if size.insert is not None:
+        _holes(ax, size.insert)
 
 
 CAPTION = (
