@@ -23,6 +23,7 @@ LAYERS = [
     {"report"},
     {"output"},
     {"workflows"},
+    {"schemas"},
     {"api"},
     {"cli", "studio"},
 ]

@@ -41,6 +41,7 @@ COMMANDS: dict[str, dict[str, CommandEntry]] = {
         "coupons": CommandEntry("coupons", "Make test prints, or enter what was measured on them."),
         "fit-material": CommandEntry("fit_material", "Fit a law to a tensile or puck test: a material of your own."),
         "show": CommandEntry("show", "Show what a 3MF or a voxel stack holds."),
+        "schema": CommandEntry("schema", "Print the JSON schema of a file or a document."),
     },
     "Measure": {
         "plan": CommandEntry("plan", "Plan a measurement campaign: every run and step."),

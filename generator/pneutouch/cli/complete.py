@@ -54,3 +54,10 @@ def assignment(incomplete: str) -> list[str]:
         return [f"{name}=" for name in fields if name.startswith(incomplete)]
     registry = fields[key].registry if key in fields else None
     return [f"{key}={name}" for name in names(registry, listed=True)(word)] if registry else []
+
+
+def document_kinds(incomplete: str) -> list[str]:
+    """Completes the name of a kind of document."""
+    from pneutouch.schemas import document_kinds as known
+
+    return [name for name in known() if name.startswith(incomplete)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, WithJsonSchema, model_validator
 
 from pneutouch.spec.fields import EntryError, Table, number
 
@@ -60,6 +60,7 @@ Friction = Annotated[
     BeforeValidator(lambda value: float("inf") if value == "inf" else value),
     AfterValidator(_coefficient),
     PlainSerializer(lambda value: "inf" if value == float("inf") else value, when_used="json"),
+    WithJsonSchema({"anyOf": [{"type": "number", "minimum": 0, "maximum": _MOST_FRICTION}, {"const": "inf"}]}),
 ]
 """A coefficient of friction; in JSON, which has no infinity, a surface that grips is the text "inf"."""
 

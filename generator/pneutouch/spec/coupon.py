@@ -49,11 +49,11 @@ CurveReadings = Annotated[list[float], _readings(1e-6, 1e5, "", least=3)]
 class Puck(Table):
     """[puck.MATERIAL]: hardness readings of all pucks; mass, diameter and thickness one a puck."""
 
-    shore_a: Shore = Field(default_factory=list)
-    shore_d: Shore = Field(default_factory=list)
-    mass_g: Masses = Field(default_factory=list)
-    diameter_mm: LengthReadings = Field(default_factory=list)
-    thickness_mm: LengthReadings = Field(default_factory=list)
+    shore_a: Shore = Field(default_factory=list, description="Readings on the Shore A scale.")
+    shore_d: Shore = Field(default_factory=list, description="Readings on the Shore D scale.")
+    mass_g: Masses = Field(default_factory=list, description="Mass of each puck.")
+    diameter_mm: LengthReadings = Field(default_factory=list, description="Diameter of each puck.")
+    thickness_mm: LengthReadings = Field(default_factory=list, description="Thickness of each puck.")
 
     @model_validator(mode="after")
     def _density_complete(self) -> Puck:
@@ -69,11 +69,15 @@ class Puck(Table):
 class DumbbellSpecimen(Table):
     """One dumbbell: its narrow part, and its curve point by point."""
 
-    width_mm: LengthReadings = Field(default_factory=list)
-    thickness_mm: LengthReadings = Field(default_factory=list)
+    width_mm: LengthReadings = Field(default_factory=list, description="Readings of the width of the narrow part.")
+    thickness_mm: LengthReadings = Field(
+        default_factory=list, description="Readings of the thickness of the narrow part."
+    )
     gauge_length_mm: float = Field(default=25.0, gt=0, le=1000, description="Distance of the bench marks.")
-    extension_mm: CurveReadings = Field(default_factory=list)
-    force_N: CurveReadings = Field(default_factory=list)
+    extension_mm: CurveReadings = Field(
+        default_factory=list, description="Extension between the bench marks, point by point."
+    )
+    force_N: CurveReadings = Field(default_factory=list, description="Force at each point.")
 
     @model_validator(mode="after")
     def _complete(self) -> DumbbellSpecimen:
@@ -92,15 +96,15 @@ class Dumbbell(Table):
 
     hold_s: float = Field(default=60.0, ge=0, le=1e6, description="Hold at each point before the force is read, s.")
     largest_strain: float = Field(default=0.2, ge=0.02, le=2, description="Points beyond are left out of the fit.")
-    specimen: list[DumbbellSpecimen] = Field(default_factory=list)
+    specimen: list[DumbbellSpecimen] = Field(default_factory=list, description="One table a dumbbell.")
 
 
 class MixedCoupons(Table):
     """[[mixing."SOFT+STIFF"]]: pucks and dumbbells of two resins, one entry a volume fraction of the stiff one."""
 
-    fraction: float = Field(ge=0, le=1)
-    shore_a: Shore = Field(default_factory=list)
-    dumbbell: Dumbbell = Field(default_factory=Dumbbell)
+    fraction: float = Field(ge=0, le=1, description="Volume fraction of the stiff resin.")
+    shore_a: Shore = Field(default_factory=list, description="Readings on the Shore A scale.")
+    dumbbell: Dumbbell = Field(default_factory=Dumbbell, description="Dumbbells of this mix.")
 
 
 def _rising(points: list[MixedCoupons]) -> list[MixedCoupons]:
@@ -117,9 +121,11 @@ Blends = Annotated[list[MixedCoupons], AfterValidator(_rising)]
 class GaugeSize(Table):
     """One feature of the gauge. ``came_out`` is false where it is missing, broken, blocked or grown together."""
 
-    nominal_mm: float = Field(gt=0, le=100)
-    measured_mm: LengthReadings = Field(default_factory=list)
-    came_out: bool | None = None
+    nominal_mm: float = Field(gt=0, le=100, description="Size as drawn.")
+    measured_mm: LengthReadings = Field(default_factory=list, description="Readings of the printed size.")
+    came_out: bool | None = Field(
+        default=None, description="Whether the feature is there, whole and open; left out: not inspected."
+    )
 
     @model_validator(mode="after")
     def _agree(self) -> GaugeSize:
@@ -138,23 +144,25 @@ class GaugeSize(Table):
 class FeatureGauge(Table):
     """[gauge.PRINTER.MATERIAL]: the block's lengths, then the rows of the gauge."""
 
-    x: list[GaugeSize] = Field(default_factory=list)
-    y: list[GaugeSize] = Field(default_factory=list)
-    z: list[GaugeSize] = Field(default_factory=list)
-    wall: list[GaugeSize] = Field(default_factory=list)
-    pin: list[GaugeSize] = Field(default_factory=list)
-    hole: list[GaugeSize] = Field(default_factory=list)
-    slot: list[GaugeSize] = Field(default_factory=list)
+    x: list[GaugeSize] = Field(default_factory=list, description="Lengths of the block along x.")
+    y: list[GaugeSize] = Field(default_factory=list, description="Lengths of the block along y.")
+    z: list[GaugeSize] = Field(default_factory=list, description="Lengths of the block along z.")
+    wall: list[GaugeSize] = Field(default_factory=list, description="Walls.")
+    pin: list[GaugeSize] = Field(default_factory=list, description="Pins.")
+    hole: list[GaugeSize] = Field(default_factory=list, description="Holes.")
+    slot: list[GaugeSize] = Field(default_factory=list, description="Slots.")
 
 
 class LeakCap(Table):
     """[leak-cap.DESIGN]: pressure at the start and end of each run, and the pressure after each push of the syringe."""
 
     seconds: float = Field(default=600.0, gt=0, le=1e6, description="How long a run lasted.")
-    start_kPa: Pressures = Field(default_factory=list)
-    end_kPa: Pressures = Field(default_factory=list)
-    pressure_kPa: Pressures = Field(default_factory=list)
-    ambient_pressure_kPa: float = Field(default=101.325, ge=20, le=1000)
+    start_kPa: Pressures = Field(default_factory=list, description="Pressure at the start of each run.")
+    end_kPa: Pressures = Field(default_factory=list, description="Pressure at the end of each run.")
+    pressure_kPa: Pressures = Field(default_factory=list, description="Pressure after each push of the syringe.")
+    ambient_pressure_kPa: float = Field(
+        default=101.325, ge=20, le=1000, description="Absolute pressure in the laboratory."
+    )
 
     @model_validator(mode="after")
     def _runs(self) -> LeakCap:
@@ -168,8 +176,8 @@ class LeakCap(Table):
 class VolumePlug(Table):
     """[volume-plug.DESIGN]: pressure after each push, and the mass of water that the cavity holds."""
 
-    pressure_kPa: Pressures = Field(default_factory=list)
-    water_g: Masses = Field(default_factory=list)
+    pressure_kPa: Pressures = Field(default_factory=list, description="Pressure after each push of the syringe.")
+    water_g: Masses = Field(default_factory=list, description="Mass of the water that fills the cavity.")
     gauge_accuracy_kPa: float = Field(default=0.0, ge=0, le=100, description="Standard uncertainty of the gauge.")
 
 
@@ -178,12 +186,20 @@ class CouponResults(Table):
 
     lab: Printable = Field(min_length=1, max_length=80, description='who measured, such as "Soft lab, bench 2"')
     date: datetime.date = Field(description="a date such as 2026-11-21")
-    puck: dict[str, Puck] = Field(default_factory=dict)
-    dumbbell: dict[str, Dumbbell] = Field(default_factory=dict)
-    mixing: dict[str, Blends] = Field(default_factory=dict)
-    gauge: dict[str, dict[str, FeatureGauge]] = Field(default_factory=dict)
-    leak_cap: dict[str, LeakCap] = Field(default_factory=dict, alias="leak-cap")
-    volume_plug: dict[str, VolumePlug] = Field(default_factory=dict, alias="volume-plug")
+    puck: dict[str, Puck] = Field(default_factory=dict, description="Pucks, one table a material.")
+    dumbbell: dict[str, Dumbbell] = Field(default_factory=dict, description="Dumbbells, one table a material.")
+    mixing: dict[str, Blends] = Field(
+        default_factory=dict, description="Pucks and dumbbells of mixes, one list a pair of resins."
+    )
+    gauge: dict[str, dict[str, FeatureGauge]] = Field(
+        default_factory=dict, description="Feature gauges, one table a printer and material."
+    )
+    leak_cap: dict[str, LeakCap] = Field(
+        default_factory=dict, alias="leak-cap", description="Leak caps, one table a design."
+    )
+    volume_plug: dict[str, VolumePlug] = Field(
+        default_factory=dict, alias="volume-plug", description="Volume plugs, one table a design."
+    )
 
 
 def read_results(path: Path) -> CouponResults:

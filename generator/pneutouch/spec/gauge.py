@@ -25,8 +25,8 @@ def _figure(unit: str, low: float, high: float, help: str) -> Any:
 class GaugeRange(Table):
     """[range_kPa]: the pressures that are read, in the gauge's reference."""
 
-    low: float = Field(ge=-1e5, le=1e5)
-    high: float = Field(ge=-1e5, le=1e5)
+    low: float = Field(ge=-1e5, le=1e5, description="Lower end of the range.", json_schema_extra={"unit": "kPa"})
+    high: float = Field(ge=-1e5, le=1e5, description="Upper end of the range.", json_schema_extra={"unit": "kPa"})
     source: str = Field(min_length=8, description="Table, page or address; how far it was verified.")
 
     @model_validator(mode="after")
@@ -44,7 +44,7 @@ class GaugeRange(Table):
 class Transfer(Table):
     """[transfer]: the output at both ends of the range, straight between; none of a compensated output."""
 
-    output: Output
+    output: Output = Field(description="What the gauge gives out.")
     at_low: float | None = Field(default=None, ge=-1e12, le=1e12, description="Output at the low end of the range.")
     at_high: float | None = Field(default=None, ge=-1e12, le=1e12, description="Output at the high end.")
     source: str = Field(min_length=8, description="Table, page or address; how far it was verified.")
@@ -63,15 +63,15 @@ class Transfer(Table):
 class Gauge(Table):
     """A pressure gauge as it is sold. A figure that is left out is unknown; ``unknown`` states what was searched."""
 
-    title: str = Field(min_length=1, max_length=80)
-    maker: str = Field(min_length=1, max_length=40)
+    title: str = Field(min_length=1, max_length=80, description="Name of the gauge.")
+    maker: str = Field(min_length=1, max_length=40, description="Name of the maker.")
     order_code: str = Field(min_length=1, max_length=40, description="Part number of the maker.")
     reference: Reference = Field(description="gauge: against the air around it; absolute: against a vacuum.")
     interfaces: list[Interface] = Field(min_length=1, description="How it is read.")
     i2c_address: int | None = Field(default=None, ge=0x08, le=0x77, description="Address on the I2C bus.")
     port: str = Field(min_length=1, description="How the tube meets it.")
-    range_kPa: GaugeRange
-    transfer: Transfer
+    range_kPa: GaugeRange = Field(description="The pressures that are read, in the gauge's reference.")
+    transfer: Transfer = Field(description="The output at both ends of the range.")
     resolution_kPa: Quantity | None = _figure(
         "kPa", 0, 1e3, "Smallest step of a reading; left out of an analog gauge: the recorder's."
     )

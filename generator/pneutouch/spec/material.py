@@ -16,11 +16,13 @@ from pneutouch.spec.quantity import Quantity
 class PaperMeasurements(Table):
     """What the paper measured on its own sensor (R0 9.25 mm, t0 1.5 mm) in this material, Table S1."""
 
-    sensitivity_0kPa_kPa_per_N: Quantity
-    sensitivity_22kPa_kPa_per_N: Quantity
-    hysteresis_percent: Quantity
-    repeatability_kPa_per_N: Quantity
-    sensitivity_change_one_year_percent: Quantity | None = None
+    sensitivity_0kPa_kPa_per_N: Quantity = Field(description="Sensitivity without driving pressure.")
+    sensitivity_22kPa_kPa_per_N: Quantity = Field(description="Sensitivity at a driving pressure of 22 kPa.")
+    hysteresis_percent: Quantity = Field(description="Hysteresis of a loading loop.")
+    repeatability_kPa_per_N: Quantity = Field(description="Scatter of the sensitivity over repeated runs.")
+    sensitivity_change_one_year_percent: Quantity | None = Field(
+        default=None, description="Change of the sensitivity within a year."
+    )
 
 
 class HyperelasticLaw(Table):
@@ -38,7 +40,7 @@ class HyperelasticLaw(Table):
         description="Largest difference of the nominal stress to the curve over that range, of the datum, where the "
         "strain is 10 % or more.",
     )
-    source: str = Field(min_length=8)
+    source: str = Field(min_length=8, description="Table, page, DOI or fit that the constants are from.")
 
     @model_serializer(mode="wrap")
     def _without_no_fit(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -76,9 +78,9 @@ class Mix(Table):
 class ArcGrading(Table):
     """A graded membrane along its arc, from the pole (0) to the rim (1): lists of one length, straight between."""
 
-    arc: list[float] = Field(min_length=2)
+    arc: list[float] = Field(min_length=2, description="Places along the arc, rising from 0 (pole) to 1 (rim).")
     stiff_fraction: list[float] = Field(min_length=2, description="Volume fraction of the second base resin.")
-    shear_modulus_MPa: list[float] = Field(min_length=2)
+    shear_modulus_MPa: list[float] = Field(min_length=2, description="Shear modulus at these places.")
 
     @model_validator(mode="after")
     def _of_one_length(self) -> ArcGrading:
@@ -96,8 +98,8 @@ class MixByCurve(Table):
 
     curve: str = Field(min_length=1, description="Name of the mixing curve.")
     place: Literal["softer", "in use", "stiffer"] = Field(description="Against the curve in use.")
-    shear_modulus_MPa: Quantity
-    elongation_at_break_percent: Quantity | None = None
+    shear_modulus_MPa: Quantity = Field(description="Shear modulus by this curve; of a graded membrane the mean.")
+    elongation_at_break_percent: Quantity | None = Field(default=None, description="Elongation at break by this curve.")
     along_MPa: list[float] | None = Field(
         default=None, min_length=2, description="Moduli of a graded membrane, at along.arc."
     )
@@ -148,18 +150,24 @@ class Material(Table):
     kind: MaterialKind = Field(description="elastomer or rigid.")
     base_resins: list[str] = Field(min_length=1, max_length=3, description="Resins the machine jets.")
     colour: str = Field(pattern=r"^#[0-9A-F]{6}$", description="Display colour; carries no meaning.")
-    density_g_per_cm3: Quantity
-    poisson_ratio: Quantity | None = None
-    shear_modulus_MPa: Quantity | None = None
-    young_modulus_MPa: Quantity | None = None
-    shore_a: Quantity | None = None
-    shore_a_one_year: Quantity | None = None
-    shore_d: Quantity | None = None
-    tensile_strength_MPa: Quantity | None = None
-    elongation_at_break_percent: Quantity | None = None
-    law: HyperelasticLaw | None = None
-    measured: PaperMeasurements | None = None
-    mix: Mix | None = None
+    density_g_per_cm3: Quantity = Field(description="Density of the cured material.")
+    poisson_ratio: Quantity | None = Field(default=None, description="Poisson's ratio; an elastomer needs it.")
+    shear_modulus_MPa: Quantity | None = Field(
+        default=None, description="Small-strain shear modulus; an elastomer needs it."
+    )
+    young_modulus_MPa: Quantity | None = Field(default=None, description="Young's modulus of a rigid material.")
+    shore_a: Quantity | None = Field(default=None, description="Hardness on the Shore A scale.")
+    shore_a_one_year: Quantity | None = Field(default=None, description="Hardness after a year in light and air.")
+    shore_d: Quantity | None = Field(default=None, description="Hardness on the Shore D scale.")
+    tensile_strength_MPa: Quantity | None = Field(default=None, description="Tensile strength.")
+    elongation_at_break_percent: Quantity | None = Field(default=None, description="Elongation at break.")
+    law: HyperelasticLaw | None = Field(default=None, description="A law of the material's own; left out: neo-Hookean.")
+    measured: PaperMeasurements | None = Field(
+        default=None, description="What the paper measured on its sensor in this material."
+    )
+    mix: Mix | None = Field(
+        default=None, description="Volume fractions of a digital material's base resins, where they are known."
+    )
     along: ArcGrading | None = Field(default=None, description="Of a graded membrane; its numbers are means then.")
     curves: list[MixByCurve] = Field(
         default=[], description="Of a mix whose pair has several mixing curves: the same by each, the softest first."

@@ -16,14 +16,18 @@ class MixingPoint(Table):
     ``fraction_low`` and ``fraction_high`` bound the fraction where it is not known.
     """
 
-    fraction: float = Field(ge=0, le=1)
-    fraction_low: float | None = Field(default=None, ge=0, le=1)
-    fraction_high: float | None = Field(default=None, ge=0, le=1)
+    fraction: float = Field(ge=0, le=1, description="Volume fraction of the stiff resin.")
+    fraction_low: float | None = Field(
+        default=None, ge=0, le=1, description="Least fraction that this modulus may have; left out: it is known."
+    )
+    fraction_high: float | None = Field(
+        default=None, ge=0, le=1, description="Greatest fraction that this modulus may have; left out: it is known."
+    )
     material: str | None = Field(default=None, min_length=1, description="Catalogue material of this modulus.")
     shear_modulus_MPa: float | None = Field(default=None, gt=0, description="Where it was measured.")
     shear_modulus_spread_MPa: float | None = Field(default=None, ge=0, description="One standard deviation.")
-    elongation_at_break_percent: float | None = Field(default=None, gt=0)
-    source: str = Field(min_length=8)
+    elongation_at_break_percent: float | None = Field(default=None, gt=0, description="Elongation at break of the mix.")
+    source: str = Field(min_length=8, description="Table, page, DOI or measurement of the point.")
 
     @model_validator(mode="after")
     def _one_modulus(self) -> MixingPoint:
@@ -73,14 +77,18 @@ class MixingCurveNames(Table):
 class MixingCurve(Table):
     """How stiff a mix of two base resins is; one file a pair, ``SOFT+STIFF.toml``."""
 
-    title: str
+    title: str = Field(description="Name of the pair.")
     soft: str = Field(min_length=1, description="Soft base resin.")
     stiff: str = Field(min_length=1, description="Stiff base resin.")
     assumption: str = Field(min_length=8, description="What the curve rests on.")
     curves: MixingCurveNames | None = Field(
         default=None, description="Names of the curves, where sources differ; a measured curve has none."
     )
-    points: list[MixingPoint] = Field(min_length=2, max_length=50)
+    points: list[MixingPoint] = Field(
+        min_length=2,
+        max_length=50,
+        description="Points of the curve, by rising fraction; the first is the soft resin alone.",
+    )
 
     @model_validator(mode="after")
     def _rising(self) -> MixingCurve:

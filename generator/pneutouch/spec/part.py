@@ -8,23 +8,23 @@ from pydantic import Field
 
 from pneutouch.spec.fields import Table
 
-Length = Annotated[float, Field(gt=0)]
+Length = Annotated[float, Field(gt=0, json_schema_extra={"unit": "mm"})]
 Source = Annotated[str, Field(min_length=8)]
 
 
 class Part(Table):
     """What every part has."""
 
-    title: str
+    title: str = Field(description="Name of the part.")
     code: str = Field(description="Short form for part numbers.")
-    source: Source
+    source: Source = Field(description="Table, page or address; how far it was verified.")
 
 
 class Tube(Part):
     """A tube as it is sold."""
 
-    outer_diameter: Length
-    inner_diameter: Length
+    outer_diameter: Length = Field(description="Outside.")
+    inner_diameter: Length = Field(description="Inside.")
     bend_radius: Length | None = Field(default=None, description="Least bend radius.")
     materials: str = Field(description="What it is made of.")
 
@@ -32,36 +32,36 @@ class Tube(Part):
 class Barb(Part):
     """A single hose barb for a soft tube."""
 
-    family: Literal["barb"]
+    family: Literal["barb"] = Field(description="A hose barb.")
     tubes: list[str] = Field(min_length=1, description="Tubes it takes; the first is the usual one.")
-    stem_diameter: Length
-    barb_diameter: Length
-    bore_diameter: Length
-    barb_length: Length
-    stem_length: Length
+    stem_diameter: Length = Field(description="Stem behind the barb.")
+    barb_diameter: Length = Field(description="Widest diameter of the barb.")
+    bore_diameter: Length = Field(description="Bore through it.")
+    barb_length: Length = Field(description="Length of the cone.")
+    stem_length: Length = Field(description="Length of the stem.")
 
 
 class Thread(Part):
     """A female thread, printed as its core hole and tapped, with a flat face for the fitting's gasket."""
 
-    family: Literal["thread"]
-    tubes: list[str] = Field(min_length=1)
+    family: Literal["thread"] = Field(description="A female thread.")
+    tubes: list[str] = Field(min_length=1, description="Tubes that its fittings take; the first is the usual one.")
     thread: str = Field(description="Such as M5 x 0.8.")
     core_diameter: Length = Field(description="Drill before tapping.")
     chamfer_diameter: Length = Field(description="Widest diameter of the 45 degree chamfer.")
     depth: Length = Field(description="Depth of the core hole from the face.")
     face_diameter: Length = Field(description="Boss that the gasket seals on.")
-    boss_length: Length
+    boss_length: Length = Field(description="Length of the boss beyond the body.")
     passage_diameter: Length = Field(description="Bore behind the thread.")
     fitting_engagement: Length = Field(description="Depth that the fitting fills.")
-    fitting_bore_diameter: Length
+    fitting_bore_diameter: Length = Field(description="Bore of the fitting.")
 
 
 class Luer(Part):
     """A female Luer lock: a 6 % cone with two lugs."""
 
-    family: Literal["luer"]
-    tubes: list[str] = Field(min_length=1)
+    family: Literal["luer"] = Field(description="A female Luer lock.")
+    tubes: list[str] = Field(min_length=1, description="Tubes that its fittings take; the first is the usual one.")
     opening_diameter: Length = Field(description="Cone at its mouth.")
     taper: Length = Field(description="Diameter lost over length.")
     depth: Length = Field(description="Length of the cone.")
@@ -69,20 +69,20 @@ class Luer(Part):
     lug_diameter: Length = Field(description="Across the lugs.")
     lug_thickness: Length = Field(description="Along the axis, at the mouth.")
     lug_angle_deg: float = Field(gt=10, lt=170, description="Angle that each of the two lugs spans.")
-    boss_length: Length
-    passage_diameter: Length
+    boss_length: Length = Field(description="Length of the boss beyond the body.")
+    passage_diameter: Length = Field(description="Bore behind the cone.")
     fitting_engagement: Length = Field(description="Depth that the male cone fills.")
-    fitting_bore_diameter: Length
+    fitting_bore_diameter: Length = Field(description="Bore of the fitting.")
 
 
 class PushIn(Part):
     """A plain bore that the tube is pushed into and glued, against a stop."""
 
-    family: Literal["push-in"]
-    tubes: list[str] = Field(min_length=1, max_length=1)
+    family: Literal["push-in"] = Field(description="A bore that the tube is glued into.")
+    tubes: list[str] = Field(min_length=1, max_length=1, description="The tube that it takes.")
     depth: Length = Field(description="Depth that the tube enters.")
     wall: Length = Field(description="Rigid wall around the tube.")
-    boss_length: Length
+    boss_length: Length = Field(description="Length of the boss beyond the body.")
 
 
 Port = Barb | Thread | Luer | PushIn
@@ -100,36 +100,36 @@ class Seat(Part):
 class GluedFlange(Seat):
     """A flange glued into a groove that holds it on three faces up to the base plane."""
 
-    family: Literal["glued-flange"]
+    family: Literal["glued-flange"] = Field(description="A flange glued into a groove.")
 
 
 class ClampedFlange(Seat):
     """A flange pressed down by a ring with screws, no glue."""
 
-    family: Literal["clamped-flange"]
-    screw: str
-    screw_count: int = Field(ge=3, le=16)
+    family: Literal["clamped-flange"] = Field(description="A flange pressed down by a ring.")
+    screw: str = Field(description="Screw of the ring, such as M2.")
+    screw_count: int = Field(ge=3, le=16, description="Number of screws.")
     clearance_diameter: Length = Field(description="Holes of the ring.")
     core_diameter: Length = Field(description="Blind holes of the connector.")
-    core_depth: Length
-    head_diameter: Length
-    ring_thickness: Length
+    core_depth: Length = Field(description="Depth of the blind holes.")
+    head_diameter: Length = Field(description="Heads of the screws.")
+    ring_thickness: Length = Field(description="Thickness of the ring.")
     squeeze: float = Field(gt=0, lt=0.5, description="Share of the flange's thickness that the ring takes up.")
 
 
 class OnePiece(Seat):
     """Membrane and rigid body grown in one print; an opening to clean through and a plug glued into it."""
 
-    family: Literal["one-piece"]
+    family: Literal["one-piece"] = Field(description="Membrane and rigid body in one print.")
     lip_wall_mm: Length = Field(description="Rigid wall inside the flange, around the opening.")
     shoulder_width: Length = Field(description="Width of the plug's shoulder, glued into the counterbore.")
-    shoulder_thickness: Length
+    shoulder_thickness: Length = Field(description="Thickness of the plug's shoulder.")
 
 
 class CastRing(Seat):
     """A flange cast around the perforated web of a rigid ring, whose collar is glued into the connector's groove."""
 
-    family: Literal["cast-ring"]
+    family: Literal["cast-ring"] = Field(description="A flange cast around a rigid ring.")
     collar_wall_mm: Length = Field(description="Rigid wall of the ring outside the flange.")
     lip_mm: float = Field(gt=1, description="Least silicone above, under and inside the web.")
 
@@ -140,52 +140,56 @@ AnySeat = GluedFlange | ClampedFlange | OnePiece | CastRing
 class Mount(Part):
     """What every mount has. The port points away from the dome (rear) or sideways."""
 
-    port_side: Literal["rear", "side"]
-    plate_thickness: Length
+    port_side: Literal["rear", "side"] = Field(
+        description="Where the port points: away from the dome (rear) or sideways (side)."
+    )
+    plate_thickness: Length = Field(description="Thickness of the plate.")
 
 
 class PlainPlate(Mount):
     """A flat plate without holes."""
 
-    family: Literal["plain"]
+    family: Literal["plain"] = Field(description="A flat plate without holes.")
 
 
 class BoltCircle(Mount):
     """Mounting holes on a circle: through holes outside the seat, or blind holes under it."""
 
-    family: Literal["through", "blind"]
-    screw: str
-    count: int = Field(ge=2, le=12)
-    hole_diameter: Length
-    head_diameter: Length
+    family: Literal["through", "blind"] = Field(
+        description="Holes on a circle: through holes outside the seat, or blind holes under it."
+    )
+    screw: str = Field(description="Screw, such as M3.")
+    count: int = Field(ge=2, le=12, description="Number of holes.")
+    hole_diameter: Length = Field(description="Diameter of the holes.")
+    head_diameter: Length = Field(description="Heads of the screws.")
     hole_depth: Length | None = Field(default=None, description="Blind holes only.")
 
 
 class RobotFlange(Mount):
     """An adaptor for a robot's tool flange: through holes on its pitch circle, a centring boss, a dowel hole."""
 
-    family: Literal["robot-flange"]
-    screw: str
-    count: int = Field(ge=3, le=12)
-    hole_diameter: Length
-    head_diameter: Length
-    pitch_diameter: Length
-    plate_diameter: Length
+    family: Literal["robot-flange"] = Field(description="An adaptor for a robot's tool flange.")
+    screw: str = Field(description="Screw, such as M6.")
+    count: int = Field(ge=3, le=12, description="Number of holes.")
+    hole_diameter: Length = Field(description="Diameter of the holes.")
+    head_diameter: Length = Field(description="Heads of the screws.")
+    pitch_diameter: Length = Field(description="Circle of the holes.")
+    plate_diameter: Length = Field(description="Outside of the plate.")
     boss_diameter: Length = Field(description="Centring boss, nominal; the fit's clearance comes off.")
-    boss_height: Length
+    boss_height: Length = Field(description="Height of the centring boss.")
     pin_diameter: Length = Field(description="Dowel hole on the pitch circle, nominal.")
 
 
 class Sleeve(Mount):
     """A sleeve that goes over a finger and is held by set screws."""
 
-    family: Literal["sleeve"]
-    screw: str
+    family: Literal["sleeve"] = Field(description="A sleeve over a finger.")
+    screw: str = Field(description="Set screw, such as M3.")
     finger_diameter: Length = Field(description="Where a design gives none.")
-    sleeve_length: Length
-    sleeve_wall: Length
-    set_screw_count: int = Field(ge=2, le=3)
-    set_screw_core_diameter: Length
+    sleeve_length: Length = Field(description="Length of the sleeve.")
+    sleeve_wall: Length = Field(description="Wall of the sleeve.")
+    set_screw_count: int = Field(ge=2, le=3, description="Number of set screws.")
+    set_screw_core_diameter: Length = Field(description="Holes of the set screws, to be tapped.")
 
     def for_finger(self, diameter: float) -> Sleeve:
         """The same sleeve for a finger of another diameter in mm, its title and code with that number."""

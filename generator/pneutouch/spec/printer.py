@@ -35,23 +35,23 @@ def _no_machine(title: str, what: str) -> InputError:
 class Envelope(Table):
     """Build envelope in mm."""
 
-    x: float = Field(gt=0)
-    y: float = Field(gt=0)
-    z: float = Field(gt=0)
-    source: str = Field(min_length=8)
+    x: float = Field(gt=0, description="Width of the build envelope.", json_schema_extra={"unit": "mm"})
+    y: float = Field(gt=0, description="Depth of the build envelope.", json_schema_extra={"unit": "mm"})
+    z: float = Field(gt=0, description="Height of the build envelope.", json_schema_extra={"unit": "mm"})
+    source: str = Field(min_length=8, description="Table, page or address; how far it was verified.")
 
 
 class Mode(Table):
     """A print mode: its layer height, and whether it mixes digital materials. A mode of casting has no layers."""
 
-    name: str
+    name: str = Field(description="Name of the mode, as the vendor calls it.")
     layer_height_um: float | None = Field(default=None, gt=0, description="Left out: it builds no layers.")
-    digital_materials: bool
+    digital_materials: bool = Field(description="Whether it mixes digital materials.")
     resins_at_once: int | None = Field(default=None, ge=1, le=8, description="Fewer than the machine, where it is so.")
     layer_seconds: Quantity | None = Field(
         default=None, description="Time of one layer, s; of one swath where there are several."
     )
-    source: str = Field(min_length=8)
+    source: str = Field(min_length=8, description="Table, page or address; how far it was verified.")
 
     @property
     def layer_um(self) -> float:
@@ -69,9 +69,9 @@ class Mode(Table):
 class Resolution(Table):
     """Smallest addressable step in the plane, in micrometres."""
 
-    x_um: float = Field(gt=0)
-    y_um: float = Field(gt=0)
-    source: str = Field(min_length=8)
+    x_um: float = Field(gt=0, description="Step along x.")
+    y_um: float = Field(gt=0, description="Step along y.")
+    source: str = Field(min_length=8, description="Table, page or address; how far it was verified.")
 
     @property
     def dpi(self) -> tuple[int, int]:
@@ -84,28 +84,35 @@ class VoxelPrint(Table):
 
     colours: int = Field(ge=1, le=8, description="Most colours of a stack, the background not counted.")
     least_slices: int = Field(ge=1, description="Fewest slices of a stack.")
-    source: str = Field(min_length=8)
+    source: str = Field(min_length=8, description="Table, page or address; how far it was verified.")
 
 
 class FeatureSize(Table):
     """A smallest size in mm: below ``least`` it fails, below ``recommended`` it is at risk."""
 
-    least: float | None = Field(default=None, gt=0)
-    recommended: float = Field(gt=0)
-    source: str = Field(min_length=8)
+    least: float | None = Field(
+        default=None,
+        gt=0,
+        description="Below this a feature fails: an error of `check`.",
+        json_schema_extra={"unit": "mm"},
+    )
+    recommended: float = Field(
+        gt=0, description="Below this a feature is at risk: a warning of `check`.", json_schema_extra={"unit": "mm"}
+    )
+    source: str = Field(min_length=8, description="Table, page or address; how far it was verified.")
 
 
 class SmallestSizes(Table):
     """Smallest features, walls and pins by kind of material; ``channel`` is a hole much longer than wide."""
 
     wall_rigid_mm: FeatureSize | None = Field(default=None, description="Left out: the process makes nothing rigid.")
-    wall_soft_mm: FeatureSize
+    wall_soft_mm: FeatureSize = Field(description="Wall of an elastomer.")
     pin_rigid_mm: FeatureSize | None = Field(default=None, description="Left out: the process makes nothing rigid.")
-    pin_soft_mm: FeatureSize
-    hole_mm: FeatureSize
-    channel_mm: FeatureSize
-    gap_mm: FeatureSize
-    emboss_mm: FeatureSize
+    pin_soft_mm: FeatureSize = Field(description="Free-standing pin of an elastomer.")
+    hole_mm: FeatureSize = Field(description="Hole no longer than three widths.")
+    channel_mm: FeatureSize = Field(description="Hole much longer than wide.")
+    gap_mm: FeatureSize = Field(description="Gap between bodies of one job.")
+    emboss_mm: FeatureSize = Field(description="Raised or engraved detail.")
 
     def wall(self, kind: MaterialKind) -> FeatureSize:
         """The wall limit for a kind of material; the soft one where the process makes nothing rigid."""
@@ -122,15 +129,15 @@ _ENVELOPE = "Left out of casting alone: the printer of the mould bounds the size
 class Printer(Table):
     """One machine as a lab runs it, or casting, which has no machine: no envelope, no pixels and no layers."""
 
-    title: str
-    process: Process
+    title: str = Field(description="Name of the machine.")
+    process: Process = Field(description="How bodies are made; resin is stereolithography, casting has no machine.")
     envelope_mm: Envelope | None = Field(default=None, description=_ENVELOPE)
     resolution: Resolution | None = Field(default=None, description="Left out of casting alone.")
-    accuracy_mm: Quantity
-    smallest: SmallestSizes
+    accuracy_mm: Quantity = Field(description="Deviation of a printed length from the drawn one, to either side.")
+    smallest: SmallestSizes = Field(description="Smallest sizes that it makes.")
     resins: list[str] = Field(min_length=1, description="Base resins or filaments the machine runs.")
-    resins_at_once: int = Field(ge=1, le=8)
-    mode: list[Mode] = Field(min_length=1)
+    resins_at_once: int = Field(ge=1, le=8, description="Base resins in one job.")
+    mode: list[Mode] = Field(min_length=1, description="Print modes, one table each.")
     support: str = Field(description="Support material and how it comes off.")
     hole_undersize_mm: Quantity = Field(description="By how much a printed hole is smaller in diameter than drawn.")
     swath_mm: Quantity | None = Field(default=None, description="Width that one pass of the heads covers.")

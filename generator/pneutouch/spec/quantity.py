@@ -10,10 +10,12 @@ from pneutouch.spec.fields import Table
 class Quantity(Table):
     """A sourced number: a value, or the range a source gives, or both; ``spread`` is one standard deviation."""
 
-    value: float | None = None
-    low: float | None = None
-    high: float | None = None
-    spread: float | None = Field(default=None, ge=0)
+    value: float | None = Field(
+        default=None, description="The number, in the unit of its key; may be left out where there is a range."
+    )
+    low: float | None = Field(default=None, description="Lower end of the range.")
+    high: float | None = Field(default=None, description="Upper end of the range.")
+    spread: float | None = Field(default=None, ge=0, description="One standard deviation.")
     source: str = Field(min_length=8, description="Table, page or DOI; how far it was verified.")
 
     @model_validator(mode="after")

@@ -45,7 +45,7 @@ class Scan(Table):
 class Layer(Table):
     """What every [[layer]] has."""
 
-    kind: str
+    kind: str = Field(description="Kind of pattern.")
     name: Printable | None = Field(default=None, min_length=1, max_length=40, description="Name of the pattern.")
     depth_mm: float = number(0.0, unit="mm", low=0, high=500, help="Depth of its top below the surface.")
     start_mm: float = number(0.0, unit="mm", low=0, high=1000, help="Where it begins along the path.")
@@ -96,7 +96,7 @@ class _Pitched(Layer):
 class Bars(_Pitched):
     """Straight bars across the path; the first one's near side stands at start + offset."""
 
-    kind: Literal["bars"]
+    kind: Literal["bars"] = Field(description="Straight bars across the path.")
     width_mm: float = number(1.5, unit="mm", low=0.001, high=1000, help="Width of a bar along the path.")
     span_mm: float | None = number(
         None, unit="mm", low=0.001, high=1000, help="Length of a bar across the path; left out: the block's width."
@@ -106,14 +106,14 @@ class Bars(_Pitched):
 class Sinusoid(_Pitched):
     """A sheet across the block whose top is a sine; its crests lie at depth_mm."""
 
-    kind: Literal["sinusoid"]
+    kind: Literal["sinusoid"] = Field(description="A sheet whose top is a sine.")
     amplitude_mm: float = number(0.5, unit="mm", low=0.001, high=500, help="Half of the height from trough to crest.")
 
 
 class RandomPhase(Layer):
     """A sheet whose top is a sum of sines of one amplitude, with phases drawn once from a seed."""
 
-    kind: Literal["random-phase"]
+    kind: Literal["random-phase"] = Field(description="A sheet whose top is a sum of sines.")
     pitches_mm: list[Annotated[float, Field(ge=0.001, le=1000)]] | None = Field(
         default=None, min_length=1, max_length=50, description="pitches along the path, each from 0.001 to 1000 mm"
     )
@@ -174,7 +174,7 @@ class _Celled(Layer):
 class StrutLattice(_Celled):
     """A lattice of round struts."""
 
-    kind: StrutKind
+    kind: StrutKind = Field(description="Cell of the lattice.")
     strut_radius_mm: float | None = number(None, unit="mm", low=0.001, high=500, help="Radius of the struts.")
 
     @model_validator(mode="after")
@@ -186,7 +186,7 @@ class StrutLattice(_Celled):
 class MinimalSurface(_Celled):
     """A triply periodic minimal surface: a sheet about it, or the network on one side of it."""
 
-    kind: SurfaceKind
+    kind: SurfaceKind = Field(description="The surface.")
     form: Literal["sheet", "network"] = Field(default="sheet", description="sheet or network")
     thickness_mm: float | None = number(
         None, unit="mm", low=0.001, high=500, help="Mean thickness of a sheet: its volume over its middle surface."

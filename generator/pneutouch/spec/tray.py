@@ -5,13 +5,19 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, field_validator, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
 
 from pneutouch.errors import shown
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, number
 
 LEAST_COPIES, MOST_COPIES = 1, 200
+
+
+def _by_key(value: dict[str, Any]) -> WithJsonSchema:
+    """Values by ``table.key``, or as tables of keys: TOML makes tables of dots that are not in quotes."""
+    either = {"anyOf": [value, {"type": "object", "additionalProperties": value}]}
+    return WithJsonSchema({"type": "object", "additionalProperties": either})
 
 
 def _setting(given: Any) -> Any:
@@ -27,6 +33,7 @@ def _setting(given: Any) -> Any:
 
 
 EntryValue = Annotated[str | float | int | list[float | int], BeforeValidator(_setting)]
+_VALUE = {"anyOf": [{"type": "string"}, {"type": "number"}, {"type": "array", "items": {"type": "number"}}]}
 Role = Literal["membrane", "connector", "ring", "plug"]
 Marks = Literal["engraved", "raised", "none"]
 
@@ -60,10 +67,13 @@ class Entry(Table):
 
     design: str = Field(min_length=1, description="name of a design, or a .toml in the folder of the tray file")
     copies: int = Field(default=1, ge=LEAST_COPIES, le=MOST_COPIES, description=f"from {LEAST_COPIES} to {MOST_COPIES}")
-    over: dict[str, Annotated[list[EntryValue], Field(min_length=1, max_length=50)]] = Field(
-        default={}, description='one "table.key" with its values'
+    over: Annotated[
+        dict[str, Annotated[list[EntryValue], Field(min_length=1, max_length=50)]],
+        _by_key({"type": "array", "minItems": 1, "maxItems": 50, "items": _VALUE}),
+    ] = Field(default={}, description='one "table.key" with its values')
+    set: Annotated[dict[str, EntryValue], _by_key(_VALUE)] = Field(
+        default={}, description='"table.key" = value for every part of the entry'
     )
-    set: dict[str, EntryValue] = Field(default={}, description='"table.key" = value for every part of the entry')
 
     @field_validator("over", "set", mode="before")
     @classmethod

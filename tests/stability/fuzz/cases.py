@@ -59,6 +59,7 @@ LINES: dict[str, tuple[str, ...]] = {
         "texture-specimen --design paper-dome --data signal.csv --pressures 0,22",
     ),
     "show": ("built.3mf", "stack --json"),
+    "schema": ("--json", "design", "prediction"),
     "export-reader": (
         "paper-dome --model membrane",
         "paper-dome --model membrane --set pneumatics.gauge=honeywell-abp2-5psi --json",

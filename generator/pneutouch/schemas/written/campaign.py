@@ -1,0 +1,192 @@
+"""Schemas of what campaigns write: the plan, and the figures of the measured runs."""
+
+from pneutouch.mechanics.rating import RatingRecord
+from pneutouch.schemas.models import model_schema
+from pneutouch.schemas.shape import (
+    FLAG,
+    NUMBER,
+    NUMBERS,
+    TEXT,
+    TEXTS,
+    WHOLE,
+    Schema,
+    described_by,
+    items,
+    mapping,
+    or_null,
+    record,
+)
+from pneutouch.schemas.typed import typed
+from pneutouch.schemas.written.parts import contact
+from pneutouch.spec.campaign import Rig, RunKind
+from pneutouch.workflows.plan.steps import StepRecord
+
+_KIND: Schema = {"enum": list(RunKind.__args__)}  # type: ignore[attr-defined]
+
+
+def plan() -> Schema:
+    """What ``plan.json`` holds and ``plan --json`` prints."""
+    rig = model_schema(Rig)["properties"]
+    rig = {key: {k: v for k, v in field.items() if k != "default"} for key, field in rig.items()}
+    warning = {
+        "rule": TEXT,
+        "resin": or_null(TEXT),
+        "driving_pressure_kPa": or_null(NUMBER),
+        "depth_mm": or_null(NUMBER),
+        "message": TEXT,
+    }
+    text_keys = {"name": TEXT, "design": TEXT, "title": TEXT, "dead_volume_note": TEXT, "folder": TEXT}
+    number_keys = (
+        "inner_radius_mm",
+        "wall_thickness_mm",
+        "ambient_pressure_kPa",
+        "dead_volume_mL",
+        "clearance_mm",
+        "plate_diameter_mm",
+        "total_s",
+    )
+    keys = {
+        **text_keys,
+        **dict.fromkeys(number_keys, NUMBER),
+        "driving_pressures_kPa": NUMBERS,
+        "contact": contact(),
+        "rig": record("The rig.", {**rig, "file": or_null(TEXT)}),
+        "sensors": items(record("A specimen.", {"sensor": TEXT, "resin": TEXT})),
+        "resins": items(_expected()),
+        "tests": mapping(_test()),
+        "runs": items(_planned_run()),
+        "warnings": items(record("Where the rig cannot follow.", warning)),
+    }
+    return record("A measurement campaign, run by run.", keys, ("dead_volume_note", "contact", "folder"))
+
+
+def _points() -> Schema:
+    values = ("force_N", "pressure_rise_kPa", "cavity_pressure_kPa")
+    return items(record("A depth.", {"depth_mm": NUMBER, **dict.fromkeys(values, or_null(NUMBER))}))
+
+
+def _expected() -> Schema:
+    injected = ("volume_mL", "pressure_kPa", "without_dead_volume_kPa", "with_more_dead_volume_kPa")
+    volumes = (
+        "cavity_volume_mL",
+        "dead_volume_mL",
+        "line_pressure_kPa",
+        "line_volume_mL",
+        "more_dead_volume_mL",
+        "sensor_volume_mL",
+    )
+    rows = items(record("A volume.", dict.fromkeys(injected, or_null(NUMBER))))
+    injection = {**dict.fromkeys(volumes, or_null(NUMBER)), "sensor": rows}
+    state = {
+        "driving_pressure_kPa": NUMBER,
+        "points": _points(),
+        "range_end_mm": NUMBER,
+        "range_ends_by": or_null(TEXT),
+    }
+    keys = {
+        "resin": TEXT,
+        "model": TEXT,
+        "states": items(record("One driving pressure.", state)),
+        "injection": record("Air to be injected, and what it reads.", injection),
+        "limit_kPa": NUMBER,
+        "limit_by": TEXT,
+        "rating": typed(RatingRecord, {}),
+        "leak_limit_kPa_per_min": or_null(NUMBER),
+    }
+    return record("What one resin must read.", keys)
+
+
+def _test() -> Schema:
+    numbers = ("hold_s", "rest_s", "speed_mm_per_s", "duration_s")
+    keys = {
+        "depths_mm": NUMBERS,
+        **dict.fromkeys(numbers, NUMBER),
+        "reset": FLAG,
+        "driving_pressures_kPa": NUMBERS,
+        "runs": described_by("How often it is done.", WHOLE),
+    }
+    return record("A kind of run.", keys)
+
+
+def _planned_run() -> Schema:
+    keys = {
+        "number": WHOLE,
+        "kind": _KIND,
+        "sensor": TEXT,
+        "resin": TEXT,
+        "driving_pressure_kPa": NUMBER,
+        "run": WHOLE,
+        "file": TEXT,
+        "steps": items(typed(StepRecord, {})),
+        "expected": _points(),
+        "duration_s": NUMBER,
+    }
+    return record("A run.", keys)
+
+
+def figures() -> Schema:
+    """What ``figures.json`` holds and ``characterize --json`` prints."""
+    injection = {"sensor": TEXT, "figure": TEXT, "value": NUMBER, "standard_error": or_null(NUMBER), "unit": TEXT}
+    change = ("sensitivity_change_percent", "low", "high", "published_change_one_year_percent")
+    ageing = {"resin": TEXT, "driving_pressure_kPa": NUMBER, "age": TEXT, **dict.fromkeys(change, or_null(NUMBER))}
+    verdict = {"what": TEXT, "required": TEXT, "measured": TEXT, "passed": or_null(FLAG)}
+    keys = {
+        "title": TEXT,
+        "lab": TEXT,
+        "simulated": FLAG,
+        "design": TEXT,
+        "input_hash": TEXT,
+        "model": TEXT,
+        "level": NUMBER,
+        "groups": items(_group()),
+        "runs": items(_measured_run()),
+        "injections": items(record("A figure of an injection.", injection)),
+        "ageing": items(record("A change with age.", ageing)),
+        "target": items(record("A requirement.", verdict)),
+        "questions": items(record("What is to be looked at.", {"file": TEXT, "question": TEXT})),
+        "failures": items(record("A file that could not be used.", {"file": TEXT, "message": TEXT})),
+        "folder": TEXT,
+    }
+    return record("Figures of a campaign, measured and predicted.", keys, ("folder",))
+
+
+def _group() -> Schema:
+    off = ("low", "high", "measured_off_percent")
+    predicted = record("The predicted figure.", {"value": NUMBER, **dict.fromkeys(off, or_null(NUMBER))})
+    figure = {
+        "value": NUMBER,
+        "low": or_null(NUMBER),
+        "high": or_null(NUMBER),
+        "unit": TEXT,
+        "specimens": WHOLE,
+        "runs": described_by("Number of runs.", WHOLE),
+        "interval_over": or_null(TEXT),
+        "predicted": predicted,
+    }
+    keys = {
+        "resin": TEXT,
+        "age": TEXT,
+        "driving_pressure_kPa": NUMBER,
+        "sensors": described_by("Specimens of the group.", TEXTS),
+        "files": described_by("Files of the runs.", TEXTS),
+        "why_not_predicted": or_null(TEXT),
+        "figures": mapping(record("A measured figure.", figure, ("predicted",))),
+    }
+    return record("Runs of one resin, age and driving pressure.", keys)
+
+
+def _measured_run() -> Schema:
+    suspect = {"start_s": NUMBER, "end_s": NUMBER, "why": TEXT, "used": FLAG, "kind": TEXT}
+    keys = {
+        "file": TEXT,
+        "kind": _KIND,
+        "sensor": TEXT,
+        "resin": TEXT,
+        "run": WHOLE,
+        "driving_pressure_kPa": NUMBER,
+        "age_days": NUMBER,
+        "points": described_by("Number of points of the curve.", WHOLE),
+        "figures": mapping(NUMBER),
+        "warnings": items(record("A part of the record that is doubtful.", suspect)),
+    }
+    return record("A run.", keys)

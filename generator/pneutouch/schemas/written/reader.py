@@ -1,0 +1,12 @@
+"""The schema of an exported reader, which stands next to the templates of its code."""
+
+import json
+
+from pneutouch.export.reader.render import SCHEMA
+from pneutouch.schemas.shape import Schema
+
+
+def reader() -> Schema:
+    """What ``reader.json`` holds."""
+    schema: Schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    return schema

@@ -1,0 +1,22 @@
+"""Schemas of reports whose typed dictionaries declare them whole: comparisons and calibrations."""
+
+from pneutouch.evaluation.comparison_record import ComparisonRecord
+from pneutouch.schemas.shape import TEXT, Schema
+from pneutouch.schemas.typed import typed
+from pneutouch.workflows.calibrate.record import OutcomeRecord
+
+
+def _with_folder(schema: Schema) -> Schema:
+    """The same with the folder that the command wrote."""
+    folder = {**TEXT, "description": "Where it was written; in what the command prints alone."}
+    return {**schema, "properties": {**schema["properties"], "folder": folder}}
+
+
+def comparison() -> Schema:
+    """What ``comparison.json`` holds and ``compare --json`` prints."""
+    return _with_folder(typed(ComparisonRecord, {}))
+
+
+def calibration_report() -> Schema:
+    """What ``calibration.json`` holds in part and ``calibrate --json`` prints."""
+    return typed(OutcomeRecord, {})

@@ -1,0 +1,88 @@
+"""Written documents are of their schemas, and a schema refuses what is not."""
+
+from __future__ import annotations
+
+import copy
+import json
+
+import pytest
+
+from pneutouch.evaluation.document import full_document
+from pneutouch.output.files import json_bytes
+from pneutouch.schemas import document_kinds, schema_of
+from tests.schemas.held import PRINTED, WRITTEN, hold, hold_folder, validator
+
+
+def as_written(document):
+    return json.loads(json_bytes(document))
+
+
+def test_every_written_document_is_held_by_a_command_or_a_file():
+    written = {name for name, kind in document_kinds().items() if kind.form == "JSON"}
+    assert written == set(PRINTED.values()) | set(WRITTEN.values())
+
+
+@pytest.mark.parametrize(
+    ("design", "changes", "model"),
+    [
+        ("paper-dome", (), "membrane"),
+        ("paper-dome", ("contact.anywhere=true", "pneumatics.driving_pressures_kPa=[0]"), "atlas"),
+        ("agilus-dome", ("pneumatics.gauge=honeywell-abp2-5psi",), "atlas"),
+        ("graded-dome", ("pneumatics.driving_pressures_kPa=[0]",), "solid"),
+        (
+            "paper-dome",
+            (
+                "contact.object=ball",
+                "contact.ball_radius_mm=8",
+                "contact.friction=inf",
+                "pneumatics.driving_pressures_kPa=[0]",
+            ),
+            "solid",
+        ),
+    ],
+    ids=["membrane", "anywhere", "gauge", "graded", "ball"],
+)
+def test_a_prediction_is_of_its_schema(evaluated, design, changes, model):
+    document = as_written(full_document(evaluated(design, *changes, model=model)))
+    hold("prediction", document)
+    hold("prediction", {"format": "pneutouch/prediction/1", **document})
+    for path, value in ((("model",), 3), (("rating", "share"), "much"), (("states",), [{}]), (("surprise",), 1)):
+        wrong = copy.deepcopy(document)
+        owner = wrong
+        for key in path[:-1]:
+            owner = owner[key]
+        owner[path[-1]] = value
+        assert not validator("prediction").is_valid(wrong), path
+
+
+def test_a_selection_is_of_its_schema(command):
+    words = (
+        "select",
+        "--sensitivity",
+        "2",
+        "--inner-radius",
+        "9.25",
+        "--wall",
+        "1.5",
+        "--material",
+        "TangoPlus",
+        "--json",
+    )
+    hold("selection", json.loads(command(*words).stdout))
+
+
+def test_an_exported_reader_is_of_its_schema(command, tmp_path):
+    words = ("export-reader", "paper-dome", "--model", "membrane", "--set", "pneumatics.driving_pressures_kPa=0,12")
+    assert command(*words).returncode == 0
+    assert hold_folder(tmp_path) == 2
+
+
+@pytest.mark.slow
+def test_a_built_folder_is_of_its_schemas(built):
+    assert hold_folder(built("paper-dome")) == 2
+
+
+def test_a_number_states_the_unit_of_its_key():
+    state = schema_of("prediction")["properties"]["states"]["items"]["properties"]
+    assert state["sensitivity_kPa_per_N"]["x-unit"] == "kPa/N"
+    assert state["stiffness_N_per_mm"]["description"].endswith("Unit: N/mm.")
