@@ -77,6 +77,20 @@ def test_an_exported_reader_is_of_its_schema(command, tmp_path):
     assert hold_folder(tmp_path) == 2
 
 
+def test_a_comparison_is_of_its_schema(command, tmp_path):
+    assert command("compare", "paper-dome", "soft-pad", "--model", "membrane").returncode == 0
+    assert hold_folder(tmp_path) == 2
+
+
+@pytest.mark.slow
+def test_measured_figures_are_of_their_schema(command, tmp_path):
+    words = ("--pressures", "0,12", "--kinds", "steps,loop", "--runs", "1", "--rest", "2", "--rate", "20")
+    assert command("simulate", "paper-dome", *words, "--model", "atlas", "--out", "sim").returncode == 0
+    (folder,) = (tmp_path / "sim").iterdir()
+    assert command("characterize", str(folder), "--design", "paper-dome", "--model", "atlas").returncode == 0
+    assert hold_folder(tmp_path) == 3
+
+
 @pytest.mark.slow
 def test_a_built_folder_is_of_its_schemas(built):
     assert hold_folder(built("paper-dome")) == 2

@@ -145,9 +145,10 @@ def figures() -> Schema:
         "target": items(record("A requirement.", verdict)),
         "questions": items(record("What is to be looked at.", {"file": TEXT, "question": TEXT})),
         "failures": items(record("A file that could not be used.", {"file": TEXT, "message": TEXT})),
+        "read_as": items({"type": "object"}),
         "folder": TEXT,
     }
-    return record("Figures of a campaign, measured and predicted.", keys, ("folder",))
+    return record("Figures of a campaign, measured and predicted.", keys, ("read_as", "folder"))
 
 
 def _group() -> Schema:
