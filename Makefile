@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page contact-table simulator-page dist lock clean
+.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page contact-table simulator-page dist sbom paper lock clean
 
 venv: $(VENV)/.dev
 
@@ -29,8 +29,8 @@ pytest: $(VENV)/.dev
 	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 lint: $(VENV)/.dev
-	$(BIN)/ruff check generator tests benchmarks docs
-	$(BIN)/ruff format --check generator tests benchmarks docs/conf.py docs/_ext docs/gallery
+	$(BIN)/ruff check generator tests benchmarks docs release
+	$(BIN)/ruff format --check generator tests benchmarks release docs/conf.py docs/_ext docs/gallery
 	$(BIN)/mypy
 
 # What CI requires in addition to the tests; pre-commit needs a clone, and its hooks are programs of the virtual environment.
@@ -56,6 +56,14 @@ dist: $(VENV)/.run
 	rm -rf dist
 	SOURCE_DATE_EPOCH=1580601600 $(BIN)/python -m hatchling build --directory dist
 	cd dist && sha256sum pneutouch-*
+
+# The locked dependencies as a CycloneDX document, dist/pneutouch.cdx.json.
+sbom: $(VENV)/.run
+	$(BIN)/python -m release.sbom
+
+# The figures of paper/paper.md, from stored ones.
+paper: $(VENV)/.run
+	$(BIN)/python -m release.paper
 
 # Needs uv; writes the locked dependencies with hashes for every platform.
 lock:
