@@ -27,7 +27,8 @@ CONTENTS: tuple[tuple[tuple[str, ...], str], ...] = (
     (("print-sheet.md",), "which body takes which resin, orientation, cleaning, fits"),
     (("manifest.json",), "inputs, versions, measured mesh deviation, SHA-256 of every file"),
 )
-"""Files of an output folder that belong together, by patterns of their names, and what they are; as in docs/reference/files.md."""
+"""Files of an output folder that belong together, by patterns of their names, and what they are; as in
+docs/reference/files.md."""
 
 
 def described(names: Iterable[str], design: str) -> list[tuple[list[str], str]]:
