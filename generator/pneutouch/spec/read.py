@@ -12,6 +12,7 @@ from pneutouch.spec.fields import EntryError, declaration, table_of
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.toml_errors import toml_problem
 from pneutouch.spec.toml_text import toml_content, toml_value, value_text
+from pneutouch.wording import counted
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -160,6 +161,8 @@ def _expected(detail: Any) -> str:
         "too_short": "a list with at least one entry ",
         "too_long": "a list with at most 50 entries ",
     }
+    if detail["type"] == "string_too_short":
+        return f"text of at least {counted(detail['ctx']['min_length'], 'character')}: "
     return kinds.get(detail["type"], "")
 
 
