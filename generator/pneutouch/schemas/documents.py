@@ -11,13 +11,17 @@ VERSION = 1
 """Number of the form of every document; one that is changed so that older programs cannot read it gets the next."""
 
 _DOCUMENTS = {
-    "prediction": ("prediction.prediction", "A prediction", "`prediction.json` of `build`, `predict --json`"),
+    "prediction": ("prediction.prediction", "A prediction", "`prediction.json` of `build`, `pneutouch predict --json`"),
     "manifest": ("folder.manifest", "A manifest", "`manifest.json` of every output folder"),
-    "plan": ("campaign.plan", "A test plan", "`plan.json` of `plan`, `plan --json`"),
-    "figures": ("campaign.figures", "Measured figures", "`figures.json` of `characterize`, `characterize --json`"),
-    "selection": ("selection.selection", "A selection", "`select --json`"),
-    "comparison": ("reports.comparison", "A comparison", "`comparison.json` of `compare`, `compare --json`"),
-    "calibration-report": ("reports.calibration_report", "A calibration's report", "`calibrate --json`"),
+    "plan": ("campaign.plan", "A test plan", "`plan.json` of `plan`, `pneutouch plan --json`"),
+    "figures": (
+        "campaign.figures",
+        "Measured figures",
+        "`figures.json` of `characterize`, `pneutouch characterize --json`",
+    ),
+    "selection": ("selection.selection", "A selection", "`pneutouch select --json`"),
+    "comparison": ("reports.comparison", "A comparison", "`comparison.json` of `compare`, `pneutouch compare --json`"),
+    "calibration-report": ("reports.calibration_report", "A calibration's report", "`pneutouch calibrate --json`"),
     "reader": ("reader.reader", "A reader of force", "`reader.json` of `export-reader`"),
 }
 

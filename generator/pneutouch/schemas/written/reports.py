@@ -13,10 +13,10 @@ def _with_folder(schema: Schema) -> Schema:
 
 
 def comparison() -> Schema:
-    """What ``comparison.json`` holds and ``compare --json`` prints."""
+    """What ``comparison.json`` holds and ``pneutouch compare --json`` prints."""
     return _with_folder(typed(ComparisonRecord, {}))
 
 
 def calibration_report() -> Schema:
-    """What ``calibration.json`` holds in part and ``calibrate --json`` prints."""
+    """What ``calibration.json`` holds in part and ``pneutouch calibrate --json`` prints."""
     return typed(OutcomeRecord, {})
