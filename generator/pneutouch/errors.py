@@ -25,6 +25,9 @@ from typing import Any
 _LONGEST = 200
 """Characters of a value that a message shows: enough to find it again."""
 
+_DEEPEST = 20
+"""Tables and lists within one another that a message shows: a value may be nested deeper than Python calls go."""
+
 _LINE = 4000
 """Characters of a line of a message: none that is the project's own is as long."""
 
@@ -145,7 +148,7 @@ def _typed(value: Any) -> str:
     return _cut(_escaped(value)) if isinstance(value, str) else shown(value)
 
 
-def _toml(value: Any) -> str:
+def _toml(value: Any, deep: int = 0) -> str:
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, bool):
@@ -154,13 +157,15 @@ def _toml(value: Any) -> str:
         return _escaped(json.dumps(fspath(value), ensure_ascii=False))
     if isinstance(value, numbers.Real):
         return _number(value)
+    if deep > _DEEPEST:
+        return "..."
     if isinstance(value, Mapping):
-        entries = (f"{_escaped(str(key))} = {_toml(item)}" for key, item in value.items() if item is not None)
+        entries = (f"{_escaped(str(key))} = {_toml(item, deep + 1)}" for key, item in value.items() if item is not None)
         return f"{{ {', '.join(entries)} }}" if value else "{}"
     if isinstance(value, set | frozenset):
-        return _toml(sorted(value, key=str))
+        return _toml(sorted(value, key=str), deep)
     if isinstance(value, list | tuple):
-        return f"[{', '.join(map(_toml, value))}]"
+        return f"[{', '.join(_toml(item, deep + 1) for item in value)}]"
     if isinstance(value, datetime.date | datetime.time):
         return value.isoformat()
     return "nothing" if value is None else f"a Python object of type {type(value).__name__}"

@@ -63,7 +63,7 @@ def test_devices_pipes_folders_and_large_files_are_not_read(tmp_path):
         ("/dev/zero", "not a plain file, but a device or a pipe; give a TOML file"),
         (pipe, "not a plain file"),
         (tmp_path, "this is a folder; give a TOML file"),
-        (large, "larger than 1 MB"),
+        (large, f"larger than 1 MB: {large.stat().st_size} bytes"),
         (tmp_path / ("x" * 300), "cannot be read: File name too long"),
         (tmp_path / "none", "no such file"),
     ):

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
+from itertools import islice
 from typing import Any
 
 from pydantic import BaseModel
@@ -13,6 +14,10 @@ from pneutouch.spec.fields import table_of
 
 WHERE = "the keyword arguments"
 """Stands for the file where values are keyword arguments; `named_by_keyword` takes it out of an error."""
+
+
+_MOST = 100_000
+"""Entries of a list that are looked at: no field takes as many."""
 
 
 @cache
@@ -30,22 +35,31 @@ def keywords(model: type[BaseModel]) -> dict[str, str]:
 
 def plain(value: Any) -> Any:
     """A value as a file holds it: arrays, tuples and ranges as lists, scalars of NumPy as Python's."""
-    if hasattr(value, "tolist"):
+    if hasattr(value, "tolist") and not isinstance(value, type):
         return value.tolist()
     if isinstance(value, list | tuple | range | Iterator):
-        return [plain(item) for item in value]
+        # A range or an iterator may have no end.
+        return [plain(item) for item in islice(value, _MOST)]
     return {key: plain(item) for key, item in value.items()} if isinstance(value, Mapping) else value
+
+
+def _of_keyword(name: str, value: Any) -> Any:
+    try:
+        return plain(value)
+    except RecursionError:
+        raise InputError("nested too deep", key=name, remedy="give a value, or a list of values") from None
 
 
 def changes(model: type[BaseModel], arguments: Mapping[str, Any]) -> dict[str, Any]:
     """Keyword arguments as values by ``table.key``; a table may be given whole, as a mapping. Raises InputError."""
     known = keywords(model)
     fields: dict[str, Any] = {}
-    for name, value in arguments.items():
+    for name, given in arguments.items():
+        value = _of_keyword(name, given)
         if name in known:
-            entries = {known[name]: plain(value)}
+            entries = {known[name]: value}
         elif name in model.model_fields and isinstance(value, Mapping):
-            entries = {f"{name}.{key}": item for key, item in plain(value).items()}
+            entries = {f"{name}.{key}": item for key, item in value.items()}
         elif name in model.model_fields:
             raise InputError("must be a mapping of the table's keys", key=name, value=value)
         else:

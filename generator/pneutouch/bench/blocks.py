@@ -19,6 +19,11 @@ SLOW = 200.0
 MOST_BLOCKS = 400_000
 """So that a slow file of any length stays small in memory."""
 
+LEAST_STEP = 1e-9
+"""Least time between two samples, s: our choice, far below that of any converter of force or pressure."""
+
+_MOST_LOST = 2.0**53
+
 MISSED, GAP = 1.5, 0.1
 """A step of more than so many sampling periods has lost samples; one longer than this, in s, is a gap of its own."""
 
@@ -67,7 +72,12 @@ class BlockCollector:
         if self.rate is None:
             if time.size < 2:
                 raise InputError("1 row", file=self.file, remedy="at least 2, for a sampling rate")
-            self.rate = 1 / float(np.median(np.diff(time)))
+            step = float(np.median(np.diff(time)))
+            if step < LEAST_STEP:
+                problem = f"column {self.names['time']}: rises by {step:.3g} s from row to row"
+                remedy = "no instrument samples as often: is its unit right?"
+                raise InputError(problem, file=self.file, remedy=remedy)
+            self.rate = 1 / step
         if self.size is None:
             usual = 1 if self.rate <= SLOW else round(self.rate / BLOCK_RATE)
             self.size = max(usual, -(-self.total // MOST_BLOCKS))
@@ -93,7 +103,7 @@ class BlockCollector:
         joined = np.concatenate([[self._last], time]) if self._samples else time
         step = np.diff(joined)
         at = np.flatnonzero(step > MISSED * period)
-        lost = np.round(step[at] * self.rate).astype(int) - 1
+        lost = np.minimum(np.round(step[at] * self.rate), _MOST_LOST).astype(int) - 1
         long = step[at] > max(GAP, MISSED * period)
         self._missed += [
             (float(joined[k]), float(joined[k + 1]), max(int(n), 1)) for k, n in zip(at[long], lost[long], strict=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import math
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
@@ -10,7 +11,7 @@ from pydantic import AfterValidator, Field, SerializerFunctionWrapHandler, model
 from pneutouch.errors import shown
 from pneutouch.spec.cast_ring import PerforatedRing
 from pneutouch.spec.contact import ContactTable
-from pneutouch.spec.fields import EntryError, Table, name, number, numbers
+from pneutouch.spec.fields import EntryError, Table, declaration, name, number, numbers
 from pneutouch.spec.grade import ResinOrMix
 from pneutouch.spec.mould import Mould
 
@@ -211,7 +212,9 @@ class DesignFile(Table):
         if not all(isinstance(table, dict) for table in tables):
             return content
         old, new = (table.get("plate_diameter_mm") for table in tables)
-        if new is None:
+        known = declaration(ContactTable, "plate_diameter_mm")
+        if type(new) not in (int, float) or not (known.low or 0) <= new <= (known.high or math.inf):
+            # None, or what the table that it stands in refuses.
             return content
         if old is not None and old != new:
             raise ValueError(

@@ -13,15 +13,25 @@ MOST_BYTES = 1_000_000
 def read_bytes(path: Path, most: int = MOST_BYTES, kind: str = "TOML file") -> bytes:
     """Content of a plain file of at most ``most`` bytes. Raises InputError for all else, which states the ``kind``."""
     size = check_plain(path, kind)
+    if size > most:
+        raise oversized(path, size, most, kind)
     try:
         with path.open("rb") as file:
-            content = file.read(min(most, size) + 1)
+            content = file.read(size + 1)
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", file=path) from None
     if len(content) > most:
-        limit = f"{most // 2**20} MiB" if most % 2**20 == 0 else f"{most / 1e6:g} MB"
-        raise InputError(f"larger than {limit}", file=path, remedy=f"no {kind} is")
+        # It has grown since.
+        raise oversized(path, len(content), most, kind)
     return content
+
+
+def oversized(path: Path, size: int, most: int, kind: str) -> InputError:
+    """The error of a file of ``size`` bytes, of a ``kind`` that has at most ``most``."""
+    limit = f"{most / 1e6:g} MB"
+    if most % 2**10 == 0:
+        limit = f"{most >> 20} MiB" if most % 2**20 == 0 else f"{most >> 10} KiB"
+    return InputError(f"larger than {limit}: {size} bytes", file=path, remedy=f"no {kind} is")
 
 
 def check_plain(path: Path, kind: str) -> int:

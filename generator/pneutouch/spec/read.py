@@ -33,12 +33,20 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise InputError(f"holds a value that cannot be read: {error}", file=path) from None
 
 
+_MOST_PROBLEMS = 20
+"""Problems of one file that are reported: a user mends some and tries again, and each costs a search for its key."""
+
+
 def validate(model: type[Model], content: dict[str, Any], where: str) -> Model:
     """Validate ``content`` against ``model``; ``where`` names the file in the message."""
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        raise joined([_explain(model, detail, where) for detail in error.errors()]) from None
+        problems = [_explain(model, detail, where) for detail in error.errors()[:_MOST_PROBLEMS]]
+        more = error.error_count() - _MOST_PROBLEMS
+        if more > 0:
+            problems.append(InputError(f"and {more} more problem{'s' if more > 1 else ''}", file=where))
+        raise joined(problems) from None
 
 
 Changes = Mapping[str, Any]

@@ -53,10 +53,16 @@ class DrivingTask(Table):
         return float(getattr(self, self.figure))
 
 
+MOST_TASKS = 50
+"""Of one file."""
+
+
 class TaskFile(Table):
     """A whole file of tasks, in the order in which they are done."""
 
-    task: Annotated[list[DrivingTask], Field(min_length=1, max_length=50)] = Field(description="a list of tasks")
+    task: Annotated[list[DrivingTask], Field(min_length=1, max_length=MOST_TASKS)] = Field(
+        description="a list of tasks"
+    )
 
 
 def parse_task(text: str) -> DrivingTask:
@@ -99,6 +105,8 @@ def _csv_rows(path: Path) -> list[tuple[int, dict[str, str]]]:
         raise InputError(f"no CSV table: {error}", file=path) from None
     if len(lines) < 2:
         raise InputError("holds no task", file=path, remedy="give a header and a row for each task")
+    if len(lines) > 1 + MOST_TASKS:
+        raise InputError(f"{len(lines) - 1} tasks; at most {MOST_TASKS}", file=path)
     head, known = lines[0][1], list(DrivingTask.model_fields)
     for column in head:
         if column not in known:

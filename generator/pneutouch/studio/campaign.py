@@ -58,9 +58,14 @@ def placed(files: Sequence[Mapping[str, str]], paths: Sequence[str], place: Path
 
 
 def write_runs(folder: Path, runs: Sequence[Mapping[str, Any]]) -> Path:
-    """Write the campaign file of runs that the page states."""
+    """Write the campaign file of runs that the page states. Raises InputError for values that TOML has no form for."""
     path = folder / CAMPAIGN
-    path.write_text(toml_text({"runs": [dict(run) for run in runs]}))
+    try:
+        text = toml_text({"runs": [dict(run) for run in runs]})
+    except (TypeError, RecursionError):
+        remedy = "its values are texts, numbers, true or false, and lists of these"
+        raise InputError("not a run of a campaign file", key="runs", remedy=remedy) from None
+    path.write_text(text)
     return path
 
 

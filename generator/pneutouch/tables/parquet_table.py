@@ -13,6 +13,9 @@ from pneutouch.tables.chunk import RowChunk, places
 from pneutouch.tables.layout import TableFormat, TableLayout
 from pneutouch.tables.library_file import library_file
 
+MOST_ROWS, MOST_UNPACKED = 1_000_000_000, 2**30
+"""Rows of a file, a day at 10 kHz; and bytes of the columns of one group of rows once unpacked, which are in memory."""
+
 BATCH = 2**17
 """Rows at once: as many as a chunk of a CSV file holds."""
 
@@ -37,6 +40,7 @@ def parquet_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Ite
             kind = schema.field(name).type
             if not (pa.types.is_integer(kind) or pa.types.is_floating(kind)):
                 raise InputError(f"holds {kind}", file=path, key=f"column {name}", remedy="must be numbers")
+        _check_size(path, file.metadata, set(columns))
         row, total = 2, file.metadata.num_rows
         for batch in file.iter_batches(BATCH, columns=columns, use_threads=False):
             rows = row + np.arange(batch.num_rows, dtype=float)
@@ -47,6 +51,19 @@ def parquet_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Ite
                 raise InputError("empty or no finite number", file=path, key=where, remedy="must be a number")
             row += batch.num_rows
             yield RowChunk(rows, values, (row - 2) / total, total)
+
+
+def _check_size(path: Path, stated: Any, names: set[str]) -> None:
+    """Raise InputError for more rows, or larger groups of them, than are read: both pack to almost nothing."""
+    if stated.num_rows > MOST_ROWS:
+        raise InputError(f"{stated.num_rows} rows; at most {MOST_ROWS}", file=path)
+    for number in range(stated.num_row_groups):
+        group = stated.row_group(number)
+        columns = (group.column(k) for k in range(group.num_columns))
+        size = sum(each.total_uncompressed_size for each in columns if each.path_in_schema in names)
+        if size > MOST_UNPACKED:
+            problem = f"{size / 1e6:.0f} MB in one group of rows; at most {MOST_UNPACKED >> 20} MiB"
+            raise InputError(problem, file=path, remedy="write it in smaller groups of rows, or as CSV")
 
 
 @contextmanager

@@ -20,6 +20,9 @@ from pneutouch.tables.xlsx_table import xlsx_chunks, xlsx_layout
 
 _ANY = TableFormat()
 
+MOST_NUMBERS = 20_000_000
+"""Of a table that is in memory as a whole: 160 MB."""
+
 
 class _Kind(NamedTuple):
     """A kind of file: how its layout is found, and how its rows are read."""
@@ -71,8 +74,13 @@ def whole(path: Path, names: Sequence[str], layout: TableLayout | None = None) -
 
     A complete last row without a line end is kept: a table typed by hand often ends so, and its last row is often the
     greatest."""
-    rows, values = [], []
+    rows, values, count = [], [], 0
     for part in chunks(path, names, layout):
+        count += part.values.size
+        if count > MOST_NUMBERS:
+            raise InputError(
+                f"more than {MOST_NUMBERS} numbers", file=path, remedy="give a shorter recording, or fewer samples"
+            )
         rows.append(part.rows)
         values.append(part.values)
         if part.last is not None:

@@ -40,6 +40,10 @@ def encode(labels: Labels, colours: Pixels, dpi: tuple[int, int]) -> bytes:
     )
 
 
+MOST_PIXELS = 100_000_000
+"""Of a slice: three times the tray of a large printer at 600 x 300 dpi; read, 400 MB."""
+
+
 @dataclass(frozen=True)
 class PngSlice:
     """A slice as read: ``pixels`` (rows, columns) RGBA in one number each; ``dpi`` None where the file gives none."""
@@ -91,6 +95,8 @@ def _chunks(content: bytes, where: str) -> Iterator[tuple[bytes, bytes]]:
 
 
 def _pixels(data: bytes, rows: int, columns: int, where: str) -> Pixels:
+    if rows * columns > MOST_PIXELS:
+        raise InputError(f"the PNG states {columns} x {rows} pixels; at most {MOST_PIXELS} in all", file=where)
     size = rows * (1 + 4 * columns)
     try:
         unpacker = zlib.decompressobj()

@@ -93,6 +93,9 @@ def _manifest(folder: Path) -> dict[str, Any]:
     for key, kind in _NEEDED.items():
         if not isinstance(content.get(key), kind):
             raise InputError(f"{key} is missing or of another type", file=path, remedy="write the stack again")
+    for key in ("dpi", "pixels", "pixel_um"):
+        if len(content[key]) != 2 or not all(type(each) in (int, float) for each in content[key]):
+            raise InputError(f"{key} is not two numbers", file=path, remedy="write the stack again")
     if content["format"] != FORMAT:
         raise InputError(f"this version reads {FORMAT}", file=path, key="format", value=content["format"])
     try:

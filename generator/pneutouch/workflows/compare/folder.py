@@ -1,7 +1,10 @@
 """An output folder read back: the files that its manifest lists, as they were written."""
 
+import csv
 import json
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +33,20 @@ def manifest_of(folder: Path) -> dict[str, Any]:
     except (ValueError, KeyError, TypeError, RecursionError):
         pass
     raise InputError(f"its {MANIFEST} is damaged or not ours", file=folder, remedy="make the folder again")
+
+
+_MISFORMED = (KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError, RecursionError, csv.Error)
+"""What content of another form raises where it is used: whoever changed a file can change its hash in the manifest."""
+
+
+@contextmanager
+def as_written(folder: Path, name: str, remedy: str) -> Iterator[None]:
+    """Use the content of a file of ours. Raises InputError in place of what content of another form raises."""
+    try:
+        yield
+    except _MISFORMED as error:
+        problem = f"{name} is not as this version writes it ({type(error).__name__}: {error})"
+        raise InputError(problem, file=folder, remedy=remedy) from None
 
 
 def listed_file(folder: Path, name: str, manifest: dict[str, Any]) -> bytes:

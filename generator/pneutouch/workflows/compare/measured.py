@@ -14,7 +14,7 @@ from pneutouch.arrays import Array
 from pneutouch.errors import InputError
 from pneutouch.evaluation.comparison import ComparedFigure, ComparedSensor, ComparedState
 from pneutouch.evaluation.comparison_record import CURVE_KEYS, CurvePoints
-from pneutouch.workflows.compare.folder import listed_file, manifest_of
+from pneutouch.workflows.compare.folder import as_written, listed_file, manifest_of
 
 PREDICTED_NAMES = {"force_range_N": "force_at_range_end_N"}
 """Measured figures that a prediction names otherwise."""
@@ -45,16 +45,10 @@ def measured_columns(folder: Path, *, predicted: bool = False) -> list[MeasuredC
     Raises InputError where the folder is damaged or holds no group.
     """
     manifest = manifest_of(folder)
-    try:
+    with as_written(folder, "figures.json", "characterize the campaign again"):
         content = json.loads(listed_file(folder, "figures.json", manifest))
         curves = _curves(content, listed_file(folder, "points.csv", manifest))
         columns = _columns(content, curves, str(manifest.get("name", folder.name)), str(folder))
-    except (KeyError, ValueError, TypeError) as error:
-        raise InputError(
-            f"figures.json is not as this version writes it ({error})",
-            file=folder,
-            remedy="characterize the campaign again",
-        ) from None
     if not columns:
         raise InputError(
             "holds no group of runs with figures", file=folder, remedy="see the failures on its measured datasheet"

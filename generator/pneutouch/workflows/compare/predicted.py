@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,10 +21,11 @@ from pneutouch.evaluation.document import PredictionRecord, UncertainStateRecord
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.read_at import figures_at
 from pneutouch.export.threemf_read import Package
+from pneutouch.output.files import MANIFEST
 from pneutouch.output.recipe import FORMAT
 from pneutouch.output.recipe_read import read_recipe
 from pneutouch.parts import assemble
-from pneutouch.workflows.compare.folder import listed_file, manifest_of
+from pneutouch.workflows.compare.folder import as_written, listed_file, manifest_of
 from pneutouch.workflows.compare.measured import PREDICTED_NAMES
 
 if TYPE_CHECKING:
@@ -33,6 +35,7 @@ Depths = Mapping[float, Sequence[Sequence[Array]]]
 """Depths of a measurement by driving pressure in kPa: of each run of each specimen, mm."""
 
 _CLOSE = 1e-6
+_REMEDY = "build the design again"
 
 
 @dataclass(frozen=True)
@@ -49,13 +52,17 @@ class PredictedColumn:
     notes: tuple[str, ...] = ()
 
     def sensor(self, depths: Depths) -> ComparedSensor:
-        """The column; where there is a measurement, figures of the curve are read at its depths."""
-        states = [_state(state, self.document, depths) for state in self.document["states"]]
+        """The column; where there is a measurement, figures of the curve are read at its depths.
+
+        Raises InputError where a build's prediction is not as it was written."""
+        with as_written(Path(self.source), "prediction.json", _REMEDY) if self.evaluation is None else nullcontext():
+            states = [_state(state, self.document, depths) for state in self.document["states"]]
+            inputs = self._inputs()
         return ComparedSensor(
             name=self._name(),
             kind=self.kind,
             source=self.source,
-            inputs=self._inputs(),
+            inputs=inputs,
             resin=self.scene.membrane_material.model_dump(mode="json"),
             states=tuple(state for state, _ in states),
             notes=tuple(dict.fromkeys((*self.notes, *(note for _, note in states if note)))),
@@ -104,8 +111,11 @@ def of_build(folder: Path) -> PredictedColumn:
     Raises InputError where the folder is damaged.
     """
     manifest = manifest_of(folder)
-    document = json.loads(listed_file(folder, "prediction.json", manifest))
-    made_by = str(manifest.get("versions", {}).get("pneutouch", ""))
+    with as_written(folder, "prediction.json", _REMEDY):
+        document = json.loads(listed_file(folder, "prediction.json", manifest))
+        model = str(document["model"])
+    with as_written(folder, MANIFEST, _REMEDY):
+        made_by = str(manifest.get("versions", {}).get("pneutouch", ""))
     recipe_text = json.dumps(
         {"format": FORMAT, "name": manifest.get("name", ""), "version": made_by, "inputs": manifest.get("inputs", {})}
     )
@@ -113,7 +123,7 @@ def of_build(folder: Path) -> PredictedColumn:
     recipe = read_recipe(Package(folder, (), stated, recipe_text, thumbnail=False, warnings=()))
     notes = () if made_by == __version__ else (f"{folder} was built by pneutouch {made_by} (here {__version__}).",)
     clamp = recipe.options.clamp
-    return PredictedColumn(document, recipe.scene, document["model"], clamp, "build", str(folder), notes=notes)
+    return PredictedColumn(document, recipe.scene, model, clamp, "build", str(folder), notes=notes)
 
 
 def _state(state: UncertainStateRecord, document: PredictionRecord, depths: Depths) -> tuple[ComparedState, str]:

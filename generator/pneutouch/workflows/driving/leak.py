@@ -78,7 +78,7 @@ def _of_campaign(path: Path, design: str) -> LeakSource:
         content: Any = json.loads(read_bytes(path, _MOST_BYTES, "figures.json"))
         measured, rows = content["design"], [row for row in content["injections"] if row["unit"] == "kPa/min"]
         rates = [(float(row["value"]), float(row["figure"].split(",")[1].split()[0])) for row in rows]
-    except (ValueError, KeyError, TypeError, AttributeError, IndexError):
+    except (ValueError, KeyError, TypeError, AttributeError, IndexError, OverflowError, RecursionError):
         raise InputError("not as characterize writes it", file=path, remedy="give a folder of its results") from None
     if measured != design:
         raise InputError(f"measured {measured}, not this design", file=path, key="design", value=measured)

@@ -18,6 +18,7 @@ from pneutouch.errors import InputError
 from pneutouch.mechanics.models import USUAL
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
+from pneutouch.spec.files import check_plain, oversized
 from pneutouch.workflows.sweep.plan import PRESSURES
 from pneutouch.workflows.sweep.study import SweepStudy
 from pneutouch.workflows.sweep.swept_field import takes_words
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
 
 PRESSURE = "driving_pressure_kPa"
 """The dimension of the driving pressures: those of all points."""
+
+MOST_BYTES = 2**30
+"""Of a dataset, which is in memory as a whole: some million points."""
 
 _CONTENT_HASH = "content_hash"
 
@@ -94,6 +98,7 @@ def stored_fingerprint(path: Path) -> str:
     """Fingerprint of a finished sweep's file, read whole. Raises InputError where it is none, or damaged."""
     import xarray
 
+    _check_size(path)
     try:
         with xarray.open_dataset(path, engine="scipy") as content:
             return str(content.load().attrs["input_hash"])
@@ -110,6 +115,7 @@ def stored_dataset(path: Path) -> xarray.Dataset:
     """A finished sweep's dataset. Raises InputError where it is not as it was written."""
     import xarray
 
+    _check_size(path)
     why = "the dataset is damaged: its content is not what the sweep wrote"
     try:
         with xarray.open_dataset(path, engine="scipy") as opened:
@@ -122,6 +128,12 @@ def stored_dataset(path: Path) -> xarray.Dataset:
     except Exception:
         pass
     raise InputError(why, file=path, remedy="move it, or compute it again with `fresh`")
+
+
+def _check_size(path: Path) -> None:
+    size = check_plain(path, "dataset")
+    if size > MOST_BYTES:
+        raise oversized(path, size, MOST_BYTES, "dataset")
 
 
 def _by_pressure(

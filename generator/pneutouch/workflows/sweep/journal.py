@@ -11,9 +11,14 @@ from typing import Any
 
 from pneutouch.errors import InputError
 from pneutouch.output.files import digest, write_synced
+from pneutouch.spec.files import read_bytes
 from pneutouch.workflows.sweep.work import Record
 
 _CHECKSUM_DIGITS = 16
+
+
+MOST_BYTES = 2**30
+"""Of a journal: some million points."""
 
 
 class Journal:
@@ -29,7 +34,7 @@ class Journal:
         """
         if not self.path.exists():
             return {}
-        lines = self.path.read_bytes().split(b"\n")
+        lines = read_bytes(self.path, MOST_BYTES, "journal").split(b"\n")
         whole = [line for line in lines if _content(line) is not None]
         records: dict[int, Record] = {}
         for line in whole:

@@ -1,0 +1,109 @@
+"""What holds for every design and every wrong value, drawn at random."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import pneutouch as pt
+from pneutouch.api.fields import keywords
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.fields import Declaration, declaration, table_of
+from tests.api.test_design import FIELDS
+
+LISTS = ("driving_pressures_kPa",)
+
+
+def declared() -> dict[str, Declaration]:
+    """Declarations of the numbers, by keyword."""
+    places = {name: place.split(".") for name, place in keywords(DesignFile).items() if "." in place}
+    every = {name: declaration(table_of(DesignFile, table), key) for name, (table, key) in places.items()}
+    return {name: each for name, each in every.items() if each.low is not None}
+
+
+NUMBERS = declared()
+
+
+@given(one=st.fixed_dictionaries({}, optional=FIELDS), other=st.fixed_dictionaries({}, optional=FIELDS))
+def test_fields_are_replaced_in_any_order(one, other):
+    other = {name: value for name, value in other.items() if name not in one}
+    if "profile" in one | other or "material" in one | other:
+        # A printer is chosen for the resin where none is named: once chosen it stays.
+        one = {**one, "profile": "j735"}
+    design = pt.Design("mine", profile="j735")
+    assert (
+        design.replace(**one).replace(**other)
+        == design.replace(**other).replace(**one)
+        == design.replace(**one, **other)
+    )
+    assert design.replace() == design and design.replace(name="other").file == design.file
+
+
+@given(fields=st.fixed_dictionaries({}, optional=FIELDS))
+def test_a_design_as_data_is_json_and_is_the_design(fields):
+    design = pt.Design("mine", **fields)
+    tables = json.loads(json.dumps(design.to_dict(), allow_nan=False))
+    assert tables == design.to_dict()
+    assert pt.Design("mine", **{name: table for name, table in tables.items() if table != {}}).to_dict() == tables
+
+
+@given(name=st.sampled_from(sorted(NUMBERS)), above=st.booleans(), data=st.data())
+def test_a_number_out_of_its_bounds_is_refused_by_keyword_value_and_bounds(name, above, data):
+    field = NUMBERS[name]
+    if isinstance(field.default, int):
+        beyond = st.integers(int(field.high) + 1, 10**400) if above else st.integers(-(10**400), int(field.low) - 1)
+    elif above:
+        beyond = st.floats(math.nextafter(field.high, math.inf), math.inf)
+    else:
+        beyond = st.floats(-math.inf, math.nextafter(field.low, -math.inf))
+    value = data.draw(beyond)
+    with pytest.raises(pt.InputError) as caught:
+        pt.Design(**{name: [value] if name in LISTS else value})
+    assert caught.value.key.partition("[")[0] == name
+    assert caught.value.value == value
+    assert caught.value.file is None and "must be" in str(caught.value)
+
+
+class Odd:
+    def __repr__(self):
+        raise RuntimeError("never shown")
+
+
+ENDLESS: list[object] = []
+ENDLESS.append(ENDLESS)
+ODD = st.one_of(
+    st.sampled_from([Odd(), Odd, float, 1j, b"\xff", ENDLESS, "1.5", math.nan, {}, {"a": ENDLESS}, set(), Ellipsis]),
+    st.recursive(
+        st.none() | st.text(max_size=5) | st.binary(max_size=5),
+        lambda inner: st.lists(inner, min_size=1, max_size=3),
+        max_leaves=8,
+    ).filter(lambda value: value is not None),
+    st.builds(lambda: itertools.count()),
+    st.builds(lambda: range(10**12)),
+)
+
+
+@given(name=st.sampled_from(sorted(NUMBERS)), value=ODD)
+def test_what_is_no_number_is_refused_by_its_keyword(name, value):
+    with pytest.raises(pt.InputError) as caught:
+        pt.Design(**{name: value})
+    assert caught.value.key.partition("[")[0] == name
+    assert str(caught.value).startswith(name) and len(str(caught.value)) < 2000
+
+
+@given(
+    word=st.text(min_size=1, max_size=30).filter(
+        lambda word: (
+            word not in keywords(DesignFile) and word not in DesignFile.model_fields and word not in ("name", "self")
+        )
+    )
+)
+def test_an_unknown_keyword_is_refused_by_its_name(word):
+    with pytest.raises(pt.InputError) as caught:
+        pt.Design(**{word: 1})
+    assert (caught.value.key, caught.value.value) == (word, 1)

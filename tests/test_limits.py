@@ -1,0 +1,250 @@
+"""Every bound on what is read, just within it and just beyond; a refusal states the size and the bound."""
+
+from __future__ import annotations
+
+import itertools
+import json
+
+import numpy as np
+import pytest
+
+import pneutouch as pt
+from pneutouch.errors import InputError, shown
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.files import MOST_BYTES, read_bytes
+from pneutouch.spec.read import read_toml, validate
+from pneutouch.spec.tasks import read_tasks
+
+
+@pytest.mark.parametrize(("most", "words"), [(MOST_BYTES, "1 MB"), (64 * 1024, "64 KiB"), (2**21, "2 MiB")])
+def test_a_file_of_the_greatest_size_is_read_and_one_byte_more_is_not(most, words, tmp_path):
+    path = tmp_path / "a.toml"
+    path.write_bytes(b"#" * most)
+    assert len(read_bytes(path, most)) == most
+    path.write_bytes(b"#" * (most + 1))
+    with pytest.raises(InputError, match=f"larger than {words}: {most + 1} bytes; no TOML file is"):
+        read_bytes(path, most)
+
+
+@pytest.mark.parametrize("part", ["a", '"a b"', "'a.b'", "a ", "a\t"])
+@pytest.mark.parametrize("written", ["{} = 1", "[{}]", "[[{}]]", "x = {{ {} = 1 }}"])
+def test_keys_have_at_most_32_parts(part, written, tmp_path):
+    path = tmp_path / "a.toml"
+    path.write_text(written.format(".".join([part] * 32)))
+    assert read_toml(path)
+    path.write_text(written.format(".".join([part] * 33)))
+    with pytest.raises(InputError, match="a key of more than 32 parts"):
+        read_toml(path)
+
+
+def test_a_key_as_long_as_a_file_is_refused_without_counting_its_parts_in_pairs(tmp_path):
+    path = tmp_path / "a.toml"
+    path.write_text(".".join(["a"] * 499_000) + " = 1")
+    # tomllib alone takes an hour.
+    with pytest.raises(InputError, match="more than 32 parts"):
+        read_toml(path)
+
+
+@pytest.mark.parametrize("text", ["a" * 990_000, '"' * 990_000, "1.5, " * 190_000, ". " * 490_000, "a " * 490_000])
+def test_no_text_makes_the_look_for_long_keys_long(text):
+    from pneutouch.spec.toml_text import _LONG_KEY
+
+    assert _LONG_KEY.search(text) is None
+
+
+def test_a_file_of_many_problems_reports_twenty_and_how_many_more():
+    with pytest.raises(InputError) as caught:
+        validate(DesignFile, {f"k{number}": 1 for number in range(50_000)}, "a.toml")
+    lines = str(caught.value).split("\n")
+    assert len(lines) == 21 and lines[-1] == "a.toml: and 49980 more problems"
+    with pytest.raises(InputError) as caught:
+        validate(DesignFile, {f"k{number}": 1 for number in range(20)}, "a.toml")
+    assert len(str(caught.value).split("\n")) == 20
+
+
+def test_a_table_of_tasks_has_at_most_fifty(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("force_range_N\n" + "15\n" * 50)
+    assert len(read_tasks(path)) == 50
+    path.write_text("force_range_N\n" + "15\n" * 51)
+    with pytest.raises(InputError, match="51 tasks; at most 50"):
+        read_tasks(path)
+
+
+def test_a_value_nested_without_end_is_shown_cut():
+    value: object = 1
+    for _ in range(5000):
+        value = [value]
+    assert shown(value) == "[" * 21 + "..." + "]" * 21
+    table: object = 1
+    for _ in range(5000):
+        table = {"a": table}
+    assert len(shown(table)) < 300
+
+
+def test_a_keyword_without_end_is_refused():
+    endless: list[object] = []
+    endless.append(endless)
+    for value in (endless, {"a": endless}, itertools.count(), range(10**12)):
+        with pytest.raises(InputError) as caught:
+            pt.Design(driving_pressures_kPa=value)
+        assert caught.value.key.partition("[")[0] == "driving_pressures_kPa"
+
+
+def test_figures_nested_too_deep_are_refused(tmp_path):
+    from pneutouch.workflows.driving.leak import _of_campaign
+
+    path = tmp_path / "figures.json"
+    path.write_text("[" * 100_000)
+    with pytest.raises(InputError, match="not as characterize writes it"):
+        _of_campaign(path, "paper-dome")
+
+
+@pytest.mark.parametrize("deep", [[None], [[[{"a": None}, None]]], {"a": [None]}])
+def test_runs_of_the_page_that_no_campaign_file_can_hold_are_refused(deep, tmp_path):
+    from pneutouch.studio.campaign import write_runs
+
+    with pytest.raises(InputError, match="not a run of a campaign file"):
+        write_runs(tmp_path, [{"file": "a.csv", "sensor": deep}])
+    assert not list(tmp_path.iterdir())
+
+
+HEAD = "time_s,position_mm,force_N,pressure_kPa\n"
+
+
+@pytest.mark.parametrize(
+    ("times", "words"),
+    [
+        ((0, 1e-320, 2e-320), "rises by 1e-320 s from row to row"),
+        ((0, 0.9e-9, 1.8e-9), "rises by 9e-10 s"),
+        ((0, 1, 2, 1e99), "are missing, at 1 Hz: more than half"),
+    ],
+)
+def test_times_that_no_instrument_has_are_refused_without_a_warning(times, words, tmp_path):
+    from pneutouch.bench.reading import PLATE, read_blocks
+    from pneutouch.bench.source import identify
+    from pneutouch.spec.campaign import ColumnMap, Rig
+
+    path = tmp_path / "a.csv"
+    path.write_text(HEAD + "".join(f"{time},{k},{k * k},{k}\n" for k, time in enumerate(times)))
+    with pytest.raises(InputError, match=words):
+        read_blocks(identify(path, ColumnMap(), PLATE), Rig())
+    path.write_text(HEAD + "".join(f"{k * 2e-9},{k},{k * k},{k}\n" for k in range(4)))
+    assert read_blocks(identify(path, ColumnMap(), PLATE), Rig()).rate == pytest.approx(5e8)
+
+
+def forged(folder, **files):
+    """A folder of ours whose manifest agrees with what its files were changed to."""
+    from pneutouch.output.files import digest
+
+    contents = {name.replace("_", ".", 1): text.encode() for name, text in files.items()}
+    for name, content in contents.items():
+        (folder / name).write_bytes(content)
+    listed = {name: {"sha256": digest(content)} for name, content in contents.items()}
+    (folder / "manifest.json").write_text(json.dumps({"files": listed, "versions": []}))
+    return folder
+
+
+@pytest.mark.parametrize("text", ["[" * 100_000, "[]", "1", "{", '{"model": "solid"}', '{"states": [1]}'])
+def test_a_forged_prediction_of_a_build_is_refused(text, tmp_path):
+    from pneutouch.workflows.compare.predicted import of_build
+
+    with pytest.raises(InputError, match="is not as this version writes it"):
+        of_build(forged(tmp_path, prediction_json=text))
+
+
+GROUP = '{"design": "a", "simulated": 0, "runs": [%s], "groups": [{"resin": "a", "age": "b", "figures": %s, "files": ["x"]}]}'
+
+
+@pytest.mark.parametrize(
+    ("figures", "points"),
+    [
+        ("[" * 100_000, ""),
+        (GROUP % ("", "[]"), ""),
+        (GROUP % ("1", "{}"), ""),
+        (GROUP % ("", "{}"), "file\n\0"),
+        (GROUP % ("", "{}"), "x" * 200_000),
+    ],
+)
+def test_forged_figures_of_a_campaign_are_refused(figures, points, tmp_path):
+    from pneutouch.workflows.compare.measured import measured_columns
+
+    with pytest.raises(InputError, match=r"figures.json is not as this version writes it"):
+        measured_columns(forged(tmp_path, figures_json=figures, points_csv=points))
+
+
+def test_a_slice_that_states_more_pixels_than_a_tray_has_is_refused():
+    import struct
+    import zlib
+
+    from pneutouch.export.voxels.png import MOST_PIXELS, decode, encode, table
+
+    content = encode(np.zeros((2, 3), np.uint8), table([(0, 0, 0, 0)]), (600, 300))
+    assert decode(content, "a.png").pixels.shape == (2, 3)
+    for columns, rows, words in (
+        (MOST_PIXELS, 1, "bytes of pixels"),
+        (MOST_PIXELS + 1, 1, "at most"),
+        (2**32 - 1, 2**32 - 1, "at most"),
+    ):
+        head = b"IHDR" + struct.pack(">II", columns, rows) + content[24:29]
+        with pytest.raises(InputError, match=words):
+            decode(content[:12] + head + struct.pack(">I", zlib.crc32(head)) + content[33:], "a.png")
+
+
+@pytest.mark.parametrize("key", ["dpi", "pixels", "pixel_um"])
+@pytest.mark.parametrize("value", [[1], [1, 2, 3], ["1", 2], [None, None]])
+def test_a_stack_whose_pairs_are_none_is_refused(key, value, tmp_path):
+    from pneutouch.export.voxels.read import read_stack
+    from tests.fuzzing.seeds import seeds
+
+    content = json.loads(seeds("stack")[0])
+    (tmp_path / "stack.json").write_text(json.dumps(content | {key: value}))
+    with pytest.raises(InputError, match=f"{key} is not two numbers"):
+        read_stack(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["dataset", "journal"])
+def test_a_dataset_and_a_journal_of_more_than_a_gibibyte_are_not_read(name, tmp_path):
+    from pneutouch.workflows.sweep.dataset import stored_dataset, stored_fingerprint
+    from pneutouch.workflows.sweep.journal import Journal
+
+    path = tmp_path / "a.nc"
+    with path.open("wb") as file:
+        file.truncate(2**30 + 1)
+    readers = (stored_dataset, stored_fingerprint) if name == "dataset" else (lambda path: Journal(path, "a").read(),)
+    for read in readers:
+        with pytest.raises(InputError, match=f"larger than 1024 MiB: {2**30 + 1} bytes; no {name} is"):
+            read(path)
+
+
+def test_a_table_in_memory_as_a_whole_has_a_greatest_count_of_numbers(tmp_path, monkeypatch):
+    from pneutouch.tables import read
+
+    path = tmp_path / "a.csv"
+    path.write_text("a,b\n" + "1,2\n" * 100)
+    monkeypatch.setattr(read, "MOST_NUMBERS", 200)
+    assert read.whole(path, ["a", "b"])[1].shape == (2, 100)
+    monkeypatch.setattr(read, "MOST_NUMBERS", 199)
+    with pytest.raises(InputError, match="more than 199 numbers"):
+        read.whole(path, ["a", "b"])
+
+
+def test_parquet_states_its_rows_and_sizes_before_any_is_read(tmp_path, monkeypatch):
+    pa = pytest.importorskip("pyarrow")
+    import pyarrow.parquet as pq
+
+    from pneutouch.tables import parquet_table, read
+
+    path = tmp_path / "a.parquet"
+    pq.write_table(pa.table({"a": np.zeros(1000), "b": np.random.default_rng(1).random(1000)}), path)
+    group = pq.ParquetFile(path).metadata.row_group(0)
+    sizes = [group.column(k).total_uncompressed_size for k in (0, 1)]
+    for limit, value, beyond in (("MOST_ROWS", 1000, 999), ("MOST_UNPACKED", sizes[1], sizes[1] - 1)):
+        with monkeypatch.context() as here:
+            here.setattr(parquet_table, limit, value)
+            assert read.whole(path, ["b"])[1].shape == (1, 1000)
+            here.setattr(parquet_table, limit, beyond)
+            with pytest.raises(
+                InputError, match="1000 rows; at most 999" if limit == "MOST_ROWS" else "in one group of rows"
+            ):
+                read.whole(path, ["b"])
