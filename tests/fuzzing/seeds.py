@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tests.fuzzing.files import library
 from tests.fuzzing.parts import parts
 from tests.fuzzing.place import ROOT
-from tests.fuzzing.targets import library
 
 if TYPE_CHECKING:
     from pneutouch.evaluation import Evaluation
