@@ -37,6 +37,7 @@ LINES = [
     "tray paper-dome soft-pad --out made",
     "coupons --out made",
     "fit-material campaign/tension.csv --name mine --like DragonSkin20 --out made",
+    "schema design --json",
     "show campaign/paper-dome.3mf",
     "plan paper-dome --out made",
     "simulate paper-dome --specimens 2 --rate 20 --out made",
