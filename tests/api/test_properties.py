@@ -88,6 +88,7 @@ ODD = st.one_of(
 )
 
 
+@pytest.mark.slow
 @given(name=st.sampled_from(sorted(NUMBERS)), value=ODD)
 def test_what_is_no_number_is_refused_by_its_keyword(name, value):
     with pytest.raises(pt.InputError) as caught:

@@ -80,7 +80,7 @@ def designs_of(example: Path, folder: Path) -> str:
         "assert len(pyplot.get_fignums()) == 1, 'one picture'\n"
         "designs = names.get('designs') or [names['design']]\n"
         "saved = sys.argv[2]\n"
-        "for design in designs: design.save(f'{saved}/{design.name}.toml', overwrite=True)\n"
+        "for k, design in enumerate(designs): design.save(f'{saved}/example-{k}.toml')\n"
     )
     saved, empty = folder / "designs", folder / "empty"
     saved.mkdir(), empty.mkdir()

@@ -159,6 +159,7 @@ def page(monkeypatch):
     return lambda evaluation: datasheet(sheet_data(evaluation, "0"))["datasheet.html"].decode()
 
 
+@pytest.mark.slow
 def test_sheet_and_text_warn_of_the_sway(evaluated, page):
     from pneutouch.cli.text import prediction_text
     from pneutouch.evaluation.document import full_document

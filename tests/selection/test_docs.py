@@ -16,6 +16,7 @@ TEXT = (ROOT / "docs" / "howto" / "select.md").read_text(encoding="utf-8")
 COMMANDS = [line for block in re.findall(r"```sh\n(.*?)```", TEXT, re.DOTALL) for line in block.splitlines()]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("line", COMMANDS)
 def test_command_runs(line, command, tmp_path):
     if "--from" not in line:
