@@ -37,12 +37,13 @@ def test_the_derivatives_are_those_of_the_solid(mu, name):
     sensor, pressures = soft(mu), (0.0, 0.1 * mu)
     value = {"shear_modulus": mu, "wall_thickness": sensor.dome.wall_thickness}[name]
     batch = batch_of(sensor, pressures)
-    steps = STEP, -STEP
-    more, less = (pressed_logs(sensor.replace(**{name: value * float(np.exp(x))}), pressures) for x in steps)
-    up, down = (log_figures(moved(batch, name, np.full(2, x))) for x in steps)
-    solid, table = (more - less) / (2 * STEP), (up - down) / (2 * STEP)
+    # Over a short step the nodes that come into contact one by one move the solid's slopes by up to 0.03.
+    wide = 4 * STEP
+    more, less = (pressed_logs(sensor.replace(**{name: value * float(np.exp(x))}), pressures) for x in (wide, -wide))
+    up, down = (log_figures(moved(batch, name, np.full(2, x))) for x in (STEP, -STEP))
+    solid, table = (more - less) / (2 * wide), (up - down) / (2 * STEP)
     for row in (SENSITIVITY, STIFFNESS, FORCE):
-        assert table[row] == pytest.approx(solid[row], rel=0.055, abs=0.04), (FIGURES[row], solid[row], table[row])
+        assert table[row] == pytest.approx(solid[row], rel=0.05, abs=0.04), (FIGURES[row], solid[row], table[row])
 
 
 def test_a_wall_softer_than_that_has_none_and_the_reason_is_stated():

@@ -19,7 +19,7 @@ SOFTEST = 6.0
 """Greatest ambient pressure over modulus for which derivatives are taken from the tables. The gas is no coordinate of
 theirs: it only decides which states a press passes, and those in a stiff gas lie among the ones surveyed. Without
 driving pressure and at 6 % of the limit pressure, the paper's dome: at 1.8, 4.1 and 5.8 moduli its figures meet the
-solid's within 0.2 %, derivatives by modulus and wall within 5.5 % or 0.04 (`tests/mechanics/uncertainty/
+solid's within 0.2 %, derivatives by modulus and wall within 5 % or 0.04 (`tests/mechanics/uncertainty/
 test_soft_walls.py`); at 11 the figures are 2 %, the derivatives up to 25 % off."""
 
 
