@@ -112,7 +112,7 @@ def test_an_unknown_keyword_is_refused_by_its_name(word):
 
 @pytest.mark.parametrize("values", [itertools.count(1), range(1, 10**6), [1.0 + 1e-6 * k for k in range(100_001)]])
 def test_more_values_than_a_field_takes_are_refused_and_none_is_left_out(values):
-    with pytest.raises(pt.InputError, match="wall_thickness_mm.*a list of 1 to 10000 values"):
+    with pytest.raises(pt.InputError, match=r"wall_thickness_mm.*a list of 1 to 10000 values"):
         pt.sweep("paper-dome", wall_thickness_mm=values)
-    with pytest.raises(pt.InputError, match="driving_pressures_kPa.*at most"):
+    with pytest.raises(pt.InputError, match=r"driving_pressures_kPa.*at most"):
         pt.load("paper-dome").predict(values)

@@ -26,23 +26,15 @@ _DOCUMENTS = {
 }
 
 
-def _made(name: str, path: str) -> Schema:
+def _made(path: str) -> Schema:
     module, _, function = path.partition(".")
     make: Callable[[], Schema] = getattr(import_module(f"pneutouch.schemas.written.{module}"), function)
-    return make() if name == "reader" else _with_format(name, make())
-
-
-def _with_format(name: str, schema: Schema) -> Schema:
-    """The same with the key that may state its format; of each form where there are several."""
-    if "anyOf" in schema:
-        return {**schema, "anyOf": [_with_format(name, one) for one in schema["anyOf"]]}
-    stated = {"const": f"pneutouch/{name}/{VERSION}", "description": "Format of the document; older ones have none."}
-    return {**schema, "properties": {"format": stated, **schema["properties"]}}
+    return make()
 
 
 def written_kinds() -> dict[str, DocumentKind]:
     """Every document that is written, by name."""
     return {
-        name: DocumentKind("JSON", title, where, partial(_made, name, path))
+        name: DocumentKind("JSON", title, where, partial(_made, path))
         for name, (path, title, where) in _DOCUMENTS.items()
     }
