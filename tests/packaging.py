@@ -23,7 +23,7 @@ PRIVATE = (
 
 
 def tracked(*folders):
-    """Files that git knows, by their paths in the checkout."""
+    """Files that git tracks, by their paths in the checkout."""
     done = subprocess.run(["git", "ls-files", "-z", *folders], cwd=ROOT, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         pytest.skip("no git checkout")
@@ -31,7 +31,7 @@ def tracked(*folders):
 
 
 def copied(folder, *names):
-    """A copy of what git knows of the checkout, or of the folders named, with private files in it."""
+    """A copy of what git tracks of the checkout, or of the folders named, with private files in it."""
     for name in tracked(*names):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, folder / name)

@@ -69,7 +69,7 @@ def test_every_date_of_the_wheel_is_the_one_that_make_dist_sets(here, tmp_path):
         assert {entry.date_time for entry in archive.infolist()} == {(2020, 2, 2, 0, 0, 0)}
 
 
-def test_the_source_archive_holds_all_that_git_knows_and_nothing_else(source):
-    """So every test runs from it, but those that ask git."""
+def test_the_source_archive_holds_all_that_git_tracks_and_nothing_else(source):
+    """So every test runs from it, but those that run git."""
     held = {path.relative_to(source).as_posix() for path in source.rglob("*") if path.is_file()}
     assert held == tracked() | {"PKG-INFO"}

@@ -11,7 +11,7 @@ import pneutouch
 PACKAGE = Path(pneutouch.__file__).parent
 
 LAYERS = [
-    {"errors", "wording", "holding", "units", "arrays", "rounding", "packing", "tables"},
+    {"errors", "formats", "wording", "holding", "units", "arrays", "rounding", "packing", "tables"},
     {"spec"},
     {"catalogue"},
     {"meridian"},

@@ -10,7 +10,7 @@ MODULUS, WALL, VOLUME = 0.2, 1.55, 0.31
 LOW, HIGH = (1.05, 1.01), (0.97, 1.03)
 """Factors on force and pressure at 0 and 12 kPa."""
 CONTENT = {
-    "format": 1,
+    "format": "pneutouch/calibration/1",
     "title": "sensor A, spring",
     "covariance": [[9e-4, -6e-4, 0.0], [-6e-4, 1.6e-3, 0.0], [0.0, 0.0, 4e-4]],
     "source": {

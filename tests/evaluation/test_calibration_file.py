@@ -63,7 +63,8 @@ def test_it_is_no_resin(place):
 @pytest.mark.parametrize(
     ("content", "why"),
     [
-        ({**CONTENT, "format": 2}, "this pneutouch reads form 1"),
+        ({**CONTENT, "format": 2}, r'format = 2: of a later version; this pneutouch reads "pneutouch/calibration/1"'),
+        ({**CONTENT, "format": "pneutouch/plan/1"}, "not the format of this file"),
         ({**CONTENT, "covariance": [[1.0]]}, "must be 3 rows of 3 numbers"),
         (
             {**CONTENT, "covariance": [[1.0, 2.0, 0.0], [2.0, 1.0, 0.0], [0.0, 0.0, 1.0]]},

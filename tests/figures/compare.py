@@ -32,12 +32,17 @@ def plain(value: Any) -> Any:
     if isinstance(value, dict):
         if value and all(DIGEST.fullmatch(key) for key in value):
             return sorted((plain(item) for item in value.values()), key=order)
-        return {key: plain(item) for key, item in value.items() if key not in LEFT_OUT}
+        return {key: plain(item) for key, item in value.items() if key not in LEFT_OUT and not is_format(key, item)}
     if isinstance(value, list):
         return [plain(item) for item in value]
     if isinstance(value, str):
         return "(digest)" if DIGEST.fullmatch(value) else value.rsplit("/", 1)[-1] if value.startswith("/") else value
     return value
+
+
+def is_format(key: str, value: Any) -> bool:
+    """Whether an entry states the format of its file; the format of a campaign is a table, and stays."""
+    return key == "file_format" or (key == "format" and not isinstance(value, dict))
 
 
 def order(value: Any) -> str:

@@ -137,7 +137,13 @@ def test_the_model_of_a_3mf_is_said(cheap, tmp_path):
 
 
 def export(**changed):
-    content = {"pneutouch_studio": 1, "version": __version__, "base": "paper-dome", "values": {}, **changed}
+    content = {
+        "format": "pneutouch/exported-design/1",
+        "version": __version__,
+        "base": "paper-dome",
+        "values": {},
+        **changed,
+    }
     return json.dumps({key: value for key, value in content.items() if value is not ...})
 
 
@@ -148,6 +154,8 @@ def test_an_exported_design_comes_back(tmp_path, library):
     assert opened(path)["question"] == {"base": "paper-dome", "values": values}
     path.write_text(export(version="0.0.1"))
     assert opened(path)["notes"] == [f"exported by pneutouch 0.0.1 (here {__version__})"]
+    path.write_text(export(format=..., pneutouch_studio=1, values=values))
+    assert opened(path)["question"]["values"] == values
 
 
 @pytest.mark.parametrize(
@@ -157,7 +165,9 @@ def test_an_exported_design_comes_back(tmp_path, library):
         ("[" * 9999, "not JSON"),
         ("[]", "not an exported design"),
         ("{}", "not a design that was exported here"),
-        (export(pneutouch_studio=2), "not a design that was exported here"),
+        (export(format="pneutouch/exported-design/2"), "of a later version"),
+        (export(format=..., pneutouch_studio=2), "pneutouch_studio = 2: of a later version"),
+        (export(format="pneutouch/plan/1"), "not the format of this file"),
         (export(base=...), "has the keys"),
         (export(more=1), "has the keys"),
         (export(base="../../etc/passwd"), "unknown design"),

@@ -10,7 +10,8 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, ReaderGrid
 from pneutouch.evaluation.reader_uncertainty import force_uncertainty, why_unknown
-from pneutouch.export.reader.reading import FORMAT, NOISES, UNSTEADY
+from pneutouch.export.reader.reading import NOISES, UNSTEADY
+from pneutouch.formats import KEY, format_of
 from pneutouch.units import KPA, ML
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ def reader_record(evaluation: Evaluation, grid: ReaderGrid) -> dict[str, Any]:
     relative = force_uncertainty(evaluation, grid)
     ambient_kPa = sensor.gas.ambient_pressure / KPA
     return {
-        "format": FORMAT,
+        KEY: format_of("reader"),
         "design": scene.name,
         "calibration": scene.design.calibration_name,
         "model": grid.model,

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from pneutouch.errors import InputError
+from pneutouch.formats import check_format
 from pneutouch.holding import parent_folders, refuse_stopped, temporary_folder, uninterrupted
 from pneutouch.spec.files import read_bytes
 
@@ -185,12 +186,15 @@ def _our_files(folder: Path) -> set[str]:
     """The files that the folder's manifest lists; raises InputError where the folder is not one of ours."""
     try:
         manifest = json.loads(read_bytes(folder / MANIFEST, _MOST_MANIFEST, "manifest"))
-        return {*manifest["files"], MANIFEST}
+        names = {*manifest["files"], MANIFEST}
     except (InputError, ValueError, KeyError, TypeError, RecursionError):
         if not os.path.lexists(folder / MANIFEST):
             text = f"holds files but no {MANIFEST}: not written by pneutouch"
             raise InputError(f"{folder} {text}", key="out", remedy="give another folder, or empty this one") from None
         text = f"has a {MANIFEST} that pneutouch did not write or that is damaged"
+    else:
+        check_format("manifest", manifest, folder / MANIFEST)
+        return names
     raise InputError(f"{folder} {text}", key="out", remedy="give another folder, or empty this one")
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pneutouch import __version__
+from pneutouch.formats import versioned
 from pneutouch.output.files import MANIFEST, digest, json_bytes
 
 LIBRARIES = ("numpy", "manifold3d", "trimesh", "lib3mf", "cadquery", "cadquery-ocp", "matplotlib", "jinja2", "typst")
@@ -50,4 +51,4 @@ def with_manifest(files: Mapping[str, bytes], name: str, inputs: Mapping[str, An
 
 def manifest(listed: Mapping[str, Mapping[str, Any]], name: str, **more: Any) -> bytes:
     """The manifest of files whose entries (see `entry`) are given by path."""
-    return json_bytes({"name": name, "versions": versions(), "files": listed, **more})
+    return json_bytes(versioned("manifest", {"name": name, "versions": versions(), "files": listed, **more}))

@@ -11,9 +11,7 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.elastomers import Resins
 from pneutouch.evaluation.evaluate import Evaluation, PredictionOptions, evaluate_scene
-
-FORMAT = 1
-"""Number of the form that recipes have; a recipe of another form is refused."""
+from pneutouch.formats import KEY, format_of
 
 SETTINGS = ("model", "closure", "clamp", "tolerance")
 """Names of the settings among a recipe's inputs."""
@@ -50,7 +48,7 @@ class BuildRecipe:
 
     def document(self) -> dict[str, Any]:
         """The recipe as data."""
-        return {"format": FORMAT, "name": self.scene.name, "version": self.version, "inputs": self.inputs()}
+        return {KEY: format_of("recipe"), "name": self.scene.name, "version": self.version, "inputs": self.inputs()}
 
     def text(self) -> str:
         """The recipe as JSON on one line, ASCII alone: no reader of XML can change it."""

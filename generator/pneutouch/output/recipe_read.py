@@ -7,16 +7,16 @@ from collections.abc import Collection
 from dataclasses import replace
 from typing import Any, NoReturn
 
-from pneutouch import __version__
 from pneutouch.catalogue import KINDS, ResolvedDesign, check_scene
 from pneutouch.errors import InputError, nearest, shown
 from pneutouch.evaluation.elastomers import Resins
 from pneutouch.evaluation.evaluate import CLAMPS, PredictionOptions
 from pneutouch.export.threemf_read import Package
+from pneutouch.formats import check_format, format_of
 from pneutouch.mechanics.contact import CLOSURES
 from pneutouch.mechanics.models import MODEL_CHOICES
 from pneutouch.output.manifest import input_hash, versions
-from pneutouch.output.recipe import FORMAT, OPTIONAL, SETTINGS, BuildRecipe, scene_kinds
+from pneutouch.output.recipe import OPTIONAL, SETTINGS, BuildRecipe, scene_kinds
 from pneutouch.spec.fields import Table
 from pneutouch.spec.names import plain_name
 from pneutouch.spec.read import validate
@@ -56,7 +56,7 @@ def read_recipe(package: Package) -> BuildRecipe:
 class _Head(Table):
     """The outermost table of a recipe."""
 
-    format: int
+    format: int | str = format_of("recipe")
     name: str
     version: str
     inputs: dict[str, Any]
@@ -72,10 +72,7 @@ def _head(text: str, where: str) -> _Head:
         ) from None
     if not isinstance(content, dict):
         raise InputError("damaged: must be a table", file=where)
-    if content.get("format", FORMAT) != FORMAT:
-        raise InputError(
-            f"of form {shown(content['format'])}", file=where, remedy=f"pneutouch {__version__} reads form {FORMAT}"
-        )
+    check_format("recipe", content, where)
     head = validate(_Head, content, where)
     plain_name(head.name, file=where, key="name")
     if not head.version.isprintable() or len(head.version) > 40:

@@ -6,12 +6,11 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from pneutouch.errors import shown
+from pneutouch.formats import format_of, problem_of
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, number
 from pneutouch.spec.grade import ResinOrMix
-
-FORMAT = 1
-"""Number of the form that calibration files have; a file of another form is refused."""
 
 ParameterKey = Literal["shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL", "contact_offset_mm", "friction"]
 
@@ -119,7 +118,7 @@ class SensorCalibration(Table):
     ``covariance`` is of ln MPa (modulus), ln mm (wall), mL (dead volume), mm (offset) and 1 (friction).
     """
 
-    format: int = Field(description="Number of the form.")
+    format: int | str = Field(default=format_of("calibration"), description="Format of the file and its version.")
     title: Printable = Field(min_length=1, max_length=200, description="What it is of.")
     covariance: list[list[float]] = Field(max_length=5, description="Of the covered parameters, in their order.")
     source: CalibrationSource
@@ -129,8 +128,9 @@ class SensorCalibration(Table):
 
     @model_validator(mode="after")
     def _of_this_form(self) -> "SensorCalibration":
-        if self.format != FORMAT:
-            raise ValueError(f"format = {self.format}: this pneutouch reads form {FORMAT}; calibrate again")
+        problem = problem_of("calibration", self.format)
+        if problem is not None:
+            raise ValueError(f"format = {shown(self.format)}: {problem[0]}; {problem[1]}")
         return self
 
     @model_validator(mode="after")

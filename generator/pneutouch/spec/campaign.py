@@ -10,6 +10,7 @@ from typing import Annotated, Literal
 from pydantic import Field, ValidationError, model_validator
 
 from pneutouch.errors import shown
+from pneutouch.formats import problem_of
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, number
 from pneutouch.tables.unit_words import UNITS
@@ -150,6 +151,7 @@ class CampaignRun(Table):
 class Campaign(Table):
     """A whole campaign file."""
 
+    file_format: str | None = Field(default=None, description="Format of this file and its version.")
     title: Printable = Field(default="Measurement campaign", max_length=120, description="Title of the measured sheet.")
     lab: Printable = Field(default="", max_length=120, description="Who measured.")
     design: str | None = Field(default=None, min_length=1, description="Design of the sensors, where no flag names it.")
@@ -168,6 +170,13 @@ class Campaign(Table):
     def reading(self, run: CampaignRun) -> tuple[ColumnMap, FileFormat]:
         """The columns and the format of a run's file."""
         return merged_columns(self.columns, run.columns), merged_format(self.format, run.format)
+
+    @model_validator(mode="after")
+    def _of_this_format(self) -> Campaign:
+        problem = problem_of("campaign", self.file_format)
+        if problem is not None:
+            raise ValueError(f"file_format = {shown(self.file_format)}: {problem[0]}; {problem[1]}")
+        return self
 
     @model_validator(mode="after")
     def _runs_can_be_read(self) -> Campaign:

@@ -10,6 +10,7 @@ from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scen
 from pneutouch.catalogue.library import is_specimen
 from pneutouch.errors import InputError, PneutouchError, one_line
 from pneutouch.evaluation.evaluate import PredictionOptions
+from pneutouch.formats import KEY, check_format
 from pneutouch.output.recipe import scene_kinds
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.names import name_of
@@ -17,11 +18,10 @@ from pneutouch.spec.read import read_toml
 from pneutouch.studio.nearest import nearest_state
 from pneutouch.studio.question import Question
 
-EXPORTED = 1
-"""Number of the form of an exported design."""
-
 _MOST_EXPORTED = 64 * 1024
-_EXPORT_KEYS = {"pneutouch_studio", "version", "base", "values"}
+_EXPORT_KEYS = {KEY, "version", "base", "values"}
+_FORMER = "pneutouch_studio"
+"""Key of the format, a number, in designs that were exported earlier."""
 
 _ENDINGS = "a 3MF that pneutouch build wrote, a design file (.toml), or an exported design (.json)"
 
@@ -81,9 +81,12 @@ def _from_3mf(path: Path, bases: Bases, library: Library) -> Content:
 
 def _from_export(path: Path, bases: Bases, library: Library) -> Content:
     content = _json(path)
-    if content.get("pneutouch_studio") != EXPORTED:
+    key = _FORMER if _FORMER in content else KEY
+    if key not in content:
         remedy = "give a file that Export wrote on this page"
-        raise InputError("not a design that was exported here, or by another version", file=path, remedy=remedy)
+        raise InputError("not a design that was exported here", file=path, remedy=remedy)
+    check_format("exported-design", content, path, key)
+    content[KEY] = content.pop(key)
     if set(content) != _EXPORT_KEYS or not isinstance(content["version"], str):
         raise InputError(f"an exported design has the keys {', '.join(sorted(_EXPORT_KEYS))}", file=path)
     question = Question.of({"base": content["base"], "values": content["values"]})

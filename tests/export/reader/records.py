@@ -19,7 +19,7 @@ def record(*, factor: float = 1.0, relative: bool = True, range_kPa=(-101.325, 9
     share = [k / (COLUMNS - 1) for k in range(COLUMNS)]
     gas = [single(BOTTOM_KPA + span / (GAS - 1) * k) for k in range(GAS)]
     return {
-        "format": 1,
+        "format": "pneutouch/reader/1",
         "design": "closed-form",
         "calibration": None,
         "model": "atlas",

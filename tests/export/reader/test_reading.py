@@ -160,7 +160,7 @@ def test_readings_that_do_not_scatter_know_their_zero_to_one_step_alone():
 
 
 def test_a_table_of_another_form_is_refused():
-    with pytest.raises(ValueError, match="format 99: this module reads format 1"):
+    with pytest.raises(ValueError, match="format 99: this module reads format pneutouch/reader/1"):
         ForceReader({**record(), "format": 99})
 
 

@@ -9,8 +9,11 @@ from collections.abc import Sequence
 from enum import IntEnum
 from typing import Any, NamedTuple
 
-FORMAT = 1
-"""Form of the table; raised where a reader of the form before would misread it."""
+FORMAT = "pneutouch/reader/1"
+"""Format of the table and its version, which is raised where a reader of the one before would misread it."""
+
+FORMER = 1
+"""The same format as earlier tables state it."""
 
 CELSIUS = 273.15
 
@@ -61,8 +64,8 @@ class ForceReader:
     """The force of one sensor. ``table`` is the content of its ``reader.json``; tare it before the first reading."""
 
     def __init__(self, table: dict[str, Any]) -> None:
-        """Raises ValueError for a table of another form than this module reads."""
-        if table["format"] != FORMAT:
+        """Raises ValueError for a table of another format than this module reads."""
+        if table.get("format", FORMAT) not in (FORMAT, FORMER):
             raise ValueError(f"format {table['format']!r:.40}: this module reads format {FORMAT}")
         grid, box = table["grid"], table["box"]
         self._rows: list[float] = grid["driving_pressure_kPa"]

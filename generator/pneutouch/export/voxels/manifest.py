@@ -9,11 +9,10 @@ from pneutouch.export.voxels.job import BACKGROUND, VoxelBody, VoxelJob
 from pneutouch.export.voxels.raster import Raster
 from pneutouch.export.voxels.skin import reach_for
 from pneutouch.export.voxels.slices import CUBE, FULL, VoxelCounts, VoxelSlicer
+from pneutouch.formats import KEY, format_of
 from pneutouch.units import UM
 
 MANIFEST = "stack.json"
-FORMAT = 1
-"""Number of the form that manifests have; a stack of another form is refused."""
 
 METHOD = (
     "void and cluster: thresholds of blue noise in three dimensions, block by block rolled, soft skin made up for "
@@ -41,7 +40,7 @@ def manifest(
     voxel = job.raster.voxel
     return {
         **about,
-        "format": FORMAT,
+        KEY: format_of("stack"),
         "prefix": prefix,
         **raster_entry(job.raster),
         "background_rgba": list(BACKGROUND),

@@ -13,8 +13,9 @@ import numpy as np
 
 from pneutouch.arrays import Labels, Pixels
 from pneutouch.errors import InputError
-from pneutouch.export.voxels.manifest import FORMAT, MANIFEST, slice_name, whole_hash
+from pneutouch.export.voxels.manifest import MANIFEST, slice_name, whole_hash
 from pneutouch.export.voxels.png import decode, table
+from pneutouch.formats import check_format
 from pneutouch.spec.files import read_bytes
 
 _MOST_BYTES = 100_000_000
@@ -25,7 +26,7 @@ MOST_COLOURS = 6
 """Of the utility (GrabCAD Voxel Print guide), whatever a manifest states."""
 
 _NEEDED: dict[str, type | tuple[type, ...]] = {
-    **dict.fromkeys(("format", "layers"), int),
+    "layers": int,
     **dict.fromkeys(("prefix", "sha256"), str),
     **dict.fromkeys(("dpi", "pixels", "pixel_um", "background_rgba", "slices"), list),
     **dict.fromkeys(("resins", "bodies"), dict),
@@ -90,14 +91,13 @@ def _manifest(folder: Path) -> dict[str, Any]:
     except (ValueError, RecursionError):
         raise InputError("not JSON", file=path, remedy="write the stack again") from None
     content: dict[str, Any] = document if isinstance(document, dict) else {}
+    check_format("stack", content, path)
     for key, kind in _NEEDED.items():
         if not isinstance(content.get(key), kind):
             raise InputError(f"{key} is missing or of another type", file=path, remedy="write the stack again")
     for key in ("dpi", "pixels", "pixel_um"):
         if len(content[key]) != 2 or not all(type(each) in (int, float) for each in content[key]):
             raise InputError(f"{key} is not two numbers", file=path, remedy="write the stack again")
-    if content["format"] != FORMAT:
-        raise InputError(f"this version reads {FORMAT}", file=path, key="format", value=content["format"])
     try:
         colours = _colours(content)
     except (ValueError, TypeError, KeyError, OverflowError):

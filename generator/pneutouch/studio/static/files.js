@@ -213,7 +213,7 @@ class Files {
 
   exported() {
     const { base, values } = this.page.state();
-    const content = { pneutouch_studio: 1, version: this.page.version(), base, values };
+    const content = { format: "pneutouch/exported-design/1", version: this.page.version(), base, values };
     const url = URL.createObjectURL(new Blob([`${JSON.stringify(content, null, 2)}\n`], { type: "application/json" }));
     element("a", { href: url, download: `${base}.json` }).click();
     setTimeout(() => URL.revokeObjectURL(url), 10000);

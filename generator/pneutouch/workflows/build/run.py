@@ -14,6 +14,7 @@ from pneutouch.export.scene import glb, stl
 from pneutouch.export.step import step_files
 from pneutouch.export.threemf import threemf
 from pneutouch.export.threemf_read import RECIPE
+from pneutouch.formats import versioned
 from pneutouch.output.files import check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import input_hash as hash_of
 from pneutouch.output.manifest import versions, with_manifest
@@ -50,7 +51,7 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
     refuse(evaluation.findings, scene.where)
     progress("meshes")
     bodies = tuple(body.moved(assembly.print_offset) for body in assembly.bodies)
-    files: dict[str, bytes] = {"prediction.json": json_bytes(full_document(evaluation))}
+    files: dict[str, bytes] = {"prediction.json": json_bytes(versioned("prediction", full_document(evaluation)))}
     progress("3MF")
     files[f"{scene.name}.3mf"] = threemf(scene.name, bodies, _metadata(evaluation, bodies), _thumbnail(evaluation))
     progress("STL")

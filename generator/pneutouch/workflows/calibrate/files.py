@@ -14,11 +14,11 @@ from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, KEYS, NAMES, OF
 from pneutouch.bench.calibrate.response import ResponseGap
 from pneutouch.catalogue import KINDS
 from pneutouch.errors import InputError
+from pneutouch.formats import format_of, versioned
 from pneutouch.output.files import check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import with_manifest
 from pneutouch.report.residuals import residual_chart
 from pneutouch.rounding import rounded
-from pneutouch.spec.calibration import FORMAT
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.calibrate.fit import Calibration
@@ -65,7 +65,9 @@ def write_calibration(calibration: Calibration, out: Path, source: CampaignSourc
     check_writable(folder)
     document = calibration.document
     files = {
-        "calibration.json": json_bytes({**document, "notes": [*document["notes"], *unsaved]}),
+        "calibration.json": json_bytes(
+            versioned("calibration-report", {**document, "notes": [*document["notes"], *unsaved]})
+        ),
         "residuals.svg": residual_chart(calibration.residuals, _CHART).encode(),
     }
     fitted = calibration.fit.parameters
@@ -153,7 +155,7 @@ def calibration_content(calibration: Calibration, source: CampaignSource) -> dic
     covered, covariance = _covariance(calibration)
     membrane = design.model_dump(by_alias=True, exclude_none=True)["membrane"]
     content = {
-        "format": FORMAT,
+        "format": format_of("calibration"),
         "title": f"sensor {calibration.sensor or 'unnamed'}, {calibration.title or 'unnamed campaign'}",
         "covariance": [[float(x) for x in row] for row in covariance],
         "source": {

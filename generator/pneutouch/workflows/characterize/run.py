@@ -16,6 +16,7 @@ from pneutouch.catalogue import DesignSource, Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.fitted import check_fitted
+from pneutouch.formats import versioned
 from pneutouch.mechanics.models import USUAL, usual_model
 from pneutouch.output.files import MANIFEST, check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import entry, input_hash, manifest
@@ -210,7 +211,7 @@ def write(outcome: CharacterizationResult, out: Path, evidence: str = "doubtful"
     measured = outcome.measured
     files = {
         **measured_datasheet(measured),
-        "figures.json": json_bytes(outcome.document),
+        "figures.json": json_bytes(versioned("figures", outcome.document)),
         "points.csv": points_csv(measured.curves),
         "segments.csv": segments_csv(measured.curves),
     }

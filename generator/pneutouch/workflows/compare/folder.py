@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch.errors import InputError
+from pneutouch.formats import check_format
 from pneutouch.output.files import MANIFEST, digest
 from pneutouch.spec.files import read_bytes
 
@@ -28,6 +29,7 @@ def manifest_of(folder: Path) -> dict[str, Any]:
     try:
         content = json.loads(text)
         listed = content["files"]
+        check_format("manifest", content, folder / MANIFEST)
         if isinstance(listed, dict) and all(isinstance(entry["sha256"], str) for entry in listed.values()):
             return dict(content)
     except (ValueError, KeyError, TypeError, RecursionError):

@@ -14,6 +14,7 @@ from pneutouch.arrays import Array
 from pneutouch.errors import InputError
 from pneutouch.evaluation.comparison import ComparedFigure, ComparedSensor, ComparedState
 from pneutouch.evaluation.comparison_record import CURVE_KEYS, CurvePoints
+from pneutouch.formats import check_format
 from pneutouch.workflows.compare.folder import as_written, listed_file, manifest_of
 
 PREDICTED_NAMES = {"force_range_N": "force_at_range_end_N"}
@@ -47,6 +48,7 @@ def measured_columns(folder: Path, *, predicted: bool = False) -> list[MeasuredC
     manifest = manifest_of(folder)
     with as_written(folder, "figures.json", "characterize the campaign again"):
         content = json.loads(listed_file(folder, "figures.json", manifest))
+        check_format("figures", content, folder / "figures.json")
         curves = _curves(content, listed_file(folder, "points.csv", manifest))
         columns = _columns(content, curves, str(manifest.get("name", folder.name)), str(folder))
     if not columns:

@@ -21,8 +21,8 @@ from pneutouch.evaluation.document import PredictionRecord, UncertainStateRecord
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.read_at import figures_at
 from pneutouch.export.threemf_read import Package
+from pneutouch.formats import KEY, check_format, format_of
 from pneutouch.output.files import MANIFEST
-from pneutouch.output.recipe import FORMAT
 from pneutouch.output.recipe_read import read_recipe
 from pneutouch.parts import assemble
 from pneutouch.workflows.compare.folder import as_written, listed_file, manifest_of
@@ -113,11 +113,17 @@ def of_build(folder: Path) -> PredictedColumn:
     manifest = manifest_of(folder)
     with as_written(folder, "prediction.json", _REMEDY):
         document = json.loads(listed_file(folder, "prediction.json", manifest))
+        check_format("prediction", document, folder / "prediction.json")
         model = str(document["model"])
     with as_written(folder, MANIFEST, _REMEDY):
         made_by = str(manifest.get("versions", {}).get("pneutouch", ""))
     recipe_text = json.dumps(
-        {"format": FORMAT, "name": manifest.get("name", ""), "version": made_by, "inputs": manifest.get("inputs", {})}
+        {
+            KEY: format_of("recipe"),
+            "name": manifest.get("name", ""),
+            "version": made_by,
+            "inputs": manifest.get("inputs", {}),
+        }
     )
     stated = {"input-hash": str(manifest.get("input_hash", ""))}
     recipe = read_recipe(Package(folder, (), stated, recipe_text, thumbnail=False, warnings=()))

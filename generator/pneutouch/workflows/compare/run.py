@@ -14,6 +14,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.comparison import ComparedSensor, comparison_document, labelled
 from pneutouch.evaluation.comparison_record import ComparisonRecord
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
+from pneutouch.formats import versioned
 from pneutouch.output.files import check_writable, digest, json_bytes, write_folder
 from pneutouch.output.manifest import short_digest, with_manifest
 from pneutouch.parts import Assembly
@@ -136,7 +137,10 @@ def write(result: CompareResult, out: Path) -> Path:
 
     folder = out / result.name
     check_writable(folder)
-    files = {"comparison.json": json_bytes(result.document), **comparison_sheet(result.document, _parts(result))}
+    files = {
+        "comparison.json": json_bytes(versioned("comparison", result.document)),
+        **comparison_sheet(result.document, _parts(result)),
+    }
     hashed = {"comparison": short_digest(result.document)}
     write_folder(folder, with_manifest(files, result.name, hashed))
     return folder

@@ -12,6 +12,7 @@ import numpy as np
 from pneutouch.bench.finding import CouponFindings, ReadingSource
 from pneutouch.bench.volume import leak
 from pneutouch.errors import InputError
+from pneutouch.formats import check_format
 from pneutouch.mechanics.sealed_gas import SealedGas, conductance_of_cap
 from pneutouch.parts import Assembly
 from pneutouch.spec.coupon import LeakCap, read_results
@@ -76,6 +77,7 @@ def _of_cap(path: Path, design: str) -> LeakSource:
 def _of_campaign(path: Path, design: str) -> LeakSource:
     try:
         content: Any = json.loads(read_bytes(path, _MOST_BYTES, "figures.json"))
+        check_format("figures", content, path)
         measured, rows = content["design"], [row for row in content["injections"] if row["unit"] == "kPa/min"]
         rates = [(float(row["value"]), float(row["figure"].split(",")[1].split()[0])) for row in rows]
     except (ValueError, KeyError, TypeError, AttributeError, IndexError, OverflowError, RecursionError):

@@ -10,6 +10,7 @@ import numpy as np
 from pneutouch.bench.tensile.choose import MISFIT
 from pneutouch.bench.tensile.fit import LawFit, difference
 from pneutouch.catalogue import Library
+from pneutouch.formats import versioned
 from pneutouch.mechanics.laws import hyperelastic
 from pneutouch.mechanics.uncertainty.hardness import young_modulus
 from pneutouch.output.files import digest, json_bytes
@@ -133,7 +134,7 @@ def files(fitted: FittedMaterial, content: dict[str, Any]) -> dict[str, bytes]:
         "slack": fitted.options.slack,
         "material": fitted.text,
     }
-    made = {"fit.json": json_bytes(content), "fit.svg": _chart(fitted).encode()}
+    made = {"fit.json": json_bytes(versioned("fit", content)), "fit.svg": _chart(fitted).encode()}
     return with_manifest(made, f"fit-{fitted.options.name}", inputs)
 
 

@@ -12,6 +12,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.evaluation.gauge import reading_of
 from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
+from pneutouch.formats import versioned
 from pneutouch.output.files import check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import with_manifest
 from pneutouch.parts import assemble
@@ -164,7 +165,7 @@ def write_plan(plan: CampaignPlan, out: Path) -> Path:
     check_writable(folder)
     note = "# Fill in lab, and date and age_days of every run; measured files go to the path in `file`."
     files = {
-        "plan.json": json_bytes(plan.document),
+        "plan.json": json_bytes(versioned("plan", plan.document)),
         "plan.md": plan.sheet.encode(),
         "campaign.toml": campaign_toml(plan.campaign, note),
         **plan.copied,

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.evaluation.dynamics import BASIS, gauge_rate_Hz
+from pneutouch.formats import versioned
 from pneutouch.mechanics.line.band import gain_at, highest_frequency
 from pneutouch.output.files import check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import with_manifest
@@ -97,7 +98,7 @@ def write_respond(run: RespondRun, out: Path) -> Path:
     name = f"{run.evaluation.scene.name}-response"
     folder = out / name
     check_writable(folder)
-    files = {"response.json": json_bytes(document(run)), "response.svg": _chart(run).encode()}
+    files = {"response.json": json_bytes(versioned("response", document(run))), "response.svg": _chart(run).encode()}
     for number, signal in enumerate(run.signals):
         files[f"signal-{number + 1}.csv"] = _signal_csv(run, signal)
         if signal.samples is not None:

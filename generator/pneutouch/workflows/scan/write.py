@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pneutouch.formats import versioned
 from pneutouch.output.files import check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import with_manifest
 from pneutouch.texture.signal import decimated
@@ -19,7 +20,7 @@ def write_scan(run: ScanRun, out: Path) -> Path:
     """Write signals, document, figure and manifest into ``out/<specimen>-<design>-scan/``."""
     folder = out / run.name
     check_writable(folder)
-    files = {"scan.json": json_bytes(document(run)), "scan.svg": spectra(run).encode()}
+    files = {"scan.json": json_bytes(versioned("scan", document(run))), "scan.svg": spectra(run).encode()}
     for number, seen in enumerate(run.seen):
         files[f"signal-{number + 1}.csv"] = signal_csv(seen, run.bars, run.kept)
     write_folder(folder, with_manifest(files, run.name, inputs(run)))

@@ -28,6 +28,7 @@ from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.gauge import reading_of
 from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
+from pneutouch.formats import format_of, versioned
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.models import USUAL, usual_model
 from pneutouch.output.files import MANIFEST, json_bytes, replacing
@@ -135,7 +136,7 @@ def _write_all(
     truth |= {"simulated": True, "design": scene.name, "rest_s": model.rest}
     truth |= {"model": options.model, "seed": options.seed, "rate_Hz": options.rate}
     truth["parameters"] = {subject.name: _parameters(subject) for subject in subjects}
-    writer.put("truth.json", json_bytes(truth))
+    writer.put("truth.json", json_bytes(versioned("truth", truth)))
 
 
 def _rig(scene: ResolvedDesign, rate_Hz: float) -> Rig:
@@ -170,9 +171,10 @@ def campaign_toml(campaign: Campaign, comment: str) -> bytes:
 
     Columns and format are left out where nothing is stated of them, so that they are found from the files."""
     open_ = {key for key in ("columns", "format") if getattr(campaign, key) == Campaign.model_fields[key].default}
-    content = campaign.model_dump(mode="python", exclude_none=True, exclude=open_)
+    content = campaign.model_dump(mode="python", exclude_none=True, exclude={*open_, "file_format"})
     validate(Campaign, content, "campaign.toml")
-    return f"{comment}\n{toml_text(content)}".encode()
+    text = toml_text({"file_format": format_of("campaign"), **content})
+    return f"{comment}\n{text}".encode()
 
 
 def _depth(subject: SimulatedResin, options: SimulationOptions) -> float:

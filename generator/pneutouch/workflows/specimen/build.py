@@ -11,6 +11,7 @@ from pneutouch.body import Bore, Feature, Prism, Solid
 from pneutouch.catalogue import Library
 from pneutouch.export.scene import glb, stl
 from pneutouch.export.threemf import threemf
+from pneutouch.formats import versioned
 from pneutouch.meridian import Line
 from pneutouch.output.files import check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import input_hash, versions, with_manifest
@@ -137,7 +138,7 @@ def _files(
     progress("drawing")
     files["drawing.svg"] = drawing_svg(drawn)
     files["print-sheet.md"] = sheet(drawn, checked, whole, left_out).encode()
-    files["specimen.json"] = json_bytes(truth(drawn))
+    files["specimen.json"] = json_bytes(versioned("specimen", truth(drawn)))
     return files, {"left_out": left_out} if left_out else {}
 
 

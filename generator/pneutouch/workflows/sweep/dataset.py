@@ -15,6 +15,7 @@ import numpy as np
 
 from pneutouch import __version__
 from pneutouch.errors import InputError
+from pneutouch.formats import KEY, check_format, format_of
 from pneutouch.mechanics.models import USUAL
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
@@ -101,7 +102,10 @@ def stored_fingerprint(path: Path) -> str:
     _check_size(path)
     try:
         with xarray.open_dataset(path, engine="scipy") as content:
+            check_format("dataset", content.attrs, path)
             return str(content.load().attrs["input_hash"])
+    except InputError:
+        raise
     # scipy meets a truncated file with whatever its arrays make of it.
     except Exception:
         raise InputError(
@@ -120,10 +124,13 @@ def stored_dataset(path: Path) -> xarray.Dataset:
     try:
         with xarray.open_dataset(path, engine="scipy") as opened:
             content = opened.load()
+        check_format("dataset", content.attrs, path)
         if _CONTENT_HASH not in content.attrs:
             why = f"the dataset has no {_CONTENT_HASH}: it was written by an earlier version, or damaged"
         elif content.attrs[_CONTENT_HASH] == _content_hash(content):
             return content
+    except InputError:
+        raise
     # What was changed can be anything: a text that is no text, a number that is a date.
     except Exception:
         pass
@@ -191,6 +198,7 @@ def _attributes(study: SweepStudy, rows: list[list[dict[str, Any]]], content: di
     bases = sorted({text for text in content["error_sensitivity_basis"][1].ravel() if text})
     design = study.base.model_dump(mode="json")
     return {
+        KEY: format_of("dataset"),
         "title": f"pneutouch sweep {plan.name}",
         "pneutouch_version": __version__,
         "model": "solid, harmonic off the axis" if plan.model == USUAL else plan.model,

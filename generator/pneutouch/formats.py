@@ -1,0 +1,86 @@
+"""Versions of the files that the program writes to be read later, all in one place.
+
+Every such file states ``format = "pneutouch/NAME/VERSION"``; a campaign does in ``file_format``, as its ``format`` is
+that of the measured files. A version counts changes after which an older program would misread the file; keys that are
+added do not raise it. Files without the key, or with a number alone, are those of programs before the key was there.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from pneutouch.errors import InputError, shown
+
+KEY = "format"
+"""The key that states the format."""
+
+
+class StoredFormat(NamedTuple):
+    """The version of a format, and the file that has it."""
+
+    version: int
+    file: str
+
+
+FORMATS: Mapping[str, StoredFormat] = {
+    "calibration": StoredFormat(1, "`calibrations/NAME.toml` of `calibrate`"),
+    "calibration-report": StoredFormat(1, "`calibration.json` of `calibrate`"),
+    "campaign": StoredFormat(1, "`campaign.toml` of `plan` and `simulate`, key `file_format`"),
+    "comparison": StoredFormat(1, "`comparison.json` of `compare`"),
+    "dataset": StoredFormat(1, "the netCDF file of `sweep`"),
+    "exported-design": StoredFormat(1, "a design that the studio exported"),
+    "figures": StoredFormat(1, "`figures.json` of `characterize`"),
+    "fit": StoredFormat(1, "`fit.json` of `fit-material`"),
+    "manifest": StoredFormat(1, "`manifest.json` of every output folder"),
+    "plan": StoredFormat(1, "`plan.json` of `plan`"),
+    "prediction": StoredFormat(1, "`prediction.json` of `build`"),
+    "reader": StoredFormat(1, "`reader.json` of `export-reader`"),
+    "recipe": StoredFormat(1, "the recipe in a 3MF of `build`"),
+    "response": StoredFormat(1, "`response.json` of `respond`"),
+    "scan": StoredFormat(1, "`scan.json` of `scan`"),
+    "specimen": StoredFormat(1, "`specimen.json` of a texture specimen"),
+    "stack": StoredFormat(1, "`stack.json` of a voxel stack"),
+    "truth": StoredFormat(1, "`truth.json` of `simulate`"),
+}
+"""Every format by name."""
+
+_STATED = re.compile(r"pneutouch/([a-z-]+)/([1-9][0-9]{0,5})")
+
+
+def format_of(name: str) -> str:
+    """What a file of this format states: ``pneutouch/prediction/1``."""
+    return f"pneutouch/{name}/{FORMATS[name].version}"
+
+
+def versioned(name: str, document: Mapping[str, Any]) -> dict[str, Any]:
+    """A document with its format, which comes first."""
+    return {KEY: format_of(name), **document}
+
+
+def problem_of(name: str, stated: object) -> tuple[str, str] | None:
+    """What is wrong with the format that a file states, and what to do; None where the file can be read.
+
+    ``stated`` is None for a file that states none, or a number in a file of an earlier program.
+    """
+    known = FORMATS[name].version
+    if stated is None:
+        return None
+    match = _STATED.fullmatch(stated) if isinstance(stated, str) else None
+    version = int(match[2]) if match else stated
+    if (match and match[1] != name) or not isinstance(version, int) or isinstance(version, bool) or version < 1:
+        return "not the format of this file", f"it must be {shown(format_of(name))}"
+    if version > known:
+        return (
+            "of a later version",
+            f"this pneutouch reads {shown(format_of(name))}: take a newer one, or write it again",
+        )
+    return None
+
+
+def check_format(name: str, content: Mapping[str, Any], file: object, key: str = KEY) -> None:
+    """Raise InputError with file, key and value where ``content`` is of another or of a later format."""
+    problem = problem_of(name, content.get(key))
+    if problem is not None:
+        raise InputError(problem[0], file=str(file), key=key, value=content[key], remedy=problem[1])
