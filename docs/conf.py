@@ -21,6 +21,7 @@ extensions = [
     "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
     "sphinx_gallery.gen_gallery",
+    "formats_table",
     "page_titles",
 ]
 exclude_patterns = ["_build", "_ext", "examples", "**/README.rst", "gallery/*.ipynb"]
