@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page contact-table simulator-page dist sbom paper lock clean
+.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page contact-table simulator-page dist sbom pythons paper lock clean
 
 venv: $(VENV)/.dev
 
@@ -64,6 +64,10 @@ sbom: $(VENV)/.run
 # The figures of paper/paper.md, from stored ones.
 paper: $(VENV)/.run
 	$(BIN)/python -m release.paper
+
+# The wheel under every supported Python that is found here, with the everyday tests of commands and of the Python interface.
+pythons: $(VENV)/.run
+	$(BIN)/python -m release.pythons --tests tests/api tests/cli
 
 # Needs uv; writes the locked dependencies with hashes for every platform.
 lock:

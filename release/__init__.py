@@ -1,1 +1,1 @@
-"""What accompanies a release: ``make sbom``, ``make paper``."""
+"""What a release is checked and accompanied by: ``make sbom``, ``make pythons``, ``make paper``."""
