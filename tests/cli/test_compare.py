@@ -34,7 +34,8 @@ def test_json_is_the_document_that_is_written(command, tmp_path):
     (tmp_path / "wide.toml").write_text("[membrane]\ninner_radius_mm = 11\n[pneumatics]\ndead_volume_mL = 0\n")
     said = json.loads(command("compare", "paper-dome", "wide.toml", *words).stdout)
     folder = tmp_path / said.pop("folder")
-    assert said == json.loads((folder / "comparison.json").read_text())
+    written = json.loads((folder / "comparison.json").read_text())
+    assert written.pop("format") == "pneutouch/comparison/1" and said == written
     assert folder.parent.name == "there"
     assert said["inputs"]["membrane.inner_radius_mm"] == [9.25, 11.0]
 

@@ -54,7 +54,9 @@ def test_folder_holds_signals_figure_document_and_manifest(scanned):
     assert set(manifest["files"]) == {"scan.json", "scan.svg", "signal-1.csv", "signal-2.csv"}
     for name, entry in manifest["files"].items():
         assert hashlib.sha256((folder / name).read_bytes()).hexdigest() == entry["sha256"]
-    assert json.loads((folder / "scan.json").read_text()) == {k: v for k, v in said.items() if k != "folder"}
+    written = json.loads((folder / "scan.json").read_text())
+    assert written.pop("format") == "pneutouch/scan/1"
+    assert written == {k: v for k, v in said.items() if k != "folder"}
     lines = (folder / "signal-2.csv").read_text().splitlines()
     assert lines[0] == "time_s,pressure_kPa,place_mm,noiseless_kPa,bar_1,bar_2,bar_3"
     columns = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])

@@ -14,7 +14,6 @@ from pneutouch.cli.complete import assignment, names
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify, put
 from pneutouch.errors import ComputationError, InputError, PneutouchError
-from pneutouch.formats import versioned
 from pneutouch.holding import refuse_stopped
 
 app = typer.Typer(
@@ -208,7 +207,7 @@ def predict(
         with bar("predicting"):
             document = full_document(evaluation, monte_carlo)
         if json:
-            print_json(versioned("prediction", document))
+            print_json(document)
         else:
             from pneutouch.cli.text import prediction_text
 

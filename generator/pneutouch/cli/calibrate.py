@@ -12,7 +12,6 @@ from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.reading import READING_FIELDS, ColumnsOption, reading_of, reading_text
 from pneutouch.cli.simulate import numbers
 from pneutouch.cli.terminal import echo, notify
-from pneutouch.formats import versioned
 from pneutouch.spec.campaign import Campaign
 
 
@@ -66,7 +65,7 @@ def calibrate(
         if document["read_as"]:
             notify(reading_text(document["read_as"]))
         if json:
-            print_json(versioned("calibration-report", document))
+            print_json(document)
         else:
             from pneutouch.cli.calibrate_text import calibration_text
 

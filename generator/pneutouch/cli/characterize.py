@@ -13,7 +13,6 @@ from pneutouch.cli.declared import with_fields
 from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.reading import READING_FIELDS, ColumnsOption, reading_of, reading_text, reading_words
 from pneutouch.cli.terminal import echo, notify
-from pneutouch.formats import versioned
 from pneutouch.spec.campaign import Campaign
 
 if TYPE_CHECKING:
@@ -69,7 +68,7 @@ def characterize(
             outcome = run(data, design, given, target=target, model=model or USUAL, progress=progress, reading=reading)
         folder = write(outcome, out, evidence)
         if json:
-            print_json({**versioned("figures", outcome.document), "folder": str(folder)})
+            print_json({**outcome.document, "folder": str(folder)})
         else:
             from pneutouch.cli.characterize_text import measured_text
 

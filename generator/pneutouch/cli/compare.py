@@ -21,7 +21,6 @@ from pneutouch.cli.app import (
 from pneutouch.cli.complete import names
 from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.terminal import echo
-from pneutouch.formats import versioned
 
 
 @app.command()
@@ -61,7 +60,7 @@ def compare(
             progress(len(things), len(things), "drawing curves and sections")
             folder = write(result, out)
         if json:
-            print_json({**versioned("comparison", result.document), "folder": str(folder)})
+            print_json({**result.document, "folder": str(folder)})
         else:
             from pneutouch.cli.compare_text import comparison_text
 

@@ -12,7 +12,6 @@ from pneutouch.cli.complete import names
 from pneutouch.cli.next_step import report_next
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify
-from pneutouch.formats import versioned
 
 if TYPE_CHECKING:
     from pneutouch.bench.tensile.puck import PuckSize
@@ -73,7 +72,7 @@ def fit_material(
         for note in content["notes"]:
             notify(f"note: {note}")
         if json:
-            print_json({**versioned("fit", content), "folder": str(folder)})
+            print_json({**content, "folder": str(folder)})
             return
         from pneutouch.cli.fit_material_text import fit_text
 

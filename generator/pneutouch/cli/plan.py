@@ -20,7 +20,6 @@ from pneutouch.cli.next_step import report_next
 from pneutouch.cli.progress import bar
 from pneutouch.cli.simulate import SPECIMENS, ResinsOption, SpecimensOption, words
 from pneutouch.cli.terminal import echo, notify
-from pneutouch.formats import versioned
 
 
 @app.command()
@@ -54,7 +53,7 @@ def plan(
         for warning in result.document["warnings"]:
             notify(f"warning: {warning['rule']}: {warning['message']}")
         if json:
-            print_json({**versioned("plan", result.document), "folder": str(folder)})
+            print_json({**result.document, "folder": str(folder)})
         else:
             from pneutouch.cli.plan_text import plan_text
 

@@ -23,7 +23,6 @@ from pneutouch.cli.app import (
 from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify
-from pneutouch.formats import versioned
 
 if TYPE_CHECKING:
     from pneutouch.workflows.respond.load import Load
@@ -70,7 +69,7 @@ def respond(
         for note in content["notes"]:
             notify(f"note: {note}")
         if json:
-            print_json({**versioned("response", content), "folder": str(folder)})
+            print_json({**content, "folder": str(folder)})
             return
         from pneutouch.cli.respond_text import respond_text
 

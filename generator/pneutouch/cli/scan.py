@@ -21,7 +21,6 @@ from pneutouch.cli.app import (
 from pneutouch.cli.complete import names
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo
-from pneutouch.formats import versioned
 
 if TYPE_CHECKING:
     from pneutouch.workflows.scan.run import ScanOptions
@@ -89,7 +88,7 @@ def scan(
             run = run_scan(specimen, design, options, changes(set_, calibration))
             folder = write_scan(run, out)
         if json:
-            print_json({**versioned("scan", document(run)), "folder": str(folder)})
+            print_json({**document(run), "folder": str(folder)})
         else:
             from pneutouch.cli.scan_text import scan_text
 

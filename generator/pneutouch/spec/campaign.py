@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 from pydantic import Field, ValidationError, model_validator
 
 from pneutouch.errors import shown
-from pneutouch.formats import problem_of
+from pneutouch.formats import format_of, problem_of
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, number
 from pneutouch.tables.unit_words import UNITS
@@ -151,7 +151,7 @@ class CampaignRun(Table):
 class Campaign(Table):
     """A whole campaign file."""
 
-    file_format: str | None = Field(default=None, description="Format of this file and its version.")
+    file_format: str = Field(default=format_of("campaign"), description="Format of this file and its version.")
     title: Printable = Field(default="Measurement campaign", max_length=120, description="Title of the measured sheet.")
     lab: Printable = Field(default="", max_length=120, description="Who measured.")
     design: str | None = Field(default=None, min_length=1, description="Design of the sensors, where no flag names it.")

@@ -28,7 +28,7 @@ from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.gauge import reading_of
 from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
-from pneutouch.formats import format_of, versioned
+from pneutouch.formats import versioned
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.models import USUAL, usual_model
 from pneutouch.output.files import MANIFEST, json_bytes, replacing
@@ -171,10 +171,9 @@ def campaign_toml(campaign: Campaign, comment: str) -> bytes:
 
     Columns and format are left out where nothing is stated of them, so that they are found from the files."""
     open_ = {key for key in ("columns", "format") if getattr(campaign, key) == Campaign.model_fields[key].default}
-    content = campaign.model_dump(mode="python", exclude_none=True, exclude={*open_, "file_format"})
+    content = campaign.model_dump(mode="python", exclude_none=True, exclude=open_)
     validate(Campaign, content, "campaign.toml")
-    text = toml_text({"file_format": format_of("campaign"), **content})
-    return f"{comment}\n{text}".encode()
+    return f"{comment}\n{toml_text(content)}".encode()
 
 
 def _depth(subject: SimulatedResin, options: SimulationOptions) -> float:
