@@ -135,9 +135,11 @@ def test_a_dataset_of_a_later_version_is_refused(read, tmp_path):
 def test_a_campaign_of_a_later_version_is_refused_and_one_without_is_read(tmp_path):
     path = tmp_path / "campaign.toml"
     run = '[[runs]]\nfile = "a.csv"\nsensor = "1"\nresin = "TangoPlus"\n'
-    for head in ("", f'file_format = "{format_of("campaign")}"\n'):
+    for head in ("", f'campaign_format = "{format_of("campaign")}"\n'):
         path.write_text(head + run)
         assert validate(Campaign, read_toml(path), str(path)).runs[0].file == "a.csv"
-    path.write_text(f'file_format = "{later("campaign")}"\n{run}')
-    with pytest.raises(InputError, match=r"campaign\.toml: file_format = .*: of a later version; this pneutouch reads"):
+    path.write_text(f'campaign_format = "{later("campaign")}"\n{run}')
+    with pytest.raises(
+        InputError, match=r"campaign\.toml: campaign_format = .*: of a later version; this pneutouch reads"
+    ):
         validate(Campaign, read_toml(path), str(path))

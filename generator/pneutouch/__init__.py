@@ -3,7 +3,7 @@
 The public names are loaded when they are first used: ``import pneutouch as pt``, then ``pt.Design(...).predict()``.
 """
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 
 _HOMES = {
     "api.design": ("Design", "load"),

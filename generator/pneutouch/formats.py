@@ -1,8 +1,8 @@
 """Versions of the files that the program writes to be read later, all in one place.
 
-Every such file states ``format = "pneutouch/NAME/VERSION"``; a campaign does in ``file_format``, as its ``format`` is
-that of the measured files. A version counts changes after which an older program would misread the file; keys that are
-added do not raise it. Files without the key, or with a number alone, are those of programs before the key was there.
+Every such file states ``format = "pneutouch/NAME/VERSION"``; a campaign does in ``campaign_format``, as its ``format``
+is that of the measured files. A version counts changes after which an older program would misread the file; keys that
+are added do not raise it. Files without the key, or with a number alone, are those of programs before the key was there.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class StoredFormat(NamedTuple):
 FORMATS: Mapping[str, StoredFormat] = {
     "calibration": StoredFormat(1, "`calibrations/NAME.toml` of `calibrate`"),
     "calibration-report": StoredFormat(1, "`calibration.json` of `calibrate`"),
-    "campaign": StoredFormat(1, "`campaign.toml` of `plan` and `simulate`, key `file_format`"),
+    "campaign": StoredFormat(1, "`campaign.toml` of `plan` and `simulate`, key `campaign_format`"),
     "comparison": StoredFormat(1, "`comparison.json` of `compare`"),
     "dataset": StoredFormat(1, "the netCDF file of `sweep`"),
     "exported-design": StoredFormat(1, "a design that the studio exported"),
@@ -40,7 +40,7 @@ FORMATS: Mapping[str, StoredFormat] = {
     "recipe": StoredFormat(1, "the recipe in a 3MF of `build`"),
     "response": StoredFormat(1, "`response.json` of `respond`"),
     "scan": StoredFormat(1, "`scan.json` of `scan`"),
-    "specimen": StoredFormat(1, "`specimen.json` of a texture specimen"),
+    "specimen-report": StoredFormat(1, "`specimen.json` of a texture specimen"),
     "stack": StoredFormat(1, "`stack.json` of a voxel stack"),
     "truth": StoredFormat(1, "`truth.json` of `simulate`"),
 }
@@ -52,6 +52,11 @@ _STATED = re.compile(r"pneutouch/([a-z-]+)/([1-9][0-9]{0,5})")
 def format_of(name: str) -> str:
     """What a file of this format states: ``pneutouch/prediction/1``."""
     return f"pneutouch/{name}/{FORMATS[name].version}"
+
+
+def version_of(name: str) -> int:
+    """The version of a kind of document; 1 where files state none: people write them, or a command prints them alone."""
+    return FORMATS[name].version if name in FORMATS else 1
 
 
 def versioned(name: str, document: Mapping[str, Any]) -> dict[str, Any]:

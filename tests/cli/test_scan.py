@@ -15,6 +15,7 @@ from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.units import KPA
 from pneutouch.workflows.scan.run import ScanOptions
 from pneutouch.workflows.scan.separate import separating
+from tests.schemas.held import hold, hold_folder
 
 ASKED = ["scan", "texture-specimen", "--design", "paper-dome"]
 assert command
@@ -30,6 +31,12 @@ def scanned(tmp_path_factory):
     result = run(*ASKED, "--out", str(out), "--json")
     assert result.exit_code == 0, result.stderr
     return json.loads(result.stdout), out / "texture-specimen-paper-dome-scan"
+
+
+def test_a_scan_is_of_its_schema(scanned):
+    said, folder = scanned
+    hold("scan", said)
+    assert hold_folder(folder) == 2
 
 
 def test_stiff_state_shows_both_patterns_within_three_percent(scanned):

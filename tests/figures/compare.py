@@ -42,7 +42,7 @@ def plain(value: Any) -> Any:
 
 def is_format(key: str, value: Any) -> bool:
     """Whether an entry states the format of its file; the format of a campaign is a table, and stays."""
-    return key == "file_format" or (key == "format" and not isinstance(value, dict))
+    return key == "campaign_format" or (key == "format" and not isinstance(value, dict))
 
 
 def order(value: Any) -> str:

@@ -16,6 +16,9 @@ PRINTED = {
     "select": "selection",
     "compare": "comparison",
     "calibrate": "calibration-report",
+    "fit-material": "fit",
+    "respond": "response",
+    "scan": "scan",
 }
 """Names of schemas by the command that prints such a document."""
 
@@ -26,6 +29,12 @@ WRITTEN = {
     "figures.json": "figures",
     "comparison.json": "comparison",
     "reader.json": "reader",
+    "fit.json": "fit",
+    "response.json": "response",
+    "scan.json": "scan",
+    "truth.json": "truth",
+    "specimen.json": "specimen-report",
+    "stack.json": "stack",
 }
 """Names of schemas by the file that holds such a document."""
 

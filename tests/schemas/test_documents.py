@@ -8,6 +8,7 @@ import json
 import pytest
 
 from pneutouch.evaluation.document import full_document
+from pneutouch.formats import FORMATS, format_of, versioned
 from pneutouch.output.files import json_bytes
 from pneutouch.schemas import document_kinds, schema_of
 from tests.schemas.held import PRINTED, WRITTEN, hold, hold_folder, validator
@@ -19,7 +20,7 @@ def as_written(document):
 
 def test_every_written_document_is_held_by_a_command_or_a_file():
     written = {name for name, kind in document_kinds().items() if kind.form == "JSON"}
-    assert written == set(PRINTED.values()) | set(WRITTEN.values())
+    assert written == {*PRINTED.values(), *WRITTEN.values(), "exported-design"}
 
 
 @pytest.mark.parametrize(
@@ -81,13 +82,42 @@ def test_a_comparison_is_of_its_schema(command, tmp_path):
     assert hold_folder(tmp_path) == 2
 
 
+def test_a_response_is_of_its_schema(command, tmp_path):
+    for load in (("--step", "2N"), ("--sine", "5", "--peak", "0.2mm")):
+        done = command("respond", "paper-dome", *load, "--model", "atlas", "--json")
+        assert done.returncode == 0, done.stderr
+        hold("response", json.loads(done.stdout))
+        assert hold_folder(tmp_path) == 2
+
+
+def test_a_file_states_its_format_and_its_schema_refuses_another():
+    for name, kind in document_kinds().items():
+        if kind.form != "JSON" or name not in FORMATS:
+            continue
+        schema = schema_of(name)
+        for form in schema.get("anyOf", [schema]):
+            assert form["properties"]["format"]["const"] == format_of(name)
+    stated = {"base": "paper-dome", "values": {}, "version": "1"}
+    assert validator("exported-design").is_valid(versioned("exported-design", stated))
+    assert not validator("exported-design").is_valid({**stated, "format": "pneutouch/plan/1"})
+
+
+@pytest.mark.slow
+def test_what_is_known_of_specimens_and_stacks_is_of_its_schema(command, tmp_path):
+    assert command("build", "texture-specimen").returncode == 0
+    assert command("build", "graded-dome", "--model", "membrane", "--voxels").returncode in (0, 1)
+    names = {path.name for path in tmp_path.rglob("*.json")}
+    assert {"specimen.json", "stack.json"} <= names
+    assert hold_folder(tmp_path) >= 3
+
+
 @pytest.mark.slow
 def test_measured_figures_are_of_their_schema(command, tmp_path):
     words = ("--pressures", "0,12", "--kinds", "steps,loop", "--runs", "1", "--rest", "2", "--rate", "20")
     assert command("simulate", "paper-dome", *words, "--model", "atlas", "--out", "sim").returncode == 0
     (folder,) = (tmp_path / "sim").iterdir()
     assert command("characterize", str(folder), "--design", "paper-dome", "--model", "atlas").returncode == 0
-    assert hold_folder(tmp_path) == 3
+    assert hold_folder(tmp_path) == 4
 
 
 @pytest.mark.slow

@@ -21,6 +21,7 @@ from tests.conftest import ROOT
 from tests.export import test_threemf_unsafe as unsafe
 from tests.export.threemf_files import with_metadata, with_model, with_recipe
 from tests.output.test_recipe_tampered import TAMPERED, cheap
+from tests.schemas.held import hold
 from tests.stability.fuzz.mutate import damaged_toml
 
 __all__ = ["cheap"]
@@ -151,6 +152,7 @@ def test_an_exported_design_comes_back(tmp_path, library):
     path = tmp_path / "paper-dome.json"
     values = {"membrane.wall_thickness_mm": "1.4", "pneumatics.dead_volume_mL": None}
     path.write_text(export(values=values))
+    hold("exported-design", json.loads(path.read_text()))
     assert opened(path)["question"] == {"base": "paper-dome", "values": values}
     path.write_text(export(version="0.0.1"))
     assert opened(path)["notes"] == [f"exported by pneutouch 0.0.1 (here {__version__})"]

@@ -14,6 +14,7 @@ from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.spec.material import HyperelasticLaw, Material
 from tests.conftest import ROOT
+from tests.schemas.held import hold, hold_folder
 
 STRETCH = np.linspace(1.02, 2.6, 80)
 SILICONES = ("DragonSkin10", "DragonSkin20", "DragonSkin30", "Ecoflex0010", "Ecoflex0030", "Ecoflex0050", "MoldStar16")
@@ -32,6 +33,8 @@ def test_a_tensile_test_becomes_a_material(command, tmp_path):
     first = command(*line, cwd=tmp_path)
     assert first.returncode == 0, first.stderr
     content = json.loads(first.stdout)
+    hold("fit", content)
+    assert hold_folder(tmp_path) == 2
     assert content["law"]["name"] == "yeoh"
     assert content["law"]["constants"] == pytest.approx([0.06, 0.009], rel=0.01)
     path = tmp_path / "printprofiles/materials/Ours.toml"

@@ -3,7 +3,8 @@
 from typing import Any
 
 from pneutouch.errors import InputError, nearest
-from pneutouch.schemas.documents import VERSION, written_kinds
+from pneutouch.formats import version_of
+from pneutouch.schemas.documents import written_kinds
 from pneutouch.schemas.facts import described
 from pneutouch.schemas.files import file_kinds
 from pneutouch.schemas.kind import DocumentKind
@@ -26,4 +27,4 @@ def schema_of(name: str) -> dict[str, Any]:
         raise InputError(f"unknown.{nearest(name, kinds)}", key="name", value=name)
     kind = kinds[name]
     made = kind.make()
-    return {"$schema": DRAFT, "$id": f"urn:pneutouch:{name}:{VERSION}", "title": kind.title, **described(made)}
+    return {"$schema": DRAFT, "$id": f"urn:pneutouch:{name}:{version_of(name)}", "title": kind.title, **described(made)}

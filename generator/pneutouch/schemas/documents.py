@@ -4,11 +4,9 @@ from collections.abc import Callable
 from functools import partial
 from importlib import import_module
 
+from pneutouch.formats import FORMATS, KEY, format_of
 from pneutouch.schemas.kind import DocumentKind
 from pneutouch.schemas.shape import Schema
-
-VERSION = 1
-"""Number of the form of every document; one that is changed so that older programs cannot read it gets the next."""
 
 _DOCUMENTS = {
     "prediction": ("prediction.prediction", "A prediction", "`prediction.json` of `build`, `pneutouch predict --json`"),
@@ -23,18 +21,36 @@ _DOCUMENTS = {
     "comparison": ("reports.comparison", "A comparison", "`comparison.json` of `compare`, `pneutouch compare --json`"),
     "calibration-report": ("reports.calibration_report", "A calibration's report", "`pneutouch calibrate --json`"),
     "reader": ("reader.reader", "A reader of force", "`reader.json` of `export-reader`"),
+    "fit": ("results.fit", "A fitted material law", "`fit.json` of `fit-material`, `pneutouch fit-material --json`"),
+    "response": ("results.response", "A simulated signal", "`response.json` of `respond`, `pneutouch respond --json`"),
+    "scan": ("results.scan", "A scan of a specimen", "`scan.json` of `scan`, `pneutouch scan --json`"),
+    "truth": ("results.truth", "Truth of a simulated campaign", "`truth.json` of `simulate`"),
+    "specimen-report": ("objects.specimen", "A built texture specimen", "`specimen.json` of `build`"),
+    "stack": ("objects.stack", "A voxel stack", "`stack.json` of `build --voxels`"),
+    "exported-design": ("objects.exported_design", "A design exported from the studio", "saved by **Export**"),
 }
 
 
-def _made(path: str) -> Schema:
+def _made(name: str, path: str) -> Schema:
     module, _, function = path.partition(".")
     make: Callable[[], Schema] = getattr(import_module(f"pneutouch.schemas.written.{module}"), function)
-    return make()
+    schema = make()
+    return _with_format(name, schema) if name in FORMATS else schema
+
+
+def _with_format(name: str, schema: Schema) -> Schema:
+    """The same with the key that states the format in a file; of each form where there are several."""
+    if "anyOf" in schema:
+        return {**schema, "anyOf": [_with_format(name, one) for one in schema["anyOf"]]}
+    if KEY in schema["properties"]:
+        return schema
+    stated = {"const": format_of(name), "description": "Format of the file; not in what a command prints."}
+    return {**schema, "properties": {KEY: stated, **schema["properties"]}}
 
 
 def written_kinds() -> dict[str, DocumentKind]:
     """Every document that is written, by name."""
     return {
-        name: DocumentKind("JSON", title, where, partial(_made, path))
+        name: DocumentKind("JSON", title, where, partial(_made, name, path))
         for name, (path, title, where) in _DOCUMENTS.items()
     }

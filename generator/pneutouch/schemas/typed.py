@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Literal, NotRequired, Union
 
 from pneutouch.schemas.helps import help_of
-from pneutouch.schemas.shape import Schema, items, mapping, or_null, record
+from pneutouch.schemas.shape import Schema, any_of, items, mapping, or_null, record
 
 _PLAIN: dict[Any, str] = {str: "string", float: "number", int: "integer", bool: "boolean"}
 
@@ -42,6 +42,7 @@ def _schema(hint: Any, instead: Mapping[str, Schema], known: Mapping[str, Any] |
     if origin is dict:
         return mapping(_schema(inner[1], instead, known))
     if origin in (Union, types.UnionType):
-        (one,) = (each for each in inner if each is not types.NoneType)
-        return or_null(_schema(one, instead, known))
+        kinds = [_schema(each, instead, known) for each in inner if each is not types.NoneType]
+        one = kinds[0] if len(kinds) == 1 else any_of(*kinds)
+        return or_null(one) if types.NoneType in inner else one
     return {}

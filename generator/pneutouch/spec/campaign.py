@@ -151,7 +151,7 @@ class CampaignRun(Table):
 class Campaign(Table):
     """A whole campaign file."""
 
-    file_format: str = Field(default=format_of("campaign"), description="Format of this file and its version.")
+    campaign_format: str = Field(default=format_of("campaign"), description="Format of this file and its version.")
     title: Printable = Field(default="Measurement campaign", max_length=120, description="Title of the measured sheet.")
     lab: Printable = Field(default="", max_length=120, description="Who measured.")
     design: str | None = Field(default=None, min_length=1, description="Design of the sensors, where no flag names it.")
@@ -173,9 +173,9 @@ class Campaign(Table):
 
     @model_validator(mode="after")
     def _of_this_format(self) -> Campaign:
-        problem = problem_of("campaign", self.file_format)
+        problem = problem_of("campaign", self.campaign_format)
         if problem is not None:
-            raise ValueError(f"file_format = {shown(self.file_format)}: {problem[0]}; {problem[1]}")
+            raise ValueError(f"campaign_format = {shown(self.campaign_format)}: {problem[0]}; {problem[1]}")
         return self
 
     @model_validator(mode="after")

@@ -138,7 +138,7 @@ def _files(
     progress("drawing")
     files["drawing.svg"] = drawing_svg(drawn)
     files["print-sheet.md"] = sheet(drawn, checked, whole, left_out).encode()
-    files["specimen.json"] = json_bytes(versioned("specimen", truth(drawn)))
+    files["specimen.json"] = json_bytes(versioned("specimen-report", truth(drawn)))
     return files, {"left_out": left_out} if left_out else {}
 
 

@@ -1,0 +1,113 @@
+"""Schemas of what is stated of an object: a built texture specimen, a voxel stack, an exported design."""
+
+from pneutouch.schemas.shape import (
+    NUMBER,
+    NUMBERS,
+    PAIR,
+    TEXT,
+    TEXTS,
+    WHOLE,
+    Schema,
+    choice,
+    described_by,
+    items,
+    mapping,
+    or_null,
+    record,
+)
+
+_POINT: Schema = {**NUMBERS, "minItems": 3, "maxItems": 3}
+_DIGEST: Schema = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
+_COLOUR: Schema = {**items({"type": "integer", "minimum": 0, "maximum": 255}), "minItems": 4, "maxItems": 4}
+_SHARE: Schema = {"type": "number", "minimum": 0, "maximum": 1}
+
+
+def specimen() -> Schema:
+    """What ``specimen.json`` of a texture specimen's build holds."""
+    sides = {"length_mm": NUMBER, "width_mm": NUMBER, "height_mm": NUMBER, "volume_mm3": NUMBER}
+    path = {"speed_mm_per_s": NUMBER, "axis": choice("x"), "surface_z_mm": NUMBER}
+    layer = {
+        "name": TEXT,
+        "kind": described_by("Family of the pattern.", TEXT),
+        "pitches_mm": NUMBERS,
+        "frequencies_Hz": NUMBERS,
+        "depth_mm": described_by("Depth of the upper faces below the scanned surface.", NUMBER),
+        **dict.fromkeys(("bottom_depth_mm", "start_mm", "end_mm"), NUMBER),
+        "width_mm_range": PAIR,
+        "volume_mm3": NUMBER,
+        "exact_volume_mm3": or_null(NUMBER),
+        "pattern": described_by("Numbers of the family, by name.", {"type": "object"}),
+    }
+    keys = {
+        "name": TEXT,
+        "title": TEXT,
+        "block": record("The block, in its own frame: x along the path of the scan.", sides),
+        "materials": described_by("Material of each body.", mapping(TEXT)),
+        "volumes_mm3": mapping(NUMBER),
+        "inclusion_fraction": _SHARE,
+        "block_to_print_frame_mm": _POINT,
+        "scan": record("How it is to be scanned.", path),
+        "layers": items(record("A layer of bars or of another pattern.", layer)),
+    }
+    return record("What is in a texture specimen, and where.", keys)
+
+
+def stack() -> Schema:
+    """What ``stack.json`` of a voxel stack holds."""
+    resin = record("A base resin.", {"rgba": _COLOUR, "voxels": WHOLE, "volume_mm3": NUMBER})
+    dither = {"method": TEXT, "seed": WHOLE, "cube_mm": NUMBER, "least_share_of_a_cube": NUMBER}
+    keys = {
+        "name": TEXT,
+        "input_hash": TEXT,
+        "printer": TEXT,
+        "mode": TEXT,
+        "orientation": TEXT,
+        "versions": mapping(TEXT),
+        "print_frame_offset_mm": _POINT,
+        "prefix": TEXT,
+        "dpi": PAIR,
+        "pixel_um": PAIR,
+        "layer_um": NUMBER,
+        "pixels": PAIR,
+        "layers": described_by("Number of slices.", WHOLE),
+        "size_mm": _POINT,
+        "first_voxel_mm": _POINT,
+        "background_rgba": _COLOUR,
+        "resins": described_by("Base resins by name.", mapping(resin)),
+        "bodies": described_by("Bodies by name.", mapping(_body())),
+        "dither": record("How fractions are spread over voxels.", dither),
+        "assumptions": TEXTS,
+        "sha256": _DIGEST,
+        "slices": described_by("Digest of each slice, from the first on.", items(_DIGEST)),
+    }
+    return record("A stack of voxel slices.", keys)
+
+
+def _body() -> Schema:
+    mixed: dict[str, Schema] = {
+        "made_up_within_mm": NUMBER,
+        "stiff_resin": TEXT,
+        "skin_voxels": WHOLE,
+        **dict.fromkeys(("fraction_requested", "fraction_given", "fraction_realised"), _SHARE),
+        "worst_cube": NUMBER,
+        "cubes": WHOLE,
+    }
+    keys = {
+        "material": described_by("Label of the material.", TEXT),
+        "resins": described_by("Base resins that it is mixed of.", TEXTS),
+        "voxels": WHOLE,
+        "volume_mm3": NUMBER,
+        "exact_volume_mm3": NUMBER,
+    }
+    return record("A body; what follows its volumes is of a mixed body alone.", {**keys, **mixed}, mixed)
+
+
+def exported_design() -> Schema:
+    """What the page's **Export** saves and **Open** reads."""
+    value: Schema = {"type": ["string", "null"]}
+    keys = {
+        "version": TEXT,
+        "base": TEXT,
+        "values": described_by("What differs from the base, by TABLE.KEY; null: taken out.", mapping(value)),
+    }
+    return record("A design that the studio exported.", keys)

@@ -1,0 +1,203 @@
+"""Schemas of what single commands find: a fitted law, a simulated signal, a scan, the truth of a simulated campaign."""
+
+from typing import get_args
+
+from pneutouch.bench.simulate.parameter import ParameterRecord
+from pneutouch.schemas.shape import (
+    FLAG,
+    NUMBER,
+    NUMBERS,
+    PAIR,
+    TEXT,
+    TEXTS,
+    WHOLE,
+    Schema,
+    choice,
+    described_by,
+    items,
+    mapping,
+    or_null,
+    record,
+)
+from pneutouch.schemas.typed import typed
+from pneutouch.texture.scan import Control
+
+_MAYBE = or_null(NUMBER)
+_LIMITS = {"range_end_mm": NUMBER, "range_ends_by": or_null(TEXT)}
+
+
+def fit() -> Schema:
+    """What ``fit.json`` holds and ``pneutouch fit-material --json`` prints."""
+    specimen = {
+        "data": TEXT,
+        "points": described_by("Number of points.", WHOLE),
+        "slack_percent": NUMBER,
+        "shear_modulus_MPa": NUMBER,
+    }
+    keys = {
+        "material": described_by("Name of the fitted material.", TEXT),
+        "file": TEXT,
+        "test": choice("tension", "puck"),
+        "largest_stretch": NUMBER,
+        "law": _law(),
+        "shear_modulus_small_strain_MPa": NUMBER,
+        "shear_modulus_MPa": NUMBER,
+        "shear_modulus_uncertainty_MPa": _MAYBE,
+        "specimens": described_by("Measured specimens.", items(record("A measured specimen.", specimen))),
+        "fits": items(_law(refused=or_null(TEXT))),
+        "profile": or_null(TEXT),
+        "notes": TEXTS,
+        "folder": TEXT,
+    }
+    return record("A material law fitted to a lab's own test.", keys, ["folder"])
+
+
+def _law(**more: Schema) -> Schema:
+    keys = {
+        "name": described_by("Name of the law.", TEXT),
+        "label": TEXT,
+        "constants": described_by("Constants of the law: MPa, exponents without unit.", NUMBERS),
+        "uncertainties": items(_MAYBE),
+        "misfit_percent": NUMBER,
+        "misfit_of_points_percent": NUMBER,
+    }
+    return record("A fitted law.", {**keys, **more})
+
+
+def response() -> Schema:
+    """What ``response.json`` holds and ``pneutouch respond --json`` prints."""
+    band = ("first_resonance_Hz", "resonance_gain", "bandwidth_3_dB_Hz", "within_5_percent_Hz")
+    numbers = ("driving_pressure_kPa", "slow_pressure_rise_kPa", "greatest_reading_kPa", "last_reading_kPa")
+    state = {
+        **dict.fromkeys(numbers, NUMBER),
+        "relaxation_source": or_null(TEXT),
+        "file": TEXT,
+        **dict.fromkeys(band, _MAYBE),
+        "within_5_percent_limited_by": or_null(TEXT),
+        "gain": NUMBER,
+        "phase_lag_deg": NUMBER,
+        "samples_file": TEXT,
+    }
+    keys = {
+        "design": TEXT,
+        "model": TEXT,
+        "simulated": FLAG,
+        "signal": described_by("Form of the load in time.", choice("step", "sine")),
+        "sine_Hz": _MAYBE,
+        "peak_N": described_by("Greatest force; or peak_mm.", NUMBER),
+        "peak_mm": described_by("Greatest indentation; or peak_N.", NUMBER),
+        "duration_s": described_by("Length of the signal.", NUMBER),
+        "seed": WHOLE,
+        "gauge": or_null(TEXT),
+        "gauge_rate_Hz": _MAYBE,
+        "notes": TEXTS,
+        "states": items(record("One driving pressure.", state, ["gain", "phase_lag_deg", "samples_file"])),
+        "basis": described_by("What the simulation rests on, in sentences.", TEXTS),
+        "folder": TEXT,
+    }
+    return record("What the gauge reads of a force that changes in time.", keys, ["peak_N", "peak_mm", "folder"])
+
+
+def scan() -> Schema:
+    """What ``scan.json`` holds and ``pneutouch scan --json`` prints."""
+    numbers = ("pitch_mm", "width_mm", "height_mm", "depth_mm", "from_mm", "to_mm", "frequency_Hz")
+    pattern = {
+        "name": TEXT,
+        **dict.fromkeys(numbers, NUMBER),
+        "depth_mm": described_by("Depth of the upper faces below the scanned surface.", NUMBER),
+        "bending_length_mm": _MAYBE,
+        "noise_amplitude_kPa": NUMBER,
+    }
+    keys = {
+        "specimen": TEXT,
+        "design": TEXT,
+        "control": choice(*get_args(Control)),
+        "preload_N": NUMBER,
+        "speed_mm_per_s": NUMBER,
+        "path_mm": PAIR,
+        "sampling_Hz": NUMBER,
+        "kept_Hz": NUMBER,
+        "noise_kPa": NUMBER,
+        "seed": WHOLE,
+        "range_kPa": NUMBER,
+        "patterns": items(record("A row of bars in the specimen.", pattern)),
+        "states": items(_scanned()),
+        "assumptions": TEXTS,
+        "folder": TEXT,
+    }
+    return record("A texture specimen scanned by a sensor.", keys, ["folder"])
+
+
+def _scanned() -> Schema:
+    touch = (
+        "driving_pressure_kPa",
+        "contact_radius_mm",
+        "indentation_mm",
+        "stiffness_N_per_mm",
+        "pressure_slope_kPa_per_mm",
+        "pressure_kPa",
+        "specimen_compliance_mm_per_N",
+    )
+    simulated = {**dict.fromkeys(touch, NUMBER), "model": TEXT, "clipped": FLAG, "notes": TEXTS}
+    keys = {
+        "label": TEXT,
+        "signal": described_by("File of the signal.", TEXT),
+        "duration_s": described_by("Length of the signal.", NUMBER),
+        **simulated,
+        "patterns": items(_detection()),
+    }
+    return record("A signal.", keys, simulated)
+
+
+def _detection() -> Schema:
+    amplitudes = ("model_amplitude_kPa", "sinking_amplitude_um", "relief_equivalent_um")
+    searched = (
+        "detected_frequency_Hz",
+        "amplitude_kPa",
+        "noise_floor_kPa",
+        "detection_figure",
+        "threshold",
+        "p_value",
+        "level",
+        "frequency_error_relative",
+    )
+    optional = dict.fromkeys((*amplitudes, *searched), NUMBER)
+    optional["level"] = described_by("Greatest p-value of a detection.", NUMBER)
+    keys = {"name": TEXT, "true_frequency_Hz": NUMBER, "detected": FLAG, **optional}
+    return record("A row of bars looked for in a signal.", keys, optional)
+
+
+def truth() -> Schema:
+    """What ``truth.json`` of ``pneutouch simulate`` holds."""
+    figures = mapping({"type": ["number", "string", "null"]})
+    specimen = {
+        "resin": TEXT,
+        "age_days": NUMBER,
+        "shear_modulus_MPa": NUMBER,
+        "pressures": described_by("Figures without noise, by driving pressure in kPa.", mapping(figures)),
+        "wall_thickness_mm": NUMBER,
+        "dead_volume_mL": NUMBER,
+        "model": TEXT,
+    }
+    population = {
+        "resin": TEXT,
+        "age_days": NUMBER,
+        "driving_pressure_kPa": NUMBER,
+        "figures": described_by("Mean figures over specimens.", mapping(_MAYBE)),
+        "spread": described_by("Standard deviation of each figure over specimens.", mapping(NUMBER)),
+        "count": WHOLE,
+        "basis": TEXT,
+    }
+    keys = {
+        "simulated": FLAG,
+        "design": TEXT,
+        "model": TEXT,
+        "seed": WHOLE,
+        "rate_Hz": NUMBER,
+        "rest_s": NUMBER,
+        "parameters": mapping(mapping(mapping(typed(ParameterRecord, {})))),
+        "specimens": described_by("Specimens by name.", mapping(record("A simulated specimen.", specimen))),
+        "populations": items(record("Sensors of one resin, age and driving pressure.", population)),
+        "notes": TEXTS,
+    }
+    return record("What is true of the simulated specimens, without noise.", keys)
