@@ -2,7 +2,7 @@
 
 Every such file states ``format = "pneutouch/NAME/VERSION"``; a campaign does in ``campaign_format``, as its ``format``
 is that of the measured files. A version counts changes after which an older program would misread the file; keys that
-are added do not raise it. Files without the key, or with a number alone, are those of programs before the key was there.
+are added do not raise it. Files without the key, or with a number alone, are those of programs before the key existed.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def format_of(name: str) -> str:
 
 
 def version_of(name: str) -> int:
-    """The version of a kind of document; 1 where files state none: people write them, or a command prints them alone."""
+    """The version of a kind of document; 1 where files state none: people write them, or commands only print them."""
     return FORMATS[name].version if name in FORMATS else 1
 
 
