@@ -48,6 +48,7 @@ def test_the_design_file_is_valid():
         assert validate(DesignFile, tomllib.loads(block), "files.md").membrane.inner_radius_mm == 6
 
 
+@pytest.mark.slow
 def test_the_python_runs_builds_and_predicts_a_figure_within_its_interval(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     block = blocks((REFERENCE / "python.md").read_text(encoding="utf-8"), "python")[1]

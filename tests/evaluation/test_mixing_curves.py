@@ -83,6 +83,7 @@ def test_a_fraction_beyond_the_stiffest_curve_is_a_warning():
     assert any("j750-hardness" in line for line in curves_section(sheet_data(evaluation, ""))["lines"][1:])
 
 
+@pytest.mark.slow
 def test_a_measured_curve_and_a_resin_have_no_other_curves(tmp_path, library):
     folder = tmp_path / "printprofiles/mixing"
     folder.mkdir(parents=True)

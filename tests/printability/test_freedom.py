@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from pneutouch.evaluation.subject import subject_of
 from pneutouch.printability import SensorContext, check
 
@@ -26,6 +28,7 @@ def test_a_wall_that_lies_down_on_the_ring_does_not_enter_it(evaluated):
     assert meetings(evaluated("soft-pad", "connector.seat=clamped-flange-M2")) == []
 
 
+@pytest.mark.slow
 def test_less_indentation_leaves_it_free(evaluated):
     short = evaluated("soft-pad", "connector.seat=clamped-flange-M2", "indentation.depth_mm=5", THROUGH)
     assert meetings(short) == []

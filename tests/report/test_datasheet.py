@@ -89,6 +89,7 @@ def test_what_was_not_tested_says_so(html, pdf_text):
     assert "Predicted. No unit has been built or tested." in pdf_text[0]
 
 
+@pytest.mark.slow
 def test_a_pressure_above_the_rating_is_warned_of_first_and_the_rating_shows_its_limit(built, html, pdf_text):
     first, every = " ".join(pdf_text[0].split()), " ".join(" ".join(pdf_text).split())
     warning = "Warning: 22 kPa is above the rated pressure of 19.7 kPa."

@@ -21,6 +21,7 @@ def graded():
     return evaluate("graded-dome", parse_changes(SHALLOW))
 
 
+@pytest.mark.slow
 def test_a_graded_membrane_has_its_figures_in_the_same_bytes(graded):
     once, again = (graded_figures(sheet_data(graded, "")) for _ in range(2))
     assert set(once) == set(CAPTIONS)

@@ -70,6 +70,7 @@ def test_seven_resins_are_compared_and_stop_at_their_own_limits(evaluated, libra
     assert found["FLX9970-DM"][0][-1] == pytest.approx(60.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("resin", "model"),
     [("FLX9940", "atlas corrected by the solid"), ("FLX9985", "solid")],

@@ -46,6 +46,7 @@ def predicted(selection: SelectionRun, folder) -> tuple[float, float, float]:
     return figures.sensitivity_kPa_per_N, figures.force_range[1], 2 * stated["standard_uncertainty_relative"]
 
 
+@pytest.mark.slow
 def test_a_design_for_a_ball_meets_the_target_under_that_ball(tmp_path):
     """Under a plate the same design would have about half of the sensitivity."""
     selection = under_ball()

@@ -30,6 +30,7 @@ def both(library):
     return selection(["casting", "polyjet"], library, given=given)
 
 
+@pytest.mark.slow
 def test_each_process_has_its_best_on_a_profile_that_makes_it(both, library):
     assert [process for process, _ in both.best] == ["casting", "polyjet"]
     assert both.profiles == {"casting": "silicone-casting", "polyjet": "objet260-connex"}
@@ -80,6 +81,7 @@ def test_a_document_has_processes_where_they_are_given_alone():
     assert "processes" not in Target.model_validate({"target": TARGET}).model_dump()["setting"]
 
 
+@pytest.mark.slow
 def test_each_answer_is_that_of_the_target_on_its_profile_alone(both, library):
     run = both.pick(1)
     assert run.target.setting.profile == "silicone-casting" and run.target.setting.processes is None

@@ -30,6 +30,7 @@ def test_scenes_are_of_all_kinds():
     }
 
 
+@pytest.mark.slow
 def test_a_ball_that_shears_a_thin_wall_needs_few_newton_steps():
     """248; 620 with the tractions of the guess in the tangent, those of solves that failed among them."""
     end = ended(36)

@@ -20,6 +20,7 @@ def _pinned_and_wrong(page) -> None:
     until(page, "document.querySelectorAll('.faulty').length === 2")
 
 
+@pytest.mark.slow
 def test_a_pinned_design_and_an_error_break_no_rule(screen):
     solved(screen, "#paper-dome")
     # With every field of the form open there is most to look at.

@@ -29,6 +29,7 @@ def test_a_body_of_another_shape_is_drawn_by_the_shaders_that_there_are(pages, s
     assert page.evaluate("window.linked") == first
 
 
+@pytest.mark.slow
 def test_a_chart_outside_the_window_is_drawn_when_the_moves_pause(open_studio):
     page = open_studio(height=500)
     solved(page, "#paper-dome")

@@ -50,6 +50,7 @@ def test_every_named_file_is_there_and_in_the_manifest(built):
 OLD = {"manifest.json": b'{"files": {"old.txt": {}}}', "old.txt": b"old"}
 
 
+@pytest.mark.slow
 def test_a_build_touches_nothing_before_it_writes_and_repeats_the_bytes_of_another_process(built, evaluated, tmp_path):
     """The other process has a hash seed of its own."""
     write_folder(tmp_path / "paper-dome", OLD)

@@ -67,6 +67,7 @@ def short(shallow):
     return select_graded(Target.model_validate(content), "test", trials=4)
 
 
+@pytest.mark.slow
 def test_a_grade_is_set_beside_every_resin_and_the_nearest_mix_of_its_size(short, shallow):
     names = [constant.name for constant in short.constants]
     assert names[:-1] == ["TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985", "FLX9995"]

@@ -48,6 +48,7 @@ def test_friction_is_not_fitted_unless_it_is_named(library):
     assert rough.start[FRICTION] == GRIPS and FRICTION in rough.others
 
 
+@pytest.mark.slow
 def test_a_design_with_friction_is_fitted_with_it(library):
     """The friction held at the true one: the modulus comes out, although the design's was 14 % off."""
     seen = campaign(library, (0.0,), 3, **TRUTH)

@@ -159,6 +159,7 @@ def test_the_work_of_the_travel_is_stored_or_dissipated() -> None:
     assert stored + spent == pytest.approx(work, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_it_ends_at_the_edge_of_the_object_and_is_not_begun_after_a_press_that_ended() -> None:
     path = _sheared(0.3, 6.0, plate=12.0)
     assert path.ended is not None and "edge" in path.ended

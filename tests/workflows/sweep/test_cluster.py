@@ -56,6 +56,7 @@ def listening():
     return silent
 
 
+@pytest.mark.slow
 def test_no_scheduler_is_an_input_error(command, tmp_path):
     with socket.socket() as unused:
         unused.bind(("127.0.0.1", 0))

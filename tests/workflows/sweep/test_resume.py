@@ -218,6 +218,7 @@ def test_a_full_disk_is_said_and_the_progress_kept(single, library, tmp_path, mo
     assert names(tmp_path) == ["sweep.nc"]
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_is_said_and_the_progress_kept(undisturbed, tmp_path):
     out = tmp_path / "sweep.nc"
     process = held(out, "--workers", "2")
