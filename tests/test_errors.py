@@ -29,7 +29,7 @@ from pneutouch.spec.read import validate
 
 PACKAGE = Path(pneutouch.__file__).parent
 OPTION = re.compile(r"(?<![\w-])--[a-z]")
-COMMAND_LINE = re.compile(r"\bpneutouch [a-z]+ [^`\n]*")
+COMMAND_LINE = re.compile(r"\bpneutouch [a-z-]+ [^`\n]*")
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 from pneutouch.cli import plan, simulate
 from pneutouch.cli.app import app
 from pneutouch.cli.plan_text import plan_text
+from pneutouch.formats import format_of
 
 assert plan and simulate
 
@@ -27,7 +28,7 @@ def test_plan_prints_its_document_and_warns_on_stderr(tmp_path):
     assert result.exit_code == 0, result.stderr
     said = json.loads(result.stdout)
     written = json.loads((tmp_path / "paper-dome-plan" / "plan.json").read_text())
-    assert {key: value for key, value in said.items() if key != "folder"} == written
+    assert {key: value for key, value in said.items() if key != "folder"} | {"format": format_of("plan")} == written
     assert said["rig"]["force_range_N"] == 10.0 and said["rig"]["file"] == "rig.toml"
     force = [w for w in said["warnings"] if w["rule"] == "force range"]
     assert [w["driving_pressure_kPa"] for w in force] == [0, 5, 12, 22]

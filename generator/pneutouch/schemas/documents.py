@@ -26,7 +26,7 @@ _DOCUMENTS = {
     "scan": ("results.scan", "A scan of a specimen", "`scan.json` of `scan`, `pneutouch scan --json`"),
     "truth": ("results.truth", "Truth of a simulated campaign", "`truth.json` of `simulate`"),
     "specimen-report": ("objects.specimen", "A built texture specimen", "`specimen.json` of `build`"),
-    "stack": ("objects.stack", "A voxel stack", "`stack.json` of `build --voxels`"),
+    "stack": ("objects.stack", "A voxel stack", "`stack.json` of every stack for voxel printing"),
     "exported-design": ("objects.exported_design", "A design exported from the studio", "saved by **Export**"),
 }
 

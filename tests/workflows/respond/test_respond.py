@@ -11,6 +11,7 @@ import pneutouch as pt
 from pneutouch.cli.respond_text import respond_text
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.formats import versioned
 from pneutouch.workflows.respond.document import document, write_respond
 from pneutouch.workflows.respond.load import Load, frequency_Hz, load_size
 from pneutouch.workflows.respond.run import run_respond
@@ -107,7 +108,7 @@ def test_the_folder_holds_what_the_document_states(elastic, tmp_path):
     for path in folder.iterdir():
         assert path.read_bytes() == (again / path.name).read_bytes()
     stated = json.loads((folder / "response.json").read_text())
-    assert stated == json.loads(json.dumps(document(run))) and stated["simulated"] is True
+    assert stated == versioned("response", json.loads(json.dumps(document(run)))) and stated["simulated"] is True
     table = np.genfromtxt(folder / "signal-1.csv", delimiter=",", names=True)
     assert table["gauge_pressure_rise_kPa"].max() == pytest.approx(
         stated["states"][0]["greatest_reading_kPa"], rel=0.02
