@@ -26,6 +26,8 @@ CASES = [
     for k, (port, seat) in enumerate(itertools.product(sorted(LIBRARY.paths("ports")), sorted(LIBRARY.paths("seats"))))
     for other in range(2)
 ]
+FITS = {("cast-ring", "robot-50-4-M6"): ["membrane.inner_radius_mm=8"]}
+"""Sizes for seats that are too wide for a mount with the dome as it is."""
 
 
 def assembly(port, seat, mount, *more):
@@ -34,6 +36,7 @@ def assembly(port, seat, mount, *more):
         f"connector.seat={seat}",
         f"connector.mount={mount}",
         *CAST.get(seat, ()),
+        *FITS.get((seat, mount), ()),
         *more,
     ]
     return assemble(load_scene("stiff-dome", parse_changes(chosen), LIBRARY))
