@@ -26,7 +26,14 @@ SERVING = [line for line in COMMANDS if line.startswith("pneutouch studio ")]
 """They run until they are stopped: tests/studio starts and stops the studio."""
 
 
-@pytest.mark.parametrize("line", [line for line in COMMANDS if line not in SERVING])
+def cost(line):
+    """The command as a parameter; those that take seconds are left to the slow run."""
+    return pytest.param(
+        line, marks=pytest.mark.slow if line.split()[1] in ("plan", "scan", "build", "simulate") else ()
+    )
+
+
+@pytest.mark.parametrize("line", [cost(line) for line in COMMANDS if line not in SERVING])
 def test_command_runs(line, command, built_as_a_user):
     words = shlex.split(line.replace("/tmp/sensors", "sensors"), comments=True)[1:]
     # A build is run once for all tests, by these words and --json.

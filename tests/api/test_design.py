@@ -29,6 +29,7 @@ FIELDS = {
 }
 
 
+@pytest.mark.slow
 @given(fields=st.fixed_dictionaries({}, optional=FIELDS))
 def test_keywords_come_back_from_the_design_and_from_its_file(fields, tmp_path_factory):
     design = pt.Design("mine", **fields)
@@ -123,6 +124,7 @@ def test_a_tolerance_goes_with_auto_alone():
     assert caught.value.key == "tolerance"
 
 
+@pytest.mark.slow
 def test_a_check_is_the_command_lines(printed):
     assert pt.load("stiff-dome").check().to_dict() == printed("check", "stiff-dome")
     broken = pt.load("stiff-dome").replace(wall_thickness_mm=0.5)

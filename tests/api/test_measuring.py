@@ -42,6 +42,7 @@ def test_a_simulated_campaign_has_the_bytes_of_the_command_lines(campaign, print
         assert path.is_dir() or path.read_bytes() == (theirs / path.relative_to(campaign)).read_bytes(), path
 
 
+@pytest.mark.slow
 def test_figures_of_measured_runs_are_the_command_lines(campaign, printed, tmp_path):
     found = pt.characterize(campaign, model="atlas")
     said = printed("characterize", campaign, "--model", "atlas", "--out", tmp_path / "theirs")
@@ -88,6 +89,7 @@ def test_a_plan_is_the_command_lines(printed, tmp_path):
     assert caught.value.key == "specimens"
 
 
+@pytest.mark.slow
 def test_a_scan_is_the_command_lines(printed, tmp_path):
     found = pt.scan("texture-specimen", pt.load("paper-dome"), driving_pressures_kPa=[22], noise_kPa=0.02)
     said = printed(

@@ -124,6 +124,7 @@ def test_separate_ranks_domes():
     assert contrasts == sorted(contrasts, reverse=True) and contrasts[0] > 1
 
 
+@pytest.mark.slow
 def test_separate_drives_no_dome_above_its_rated_pressure(library):
     """Built as it is printed, each dome at each of its pressures is within what `check` calls rated."""
     said = separating("texture-specimen", "paper-dome", "3@0,6@2", ScanOptions(), library=library)

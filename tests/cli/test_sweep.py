@@ -36,6 +36,7 @@ def bench(tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("line", [line for line in COMMANDS if "--scheduler" not in line])
 def test_the_page_s_commands_run(line, command, bench):
     result = command(*shlex.split(line)[1:])
@@ -56,6 +57,7 @@ def test_the_page_s_cluster_commands_run(command, bench, cluster):
     assert (bench / "cluster.nc").read_bytes() == (bench / "outputs/wall-and-resin.nc").read_bytes()
 
 
+@pytest.mark.slow
 def test_the_page_s_python_and_list_run(command, bench, monkeypatch):
     assert command("sweep", "wall-and-resin.toml", "--workers", "1").returncode == 0
     monkeypatch.chdir(bench)

@@ -40,7 +40,7 @@ def graded(sensor: Sensor, fractions: list[float], library, curve: str | None = 
 @pytest.mark.parametrize(
     ("name", "fractions", "curve", "pressure", "gap"),
     [
-        ("shear_modulus", [0.0, 0.19], None, 0.0, GAP),
+        pytest.param("shear_modulus", [0.0, 0.19], None, 0.0, GAP, marks=pytest.mark.slow),
         ("shear_modulus", [0.19, 0.0], None, 12 * KPA, GAP),
         ("wall_thickness", [0.19, 0.0], None, 12 * KPA, GAP),
         pytest.param("wall_thickness", [0.0, 0.08, 0.265], None, 0.0, STEEP_GAP, marks=pytest.mark.slow),

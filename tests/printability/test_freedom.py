@@ -16,6 +16,7 @@ THROUGH = "contact.base=false"
 """The wall passes through its base and ring."""
 
 
+@pytest.mark.slow
 def test_a_wide_soft_dome_meets_its_clamping_ring_and_no_glued_groove(evaluated):
     found = meetings(evaluated("soft-pad", "connector.seat=clamped-flange-M2", THROUGH))
     assert [finding.severity for finding in found] == ["warning"]

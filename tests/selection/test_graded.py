@@ -99,6 +99,7 @@ def test_levels_are_even_in_the_logarithm_of_the_modulus(library: Library):
     np.testing.assert_allclose(steps, steps.mean(), rtol=5e-3)
 
 
+@pytest.mark.slow
 def test_a_fraction_is_found_at_which_the_sensitivity_is_met_exactly():
     """Radius, wall and pressure all given: only the mix is free, and no catalogue resin does it."""
     given = {"inner_radius_mm": 9.25, "wall_thickness_mm": 1.5}
@@ -117,6 +118,7 @@ def test_a_fraction_is_found_at_which_the_sensitivity_is_met_exactly():
     assert best.resin.break_stretch == pytest.approx(1 + float(law.elongation_at(fraction)) / 100)
 
 
+@pytest.mark.slow
 def test_mixes_keep_every_wish_and_limit_that_resins_keep():
     wanted = {
         "sensitivity_kPa_per_N": 1.9,

@@ -20,7 +20,7 @@ KEYS = {"sensitivity": "sensitivity_kPa_per_N", "force range": "force_range_N", 
     [
         {**FINGERTIP, "force_range_N": 150.0},
         pytest.param({**FINGERTIP, "sensitivity_kPa_per_N": 20.0}, marks=pytest.mark.slow),
-        {**FINGERTIP, "max_diameter_mm": 12.0},
+        pytest.param({**FINGERTIP, "max_diameter_mm": 12.0}, marks=pytest.mark.slow),
     ],
     ids=["force", "sensitivity", "diameter"],
 )

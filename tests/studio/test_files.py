@@ -63,6 +63,7 @@ def page(own: Studio, pages: Pages) -> Page:
     return shown(own.open(pages))
 
 
+@pytest.mark.slow
 def test_a_dropped_design_file_becomes_the_design_and_a_hostile_one_a_message(page):
     dropped(page, ("mine.toml", b"[membrane]\nwall_thickness_mm = 1.25\n"))
     until(page, f"{_NOTICE}.startsWith('Opened mine.toml')")

@@ -114,6 +114,7 @@ def test_text_that_is_no_run_is_refused_in_the_words_of_the_command(tmp_path, as
         ask(measuring.characterize, uploaded(tmp_path / "lab", within=""), runs=[{**runs[0], "file": "../../a.csv"}])
 
 
+@pytest.mark.slow
 def test_a_calibration_is_that_of_the_command_and_is_kept_only_where_it_is_saved(
     campaign, mine, tmp_path, ask, command
 ):

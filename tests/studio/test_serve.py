@@ -54,6 +54,7 @@ def test_without_its_packages_it_names_what_to_install(command, monkeypatch):
     assert "pip install 'pneutouch[studio]'" in done.stderr
 
 
+@pytest.mark.slow
 def test_the_address_is_opened_in_a_browser(command, monkeypatch):
     opened = []
     monkeypatch.setattr("webbrowser.open", opened.append)

@@ -263,6 +263,7 @@ def test_a_rejected_grade_is_shown_and_neither_saved_nor_returned(short, monkeyp
     assert not found.met and found.designs == () and found.to_dict()["rejected"] == "plate: too small"
 
 
+@pytest.mark.slow
 def test_a_mix_chosen_is_written_as_one(tmp_path):
     flags = ["--sensitivity", "1.8", "--at", "12", "--inner-radius", "9.25", "--wall", "1.5", "--base", "paper-dome"]
     result = run("select", *flags, "--mix", "TangoPlus+VeroClear", "--write", "mine", "--out", str(tmp_path), "--json")

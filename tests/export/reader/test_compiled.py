@@ -94,7 +94,13 @@ def states(count, *, nominal):
 
 @c_compiler
 @pytest.mark.parametrize(
-    "known", [record(), record(factor=1.25), record(relative=False)], ids=["plain", "factor", "bare"]
+    "known",
+    [
+        record(),
+        pytest.param(record(factor=1.25), marks=pytest.mark.slow),
+        pytest.param(record(relative=False), marks=pytest.mark.slow),
+    ],
+    ids=["plain", "factor", "bare"],
 )
 def test_c_and_python_have_the_same_answers(tmp_path, known):
     answers, reader, seen = compiled(tmp_path, MAIN, known), module(tmp_path), set()

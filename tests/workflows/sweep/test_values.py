@@ -66,7 +66,10 @@ def agrees(point, document):
 
 @pytest.mark.parametrize(
     ("model", "resins", "walls"),
-    [("membrane", ["TangoPlus", "FLX9960"], [1.0, 1.25, 1.5]), ("solid", ["FLX9950"], [1.2, 1.5])],
+    [
+        ("membrane", ["TangoPlus", "FLX9960"], [1.0, 1.25, 1.5]),
+        pytest.param("solid", ["FLX9950"], [1.2, 1.5], marks=pytest.mark.slow),
+    ],
 )
 def test_every_figure_is_that_of_predict(model, resins, walls, evaluated, library, tmp_path):
     plan = small(
