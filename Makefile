@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page contact-table simulator-page dist sbom pythons paper lock clean
+.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page background-charts atlas atlas-page contact-table simulator-page dist sbom pythons paper lock clean
 
 venv: $(VENV)/.dev
 
@@ -110,6 +110,10 @@ coverage-page: $(VENV)/.dev
 # Where a pressed dome leaves its axis; writes docs/background/sway.md with its map. CalculiX's part: python -m benchmarks.sway_calculix.
 sway-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.sway_page
+
+# The charts of pages of docs/background that are written by hand: theory, uncertainty, relaxation, ageing, grades.
+background-charts: $(VENV)/.dev
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.background_charts
 
 # The mixing curve between its bounds; writes docs/background/mixing.md and its chart.
 mixing-page: $(VENV)/.dev

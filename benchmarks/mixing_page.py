@@ -46,7 +46,7 @@ def measure(library: Library) -> MixingChart:
 def page(chart: MixingChart, library: Library) -> str:
     """The whole page."""
     parts = (
-        _what(chart), _curves(chart), _why(library), _step(), _spread(chart, library), band(chart), _lab()
+        _answer(chart), _curves(chart), _why(library), _step(), _spread(chart, library), band(chart), _lab()
     )  # fmt: skip
     return "\n".join(line for part in parts for line in (*part, ""))
 
@@ -55,25 +55,27 @@ def _used(chart: MixingChart) -> ResolvedMixingCurve:
     return next(iter(chart.laws.values()))
 
 
-def _what(chart: MixingChart) -> list[str]:
+def _answer(chart: MixingChart) -> list[str]:
     used, *others = chart.laws
+    low, high = (float(bound[0]) for bound in _used(chart).band_at(np.array([0.1])))
     return [
         "# Stiffness of a mix of two resins",
         "",
+        "Which shear modulus has a wall printed from two base resins, mixed droplet by droplet? No vendor publishes the fractions of its digital materials. "
+        f"Three curves from two published sources bound it: 10 % {STIFF} in {SOFT} has {low:.2g} to {high:.3g} MPa, and {float(_used(chart).modulus_at(np.array([0.1]))[0]):.2g} MPa by the "
+        "curve in use.",
+        "",
         "![Shear modulus over fraction by every curve, with the catalogue's resins](mixing.svg)",
         "",
-        "A membrane may be printed from two base resins mixed droplet by droplet, at one fraction or graded along its arc:",
+        f"*Shear modulus over the volume fraction of {STIFF} by the three curves, with the bounds of the next sections. Dots: the catalogue's resins; thin lines reach from curve to curve.*",
         "",
         "```toml",
         "[membrane]",
         f'material = {{ from = "{SOFT}", to = "{STIFF}", fraction = 0.1 }}',
         "```",
         "",
-        "The fraction is what is printed, and exact. Its modulus is not known: no vendor publishes the fractions of its "
-        f'digital materials. Two published sources give three curves. `{used}` is in use; `curve = "{others[0]}"` or '
-        f'`curve = "{others[1]}"` inside the braces selects another. `check`, the datasheet and their JSON '
-        "(`mixing_curves`) state sensitivity, force range and rated pressure by each. The dots are the catalogue's "
-        "resins; the thin lines reach from curve to curve. `python -m benchmarks.mixing_page` writes this page.",
+        f'The fraction is what is printed, and exact. `{used}` is in use; `curve = "{others[0]}"` or `curve = "{others[1]}"` inside the braces selects another. `check`, the datasheet '
+        "and their JSON (`mixing_curves`) state sensitivity, force range and rated pressure by each. `python -m benchmarks.mixing_page` writes this page.",
     ]
 
 
@@ -97,15 +99,15 @@ def _curves(chart: MixingChart) -> list[str]:
         "|---|---|---|---|---|",
         *rows,
         "",
-        f"- **`{names.fraction}`** Agilus30 with Vero, printed by a J750 in known fractions and pulled: log10 E = "
-        f"{TENSION_INTERCEPT:g} + {TENSION_SLOPE:g} f (E in MPa) from 5 to 40 %. Taken relative to the soft resin. Source: the J750 "
+        f"- **`{names.fraction}`**: Agilus30 with Vero, printed by a J750 in stated fractions and pulled, log10 E = "
+        f"{TENSION_INTERCEPT:g} + {TENSION_SLOPE:g} f (E in MPa) from 5 to 40 %, relative to the soft resin. Source: the J750 "
         "conversions of OpenVCAD, package `pyvcad-attribute-resolver`, Matter Assembly Computation Lab, University of "
         "Colorado Boulder ([OpenVCAD](https://github.com/MacCurdyLab/OpenVCAD-Public): Wade et al., Additive "
         "Manufacturing, DOI 10.1016/j.addma.2023.103912). Its licence is noncommercial: cited, nothing copied.",
-        f"- **`{names.fraction_low}`** The same mixes have the hardness of {read} %, to about a percent. Below, straight "
+        f"- **`{names.fraction_low}`**: the same mixes have the hardness of {read} %, to about a percent. Below, straight "
         "in ln mu from the soft resin; beyond, by the last slope.",
-        f"- **`{names.fraction_high}`** Agilus30 Black with VeroWhite, an input file of an Abaqus/MATLAB mixture tool "
-        f"(`HELPER_MaterialsFE.m`): long-term moduli {series} MPa at {shares} %. Taken relative to the soft resin, straight in "
+        f"- **`{names.fraction_high}`**: Agilus30 Black with VeroWhite, an input file of an Abaqus/MATLAB mixture tool "
+        f"(`HELPER_MaterialsFE.m`), long-term moduli {series} MPa at {shares} %, relative to the soft resin, straight in "
         "ln mu; beyond 50 % by the last slope.",
     ]
 
@@ -120,15 +122,15 @@ def _why(library: Library) -> list[str]:
     return [
         "## Why the tensile line is in use",
         "",
-        "- Its fractions were printed and its moduli measured. The mixture tool's numbers are inputs of a program; their "
-        "measurements are not available, and two of our seven resins lie beyond its last mix.",
+        "- Its fractions were printed and its moduli measured. The mixture tool's numbers are inputs of a program without "
+        "measurements, and two of the seven resins lie beyond its last mix.",
         "- Two properties of the same mixes agree. By Gent's relation the hardness gives a rise of log10 E over the soft "
         f"resin's of {', '.join(rows)} for a fraction of 1, at {', '.join(f'{100 * f:g}' for f in HARDNESS_READ.values())} %; "
         f"tension gives {TENSION_SLOPE:g}. All seven resins lie within its stated 40 %.",
-        f"- The hardness itself is not used as it is: that soft resin has {SOFT_HARDNESS:g} Shore A, {SOFT} 27.6. A "
-        "softer base needs more of the stiff resin for the same hardness, so this curve is the stiff end.",
+        f"- The hardness curve is the stiff end: that soft resin has {SOFT_HARDNESS:g} Shore A, {SOFT} 27.6, and a "
+        "softer base needs more of the stiff resin for the same hardness.",
         "",
-        "None of the three is of our two resins, and of the J750's mixes neither rate nor temperature is stated.",
+        f"None of the three is of {SOFT} and {STIFF}, and for the J750's mixes neither rate nor temperature is stated.",
     ]
 
 
@@ -139,8 +141,8 @@ def _step() -> list[str]:
         f"A step from rubber to plastic between {100 * THRESHOLD:.0f} and {100 * VOXEL_THRESHOLD:.0f} % is a bound from "
         "percolation, not an observation: glassy droplets in random places touch throughout the wall from "
         f"{100 * THRESHOLD:g} % (Scher and Zallen 1970, DOI 10.1063/1.1674565), voxels that touch by faces from "
-        f"{100 * VOXEL_THRESHOLD:g} %. The J750's tensile modulus rises smoothly from 5 to 40 % and shows no such step. "
-        "Sections of printed mixes do show particles of one resin in the other (DOI 10.1089/3dp.2017.0038). The chart "
+        f"{100 * VOXEL_THRESHOLD:g} %. The J750's tensile modulus rises smoothly from 5 to 40 %. "
+        "Sections of printed mixes show particles of one resin in the other (DOI 10.1089/3dp.2017.0038). The chart "
         "draws the bound, and the softest isotropic mix (Hashin and Shtrikman 1963, DOI 10.1016/0022-5096(63)90060-7).",
     ]
 
@@ -159,7 +161,7 @@ def _spread(chart: MixingChart, library: Library) -> list[str]:
         "",
         f"`select --mix` and `--graded` offer fractions up to {100 * used.curve.common_top:.3g} %, where the stiffest curve "
         "ends. Beyond it a wall may be rigid if that curve is true; for a stiffer wall choose a catalogue resin, whose "
-        "modulus was measured. The paper's sensor at 0 kPa by the atlas, in all fractions that are tried, next to "
+        "modulus was measured. The paper's sensor at 0 kPa by the atlas, in the fractions that are offered and in "
         f"{WHOLE_LEVELS} to the end of the mixture tool's curve:",
         "",
         "| fractions | number | to | no modulus by some curve | S off by the farthest curve, median | worst |",
@@ -192,9 +194,9 @@ def band(chart: MixingChart) -> list[str]:
     return [
         "## Uncertainty",
         "",
-        "The source `mixing fraction` of every budget reaches from the softest curve to the stiffest, straight in ln mu "
-        "between the resins (JCGM 100, 4.3.7); it counts in addition to `published modulus`. No modulus above the "
-        "stiffest resin's is taken. The moduli of the two stiffest are themselves doubtful: [hard-resins.md](hard-resins.md).",
+        "The source `mixing fraction` of every [budget](uncertainty.md) reaches from the softest curve to the stiffest, straight in ln mu "
+        "between the resins (JCGM 100, 4.3.7), in addition to `published modulus`. No modulus above the "
+        "stiffest resin's is taken; those of the two stiffest are themselves doubtful ([hard-resins.md](hard-resins.md)).",
         "",
         f"| % {STIFF} | least, MPa | in use, MPa | greatest, MPa | standard uncertainty of ln mu |",
         "|---|---|---|---|---|",
@@ -215,12 +217,10 @@ def _lab() -> list[str]:
         f"pneutouch coupons --results results.toml   # writes printprofiles/mixing/{SOFT}+{STIFF}.toml",
         "```",
         "",
-        f"It prints {len(FRACTIONS)} fractions: {steps} %. Most of the change is below 25 % if the J750's mixes are like "
-        "yours, so six are at most 20 %; by every curve the modulus rises by less than 2.5 times from one to the next, as "
+        f"It prints {len(FRACTIONS)} fractions: {steps} %. By every curve the modulus rises by less than 2.5 times from one to the next, as "
         "far as the curve reaches. Without dumbbells the modulus is the soft resin's times the ratio of Gent's relation "
         "between the two hardnesses: right in order, inaccurate in size, not used above 95 A. A curve whose modulus falls "
-        "with the fraction is refused. The measured curve has a `spread` in place of the band and no other curves: their "
-        "statement and the assumption leave check, datasheet and budget.",
+        "with the fraction is refused. A measured curve has a `spread` in place of the band, and the assumption leaves check, datasheet and budget.",
     ]
 
 
