@@ -37,6 +37,9 @@ def run() -> None:
     # What is left ends with the process: to search it for garbage takes Python up to a tenth of a command's time.
     # A stop or an error leaves frames in reference cycles, whose objects libraries would report as leaked.
     if code < _UNWOUND:
+        if "manifold3d" in sys.modules:
+            # It lists on stderr what is never freed, and loading matplotlib keeps the frames of all callers in a cycle.
+            gc.collect()
         gc.freeze()
     sys.exit(code)
 

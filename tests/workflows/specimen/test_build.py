@@ -146,3 +146,9 @@ def written(folder: Path, layers: str, rest: str = "", block: str = "length_mm =
     path = folder / "part.toml"
     path.write_text(f"[block]\n{block}{layers}{rest}")
     return str(path)
+
+
+def test_a_check_ends_without_words_of_a_library(process):
+    done = process("check", "texture-specimen")
+    assert (done.returncode, done.stdout) == (0, "no findings\n")
+    assert "leaked" not in done.stderr
