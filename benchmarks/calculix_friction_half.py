@@ -77,10 +77,10 @@ def section(data: dict[str, Any]) -> list[str]:
     return [
         HEADING,
         "",
-        "The paper's dome in FLX9960 without its base, pressed centrally by a plate, by the axisymmetric solid on its "
-        f"default mesh and by half a dome of {' x '.join(map(str, data['cells']))} C3D20R cells, each with its own gas shut in. "
-        "CalculiX counts slip from the beginning of its computation, so the coefficient is one at which nearly all points "
-        "slip. `python -m benchmarks.calculix_friction_half` computes it. See [friction.md](friction.md).",
+        "The paper's dome in FLX9960 without its base, pressed centrally by a plate: the axisymmetric solid on its default mesh, "
+        f"and half a dome of {' x '.join(map(str, data['cells']))} C3D20R cells with its own trapped gas. CalculiX counts slip from the beginning of "
+        "its computation; the coefficient is therefore one at which nearly all points slip ([friction.md](friction.md#calculix)). "
+        "`python -m benchmarks.calculix_friction_half` computes the section.",
         "",
         "| friction | mm | force N | CalculiX | pressure rise kPa | CalculiX |",
         "|---|---|---|---|---|---|",

@@ -54,18 +54,18 @@ def _seconds(solid: SolidModel, free: FreeState, friction: float) -> float:
     return time.process_time() - begun
 
 
-def summary(rows: list[FrictionCost]) -> str:
-    """What the presses cost, in a sentence."""
+def summary(rows: list[FrictionCost]) -> dict[str, float]:
+    """Number of presses, mean and greatest ratio, how many take more than twice as long, and how many of those have thin
+    walls."""
     ratios = np.array([row.ratio for row in rows])
     above = [row for row in rows if row.ratio > 2.0]
-    thin = sum(row.wall < THIN for row in above)
-    return (
-        f"In {len(rows)} random presses (the paper's radius, walls of 0.05 to 0.4 of it, moduli of 0.17 to 4 MPa, "
-        "driving pressures to 0.9 of the limit, coefficients of 0.05 to 1.5 and grip, depth 0.6 R0) the mean is "
-        f"{ratios.mean():.2f} and the greatest {ratios.max():.1f}; {len(above)} take more than twice as long, {thin} of "
-        f"them with walls below {THIN:g} R0, whose points between the centre and the edge of the contact bear next to "
-        "nothing and come and go."
-    )
+    return {
+        "count": len(rows),
+        "mean": round(float(ratios.mean()), 2),
+        "greatest": round(float(ratios.max()), 1),
+        "above_two": len(above),
+        "above_two_thin": sum(row.wall < THIN for row in above),
+    }
 
 
 def main(words: list[str]) -> None:

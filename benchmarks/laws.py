@@ -88,23 +88,25 @@ def section(found: dict[str, Curve]) -> list[str]:
         point = "none" if curve.limit is None else f"{curve.limit[1]:.4f} at {curve.limit[0]:.4f}"
         rows.append(f"| {name} | {point} | {differ:.1%} |")
     return [
-        "## Neo-Hookean against a higher law",
+        "## Neo-Hookean against other laws",
         "",
-        "The paper compares its neo-Hookean wall with an Ogden law (Figure 3b) and finds almost no difference below the limit "
-        "point. Its constants are not published there and are not available, so the comparison uses other sets, of Agilus30, "
-        "from the repository alexdummer/dogbone-experiments (CU Boulder, data unreviewed): the long-term network of a "
-        "Bergstroem-Boyce fit (eight chains, mu 0.273 MPa, limiting stretch 9.26, its first three terms as a Yeoh law), and two "
-        "instantaneous sets, Ogden with mu 1.423 MPa, alpha -3.68 in the 2 mu/alpha^2 convention (fit to 37 % strain, R2 0.60) "
-        "and Mooney-Rivlin with C1 0.248, C2 0.984 MPa. Each is normalised by its own small-strain modulus: only the shape counts.",
+        "The paper compares its neo-Hookean wall with an Ogden law (Figure 3b) and finds almost no difference below the limit point. It does not "
+        "publish the constants. The comparison here uses sets of Agilus30 from the repository alexdummer/dogbone-experiments (CU Boulder, data "
+        "unreviewed), each normalised by its own small-strain modulus, so that only the shape counts:",
         "",
-        "![Inflation of the paper's dome by three laws](laws.svg)",
+        "- the long-term network of a Bergstroem-Boyce fit: eight chains, mu 0.273 MPa, limiting stretch 9.26, its first three terms as a "
+        "Yeoh law;",
+        "- an instantaneous Ogden set, mu 1.423 MPa, alpha -3.68 in the 2 mu/alpha^2 convention (fit to 37 % strain, R2 0.60);",
+        "- an instantaneous Mooney-Rivlin set, C1 0.248, C2 0.984 MPa.",
+        "",
+        "![Inflation of the paper's dome by four laws: dimensionless pressure over apex height](laws.svg)",
         "",
         "| law | limit point, p R0/(mu t0) at h/R0 | greatest difference below the neo-Hookean limit, of its pressure |",
         "|---|---|---|",
         *rows,
         "",
-        "The long-term network confirms the paper's result. The two instantaneous sets stiffen the dome well below the limit "
-        "point and remove it; the Ogden set was fitted to 37 % strain, which the dome passes near h/R0 = 1.28, so beyond that its "
-        "curve is an extrapolation: a law fitted to small strains must not be trusted for the limit point.",
+        "The long-term network confirms the paper's result. The two instantaneous sets stiffen the dome well below the limit point and remove it. "
+        "The dome passes 37 % strain near h/R0 = 1.28; beyond that the Ogden curve is an extrapolation. A law fitted to small strains must not be used for "
+        "the limit point.",
         "",
     ]

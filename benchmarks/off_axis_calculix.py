@@ -3,7 +3,8 @@
 ``python -m benchmarks.off_axis_calculix [SCENE ...]`` presses the paper's sensor in the scenes of these numbers, or in all
 of them, with the harmonic solid and with half a dome of C3D20R cells, without the base. Compared are the force, the
 sideways force and the pressure rise of both, each with its own gas, and their processor times. Stores
-docs/background/off-axis-calculix.json, and writes its section into docs/background/validation.md.
+docs/background/off-axis-calculix.json, and writes its section into docs/background/validation.md
+(``python -m benchmarks.pages.validation_text`` renews the whole page from what is stored).
 """
 
 from __future__ import annotations
@@ -80,12 +81,11 @@ def section(data: list[dict[str, Any]]) -> list[str]:
     return [
         HEADING,
         "",
-        f"The paper's sensor without its base by the harmonic solid (M = {orders}, 24 x 2 cells) and by "
-        "half a dome of C3D20R cells in three dimensions, each with its own gas shut in: CalculiX's pressure is that which "
-        "Boyle's law gives in the volume that CalculiX finds. Next to each figure of the harmonic solid is the difference "
-        "of CalculiX on its finest mesh from it; where CalculiX was run on a coarser mesh too, the last column is the greatest "
-        f"change of its three figures by the refinement: {refined}. "
-        "`python -m benchmarks.off_axis_calculix` computes it. See [off-axis.md](off-axis.md).",
+        f"The paper's sensor without its base: the harmonic solid (M = {orders}, 24 x 2 cells), and half a dome of C3D20R cells with its own "
+        "trapped gas. CalculiX has no gas; its pressure is that which Boyle's law gives in the volume that it finds. Columns "
+        '"CalculiX": difference of CalculiX on its finest mesh from the figure left of it. Last column: greatest change of the three '
+        f"figures by refinement in CalculiX, where it was run on two meshes ({refined}). [off-axis.md](off-axis.md#calculix) explains "
+        "the differences. `python -m benchmarks.off_axis_calculix` computes the section.",
         "",
         "| scene | mm | force N | CalculiX | sideways N | CalculiX | pressure rise kPa | CalculiX | refinement |",
         "|---|---|---|---|---|---|---|---|---|",
@@ -110,9 +110,9 @@ def _cost_lines(data: list[dict[str, Any]]) -> list[str]:
         for scene in timed
     ]
     return [
-        "Processor times of both programs, one after the other on one machine, of one thread, CalculiX's of its whole "
-        "process. The last column is the share of its Newton iterations that went to the second pressure, from which Boyle's law follows. "
-        "Time at equal error: [accuracy.md](accuracy.md#contact-off-the-axis-time-at-equal-error).",
+        "Processor times: one thread, one machine, one program after the other; CalculiX's is that of its whole process. The last column "
+        "is the share of its Newton iterations that went to the second pressure, from which Boyle's law follows. Times at equal error: "
+        "[accuracy.md](accuracy.md#contact-off-the-axis-time-at-equal-error).",
         "",
         "| scene | M | CalculiX's cells | CalculiX's time over that of the harmonic solid | second pressure |",
         "|---|---|---|---|---|",

@@ -81,11 +81,10 @@ def _critical(rows: list[dict[str, Any]], sway: float | None) -> str:
         )
     critical = zero(rows)
     return (
-        f"The line through the last two stiffnesses of CalculiX is zero at {critical:.2f} mm; the solid's sway is located at {sway:.2f} mm "
-        f"({sway / critical - 1:+.1%}). CalculiX did not converge beyond {rows[-1]['depth_mm']:.2f} mm, so its sway is an "
-        f"extrapolation from two points {rows[-1]['depth_mm'] - rows[-2]['depth_mm']:.3f} mm apart, on one mesh; near it both "
-        f"stiffnesses fall in steps as points come into contact, and differ by up to {_worst(rows):.0%} at single depths. The "
-        "comparison confirms the place of the sway, not the second digit of its depth."
+        f"The line through CalculiX's last two stiffnesses is zero at {critical:.2f} mm; the solid locates the sway at {sway:.2f} mm "
+        f"({sway / critical - 1:+.1%}). CalculiX did not converge beyond {rows[-1]['depth_mm']:.2f} mm, so its value is an extrapolation from two "
+        f"points {rows[-1]['depth_mm'] - rows[-2]['depth_mm']:.3f} mm apart. Near the sway both stiffnesses fall in steps as points come into contact, and "
+        f"differ by up to {_worst(rows):.0%} at single depths. The comparison confirms the depth of the sway, not its second digit."
     )
 
 
@@ -111,13 +110,12 @@ def calculix_section(data: dict[str, Any]) -> list[str]:
     off = [row["calculix_sideways_N_per_mm"] / row["solid_sideways_N_per_mm"] - 1 for row in rows]
     arc, through, around = data["cells"]
     return [
-        "### CalculiX in three dimensions",
+        "## CalculiX in three dimensions",
         "",
-        f"`python -m benchmarks.sway_calculix {arc} {through} {around}` presses half of the paper's dome without driving pressure and without a base in "
-        f"CalculiX 2.20: {arc} x {through} x {around} C3D20R cells, a frictionless plate, the pressure that the solid finds at each "
-        "depth, and a sideways force of 0.02 N on a ring at 45 degrees as the imperfection. Force over displacement of the pole is "
-        "a stiffness that falls to zero where the dome sways. The same stiffness by the second variation of the solid on "
-        f"{arc} x {through} cells; data in `sway-calculix.json`.",
+        f"Half of the paper's dome in CalculiX 2.20 ({arc} x {through} x {around} C3D20R cells), without driving pressure, base and friction, at the cavity "
+        "pressure of the solid at each depth. The imperfection is a sideways force of 0.02 N on a ring at 45 degrees. Force over displacement of "
+        "the pole is a stiffness that falls to zero where the dome sways; the solid gives it by its second variation on "
+        f"{arc} x {through} cells. `python -m benchmarks.sway_calculix {arc} {through} {around}` writes `sway-calculix.json`.",
         "",
         "| depth mm | CalculiX N/mm | solid N/mm | difference |",
         "|---|---|---|---|",
@@ -136,7 +134,7 @@ def calculix_section(data: dict[str, Any]) -> list[str]:
 def _lobes(rows: list[dict[str, Any]]) -> str:
     first = sum(row["outcome"] == "lobes first" for row in rows)
     after = sum("lobes" in row["events"] for row in rows) - first
-    return f"Lobes come first in {first or 'none'} of them, and in {after} between a sway and the jump that follows it."
+    return f"Lobes come first in {first or 'none'} of the {len(rows)} presses, and in {after} between a sway and the jump that follows it."
 
 
 def page(data: dict[str, Any], calculix: dict[str, Any]) -> str:
@@ -157,61 +155,101 @@ def page(data: dict[str, Any], calculix: dict[str, Any]) -> str:
     ]
     return "\n".join(
         [
-            "# Where the dome leaves its axis",
-            "",
-            "`make sway-page` writes this page.",
-            "",
-            "The model `solid` follows the pressed dome as a body of revolution. A real dome can leave that form: it sways sideways (one wave around "
-            "the axis) or takes lobes (more waves). The solid therefore checks, at states on the path and at its end, that the second variation of the total "
-            "energy of wall, gas and contact is positive for displacements of 1 to `indentation.checked_waves` waves (8 where the design states none; 0 turns the "
-            "check off: `--set indentation.checked_waves=0`). Where it is not, the depth is located and reported as the event `sway` or `lobes`: a warning "
-            "in the text of `predict` and on the datasheet, and an entry of `events` in its JSON.",
-            "",
-            "Both events end no range and change no figure. Beyond them the curve and what is fitted to it are those of the axisymmetric path, which the "
-            "sensor leaves there, and the message states so. Friction counts: points of the wall that stick to the plate hold the dome in both directions, so that "
-            "a coefficient of 0.05 already keeps the paper's sensor on its axis, also without a base; points that slide are taken as free. The atlas and the membrane do not make the check, and state so among their "
-            "assumptions. It costs a quarter of the solid's time (`make ratios`, at most 30 %).",
-            "",
+            *_answer(data, calculix),
+            *_method(),
             "## The paper's sensor",
             "",
-            "Without friction, to its depth of 6.94 mm, on three meshes. Without a base the wall may hang below its base plane and fold at the clamp; that is what lets "
-            "it sway. A base under the wall removes both.",
+            "No friction, pressed to 6.94 mm, three meshes. Without a base the wall can hang below its base plane and fold at the clamp; it then "
+            "sways. A base under the wall (the default) removes the fold and the sway.",
             "",
             "| driving kPa | base | cells | sway at mm | fold at the clamp at mm |",
             "|---|---|---|---|---|",
             *refined,
             "",
-            "## Map",
+            "## Other domes",
             "",
-            f"Domes of {sway_map.RADIUS:g} mm with a base under the wall, pressed by an endless plate without friction to 0.75 R0, {len(data['map'])} presses with up to "
-            f"{sway_map.WAVES} waves; data in `sway.json`. The number at a mark is the depth over R0. {_lobes(data['map'])} Where a jump comes first, the "
-            "path of the solid ends there, and its own event is reported. Vented thin walls without driving pressure dimple at 2.4 to 2.6 wall thicknesses "
-            "(Pauchard and Rica 1998: near two, then polygons); the solid follows few of them further.",
-            "",
-            "![Which domes stay bodies of revolution](sway.svg)",
+            f"Counts of the map above: {len(data['map'])} presses to 0.75 R0, checked for up to {sway_map.WAVES} waves. Where a jump comes first, the path "
+            "of the solid ends there with its own event.",
             "",
             "| gas | " + " | ".join(sway_map.LOOKS) + " |",
             "|---|" + "---|" * len(sway_map.LOOKS),
             *lines,
             "",
-            "## References",
-            "",
-            "The second variation of wall, gas and contact agrees with differences of the energy of bodies bent in three dimensions for each law "
-            "(`tests/mechanics/solid/test_harmonics.py`); without waves it is the tangent of the axisymmetric solid to rounding. A complete thin sphere under outside "
-            "pressure buckles at one pressure for 0, 2, 4, 6, 8 and 10 waves, as theory requires (`tests/mechanics/solid/test_sway.py`).",
-            "",
-            "### A clamped hemisphere under outside pressure",
-            "",
-            "Share of the classical pressure 2 E (t/R)²/√(3(1 - ν²)) at which it buckles, in steps of 0.0025, ν = 0.3, on 64 cells; R and t of the middle surface. "
-            "Published: 0.8, at the clamped boundary (arXiv 2412.15066).",
-            "",
-            "| wall / R0 | share | against 0.8 | waves |",
-            "|---|---|---|---|",
-            *shells,
-            "",
+            *_shells(shells),
             *calculix_section(calculix),
+            *_limits(data["map"]),
         ]
     )
+
+
+def _answer(data: dict[str, Any], calculix: dict[str, Any]) -> list[str]:
+    """The question, the answer and the map."""
+    first = sum(row["outcome"] == "sway first" for row in data["map"])
+    kept = sum(row["outcome"] == "axisymmetric to 0.75 R0" for row in data["map"])
+    sway = calculix["solid_events_mm"]["sway"]
+    return [
+        "# Where the dome leaves its axis",
+        "",
+        "Does a pressed dome stay a body of revolution? It can sway sideways (one wave around the axis) or form lobes (more waves). Of "
+        f"{len(data['map'])} domes with a base, pressed to 0.75 R0 without friction, {kept} stay axisymmetric and {first} sway before any other "
+        "event. The paper's sensor does not sway. Without a base it does, at 0 kPa and a depth of "
+        f"{sway:.2f} mm; CalculiX in three dimensions gives {zero(calculix['rows']):.2f} mm.",
+        "",
+        "![Map of pressed domes over wall ratio and driving pressure: sway, lobes, jump or axisymmetric to 0.75 R0](sway.svg)",
+        "",
+        f"What happens first in domes of {sway_map.RADIUS:g} mm with a base, pressed by an endless plate without friction. The number at a mark is "
+        "the depth over R0. Data: `sway.json`.",
+        "",
+    ]
+
+
+def _method() -> list[str]:
+    return [
+        "## Method",
+        "",
+        "The model `solid` follows the axisymmetric path. It checks, at states on the path and at its end, whether the second variation of the "
+        "total energy of wall, gas and contact is positive for displacements of 1 to `indentation.checked_waves` waves (default 8; 0: no check). "
+        "Where it is not, the depth is located and reported as the event `sway` or `lobes`, a warning. All figures stay those of the axisymmetric path, "
+        "which the sensor leaves there. The check takes a quarter of the solid's time (at most 30 %, `make ratios`).",
+        "",
+        "Points that stick to the plate hold the wall in both directions; points that slide are taken as free. A coefficient of friction of 0.05 keeps "
+        "the paper's sensor on its axis, also without a base.",
+        "",
+    ]
+
+
+def _shells(shells: list[str]) -> list[str]:
+    return [
+        "## A clamped hemisphere under outside pressure",
+        "",
+        "Share of the classical buckling pressure 2 E (t/R)²/√(3(1 - ν²)) at which a clamped hemisphere buckles, in steps of 0.0025, with ν = 0.3 "
+        "and 64 cells; R and t of the middle surface. The published value is 0.8, at the clamped boundary (arXiv 2412.15066).",
+        "",
+        "| wall / R0 | share | against 0.8 | waves |",
+        "|---|---|---|---|",
+        *shells,
+        "",
+    ]
+
+
+def _limits(rows: list[dict[str, Any]]) -> list[str]:
+    return [
+        "## Limits",
+        "",
+        "- The path after a sway is not followed: no figure states what the sensor reads there.",
+        f"- {_lobes(rows)}",
+        "- Vented thin walls without driving pressure dimple at 2.4 to 2.6 wall thicknesses (Pauchard and Rica 1998: near two, then polygons). "
+        "The solid follows few of them further.",
+        "- `atlas` and `membrane` do not make the check; both list this among their assumptions.",
+        "- CalculiX was compared on one mesh of one dome.",
+        "",
+        "The tests compare the second variation with differences of the energy of bodies bent in three dimensions, for each law "
+        "(`tests/mechanics/solid/test_harmonics.py`). A complete thin sphere under outside pressure buckles at one pressure for 0, 2, 4, 6, 8 "
+        "and 10 waves, as theory requires (`tests/mechanics/solid/test_sway.py`).",
+        "",
+        "`make sway-page` writes this page.",
+        "",
+    ]
 
 
 def main() -> None:

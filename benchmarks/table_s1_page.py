@@ -63,31 +63,49 @@ def spread(row: CellRow) -> tuple[float, float]:
 def page(rows: list[CellRow]) -> str:
     """The whole page."""
     summed = [row for row in rows if row.material != OTHER_SOURCE]
-    return "\n".join([*_head(), *_moves(rows), *_cells(rows), *_combinations(summed), *_stated(summed)])
+    parts = [_answer(summed), _method(), _moves(rows), _cells(rows), _combinations(summed), _stated(summed), _limits()]
+    return "\n".join(line for part in parts for line in part)
 
 
-def _head() -> list[str]:
+def _answer(rows: list[CellRow]) -> list[str]:
+    """The question, the answer and the chart."""
+    order = ranked(rows)
+    rms, share = root_mean_square(errors(rows, Assumptions())), open_share(rows)
+    best = max(within(rows, assumed) for assumed in order)
     return [
         "# Table S1 and what the paper leaves open",
         "",
-        "`make table-s1-page` writes this page. The paper gives a sensitivity for seven resins at two driving pressures (its Table "
-        "S1) and a repeatability for each resin. It does not give the friction of the plate, how the rim of the membrane is held, "
-        "the dead volume, nor, for stiff resins, the range over which the line is fitted. Every cell is computed by the solid for "
-        "every combination of these, nothing is fitted:",
-        "",
-        "- **friction** 0 (the paper's finite elements), 0.3, 0.6, 1, and a plate that grips;",
-        "- **rim** clamped at the base plane, on which the wall may lie down; clamped as printed, on a flange of 2.25 mm; "
-        "clamped at a plane through which the wall passes (no base);",
-        "- **dead volume** 0 and 0.2 mL (a tube of 2 mm bore and 64 mm length);",
-        "- **range** to the first event that ends it, of which one is the gauge's 100 kPa; or beyond the gauge, to the depth of "
-        "6.94 mm or the buckling of the wall.",
-        "",
-        "The default: no friction, base plane, 0 mL, range to the gauge.",
+        "How much of the model's error against the paper's Table S1 can come from what the paper does not state? With the default "
+        f"assumptions the root mean square error of {len(rows)} cells is {rms:.1%}. Friction of the plate, the rim of the membrane, the dead "
+        f"volume and the fitted range move a cell by {share:.1%} (standard deviation): {(share / rms) ** 2:.0%} of the square of that error. No "
+        f"combination of them fits the table; the best of {len(order)} meets {best} of {len(rows)} cells within its repeatability.",
         "",
         "![Sensitivity of each cell over friction, with the measured value](table-s1.svg)",
         "",
-        "Sensitivity over friction for each resin (default otherwise), with what was measured (diamonds). The bar is the span over "
-        "all combinations.",
+        "Sensitivity over the friction of the plate for each resin (curves, other assumptions at their default), measured values "
+        "(diamonds) and the span over all combinations (bars).",
+        "",
+    ]
+
+
+def _method() -> list[str]:
+    return [
+        "## Method",
+        "",
+        "Table S1 has a sensitivity for seven resins at two driving pressures, and a repeatability for each resin. The solid computes every "
+        "cell for every combination of four assumptions. Nothing is fitted.",
+        "",
+        "| assumption | values | default |",
+        "|---|---|---|",
+        "| friction | 0, 0.3, 0.6, 1, grip | 0, as in the paper's finite elements |",
+        "| rim | clamped at the base plane, on which the wall can lie down; clamped as printed, on a flange of 2.25 mm; clamped at a "
+        "plane through which the wall passes (no base) | base plane |",
+        "| dead volume | 0, 0.2 mL (a tube of 2 mm bore and 64 mm length) | 0 |",
+        "| range | to the first event that ends it, the gauge's 100 kPa among them; or beyond the gauge, to the depth of 6.94 mm or the "
+        "buckling of the wall | to the first event |",
+        "",
+        f"Summary figures leave out {OTHER_SOURCE}: its modulus comes from another source, and its prediction is far off under every "
+        "assumption ([hard-resins.md](hard-resins.md)).",
         "",
     ]
 
@@ -101,9 +119,10 @@ def _moves(rows: list[CellRow]) -> list[str]:
         for row in rows
     ]
     return [
-        "## What moves which cell",
+        "## Effect of each assumption",
         "",
-        "Change of the sensitivity in percent of the default's when one assumption is changed:",
+        "Change of the sensitivity, in percent of the default's, when one assumption is changed. Friction, air and the rim matter more the "
+        "stiffer the resin is.",
         "",
         f"| resin | driving kPa | default kPa/N | {' | '.join(FACTORS)} |",
         "|---|---|---|" + "---|" * len(FACTORS),
@@ -133,7 +152,7 @@ def _cells(rows: list[CellRow]) -> list[str]:
     return [
         "## Error of each cell by friction",
         "",
-        "Predicted over measured less one; default otherwise. The last column is the span over all combinations.",
+        "Predicted over measured less one; other assumptions at their default. The last column is the span over all combinations.",
         "",
         f"| resin | driving kPa | measured kPa/N | {names} | range ends, friction 0, mm | range ends, grip, mm | all, kPa/N |",
         "|---|---|---|" + "---|" * (len(FRICTIONS) + 3),
@@ -153,10 +172,9 @@ def _combinations(rows: list[CellRow]) -> list[str]:
     return [
         "## Which combinations fit the table",
         "",
-        f"This section takes the {len(rows)} cells without {OTHER_SOURCE}, whose modulus is from another source and whose prediction is far off "
-        "under every assumption. A combination fits where every cell is within twice the repeatability of its resin (0.002 to "
-        f"0.014 kPa/N). **None of the {len(order)} combinations does; the best of them meets {counted(best, 'cell')}.** The nearest by "
-        "root mean square error, and the default:",
+        "A combination fits where every cell is within twice the repeatability of its resin (0.002 to 0.014 kPa/N). "
+        f"**None of the {len(order)} combinations does; the best of them meets {counted(best, 'cell')}.** The nearest by root mean square error "
+        f"of the {len(rows)} cells:",
         "",
         "| rank | combination | median error | root mean square | worst | cells met |",
         "|---|---|---|---|---|---|",
@@ -173,23 +191,36 @@ def _ranked_line(rows: list[CellRow], rank: int, assumed: Assumptions) -> str:
     )
 
 
+def open_share(rows: list[CellRow]) -> float:
+    """Standard deviation of the logarithm of a cell over all assumptions, each equally likely; root mean square over the cells."""
+    table = np.array([np.log1p(errors(rows, assumed)) for assumed in ranked(rows)])
+    return root_mean_square(np.nanstd(table, axis=0, ddof=1))
+
+
 def _stated(rows: list[CellRow]) -> list[str]:
     """What the open assumptions explain of the model's stated error."""
-    order = ranked(rows)
-    table = np.array([np.log1p(errors(rows, assumed)) for assumed in order])
-    share = root_mean_square(np.nanstd(table, axis=0, ddof=1))
-    inside = sum(np.nanmin(values) <= 1 <= np.nanmax(values) for values in np.exp(table).T)
-    rms = root_mean_square(errors(rows, Assumptions()))
+    inside = sum(low <= row.measured <= high for row, (low, high) in ((row, spread(row)) for row in rows))
+    rms, share = root_mean_square(errors(rows, Assumptions())), open_share(rows)
     return [
         "## What follows for the error of the model",
         "",
-        "The budget of an uncertainty takes the model's error from this table: for each resin from its own two cells, elsewhere "
-        f"from all of them. The root mean square error of the default over these cells is {rms:.1%}. "
-        f"The standard deviation of a cell over all combinations, each taken as equally likely, is {share:.1%} (root mean "
-        f"square over the cells): what is unknown of the contact, the rim, the air and the range is {(share / rms) ** 2:.0%} of "
-        f"the square of that error. {inside} of {len(rows)} measured values lie within the span of the combinations. The rest is "
-        "in none of these: the moduli, which are from other laboratories' prints, and the walls as printed, which the paper "
-        "did not measure. The budget of an uncertainty therefore keeps the whole error and names none of these as its cause.",
+        "The uncertainty budget takes the model's error from this table: for each resin from its own two cells, for others from all "
+        f"{len(rows)}. It keeps the whole {rms:.1%} and names no cause, because the open assumptions explain only a part "
+        f"({share:.1%}, each combination taken as equally likely): {inside} of {len(rows)} measured values lie within the span of "
+        "the combinations.",
+        "",
+    ]
+
+
+def _limits() -> list[str]:
+    return [
+        "## Limits",
+        "",
+        "- The table has one geometry, seven resins and two driving pressures.",
+        "- Two further causes are not varied: the moduli, which are from other laboratories' prints, and the wall thickness as printed, "
+        "which the paper did not measure.",
+        "",
+        "`make table-s1-page` writes this page.",
         "",
     ]
 

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import json
 import shutil
-import statistics
 from pathlib import Path
-from types import ModuleType
+from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from benchmarks import calculix_friction_half, off_axis_calculix
 from benchmarks.calculix_sweep import calculix_limit
 from benchmarks.contact_references import balls
+from benchmarks.pages import validation_text
 from benchmarks.scenes import PAPER, Scene
 from benchmarks.speed_accuracy import solid_limit
 from benchmarks.theory import Cell, table_s1
@@ -25,7 +24,6 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs" / "background" / "validation.md"
 
 SPHERES = ((1.0, 2.0), (10.0, 11.0), (9.25, 10.75), (8.5, 10.0))
 """Inner and outer radii of the thick spheres."""
@@ -85,212 +83,119 @@ def limit_of(ratio: float, arc: int | None = None, through: int | None = None, n
     return limit.pressure / ratio, limit.inner_apex
 
 
-def spheres() -> list[str]:
-    """Thick spheres."""
+def spheres() -> list[list[float]]:
+    """Thick spheres: radii, and p/mu and stretch at the limit point, exact and by the solid."""
     rows = []
     for inner, outer in SPHERES:
         exact, found = sphere_limit(inner, outer), sphere_found(inner, outer)
-        rows.append(
-            f"| {inner:g}, {outer:g} | {exact[0]:.6f} | {found[0]:.6f} | {found[0] / exact[0] - 1:+.1e} | "
-            f"{exact[1]:.6f} | {found[1]:.6f} | {found[1] / exact[1] - 1:+.1e} |"
-        )
-    return [
-        "## Thick neo-Hookean spheres: exact",
-        "",
-        "| radii mm | exact p/mu | solid | error | exact stretch | solid | error |",
-        "|---|---|---|---|---|---|---|",
-        *rows,
-        "",
-    ]
+        rows.append([inner, outer, exact[0], found[0], exact[1], found[1]])
+    return rows
 
 
-def thin_walls() -> list[str]:
-    """The limit of a thin wall is the exact membrane."""
+def thin_walls() -> dict[str, Any]:
+    """Limit points p R0/(mu t0), h/R0 by wall ratio, and those extrapolated to no wall."""
     ratios = (0.08, 0.04, 0.02, 0.01)
     found = [limit_of(ratio, arc=64, through=1, nu=0.4999) for ratio in ratios]
-    rows = [f"| {ratio:g} | {p:.5f} | {h:.5f} |" for ratio, (p, h) in zip(ratios, found, strict=True)]
-    p, h = 2 * np.array(found[-1]) - np.array(found[-2])
-    return [
-        "## Thin walls: the exact membrane",
-        "",
-        "The exact membrane peaks at p R0/(mu t0) = 1.57537, h/R0 = 1.69000. Extrapolated to no wall the solid gives "
-        f"**{p:.5f} ({p / 1.57537 - 1:+.1e}) at {h:.5f} ({h / 1.69000 - 1:+.1e})**.",
-        "",
-        "| t0/R0 | p R0/(mu t0) | h/R0 |",
-        "|---|---|---|",
-        *rows,
-        "",
-    ]
+    return {
+        "rows": [[ratio, *point] for ratio, point in zip(ratios, found, strict=True)],
+        "extrapolated": list(2 * np.array(found[-1]) - np.array(found[-2])),
+    }
 
 
-def pressed_membrane() -> list[str]:
-    """State II of the exact membrane."""
+def pressed_membrane() -> list[list[float]]:
+    """State II of the exact membrane: driving pressure (kPa), indentation (mm); then cavity pressure (kPa), force (N) and contact
+    radius (mm), each with the relative deviation of the solid."""
     wall = 0.0925
     solid = SolidModel(dome(9.25, wall, arc=96, through=1), neo_hookean(0.255 / wall, 0.4999))
     rows = []
     for driving, table in PRESSED_MEMBRANE.items():
         run = indent(solid, state_at(solid, 1e-3 * driving), PressSettings(5.0, steps=5))
         for state in run.states[1:]:
-            p, force, radius = table[round(state.indentation, 6)]
-            rows.append(
-                f"| {driving} | {state.indentation:g} | {p:.3f} | {1e3 * state.pressure / p - 1:+.2%} | {force:.4f} | "
-                f"{state.force / force - 1:+.2%} | {radius:.3f} | {state.contact_radius / radius - 1:+.2%} |"
-            )
-    return [
-        "## Pressed membrane: shooting",
-        "",
-        "The solid with t0/R0 = 0.01 against the exact membrane under a plate with sealed gas.",
-        "",
-        "| driving kPa | indentation mm | cavity kPa | solid | force N | solid | contact radius mm | solid |",
-        "|---|---|---|---|---|---|---|---|",
-        *rows,
-        "",
-    ]
+            exact = table[round(state.indentation, 6)]
+            found = (1e3 * state.pressure, state.force, state.contact_radius)
+            pairs = [(known, value / known - 1) for known, value in zip(exact, found, strict=True)]
+            rows.append([driving, state.indentation, *(part for pair in pairs for part in pair)])
+    return rows
 
 
-def refinement() -> list[str]:
-    """Order of convergence of the clamped dome's limit pressure."""
+def refinement() -> dict[str, Any]:
+    """Order of convergence of the clamped dome's limit pressure, and p R0/(mu t0) with its error by cells."""
     ratio = 1.5 / 9.25
     meshes = ((8, 1), (16, 2), (32, 4), (64, 8))
     found = [limit_of(ratio, arc, through)[0] for arc, through in meshes]
     (last, before), (coarse, fine) = (found[-1] - found[-2], found[-2] - found[-3]), (found[-2], found[-1])
-    order = np.log2(abs(before / last))
+    order = float(np.log2(abs(before / last)))
     best = fine + (fine - coarse) / (2**order - 1)
-    rows = [f"| {a} x {t} | {p:.6f} | {p / best - 1:+.1e} |" for (a, t), p in zip(meshes, found, strict=True)]
-    return [
-        "## Refinement: the paper's wall",
-        "",
-        "Limit pressure p R0/(mu t0) at nu 0.49, both directions halved, against the value extrapolated with the order that the last "
-        f"three show, **{order:.1f}**. The clamped corner is singular, so the order is below that of the smooth sphere (four, in the "
-        "tests).",
-        "",
-        "| cells | p R0/(mu t0) | error |",
-        "|---|---|---|",
-        *rows,
-        "",
-    ]
+    return {"order": order, "rows": [[f"{a} x {t}", p, p / best - 1] for (a, t), p in zip(meshes, found, strict=True)]}
 
 
-def invariances() -> list[str]:
-    """Scale invariance, and energy against work."""
+def invariances() -> dict[str, Any]:
+    """Change of p/mu by radius (mm) and modulus (MPa), and stored energy against work."""
     base = inflate(SolidModel(dome(9.25, 1.5), neo_hookean(0.17)))
     rows = []
     for radius, mu in ((0.1, 0.17), (1000.0, 0.17), (9.25, 1e-3), (9.25, 1e3)):
         run = inflate(SolidModel(dome(radius, radius * 1.5 / 9.25), neo_hookean(mu)))
         assert run.limit is not None and base.limit is not None
-        rows.append(f"| {radius:g} | {mu:g} | {(run.limit.pressure / mu) / (base.limit.pressure / 0.17) - 1:+.1e} |")
+        rows.append([radius, mu, (run.limit.pressure / mu) / (base.limit.pressure / 0.17) - 1])
     energy = np.array([s.unit.local.energy for s in base.states]) * 0.17 * 9.25**3
     v, p, k = base.volume, base.pressure, np.array([s.stiffness for s in base.states])
     work = 0.5 * np.diff(v) * (p[1:] + p[:-1]) - np.diff(v) ** 2 / 12 * np.diff(k)
-    return [
-        "## Scale invariance, and energy against work",
-        "",
-        "The limit pressure over mu must not depend on size or modulus; the stored energy must be the integral of p dV: over the "
-        f"whole inflation they differ by {abs(work.sum() / (energy[-1] - energy[0]) - 1):.1e} (the error of the integration).",
-        "",
-        "| R0 mm | mu MPa | relative change of p/mu |",
-        "|---|---|---|",
-        *rows,
-        "",
-    ]
+    return {"rows": rows, "energy_error": float(abs(work.sum() / (energy[-1] - energy[0]) - 1))}
 
 
-def calculix() -> list[str]:
-    """The same inflation by CalculiX, where it is installed."""
+def calculix() -> dict[str, float] | None:
+    """Limit pressures (kPa) by CalculiX and by the solid; None where CalculiX is not installed."""
     if shutil.which("ccx") is None:
-        return ["## CalculiX", "", "Not installed on the machine that wrote this page: not compared.", ""]
-    sensor = PAPER
-    ours = solid_limit(Scene("", sensor, 0.0), 24, 2)
-    theirs = calculix_limit(sensor, 24, 2)[0]
-    return [
-        "## CalculiX: the same inflation",
-        "",
-        f"CAX8R cells, 24 x 2, pressure raised until no increment of 0.2 % converges: {1e3 * theirs:.3f} kPa, against "
-        f"{1e3 * ours:.3f} kPa here ({theirs / ours - 1:+.2%}).",
-        "",
-    ]
+        return None
+    ours = solid_limit(Scene("", PAPER, 0.0), 24, 2)
+    return {"calculix_kPa": 1e3 * calculix_limit(PAPER, 24, 2)[0], "solid_kPa": 1e3 * ours}
 
 
-def stored_section(benchmark: ModuleType) -> list[str]:
-    """The section of a comparison in three dimensions, from what that benchmark has stored."""
-    return list(benchmark.section(json.loads(benchmark.STORED.read_text(encoding="utf-8"))))
-
-
-def incompressibility() -> list[str]:
-    """Poisson's ratio up to 0.4999 without locking."""
+def incompressibility() -> list[list[float]]:
+    """Poisson's ratio up to 0.4999 without locking: p R0/(mu t0) and its difference from a refined mesh."""
     ratio = 1.5 / 9.25
     rows = []
     for nu in (0.49, 0.495, 0.499, 0.4995, 0.4999):
         default, fine = limit_of(ratio, nu=nu)[0], limit_of(ratio, 72, 4, nu)[0]
-        rows.append(f"| {nu:g} | {default:.5f} | {default / fine - 1:+.1e} |")
-    return [
-        "## Nearly incompressible walls",
-        "",
-        "Limit pressure at the default resolution, and its distance from a refined mesh at the same Poisson ratio: with locking "
-        "it would grow.",
-        "",
-        "| nu | p R0/(mu t0) | against 72 x 4 cells |",
-        "|---|---|---|",
-        *rows,
-        "",
-    ]
+        rows.append([nu, default, default / fine - 1])
+    return rows
 
 
-def dead_volumes(library: Library) -> list[str]:
-    """Table S1 with the one unknown, the dead volume, varied."""
+def dead_volumes(library: Library) -> dict[str, Any]:
+    """Table S1 with the one unknown, the dead volume, varied: relative errors of the solid by column."""
     runs: dict[str, list[Cell]] = {f"{v:g} mL": table_s1(library, v) for v in DEAD_VOLUMES_ML}
     runs["as printed"] = table_s1(library, flange=PRINTED_FLANGE)
     rows = [
-        f"| {cell.material} | {cell.pressure:g} | {cell.measured:.3f} | "
-        + " | ".join(f"{cells[k].errors['solid']:+.0%}" for cells in runs.values())
-        + " |"
+        {
+            "resin": cell.material,
+            "driving_pressure_kPa": cell.pressure,
+            "measured_kPa_per_N": cell.measured,
+            "errors": [cells[k].errors["solid"] for cells in runs.values()],
+        }
         for k, cell in enumerate(runs["0 mL"])
     ]
-    medians = [
-        statistics.median(abs(c.errors["solid"]) for c in cells if c.material != "FLX9995-DM")
-        for cells in runs.values()
-    ]
-    rows.append("| median of twelve | | | " + " | ".join(f"{m:.1%}" for m in medians) + " |")
-    heads = " | ".join(runs)
-    return [
-        "## The paper's Table S1 with the dead volume varied",
-        "",
-        "The paper does not state its dead volume. Errors in sensitivity of the solid, all fourteen cells, nothing fitted; "
-        "the median leaves out FLX9995-DM, which is off by a factor of two for an unknown reason. A dead volume lowers every cell, those of "
-        "hard resins most: it does not explain why FLX9970-DM and FLX9985-DM read low without one. The last column holds the "
-        "rim as it is printed, in its groove, in place of the clamped base plane.",
-        "",
-        f"| resin | driving kPa | measured | {heads} |",
-        "|---|---|---|" + "---|" * len(runs),
-        *rows,
-        "",
-    ]
+    return {"columns": list(runs), "rows": rows}
 
 
-def page() -> str:
-    """The whole page."""
-    return "\n".join(
-        [
-            "# Validation of the solid",
-            "",
-            "`make chart` writes this page. The tests assert these and more: energy against work, scale invariance in size and "
-            "modulus to 1e-9, tangent and force against differences, Boyle's law, stability against dense eigenvalues. "
-            "Stability around the axis: [sway.md](sway.md).",
-            "",
-            *spheres(),
-            *thin_walls(),
-            *pressed_membrane(),
-            *balls(),
-            *refinement(),
-            *incompressibility(),
-            *invariances(),
-            *calculix(),
-            *stored_section(calculix_friction_half),
-            *stored_section(off_axis_calculix),
-            *dead_volumes(Library((ROOT,))),
-        ]
-    )
+def measure() -> dict[str, Any]:
+    """All numbers of the page but those of CalculiX in three dimensions."""
+    return {
+        "spheres": spheres(),
+        "thin_walls": thin_walls(),
+        "pressed_membrane": pressed_membrane(),
+        "balls": balls(),
+        "refinement": refinement(),
+        "incompressibility": incompressibility(),
+        "invariances": invariances(),
+        "calculix": calculix(),
+        "dead_volumes": dead_volumes(Library((ROOT,))),
+    }
+
+
+def main() -> None:
+    validation_text.STORED.write_text(json.dumps(measure(), indent=1) + "\n", encoding="utf-8")
+    validation_text.main()
 
 
 if __name__ == "__main__":
-    PAGE.write_text(page(), encoding="utf-8")
+    main()

@@ -117,12 +117,14 @@ def section(rows: list[dict[str, Any]]) -> list[str]:
     return [
         "## Map of validity",
         "",
-        f"The paper's sensor in TangoPlus with walls of {WALL_RATIOS[0]:g} to {WALL_RATIOS[-1]:g} R0, driven to shares of its "
-        "limit pressure and pressed to four depths; data in `validity.json`. Within 5 % means the sensitivity from first contact to the depth "
-        f'against the solid on {FINE[0]} x {FINE[1]} cells. "ends before": the range of the method ends before the depth; "fails": it '
-        'raised an error; "outside its box": the atlas reports this and gives no figures; "no such state": the refined solid has an event before the depth.',
+        f"The paper's sensor in TangoPlus with walls of {WALL_RATIOS[0]:g} to {WALL_RATIOS[-1]:g} R0, driven to shares of its limit pressure and pressed "
+        "to four depths. Compared is the sensitivity from first contact to the depth, against the solid on "
+        f"{FINE[0]} x {FINE[1]} cells. Data: `validity.json`.",
         "",
-        "![Where each method holds](validity.svg)",
+        "![Where each method holds: wall ratio over driving pressure, for four depths and five methods](validity.svg)",
+        "",
+        "*ends before*: the range of the method ends before the depth. *fails*: it raised an error. *outside its box*: the atlas reports this "
+        "and gives no figures. *no such state*: the refined solid has an event before the depth.",
         "",
         "| method | " + " | ".join(LOOKS) + " |",
         "|---|" + "---|" * len(LOOKS),

@@ -6,15 +6,17 @@ import json
 
 import numpy as np
 import pytest
-from benchmarks import coverage, laws, peers
-from benchmarks.chart import DOCS, contact_section, inflation_section
+from benchmarks import coverage, full_depth, peers
+from benchmarks.chart import DOCS
+from benchmarks.chart import page as accuracy_page
 from benchmarks.felupe_sweep import felupe_limit
+from benchmarks.friction_text import draw as draw_friction
+from benchmarks.friction_text import page as friction_page
 from benchmarks.meshing import OURS, manifold_solid, plain_grid
-from benchmarks.pages import off_axis_speed, speed
+from benchmarks.pages import off_axis_speed, speed, validation_summary, validation_text
 from benchmarks.pages.speed_chart import front
 from benchmarks.scenes import PAPER, SCENES
 from benchmarks.speed_accuracy import METHODS, extrapolate, limit, run
-from benchmarks.theory import table_s1
 
 from pneutouch.bench.figure import BY_KEY
 
@@ -28,10 +30,18 @@ def stored(name: str):
 
 
 @pytest.mark.slow
-def test_theory_sections_are_what_the_code_gives(library):
-    assert "\n".join(inflation_section()) in page()
-    assert "\n".join(contact_section(table_s1(library))) in page()
-    assert "\n".join(laws.section(laws.curves())) in page()
+def test_the_page_is_what_its_program_writes_from_the_stored_measurements(library):
+    assert accuracy_page(library) == page()
+
+
+def test_the_pages_on_friction_and_validation_and_their_charts_are_those_of_the_stored_measurements():
+    for name, text, draw in (
+        ("friction", friction_page, draw_friction),
+        ("validation", validation_text.page, validation_summary.draw),
+    ):
+        data = stored(f"{name}.json")
+        assert (DOCS / f"{name}.md").read_text(encoding="utf-8") == text(data)
+        assert (DOCS / f"{name}.svg").read_text(encoding="utf-8") == draw(data)
 
 
 def test_tables_are_made_of_the_stored_numbers():
@@ -239,9 +249,7 @@ def test_the_stored_coverage_is_what_the_code_gives_today(count):
 
 
 def test_the_page_on_speed_is_that_of_the_stored_measurements():
-    data, programs = stored("speed-accuracy.json"), stored("peers.json")
-    written = set(page().splitlines())
-    lines = [line for line in speed.section(data, programs, {"assembly": 1.0}) if line]
-    missing = [line for line in lines if line not in written]
-    assert missing == ["| assembly | 100% |"]
+    lines = speed.section(stored("speed-accuracy.json"), stored("peers.json"))
+    assert "\n".join(lines) in page()
+    assert "\n".join(full_depth.section(stored("full-depth.json"))) in page()
     assert len(lines) > 40

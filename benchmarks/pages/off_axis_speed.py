@@ -86,25 +86,24 @@ def section(data: list[dict[str, Any]]) -> list[str]:
     return [
         HEADING,
         "",
-        "Lower row of the chart above: what was timed in one run of [validation.md](validation.md#calculix-contact-off-the-axis): "
-        "pneutouch with M harmonics and cells along the arc and through the wall, "
-        "CalculiX with cells along the arc, through the wall and around half the axis. Timed is the press to two depths from the "
-        "mesh on, of one thread; CalculiX's time is that of its whole process, with the second pressure from which Boyle's law "
-        "follows and the increments at rest that its contact needs. The error is the greatest of force, sideways force and "
-        "pressure rise at both depths, against the mean of the finest answers of both programs. These differ from their mean "
-        f"by {' and '.join(f'{distance(scene):.2%}' for scene in scenes)}: a smaller error is not known.",
+        "The press to two depths, from the mesh on, on one thread: pneutouch with M harmonics and cells along the arc and through the wall, CalculiX with "
+        "cells along the arc, through the wall and around half the axis. CalculiX's time is that of its whole process, with the second pressure "
+        "from which Boyle's law follows and the increments at rest that its contact needs "
+        "([validation.md](validation.md#calculix-contact-off-the-axis)). The error is the greatest of force, sideways force and pressure rise at both depths, against the mean of "
+        "the finest answers of both programs. These differ from their mean by "
+        f"{' and '.join(f'{distance(scene):.2%}' for scene in scenes)}; smaller errors cannot be resolved.",
         "",
         "| scene | program | resolution | error | time over that of CalculiX's coarsest mesh |",
         "|---|---|---|---|---|",
         *(line for scene in scenes for line in _lines(scene)),
         "",
-        f"Target, at most {TARGET:g} of CalculiX's time at equal error: {met}. For each mesh of CalculiX the cheapest "
-        "resolution here with no greater error (or with none that is known) takes "
+        f"Target, at most {TARGET:g} of CalculiX's time at equal error: {met}. For each mesh of CalculiX, the cheapest resolution of pneutouch with no "
+        "greater error, or with one below what can be resolved, takes this fraction of its time: "
         + "; ".join(
             f"{ours.seconds / theirs.seconds:.3f} ({scene['scene'].split(',')[0]}, {ours.label} for {theirs.label})"
             for scene, theirs, ours in pairs
         )
-        + " of its time.",
+        + ".",
         "",
     ]
 

@@ -5,19 +5,18 @@ from __future__ import annotations
 import statistics
 from typing import Any
 
-from benchmarks.models import AT_ONCE, MODEL_METHODS
+from benchmarks.models import AT_ONCE, ATLAS, MODEL_METHODS
 from benchmarks.pages.speed_chart import CUT, DEFAULT, SENSITIVITY_TARGET, of, sizes
 from benchmarks.peers import OURS, WITHIN, cheapest
 from benchmarks.speed_accuracy import METHODS
 
-CLAMP_FOLD = "fold at the clamp"
 SECONDS_TARGET, FELUPE_TARGET, CALCULIX_TARGET = 0.25, 1 / 5, 1 / 3
 
 
-def section(data: dict[str, Any], peers: dict[str, Any], shares: dict[str, float]) -> list[str]:
+def section(data: dict[str, Any], peers: dict[str, Any]) -> list[str]:
     """The whole section; its times belong to the machine and the run that wrote them."""
     truths = [scene["reference"] for scene in data["scenes"]]
-    own = {
+    reference = {
         key: [t[key] for t in truths if t[key] is not None]
         for key in ("sensitivity_error", "force_error", "limit_error")
     }
@@ -25,24 +24,16 @@ def section(data: dict[str, Any], peers: dict[str, Any], shares: dict[str, float
     return [
         "## Speed against accuracy",
         "",
-        *_base_words(data),
-        f"{len(truths)} scenes that differ in wall ratio (0.05 to 0.4), law, driving pressure, dead volume and depth "
-        "(`benchmarks/scenes.py`; raw numbers in `speed-accuracy.json` and `peers.json`). The work timed is study 1 from the "
-        "mesh to the driving pressure and study 2 in 14 steps. The reference is extrapolated from three refinements "
-        f"({meshes} nine-node cells along and across the wall); its error, the size of the extrapolation, is in "
-        f"sensitivity {_both(own['sensitivity_error'])}, in force {_both(own['force_error'])}, in limit pressure "
-        f"{_both(own['limit_error'])} (median / worst scene). **Force and sensitivity are compared over the same range: "
-        "from first contact to the first event that ends the range of the reference, on any of its meshes, or of the method.** "
-        "Force is the greatest difference over the greatest force.",
+        f"{len(truths)} scenes differ in wall ratio (0.05 to 0.4), law, driving pressure, dead volume and depth (`benchmarks/scenes.py`).",
         "",
-        "![Error over processor time with the Pareto front](speed-accuracy.svg)",
-        "",
-        "Upper left: marker at the median scene, line up to the worst; hollow markers end the range of more than a quarter of the "
-        "scenes by an event that the reference does not have. Upper right: the paper's sensor in "
-        "TangoPlus. Lower row: [contact off the axis](#contact-off-the-axis-time-at-equal-error).",
-        "",
-        "Errors, median / worst scene; times over the default's, median over scenes, processor time of the same run. A scene "
-        f"is cut where the method's range ends before {CUT:.0%} of the reference's.",
+        "- **Work timed:** from the mesh to the driving pressure (study 1), then the press in 14 steps (study 2).",
+        f"- **Reference:** extrapolated from three meshes of nine-node cells, {meshes} along and across the wall. Its error, the size of the "
+        f"extrapolation, is in sensitivity {_both(reference['sensitivity_error'])}, in force {_both(reference['force_error'])}, in limit pressure "
+        f"{_both(reference['limit_error'])} (median / worst scene).",
+        "- **Range:** force and sensitivity are compared from first contact to the first event that ends the range of the reference, on any "
+        "of its meshes, or of the method.",
+        "- **Errors:** median / worst scene. That of the force is the greatest difference over the greatest force.",
+        f"- **Scenes cut:** the method's range ends before {CUT:.0%} of the reference's.",
         "",
         *table(data),
         *_model_words(data),
@@ -50,7 +41,7 @@ def section(data: dict[str, Any], peers: dict[str, Any], shares: dict[str, float
         *scene_table(data),
         *_target_section(data, peers),
         *_peer_section(peers),
-        *_share_section(shares),
+        *_share_section(data["profile_shares"]),
     ]
 
 
@@ -64,39 +55,16 @@ def _default_words(data: dict[str, Any]) -> list[str]:
     base = statistics.median(row["processor_s"] for row in of(data["rows"], DEFAULT))
     dear = statistics.median(row["processor_s"] for row in of(data["rows"], "solid 36 x 2")) / base
     return [
-        "### Why this default",
+        "### The default mesh",
         "",
-        "The default takes 24 to 48 cells along the arc (three to the bending length sqrt(R0 t0)) and one across up to "
-        "t0/R0 = 0.055, else two. It is the cheapest mesh on the Pareto front that keeps every scene within 1 %: one cell across is "
-        f"off by {worst['solid 24 x 1']:.1%} in the worst scene, a thick wall; fewer than 24 along make the contact's edge so "
-        "coarse that the wall appears to leave the plate "
-        f"({cut['solid 8 x 1']}, {cut['solid 12 x 1']} and {cut['solid 16 x 1']} scenes cut at 8, 12 and 16). 36 x 2 costs "
-        f"{dear:.1f} times as much and its worst scene is at {worst['solid 36 x 2']:.2%}, against {worst[DEFAULT]:.2%}.",
-        *_fold_words(data),
+        "The default has 24 to 48 cells along the arc (three to the bending length sqrt(R0 t0)). It has one cell across the wall up to "
+        "t0/R0 = 0.055, else two. It is the cheapest mesh on the Pareto front that keeps every scene within 1 %:",
         "",
-    ]
-
-
-def _base_words(data: dict[str, Any]) -> list[str]:
-    """Which walls the section was measured with, where it is not the default."""
-    if data.get("base"):
-        return []
-    return [
-        "Times and errors of this section were measured with walls that pass through their base plane (`contact.base = false`), "
-        "the atlas made from such walls included; that was the default then. What the base, the default now, changes in figures and "
-        "time of the paper's sensor is in the section above; until a wall comes to its base, both are the same to all digits.",
+        f"- With one cell across, the worst scene, a thick wall, is off by {worst['solid 24 x 1']:.1%}.",
+        f"- With fewer than 24 along, the edge of the contact is so coarse that the wall appears to leave the plate ({cut['solid 8 x 1']}, "
+        f"{cut['solid 12 x 1']} and {cut['solid 16 x 1']} scenes cut at 8, 12 and 16).",
+        f"- 36 x 2 costs {dear:.1f} times as much, and its worst scene is at {worst['solid 36 x 2']:.2%}, against {worst[DEFAULT]:.2%}.",
         "",
-    ]
-
-
-def _fold_words(data: dict[str, Any]) -> list[str]:
-    """What the default does not resolve, where a reference ends with it."""
-    if not any(scene["reference"]["ends"] == CLAMP_FOLD for scene in data["scenes"]):
-        return []
-    return [
-        "Without a base the default does not resolve the fold at the clamped corner: where the reference ends with it, the "
-        "range of the default is longer, and its figure over that range (last column) is not checked here. With a base there is no "
-        "fold, and the default is within 0.1 % over the whole depth (section above)."
     ]
 
 
@@ -114,20 +82,46 @@ def _model_words(data: dict[str, Any]) -> list[str]:
         )
     inside = [row for row in atlas.values() if "no_answer" not in row]
     base = statistics.median(row["processor_s"] for row in solid.values())
-    ratio = statistics.median(solid[row["scene"]]["processor_s"] / row["processor_s"] for row in inside)
     return [
         "### The atlas and the choice of `auto`",
         "",
-        f"The [atlas](atlas.md) is timed for one sensor per call, warm; it covers {len(inside)} of {len(atlas)} scenes, "
-        f"{ratio:.0f} times as fast as the default solid in the median, and has the errors of the solid because it is made from it. "
-        f"{AT_ONCE:,} sensors in one call cost {base / data['atlas_at_once_s']:,.0f} times less each than the default. `auto` takes the cheapest model "
-        "whose stated error meets its tolerance. It uses the solid where the atlas does not cover a scene, or where the press ends by buckling or at the break strain, which the solid locates more exactly.",
+        f"The [atlas](atlas.md) covers {len(inside)} of {len(atlas)} scenes. For one sensor a call, warm, it is {_atlas_ratio(data):.0f} times as fast as the default solid "
+        f"(median); {AT_ONCE:,} sensors in one call cost {base / data['atlas_at_once_s']:,.0f} times less each. It has the errors of the solid, from which it is "
+        "made. `auto` takes the cheapest model whose stated error meets its tolerance: the solid where the atlas does not cover a scene, or where "
+        "the press ends by buckling or at the break strain, which the solid locates more exactly.",
         "",
         "| scene | atlas's error in sensitivity | auto took | its error | its time / default |",
         "|---|---|---|---|---|",
         *lines,
         "",
     ]
+
+
+def atlas_words(data: dict[str, Any]) -> str:
+    """What the atlas costs, in a sentence."""
+    return f"The atlas has the same figures {_atlas_ratio(data):.0f} times as fast."
+
+
+def _atlas_ratio(data: dict[str, Any]) -> float:
+    """Processor time of the default over that of the atlas, for one sensor a call: median of the scenes that it covers."""
+    default = {row["scene"]: row["processor_s"] for row in of(data["rows"], DEFAULT)}
+    return statistics.median(default[row["scene"]] / row["processor_s"] for row in of(data["rows"], ATLAS))
+
+
+def peer_words(peers: dict[str, Any]) -> str:
+    """Times of inflation over those of other programs, in a sentence; empty where none was measured."""
+    parts = []
+    for program in ("FElupe", "CalculiX"):
+        found = [_ratio(peers["rows"], program, key) for key in ("solve_s", "whole_s")]
+        if None not in found:
+            parts.append(f"{found[0]:.2f} of {program}'s time ({found[1]:.2f} with start and imports)")
+    return f"Inflation at equal error takes {' and '.join(parts)}." if parts else ""
+
+
+def _ratio(rows: list[dict[str, Any]], program: str, key: str) -> float | None:
+    """Time of the cheapest run of pneutouch within the error over that of a program; None where either has no such run."""
+    here, there = cheapest(rows, OURS, key), cheapest(rows, program, key)
+    return None if here is None or there is None else here[key] / there[key]
 
 
 def _target_section(data: dict[str, Any], peers: dict[str, Any]) -> list[str]:
@@ -147,12 +141,13 @@ def _peer_section(peers: dict[str, Any]) -> list[str]:
     return [
         "### Other programs",
         "",
-        "The paper's sensor in TangoPlus inflated to and through its limit point, nu 0.49, one thread. Processor times over the "
-        "cheapest pneutouch solve within 0.5 %, median of three processes: the solve with its mesh, and the whole process with start, "
-        "imports and files. FElupe has no cavity, so it gets the apex height prescribed with the pressure as one more "
-        "unknown (a border around its matrices, added here), a guess along the last step and the least number of steps with which its Newton "
-        "iteration converges, determined beforehand and not counted. CalculiX has no arc length: its pressure rises until no increment of "
-        "0.2 % converges, so that its error does not shrink with its mesh. Both run with the meshes that suit them best.",
+        "The paper's sensor in TangoPlus, nu 0.49, inflated to and through its limit point, on one thread, each program on the meshes that suit "
+        "it best. Processor times are over the cheapest pneutouch solve within 0.5 %, median of three processes: the solve with its mesh, and the whole "
+        "process with start, imports and files.",
+        "",
+        "- **FElupe** has no cavity. The apex height is prescribed and the pressure is one more unknown (a border around its matrices, added here). "
+        "The least number of steps with which its Newton iteration converges, from a guess along the last step, was determined beforehand and not timed.",
+        "- **CalculiX** has no arc length. Its pressure rises until no increment of 0.2 % converges, so that its error does not shrink with its mesh.",
         "",
         "| program | cells | steps | limit pressure | solve | whole process |",
         "|---|---|---|---|---|---|",
@@ -171,11 +166,10 @@ def _same_mesh(rows: list[dict[str, Any]]) -> str:
         if r["program"] != OURS and (key := (r["cells_along"], r["cells_across"])) == (24, 2) and key in mine
     ]
     return (
-        "On the same mesh, 24 x 2, the solve of pneutouch costs this fraction of theirs: "
+        "On the same mesh, 24 x 2, the solve of pneutouch takes this fraction of their time: "
         + ", ".join(parts)
-        + ". The gain at 0.5 % comes also from "
-        "the element: its coarsest meshes are within 0.5 %. Most of a whole process is the start of Python, NumPy and SciPy, which "
-        "a running program needs once; CalculiX, compiled, has no such start."
+        + ". The rest of the gain at 0.5 % comes from the element, whose coarsest meshes are within 0.5 %. Most of a whole process is the start of Python, "
+        "NumPy and SciPy, which a running program needs once; CalculiX is compiled and has no such start."
     )
 
 
@@ -183,13 +177,12 @@ def _share_section(shares: dict[str, float]) -> list[str]:
     return [
         "### Where the time goes",
         "",
-        "The default on all scenes under the profiler (which overestimates the cost of small functions).",
+        "The default on all scenes under the profiler, which overestimates the cost of small functions. The time of locating a jump is also "
+        "contained in the other rows.",
         "",
         "| part | share |",
         "|---|---|",
         *(f"| {part} | {share:.0%} |" for part, share in shares.items()),
-        "",
-        "The time of locating a jump is also contained in the other rows.",
         "",
     ]
 
