@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page background-charts atlas atlas-page contact-table simulator-page dist sbom pythons paper lock clean
+.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page background-charts atlas atlas-page contact-table simulator-page overview-page dist sbom pythons paper lock clean
 
 venv: $(VENV)/.dev
 
@@ -82,6 +82,10 @@ clean:
 # Speed against accuracy, measured now; writes docs/background/accuracy.md and its charts.
 chart: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.chart
+
+# All kinds of work on one page, from stored measurements; those of selection and sweep: python -m benchmarks.search.
+overview-page: $(VENV)/.dev
+	$(BIN)/python -m benchmarks.overview_page
 
 # Friction between wall and plate: sensitivity, the loop it makes, convergence and time; writes docs/background/friction.md.
 friction-page: $(VENV)/.dev

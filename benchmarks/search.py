@@ -1,0 +1,186 @@
+"""Selection and sweep against what a laboratory would write itself: ``python -m benchmarks.search`` (ten minutes).
+
+Each way answers the same questions. Its error is that of the sensitivity it states against two refined meshes of the solid,
+extrapolated; its time is processor time on one core, whole calls. Writes docs/background/search.json.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import os
+import platform
+import re
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+import pneutouch as pt
+from benchmarks.answer import solid_answer
+from benchmarks.scenes import Scene
+from pneutouch.errors import PneutouchError
+from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.mechanics import predict
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.units import KPA
+
+STORED = Path(__file__).resolve().parents[1] / "docs" / "background" / "search.json"
+RESINS = ("TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970")
+WIDEST_MM = 25.0
+TARGETS = ((3.0, 10.0), (1.9, 12.0), (1.4, 15.0), (2.2, 5.0))
+"""Sensitivity (kPa/N) at a driving pressure (kPa)."""
+
+SWEPT = {"wall_thickness_mm": [1.2, 1.5, 1.8, 2.1], "material": ["TangoPlus", "FLX9940", "FLX9950", "FLX9960"]}
+SWEPT_AT_KPA = (0.0, 8.0, 16.0)
+
+
+def sensor(design: pt.Design) -> Sensor:
+    """The sensor of a design."""
+    return sensor_of(design.assembly)
+
+
+def refined(design: pt.Design, pressure_kPa: float) -> float:
+    """Sensitivity (kPa/N) from meshes of 32 x 2 and 64 x 4 cells, extrapolated by first order, over their common range."""
+    scene = Scene(design.name, sensor(design), pressure_kPa * KPA)
+    coarse, fine = (solid_answer(scene, arc, through) for arc, through in ((32, 2), (64, 4)))
+    grid = np.linspace(0.0, min(coarse.end, fine.end), scene.sensor.protocol.steps + 1)
+    return 2.0 * fine.sensitivity(grid) - coarse.sensitivity(grid)
+
+
+def by_model(design: pt.Design, pressure_kPa: float, model: str) -> float:
+    """Sensitivity (kPa/N) by one model; NaN where it has none."""
+    try:
+        (state,) = predict("", sensor(design), [pressure_kPa * KPA], model=model).states
+    except PneutouchError:
+        return np.nan
+    return np.nan if state.figures is None else state.figures.sensitivity_kPa_per_N
+
+
+def selected(target: float, pressure_kPa: float) -> pt.Design:
+    return pt.select(
+        sensitivity_kPa_per_N=target, driving_pressure_kPa=pressure_kPa, max_diameter_mm=WIDEST_MM
+    ).designs[0]
+
+
+def on_a_grid(target: float, pressure_kPa: float) -> pt.Design:
+    """Nearest of five resins, four radii and five walls, each solved by the solid."""
+    designs = [
+        pt.Design(inner_radius_mm=radius, wall_thickness_mm=wall, material=resin)
+        for resin, radius, wall in itertools.product(RESINS, (6.0, 7.5, 9.0, 10.0), (1.0, 1.3, 1.6, 2.0, 2.4))
+    ]
+    off = [abs(by_model(design, pressure_kPa, "solid") - target) for design in designs]
+    return designs[int(np.nanargmin(off))]
+
+
+def by_roots(target: float, pressure_kPa: float) -> pt.Design | None:
+    """For each resin and four radii the wall that gives the target, by Brent's method on the solid; the first, or None."""
+    for resin, radius in itertools.product(RESINS, (9.0, 7.5, 10.0, 6.0)):
+
+        def design(wall: float, resin: str = resin, radius: float = radius) -> pt.Design:
+            return pt.Design(inner_radius_mm=radius, wall_thickness_mm=wall, material=resin)
+
+        def off(wall: float, design: Callable[[float], pt.Design] = design) -> float:
+            return by_model(design(wall), pressure_kPa, "solid") - target
+
+        ends = off(1.0), off(2.4)
+        if np.isfinite(ends).all() and ends[0] * ends[1] < 0:
+            return design(round(brentq(off, 1.0, 2.4, xtol=0.01), 2))
+    return None
+
+
+SEARCHES: dict[str, Callable[[float, float], pt.Design | None]] = {
+    "pneutouch select": selected,
+    "grid of 100 designs, solid": on_a_grid,
+    "wall by Brent's method, solid": by_roots,
+}
+
+
+def timed(work: Callable[[], Any]) -> tuple[Any, float]:
+    start = time.process_time()
+    return work(), time.process_time() - start
+
+
+def searches() -> Iterator[dict[str, Any]]:
+    """One row for each way and target."""
+    selected(*TARGETS[0])  # Caches and imports.
+    for (target, pressure_kPa), (name, way) in itertools.product(TARGETS, SEARCHES.items()):
+        design, seconds = timed(partial(way, target, pressure_kPa))
+        truth = None if design is None else refined(design, pressure_kPa)
+        yield {
+            "way": name,
+            "target_kPa_per_N": target,
+            "driving_pressure_kPa": pressure_kPa,
+            "material": design and design.material,
+            "inner_radius_mm": design and design.inner_radius_mm,
+            "wall_thickness_mm": design and design.wall_thickness_mm,
+            "refined_kPa_per_N": truth,
+            "off_relative": truth and truth / target - 1.0,
+            "processor_s": seconds,
+        }
+
+
+def _swept(model: str) -> np.ndarray:
+    found = pt.sweep(pt.load("paper-dome"), model=model, driving_pressures_kPa=list(SWEPT_AT_KPA), **SWEPT)
+    return np.asarray(found["sensitivity_kPa_per_N"].to_numpy().reshape(-1, len(SWEPT_AT_KPA)))
+
+
+def _looped(model: str) -> np.ndarray:
+    rows = []
+    for wall, resin in itertools.product(*SWEPT.values()):
+        design = pt.load("paper-dome").replace(wall_thickness_mm=wall, material=resin)
+        rows.append([s.sensitivity_kPa_per_N for s in design.predict(list(SWEPT_AT_KPA), model=model).states])
+    return np.array(rows)
+
+
+def sweeps() -> Iterator[dict[str, Any]]:
+    """One row for each way to predict the same 16 designs at three driving pressures."""
+    truth = np.array(
+        [
+            [
+                refined(pt.load("paper-dome").replace(wall_thickness_mm=wall, material=resin), kPa)
+                for kPa in SWEPT_AT_KPA
+            ]
+            for wall, resin in itertools.product(*SWEPT.values())
+        ]
+    )
+    ways = {
+        "pneutouch sweep, atlas": lambda: _swept("atlas"),
+        "pneutouch sweep, auto": lambda: _swept("auto"),
+        "pneutouch sweep, solid": lambda: _swept("solid"),
+        "loop of predict, atlas": lambda: _looped("atlas"),
+        "loop of predict, solid": lambda: _looped("solid"),
+    }
+    for name, way in ways.items():
+        values, seconds = timed(way)
+        off = np.abs(values / truth - 1.0)
+        yield {
+            "way": name,
+            "predictions": int(truth.size),
+            "processor_s": seconds,
+            "median_error": float(np.nanmedian(off)),
+            "greatest_error": float(np.nanmax(off)),
+        }
+
+
+def machine() -> str:
+    """What the times were taken on."""
+    cpu = Path("/proc/cpuinfo").read_text(encoding="utf-8") if Path("/proc/cpuinfo").exists() else ""
+    model = re.search(r"model name\s*: (.*)", cpu)
+    name = model.group(1) if model else platform.processor() or platform.machine()
+    return f"{os.cpu_count()} cores of {name} ({platform.system()}, Python {platform.python_version()})"
+
+
+def main() -> None:
+    data = {"machine": machine(), "searches": list(searches()), "sweeps": list(sweeps())}
+    STORED.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    for row in (*data["searches"], *data["sweeps"]):
+        print(row)
+
+
+if __name__ == "__main__":
+    main()
