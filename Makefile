@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page background-charts atlas atlas-page contact-table simulator-page overview-page dist sbom pythons paper lock clean
+.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page background-charts atlas atlas-page contact-table simulator-page overview-page dist sbom pythons fuzz paper lock clean
 
 venv: $(VENV)/.dev
 
@@ -60,6 +60,17 @@ dist: $(VENV)/.run
 # The locked dependencies as a CycloneDX document, dist/pneutouch.cdx.json.
 sbom: $(VENV)/.run
 	$(BIN)/python -m release.sbom
+
+# Fuzzes every reader by the branches that its inputs reach, an hour of processor time in all. Needs atheris, which has no wheels for
+# every system and Python that are supported: it is installed into an environment of its own, which sees the packages of the other.
+fuzz: $(VENV)/fuzz/.atheris
+	PYTHONPATH=generator $(VENV)/fuzz/bin/python -m tests.fuzzing --seconds 3600 --jobs 2
+
+$(VENV)/fuzz/.atheris: $(VENV)/.dev
+	$(PYTHON) -m venv $(VENV)/fuzz
+	$(VENV)/fuzz/bin/python -m pip --disable-pip-version-check --quiet install atheris==3.0.0
+	$(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))' > $$($(VENV)/fuzz/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/other.pth
+	touch $@
 
 # The figures of paper/paper.md, from stored ones.
 paper: $(VENV)/.run

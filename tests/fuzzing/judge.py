@@ -27,8 +27,8 @@ def judge(target: Target, content: bytes, folder: Path) -> Finding | None:
     """Read ``content`` as a file in ``folder``; None where it gives an answer or one of the target's errors."""
     path = folder / target.name
     path.write_bytes(target.written(content))
-    _forget_peak()
-    before, memory = time.process_time(), _peak()
+    forget_peak()
+    before, memory = time.process_time(), peak()
     error = None
     try:
         with warnings.catch_warnings():
@@ -40,7 +40,7 @@ def judge(target: Target, content: bytes, folder: Path) -> Finding | None:
         error = _spoilt(str(refusal))
     except Exception as raised:
         error = raised
-    seconds, mebibytes = time.process_time() - before, _peak() - memory
+    seconds, mebibytes = time.process_time() - before, peak() - memory
     if error is not None:
         return _of_error(error)
     if seconds > SECONDS:
@@ -66,13 +66,13 @@ def _of_error(error: Exception) -> Finding:
     return Finding(f"{type(error).__name__} {place}", words)
 
 
-def _forget_peak() -> None:
+def forget_peak() -> None:
     """Let the peak begin anew, where the system can: an earlier test may have had more than this input takes."""
     with contextlib.suppress(OSError):
         Path("/proc/self/clear_refs").write_text("5")
 
 
-def _peak() -> float:
+def peak() -> float:
     """Greatest resident memory since then, MiB."""
     with contextlib.suppress(OSError):
         for line in Path("/proc/self/status").read_text().splitlines():
