@@ -111,7 +111,7 @@ def _inflations(ax: Axes, solved: Evaluation) -> None:
         ax.plot(height, pressure, color=colour, ls=LINES[(1, 4, 0)[k]], lw=(1.0, 1.2, 1.6)[k], label=label)
         ax.plot(*top, MARKERS[k], color=colour, ms=4)
     ax.set(xlabel="height of the inner apex / R0  (-)", ylabel="p R0/(μ t0)  (-)", xlim=(1.0, 2.2), ylim=(0.0, 1.7))
-    legend_above(ax)
+    ax.legend(loc="lower right")
 
 
 def _smooth(points: Array) -> tuple[Array, Array]:
