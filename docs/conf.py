@@ -23,10 +23,19 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "formats_table",
     "page_titles",
+    "reference_pages",
 ]
 exclude_patterns = ["_build", "_ext", "examples", "**/README.rst", "gallery/*.ipynb"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 nitpicky = True
+# Types of other packages, whose pages are elsewhere, and of the package's inside, which no page documents; those that a
+# module imports for a type checker alone have their bare names.
+nitpick_ignore_regex = [
+    ("py:class", "Axes|DataFrame|Path"),
+    ("py:class", "CalibrationOutcome|CompareResult|Evaluation|Rating|UncertainStateRecord"),
+    ("py:.*", r"(collections|matplotlib|numpy|os|pandas|pathlib|typing|xarray)\..*"),
+    ("py:.*", r"pneutouch\.(arrays|body|catalogue|evaluation|mechanics|parts|printability|workflows)\..*"),
+]
 keep_warnings = False
 
 myst_enable_extensions = ["dollarmath", "deflist", "fieldlist"]
@@ -34,6 +43,7 @@ myst_heading_anchors = 4
 
 autosummary_generate = True
 autodoc_typehints = "description"
+autodoc_typehints_format = "short"
 autodoc_member_order = "bysource"
 napoleon_google_docstring = True
 

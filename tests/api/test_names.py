@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -42,23 +41,11 @@ def test_the_stub_declares_the_names_that_are_there():
     assert (PACKAGE / "py.typed").is_file()
 
 
-def test_the_page_runs_and_names_every_public_name(capsys):
+def test_the_page_runs(capsys):
     text = (PACKAGE.parents[1] / "docs" / "reference" / "python.md").read_text()
     block = blocks(text, "python")[0]
     exec(compile(block, "python.md", "exec"), {})
     assert "kPa/N" in capsys.readouterr().out
-    values = {
-        "FigureValue",
-        "PredictedState",
-        "Result",
-        "CheckResult",
-        "Listing",
-        "Selection",
-        "Comparison",
-        "__version__",
-    }
-    missing = [name for name in pt.__all__ if name not in values and not re.search(rf"\b{name}\b", text)]
-    assert not missing
 
 
 def test_a_file_that_cannot_be_read_is_listed_with_what_is_wrong(tmp_path, monkeypatch):
