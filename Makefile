@@ -90,7 +90,7 @@ lock:
 clean:
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache
 
-# Speed against accuracy, measured now; writes docs/background/accuracy.md and its charts.
+# Speed against accuracy, measured now; writes docs/background/accuracy.md and validation.md with their charts.
 chart: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.chart
 
@@ -98,7 +98,7 @@ chart: $(VENV)/.dev
 overview-page: $(VENV)/.dev
 	$(BIN)/python -m benchmarks.overview_page
 
-# Friction between wall and plate: sensitivity, the loop it makes, convergence and time; writes docs/background/friction.md.
+# Friction between wall and plate: sensitivity, the loop it makes, convergence and time; writes docs/background/friction.md and its chart.
 friction-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.friction_page
 
@@ -126,7 +126,7 @@ coverage-page: $(VENV)/.dev
 sway-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.sway_page
 
-# The charts of pages of docs/background that are written by hand: theory, uncertainty, relaxation, ageing, grades.
+# The charts of pages of docs/background that are written by hand: theory, uncertainty, relaxation, ageing, grades, contact.
 background-charts: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.background_charts
 

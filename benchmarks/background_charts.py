@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from benchmarks import contact_chart, off_axis_chart
 from pneutouch.arrays import Array
 from pneutouch.catalogue import Library
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
@@ -232,6 +233,8 @@ CHARTS: dict[str, Callable[[], str]] = {
     "viscous": viscous,
     "ageing": ageing,
     "graded": graded,
+    "contact": contact_chart.chart,
+    "off-axis": off_axis_chart.chart,
 }
 
 

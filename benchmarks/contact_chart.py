@@ -1,8 +1,7 @@
-"""Draw docs/background/contact.svg, the dome under four objects: ``python -m benchmarks.contact_chart``."""
+"""The chart of docs/background/contact.md: the dome under four objects. `background_charts` writes it."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.evaluation import evaluate
@@ -13,7 +12,6 @@ if TYPE_CHECKING:
 
     from pneutouch.mechanics.prediction import SensorState
 
-CHART = Path(__file__).resolve().parents[1] / "docs" / "background" / "contact.svg"
 COMMON: dict[str, Any] = {
     "pneumatics.driving_pressures_kPa": [0],
     "indentation.depth_mm": 4,
@@ -33,13 +31,15 @@ def pressed(contact: dict[str, Any]) -> SensorState:
     return evaluate("paper-dome", changes).prediction.states[0]
 
 
-def draw(states: dict[str, SensorState]) -> str:
+def chart() -> str:
     """Half sections side by side, shaded by stretch."""
     from matplotlib.cm import ScalarMappable
 
+    states = {name: pressed(contact) for name, contact in OBJECTS.items()}
     colours = ScalarMappable(cmap="cividis_r")
     colours.set_clim(1.0, max(float(state.shapes[-1].stretch.max()) for state in states.values()))
     with figure(178, 58) as drawn:
+        drawn.set_layout_engine("compressed")
         axes = drawn.subplots(1, len(states), sharey=True)
         for ax, (name, state) in zip(axes, states.items(), strict=True):
             _half(ax, state, colours)
@@ -63,12 +63,3 @@ def _half(ax: Axes, state: SensorState, colours: Any) -> None:
     ax.axhline(0, color=INK, lw=0.6)
     ax.grid(False)
     ax.set(aspect="equal", xlabel="radius  (mm)", xlim=(0, 12.5), ylim=(-0.5, 14))
-
-
-def main() -> None:
-    CHART.write_text(draw({name: pressed(contact) for name, contact in OBJECTS.items()}), encoding="utf-8")
-    print(f"wrote docs/background/{CHART.name}")
-
-
-if __name__ == "__main__":
-    main()

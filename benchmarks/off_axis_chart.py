@@ -1,31 +1,28 @@
-"""Draw docs/background/off-axis.svg, the error of the force read under other contacts: ``python -m benchmarks.off_axis_chart``."""
+"""The chart of docs/background/off-axis.md: the error of the force read under other contacts. `background_charts` writes it."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.anywhere import contact_chart
 from pneutouch.evaluation.chart_data import ContactChart, ContactRow
 from pneutouch.report.style import ACCENT, FAINT, INK, MARKERS, figure, svg
 
-CHART = Path(__file__).resolve().parents[1] / "docs" / "background" / "off-axis.svg"
-
 
 def errors() -> ContactChart:
     """The table of the paper's sensor in TangoPlus at 0 and 22 kPa."""
-    found = evaluate("paper-dome", {"pneumatics.driving_pressures_kPa": [0, 22]}, model="atlas")
-    chart = contact_chart(found.prediction, found.sensor)
-    assert isinstance(chart, ContactChart)
-    return chart
+    solved = evaluate("paper-dome", {"pneumatics.driving_pressures_kPa": [0, 22]}, model="atlas")
+    found = contact_chart(solved.prediction, solved.sensor)
+    assert isinstance(found, ContactChart)
+    return found
 
 
-def draw(chart: ContactChart) -> str:
+def chart() -> str:
     """One row a contact, one mark a driving pressure."""
+    found = errors()
     with figure(150, 84) as drawn:
         ax = drawn.subplots()
-        rows = list(reversed(chart.rows))
-        for k, (pressure_kPa, rises_kPa) in enumerate(zip(chart.driving_pressures_kPa, chart.rises_kPa, strict=True)):
+        rows = list(reversed(found.rows))
+        for k, (pressure_kPa, rises_kPa) in enumerate(zip(found.driving_pressures_kPa, found.rises_kPa, strict=True)):
             values = [row.errors_percent[k][0] for row in rows]
             look = {"color": (INK, ACCENT)[k], "marker": MARKERS[k], "mfc": None if k == 0 else "white"}
             kept = [(value, place) for place, value in enumerate(values) if value is not None]
@@ -52,12 +49,3 @@ def label(row: ContactRow) -> str:
 def _millimetres(length: float) -> str:
     """To a hundredth; halves go up, as on the page."""
     return f"{round(length + 1e-9, 2):g} mm"
-
-
-def main() -> None:
-    CHART.write_text(draw(errors()), encoding="utf-8")
-    print(f"wrote docs/background/{CHART.name}")
-
-
-if __name__ == "__main__":
-    main()

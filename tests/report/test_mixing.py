@@ -37,6 +37,7 @@ def test_the_chart_names_every_curve_and_repeats_its_bytes(chart):
 
 def test_the_page_on_the_hard_resins_is_what_the_code_gives(library):
     assert hard_resins.PAGE.read_text(encoding="utf-8") == hard_resins.page(library)
+    assert hard_resins.PAGE.with_suffix(".svg").read_text(encoding="utf-8") == hard_resins.draw(library)
 
 
 @pytest.mark.parametrize("name", hard_resins.RESINS)
