@@ -78,8 +78,8 @@ def section(data: dict[str, Any]) -> list[str]:
         HEADING,
         "",
         "The paper's dome in FLX9960 without its base, pressed centrally by a plate: the axisymmetric solid on its default mesh, "
-        f"and half a dome of {' x '.join(map(str, data['cells']))} C3D20R cells with its own trapped gas. CalculiX counts slip from the beginning of "
-        "its computation; the coefficient is therefore one at which nearly all points slip ([friction.md](friction.md#calculix)). "
+        f"and half a dome of {' x '.join(map(str, data['cells']))} C3D20R cells at the pressure that Boyle's law gives in its own "
+        "volume. CalculiX counts slip from the beginning of its computation; the coefficient is therefore one at which nearly all points slip ([friction.md](friction.md#calculix)). "
         "`python -m benchmarks.calculix_friction_half` computes the section.",
         "",
         "| friction | mm | force N | CalculiX | pressure rise kPa | CalculiX |",

@@ -81,8 +81,8 @@ def section(data: list[dict[str, Any]]) -> list[str]:
     return [
         HEADING,
         "",
-        f"The paper's sensor without its base: the harmonic solid (M = {orders}, 24 x 2 cells), and half a dome of C3D20R cells with its own "
-        "trapped gas. CalculiX has no gas; its pressure is that which Boyle's law gives in the volume that it finds. Columns "
+        f"The paper's sensor without its base: the harmonic solid (M = {orders}, 24 x 2 cells), and half a dome of C3D20R cells. "
+        "CalculiX has no gas; its pressure is that which Boyle's law gives in the volume that it finds. Columns "
         '"CalculiX": difference of CalculiX on its finest mesh from the figure left of it. Last column: greatest change of the three '
         f"figures by refinement in CalculiX, where it was run on two meshes ({refined}). [off-axis.md](off-axis.md#calculix) explains "
         "the differences. `python -m benchmarks.off_axis_calculix` computes the section.",

@@ -78,7 +78,7 @@ def _answer(rows: list[CellRow]) -> list[str]:
         "How much of the model's error against the paper's Table S1 can come from what the paper does not state? With the default "
         f"assumptions the root mean square error of {len(rows)} cells is {rms:.1%}. Friction of the plate, the rim of the membrane, the dead "
         f"volume and the fitted range move a cell by {share:.1%} (standard deviation): {(share / rms) ** 2:.0%} of the square of that error. No "
-        f"combination of them fits the table; the best of {len(order)} meets {best} of {len(rows)} cells within its repeatability.",
+        f"combination of them fits the table; the best of {len(order)} meets {best} of {len(rows)} cells within twice its repeatability.",
         "",
         "![Sensitivity of each cell over friction, with the measured value](table-s1.svg)",
         "",
