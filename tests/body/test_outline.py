@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from pneutouch.body import Bore
-from pneutouch.body.outline import _cut, section_outline
+from pneutouch.body.outline import _cut, mesh_outline, section_outline
 from pneutouch.catalogue import load_scene
 from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes
+from tests.printability.gallery import ball, body_of
 
 TOLERANCE = 0.02
 CASES = [
@@ -60,3 +61,12 @@ def test_a_bore_that_the_plane_cuts_is_as_wide_as_its_chord(library):
     # A bore beside the plane leaves the section as it was.
     aside = replace(plain, bores=(replace(bore, y=1.5),))
     assert difference(section_outline(aside, TOLERANCE), section_outline(plain, TOLERANCE))[0] == 0.0
+
+
+@pytest.mark.parametrize("height", [-5.0, 0.0, 3.0])
+def test_a_plane_cuts_the_mesh_of_a_ball_in_a_circle(height):
+    """Its radius is that of the ball less what the plane is off its middle, to the sagitta of a chord."""
+    (loop,) = mesh_outline(body_of(ball(6.0, sides=128)), height)
+    radius = np.linalg.norm(loop, axis=1)
+    assert radius.max() <= np.sqrt(36.0 - height**2) + 1e-3
+    assert radius.min() >= np.sqrt(36.0 - height**2) - 0.01

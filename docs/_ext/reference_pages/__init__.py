@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from reference_pages import commands, documents, interface, printers
+from reference_pages import commands, documents, interface, printers, rules
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
@@ -21,6 +21,7 @@ def pages() -> dict[str, str]:
         "documents.md": documents.page("JSON"),
         "interface.md": interface.page(),
         "printers.md": printers.page(),
+        "rules.md": rules.page(),
         **documents.schema_files(),
     }
 

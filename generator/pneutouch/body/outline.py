@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.body.mesh import Body
 from pneutouch.body.shapes import Bore
 from pneutouch.body.solid import Solid
 from pneutouch.meridian import Meridian, sample
@@ -49,10 +50,14 @@ def _without(loops: list[Array], holes: list[Array]) -> list[Array]:
     return [np.asarray(loop) for loop in (CrossSection(loops) - CrossSection(holes)).to_polygons()]
 
 
-def _cut(solid: Solid, tolerance: float) -> list[Array]:
+def mesh_outline(body: Body, height: float = 0.0) -> list[Array]:
+    """Loops (n, 2) of (x, z) in mm where the plane y = ``height`` cuts the mesh of a body."""
     from manifold3d import Manifold, Mesh64
 
-    body = solid.mesh(tolerance)
     upright = body.vertices[:, [0, 2, 1]] * np.array([1.0, 1.0, -1.0])
-    cut = Manifold(Mesh64(np.ascontiguousarray(upright), body.triangles.astype(np.uint64))).slice(_ASIDE)
-    return [np.asarray(loop) for loop in cut.to_polygons()]
+    whole = Manifold(Mesh64(np.ascontiguousarray(upright), body.triangles.astype(np.uint64)))
+    return [np.asarray(loop) for loop in whole.slice(_ASIDE - height).to_polygons()]
+
+
+def _cut(solid: Solid, tolerance: float) -> list[Array]:
+    return mesh_outline(solid.mesh(tolerance))

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.body import Bore, Solid
 from pneutouch.body.outline import section_outline
 from pneutouch.parts import Assembly
@@ -19,6 +21,7 @@ from pneutouch.report.style import INK, MUTED, figure, svg
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
 
     from pneutouch.spec.material import ArcGrading
 
@@ -33,24 +36,39 @@ def draw_section(ax: Axes, assembly: Assembly) -> None:
     """Hatched sections of all bodies in the plane y = 0, the holes of patterns turned into it; a graded membrane in the
     colours of its grade in place of the hatch."""
     from matplotlib.patches import PathPatch
-    from matplotlib.path import Path
 
     grading = assembly.scene.membrane_material.along
     for solid in assembly.solids:
-        paths = [Path(np.vstack([loop, loop[:1]]), closed=True) for loop in section_outline(solid, _TOLERANCE)]
-        if not paths:
+        loops = section_outline(solid, _TOLERANCE)
+        if not loops:
             continue
-        shape = Path.make_compound_path(*paths)
         if grading is not None and solid.role == "membrane":
+            shape = _shape(loops)
             _graded(ax, PathPatch(shape, transform=ax.transData), grading, assembly.layout.outer_radius)
+            ax.add_patch(PathPatch(shape, facecolor="none", edgecolor=INK, lw=_THICK, joinstyle="miter"))
         else:
-            hatch = _HATCHES.get(solid.role, "xx")
-            ax.add_patch(PathPatch(shape, facecolor="white", edgecolor=MUTED, hatch=hatch, lw=0))
-        ax.add_patch(PathPatch(shape, facecolor="none", edgecolor=INK, lw=_THICK, joinstyle="miter"))
+            draw_loops(ax, loops, solid.role)
         # The holes of a ring within the flange are full of silicone.
         filled = assembly.layout.ring is not None and solid.role == RING
         for bore in solid.bores:
             _turned_in(ax, bore, both_sides=filled or assembly.layout.port_axis is None, filled=filled)
+
+
+def draw_loops(ax: Axes, loops: Sequence[Array], role: str) -> None:
+    """A section from its loops (n, 2) in mm, hatched as bodies of a ``role`` are."""
+    from matplotlib.patches import PathPatch
+
+    shape = _shape(loops)
+    hatch = _HATCHES.get(role, "xx")
+    ax.add_patch(PathPatch(shape, facecolor="white", edgecolor=MUTED, hatch=hatch, lw=0))
+    ax.add_patch(PathPatch(shape, facecolor="none", edgecolor=INK, lw=_THICK, joinstyle="miter"))
+
+
+def _shape(loops: Sequence[Array]) -> Path:
+    """One path of closed loops."""
+    from matplotlib.path import Path
+
+    return Path.make_compound_path(*(Path(np.vstack([loop, loop[:1]]), closed=True) for loop in loops))
 
 
 def _graded(ax: Axes, wall: PathPatch, grading: ArcGrading, radius: float) -> None:
