@@ -133,6 +133,24 @@ def test_times_that_no_instrument_has_are_refused_without_a_warning(times, words
     assert read_blocks(identify(path, ColumnMap(), PLATE), Rig()).rate == pytest.approx(5e8)
 
 
+@pytest.mark.parametrize("step", ["inf", "nan", "1e308", "-1e308"])
+@pytest.mark.parametrize("key", ["X0", "Delta_X"])
+def test_a_clock_that_no_instrument_has_is_refused_without_a_warning(key, step, tmp_path):
+    from pneutouch.bench.reading import PLATE, read_blocks
+    from pneutouch.bench.source import identify
+    from pneutouch.spec.campaign import ColumnMap, Rig
+    from tests.bench.rig import small
+    from tests.tables.instruments import labview_without_times
+
+    time, position, force, pressure = small(rate=4.0, depths=(1.0,))
+    path = labview_without_times(tmp_path, time, position, force, pressure * 1e3)
+    assert read_blocks(identify(path, ColumnMap(), PLATE), Rig()).rate == pytest.approx(4)
+    lines = path.read_text().split("\n")
+    path.write_text("\n".join(f"{key},{step},{step},{step}," if line.startswith(f"{key},") else line for line in lines))
+    with pytest.raises(InputError, match=r"no instrument reads that|time (stands still|runs backwards)"):
+        read_blocks(identify(path, ColumnMap(), PLATE), Rig())
+
+
 def forged(folder, **files):
     """A folder of ours whose manifest agrees with what its files were changed to."""
     from pneutouch.output.files import digest
@@ -189,6 +207,58 @@ def test_a_slice_that_states_more_pixels_than_a_tray_has_is_refused():
         head = b"IHDR" + struct.pack(">II", columns, rows) + content[24:29]
         with pytest.raises(InputError, match=words):
             decode(content[:12] + head + struct.pack(">I", zlib.crc32(head)) + content[33:], "a.png")
+
+
+@pytest.mark.parametrize(("columns", "rows"), [(0, 2**32 - 1), (0, 1), (1, 0), (0, 0)])
+def test_a_slice_without_pixels_is_refused_before_its_rows_are_unpacked(columns, rows):
+    import struct
+    import zlib
+
+    from pneutouch.export.voxels.png import _chunk, decode
+
+    head = _chunk(b"IHDR", struct.pack(">IIBBBBB", columns, rows, 8, 6, 0, 0, 0))
+    # Rows without pixels take a byte each: these would be four gigabytes.
+    packed = _chunk(b"IDAT", zlib.compress(b"\0" * rows if rows < 10 else b""))
+    with pytest.raises(InputError, match=f"states {columns} x {rows} pixels; there must be one at least"):
+        decode(b"\x89PNG\r\n\x1a\n" + head + packed + _chunk(b"IEND", b""), "a.png")
+
+
+@pytest.mark.parametrize(("value", "pressure"), [("NaN", "12"), ("Infinity", "12"), ("0.1", "inf"), ('"nan"', "12")])
+def test_a_leak_that_is_no_number_is_refused_and_not_read_as_none(value, pressure, tmp_path):
+    from pneutouch.workflows.driving.leak import _of_campaign
+
+    path = tmp_path / "figures.json"
+    entry = '{"unit": "kPa/min", "value": %s, "figure": "leak, %s kPa"}'
+    path.write_text('{"design": "a", "injections": [%s]}' % (entry % ("0.1", "12")))
+    assert _of_campaign(path, "a").rate_kPa_per_min == pytest.approx(0.1)
+    path.write_text('{"design": "a", "injections": [%s]}' % (entry % (value, pressure)))
+    with pytest.raises(InputError, match="a leak that is no finite number"):
+        _of_campaign(path, "a")
+
+
+@pytest.mark.parametrize(
+    "figure",
+    [
+        {"value": "2", "low": 1, "high": 3},
+        {"value": None, "low": 1, "high": 3},
+        {"value": 2, "low": [1], "high": 3},
+        {"value": float("nan"), "low": 1, "high": 3},
+        {"value": 2, "low": 1, "high": -1},
+        {"value": True, "low": None, "high": None},
+    ],
+)
+def test_figures_of_another_kind_are_refused_where_they_are_read(figure, tmp_path):
+    from pneutouch.workflows.compare.measured import measured_columns
+    from tests.fuzzing.seeds import MEASUREMENT, POINTS
+
+    def columns(entry):
+        group = MEASUREMENT["groups"][0] | {"figures": {"sensitivity_kPa_per_N": entry}}
+        content = json.dumps(MEASUREMENT | {"groups": [group]})
+        return measured_columns(forged(tmp_path, figures_json=content, points_csv=POINTS.decode()))
+
+    assert columns({"value": 2, "low": None, "high": None})
+    with pytest.raises(InputError, match=r"figures.json is not as this version writes it"):
+        columns(figure)
 
 
 @pytest.mark.parametrize("key", ["dpi", "pixels", "pixel_um"])

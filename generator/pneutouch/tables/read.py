@@ -98,7 +98,9 @@ def _clocked(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[
     assert layout.clock is not None
     place, (first, step), done = list(names).index(CLOCK), layout.clock, 0
     for part in _kind(path).chunks(path, [name for name in names if name != CLOCK], layout):
-        times = first + step * np.arange(done, done + part.rows.size)
+        # A file may state any step: times that are no numbers, or too great, are refused where they are scaled.
+        with np.errstate(over="ignore", invalid="ignore"):
+            times = first + step * np.arange(done, done + part.rows.size)
         done += part.rows.size
         values, last = np.insert(part.values, place, times, axis=0), part.last
         if last is not None:

@@ -95,6 +95,9 @@ def _chunks(content: bytes, where: str) -> Iterator[tuple[bytes, bytes]]:
 
 
 def _pixels(data: bytes, rows: int, columns: int, where: str) -> Pixels:
+    if not rows or not columns:
+        # A row takes a byte even without pixels, so that 4 MB could state 4 GB of rows.
+        raise InputError(f"the PNG states {columns} x {rows} pixels; there must be one at least", file=where)
     if rows * columns > MOST_PIXELS:
         raise InputError(f"the PNG states {columns} x {rows} pixels; at most {MOST_PIXELS} in all", file=where)
     size = rows * (1 + 4 * columns)

@@ -2,8 +2,9 @@
 
 import csv
 import json
+import math
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -49,6 +50,23 @@ def as_written(folder: Path, name: str, remedy: str) -> Iterator[None]:
     except _MISFORMED as error:
         problem = f"{name} is not as this version writes it ({type(error).__name__}: {error})"
         raise InputError(problem, file=folder, remedy=remedy) from None
+
+
+def interval_of(entry: Mapping[str, Any]) -> tuple[float, float | None, float | None]:
+    """Value, low and high of a figure, the last two None where it has no interval. Raises ValueError for all else."""
+    value, low, high = entry["value"], entry["low"], entry["high"]
+    numbers([value, *(each for each in (low, high) if each is not None)])
+    if low is not None and high is not None and low > high:
+        raise ValueError(f"an interval from {low} to {high}")
+    return value, low, high
+
+
+def numbers(values: Any) -> list[float]:
+    """The values of a list. Raises ValueError where one is no finite number, TypeError for what is no list."""
+    for value in values:
+        if type(value) not in (int, float) or not math.isfinite(value):
+            raise ValueError(f"{value!r:.40} is no finite number")
+    return list(values)
 
 
 def listed_file(folder: Path, name: str, manifest: dict[str, Any]) -> bytes:

@@ -15,7 +15,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.comparison import ComparedFigure, ComparedSensor, ComparedState
 from pneutouch.evaluation.comparison_record import CURVE_KEYS, CurvePoints
 from pneutouch.formats import check_format
-from pneutouch.workflows.compare.folder import as_written, listed_file, manifest_of
+from pneutouch.workflows.compare.folder import as_written, interval_of, listed_file, manifest_of, numbers
 
 PREDICTED_NAMES = {"force_range_N": "force_at_range_end_N"}
 """Measured figures that a prediction names otherwise."""
@@ -104,7 +104,7 @@ def _state(group: Mapping[str, Any], curves: Mapping[str, CurvePoints], *, measu
         for key, entry in group["figures"].items()
         if measured or "predicted" in entry
     }
-    figures = {key: ComparedFigure(entry["value"], entry["low"], entry["high"]) for key, entry in entries.items()}
+    figures = {key: ComparedFigure(*interval_of(entry)) for key, entry in entries.items()}
     runs = tuple(curves[file] for file in group["files"] if measured and file in curves)
     return ComparedState(float(group["driving_pressure_kPa"]), figures, runs)
 
@@ -118,5 +118,5 @@ def _curves(content: Mapping[str, Any], points: bytes) -> dict[str, CurvePoints]
             empty: CurvePoints = {"indentation_mm": [], "contact_force_N": [], "pressure_rise_kPa": []}
             curve = curves.setdefault(row["file"], empty)
             for key in CURVE_KEYS:
-                curve[key].append(float(row[key]))
+                curve[key] += numbers([float(row[key])])
     return curves

@@ -25,7 +25,7 @@ from pneutouch.formats import KEY, check_format, format_of
 from pneutouch.output.files import MANIFEST
 from pneutouch.output.recipe_read import read_recipe
 from pneutouch.parts import assemble
-from pneutouch.workflows.compare.folder import as_written, listed_file, manifest_of
+from pneutouch.workflows.compare.folder import as_written, interval_of, listed_file, manifest_of, numbers
 from pneutouch.workflows.compare.measured import PREDICTED_NAMES
 
 if TYPE_CHECKING:
@@ -143,8 +143,7 @@ def _state(state: UncertainStateRecord, document: PredictionRecord, depths: Dept
     }
     figures = {key: ComparedFigure(float(value)) for key, value in plain.items() if value is not None}
     figures |= {
-        key: ComparedFigure(entry["value"], entry["low"], entry["high"], effects_of(state["uncertainty"], key))
-        for key, entry in known.items()
+        key: ComparedFigure(*interval_of(entry), effects_of(state["uncertainty"], key)) for key, entry in known.items()
     }
     measured = next((at for p, at in depths.items() if abs(p - pressure_kPa) < _CLOSE), None)
     note = ""
@@ -155,9 +154,9 @@ def _state(state: UncertainStateRecord, document: PredictionRecord, depths: Dept
     curve = state["curve"]
     kept = sum(at <= state["range_end_mm"] * (1 + 1e-9) for at in curve["indentation_mm"])
     points: CurvePoints = {
-        "indentation_mm": curve["indentation_mm"][:kept],
-        "contact_force_N": curve["contact_force_N"][:kept],
-        "pressure_rise_kPa": curve["pressure_rise_kPa"][:kept],
+        "indentation_mm": numbers(curve["indentation_mm"][:kept]),
+        "contact_force_N": numbers(curve["contact_force_N"][:kept]),
+        "pressure_rise_kPa": numbers(curve["pressure_rise_kPa"][:kept]),
     }
     return ComparedState(pressure_kPa, figures, (points,)), note
 

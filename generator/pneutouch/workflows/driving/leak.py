@@ -84,6 +84,8 @@ def _of_campaign(path: Path, design: str) -> LeakSource:
         raise InputError("not as characterize writes it", file=path, remedy="give a folder of its results") from None
     if measured != design:
         raise InputError(f"measured {measured}, not this design", file=path, key="design", value=measured)
+    if not np.isfinite(rates).all():
+        raise InputError("a leak that is no finite number", file=path, key="injections", remedy="characterize again")
     rates = [(rate, pressure_kPa) for rate, pressure_kPa in rates if pressure_kPa > 0]
     if not rates:
         raise InputError("holds no leak run above 0 kPa", file=path, remedy="plan one: docs/howto/measuring.md")
