@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page background-charts atlas atlas-page contact-table simulator-page overview-page dist sbom pythons fuzz paper lock clean
+.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page background-charts atlas atlas-page contact-table simulator-page overview-page dist sbom pythons fuzz mutants soak paper lock clean
 
 venv: $(VENV)/.dev
 
@@ -71,6 +71,14 @@ $(VENV)/fuzz/.atheris: $(VENV)/.dev
 	$(VENV)/fuzz/bin/python -m pip --disable-pip-version-check --quiet install atheris==3.0.0
 	$(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))' > $$($(VENV)/fuzz/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/other.pth
 	touch $@
+
+# Faults in mechanics, printability and bench, drawn at random, and whether the everyday tests notice them.
+mutants: $(VENV)/.dev
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.mutants --count 120 --seed 1
+
+# The studio in use for an hour, in a browser.
+soak: $(VENV)/.dev
+	$(BIN)/python -m benchmarks.studio_soak --minutes 60
 
 # The figures of paper/paper.md, from stored ones.
 paper: $(VENV)/.run

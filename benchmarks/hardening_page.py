@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from benchmarks.hardening_tables import sections
 from pneutouch.bench.blocks import MOST_BLOCKS
 from pneutouch.export import threemf_package as package
 from pneutouch.export.voxels.png import MOST_PIXELS
@@ -90,7 +91,7 @@ adds the smallest that reach new code to the corpus.
 
 
 def page() -> str:
-    return "\n".join([HEAD, *bounds(), TAKEN, KEPT])
+    return "\n".join([HEAD, *bounds(), TAKEN, KEPT, *sections()])
 
 
 if __name__ == "__main__":

@@ -33,6 +33,16 @@ def good(tmp_path):
     return path
 
 
+def test_a_part_without_a_name_is_refused(tmp_path):
+    path = tmp_path / "bad.3mf"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("xa", b"a")
+    # A name ends at a zero byte.
+    path.write_bytes(path.read_bytes().replace(b"xa", b"\0a"))
+    with pytest.raises(InputError, match=r"bad\.3mf: a part without a name"):
+        read_threemf(path)
+
+
 DOCTYPE = '<!DOCTYPE model [<!ENTITY a "lol">]>'
 EXTERNAL = '<!DOCTYPE model [<!ENTITY a SYSTEM "file:///etc/passwd">]>'
 PARAMETER = '<!DOCTYPE model [<!ENTITY % p SYSTEM "http://example.org/x.dtd"> %p;]>'

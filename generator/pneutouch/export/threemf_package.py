@@ -94,6 +94,8 @@ def _check_end(content: bytes, path: Path) -> None:
 
 def _parts(archive: zipfile.ZipFile, path: Path) -> dict[str, bytes]:
     """Content by name. Declared sizes are checked first; then no more than declared is inflated, and no less taken."""
+    if not all(entry.filename for entry in archive.infolist()):
+        raise InputError("a part without a name, which no 3MF has", file=path)
     entries = [entry for entry in archive.infolist() if not entry.is_dir()]
     if len(entries) > MOST_PARTS:
         _too_many(path)

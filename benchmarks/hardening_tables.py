@@ -1,0 +1,103 @@
+"""The stored figures of fuzzing, mutation testing and the soak, as sections of docs/background/hardening.md."""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from pathlib import Path
+from typing import Any
+
+DOCS = Path(__file__).resolve().parents[1] / "docs" / "background"
+READ = Path(__file__).with_name("mutants_read.toml")
+
+
+def sections() -> list[str]:
+    """What is stored, under its heading."""
+    known = {
+        "## Fuzzing by coverage": ("fuzzing.json", fuzzing),
+        "## Mutation testing": ("mutants-*.json", mutation),
+        "## The studio in use for an hour": ("soak.json", soak),
+    }
+    return [line for head, (name, table) in known.items() if any(DOCS.glob(name)) for line in (head, "", *table())]
+
+
+def wilson(part: int, whole: int) -> tuple[float, float]:
+    """The 95 % interval of a share (E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209, DOI 10.1080/01621459.1927.10502953)."""
+    z, share = 1.959964, part / whole
+    middle = share + z * z / (2 * whole)
+    half = z * math.sqrt(share * (1 - share) / whole + z * z / (4 * whole**2))
+    return (middle - half) / (1 + z * z / whole), (middle + half) / (1 + z * z / whole)
+
+
+def stored(name: str) -> Any:
+    return json.loads((DOCS / name).read_text(encoding="utf-8"))
+
+
+def fuzzing() -> list[str]:
+    rows = stored("fuzzing.json")
+    runs, seconds = (sum(row[key] for row in rows.values()) for key in ("runs", "seconds"))
+    inputs, size = (sum(row[key] for row in rows.values()) for key in ("kept", "kept_bytes"))
+    lines = [
+        f"The last run: {runs} inputs in {seconds / 60:.0f} minutes of processor time. An edge is a branch of the readers' code, a feature an edge with how often "
+        "it was taken; the first number is that of the shipped files and the inputs kept before, the second that of the end. "
+        f"{inputs} inputs of {size / 1e3:.0f} kB are kept: the smallest that reach code which no smaller one does, and all that were faults.",
+        "",
+        "| reader | inputs | s | edges | features | corpus | kept | findings |",
+        "|---|--:|--:|--:|--:|--:|--:|--:|",
+    ]
+    for name, row in rows.items():
+        (first, last), (few, many) = row["edges"], row["features"]
+        numbers = (
+            f"{row['runs']} | {row['seconds']:.0f} | {first}, {last} | {few}, {many} | {row['corpus']} | {row['kept']}"
+        )
+        lines.append(f"| {name} | {numbers} | {row['findings']} |")
+    return [*lines, ""]
+
+
+def mutation() -> list[str]:
+    draws = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(DOCS.glob("mutants-*.json"))]
+    drawn = [row | {"seed": draw["seed"]} for draw in draws for row in draw["drawn"]]
+    read = {(each["seed"], each["number"]): each for each in tomllib.loads(READ.read_text())["survivor"]}
+    lines = [
+        "| part | drawn | killed | timed out | survived | of them equivalent | killed by new tests | left |",
+        "|---|--:|--:|--:|--:|--:|--:|--:|",
+    ]
+    parts = [*dict.fromkeys(row["module"].split("/")[0] for row in drawn)]
+    totals: list[int] = []
+    for part in [*sorted(parts), "all"]:
+        rows = [row for row in drawn if part in ("all", row["module"].split("/")[0])]
+        counts = [sum(row["outcome"] == outcome for row in rows) for outcome in ("killed", "timed out", "survived")]
+        verdicts = [read[row["seed"], row["number"]]["verdict"] for row in rows if row["outcome"] == "survived"]
+        totals = [len(rows), *counts, *(verdicts.count(each) for each in ("equivalent", "test", "left"))]
+        lines.append(f"| {part} | {' | '.join(map(str, totals))} |")
+    whole, noticed, new = totals[0], totals[1] + totals[2], totals[5]
+    shares = [_share("by the tests as they were", noticed, whole), _share("with the new ones", noticed + new, whole)]
+    shares.append(_share("of those that are not equivalent, with the new ones", noticed + new, whole - totals[4]))
+    return [*lines, "", f"Noticed: {'; '.join(shares)}.", "", *_survivors(drawn, read)]
+
+
+def _share(words: str, part: int, whole: int) -> str:
+    low, high = wilson(part, whole)
+    return f"{100 * part / whole:.0f} % ({part} of {whole}, {100 * low:.0f} to {100 * high:.0f} %) {words}"
+
+
+def _survivors(drawn: list[Any], read: dict[Any, Any]) -> list[str]:
+    lines = ["| survivor | change | what it is |", "|---|---|---|"]
+    for row in drawn:
+        if row["outcome"] == "survived":
+            each = read[row["seed"], row["number"]]
+            where = f"`{row['module']}` {row['function']}".strip()
+            change = row["change"].partition(": ")[2].replace("|", "\\|")
+            lines.append(f"| {where} | `{change}` | {each['verdict']}: {each['words']} |")
+    return [*lines, ""]
+
+
+def soak() -> list[str]:
+    found = stored("soak.json")
+    lines = ["| minutes | acts | elements | listeners | scripts, MB | processes, MB |", "|--:|--:|--:|--:|--:|--:|"]
+    for row in found["points"]:
+        lines.append(
+            f"| {row['minutes']:.0f} | {row['acts']} | {row['nodes']} | {row['listeners']} | {row['scripts_mb']:.1f} | {row['processes_mb']} |"
+        )
+    return [*lines, ""]
