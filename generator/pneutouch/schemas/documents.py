@@ -27,7 +27,11 @@ _DOCUMENTS = {
     "truth": ("results.truth", "Truth of a simulated campaign", "`truth.json` of `simulate`"),
     "specimen-report": ("objects.specimen", "A built texture specimen", "`specimen.json` of `build`"),
     "stack": ("objects.stack", "A voxel stack", "`stack.json` of every stack for voxel printing"),
-    "exported-design": ("objects.exported_design", "A design exported from the studio", "saved by `Export` in the studio"),
+    "exported-design": (
+        "objects.exported_design",
+        "A design exported from the studio",
+        "saved by `Export` in the studio",
+    ),
 }
 
 
