@@ -12,6 +12,18 @@ DOCS = Path(__file__).resolve().parents[1] / "docs" / "background"
 READ = Path(__file__).with_name("mutants_read.toml")
 
 
+FAULTS = """What was wrong, and is refused now with a message that names file and fault:
+
+| reader | input | what it did | shown by |
+|---|---|---|---|
+| 3MF | a part without a name | ended with a traceback | fuzzing |
+| voxel slice | no columns, 4294967295 rows | unpacked 4 MB to 4 GB | reading the code |
+| figures.json as a measured leak | a leak that is no finite number | counted as no leak | reading the code |
+| output folder for `compare` | figures and curves that are no finite numbers | compared as they stood | reading the code |
+| TDMS, LabVIEW text | a clock with an infinite step | a warning of numpy | reading the code |
+"""
+
+
 def sections() -> list[str]:
     """What is stored, under its heading."""
     known = {
@@ -39,9 +51,9 @@ def fuzzing() -> list[str]:
     runs, seconds = (sum(row[key] for row in rows.values()) for key in ("runs", "seconds"))
     inputs, size = (sum(row[key] for row in rows.values()) for key in ("kept", "kept_bytes"))
     lines = [
-        f"The last run: {runs} inputs in {seconds / 60:.0f} minutes of processor time. An edge is a branch of the readers' code, a feature an edge with how often "
-        "it was taken; the first number is that of the shipped files and the inputs kept before, the second that of the end. "
-        f"{inputs} inputs of {size / 1e3:.0f} kB are kept: the smallest that reach code which no smaller one does, and all that were faults.",
+        f"The last run: {runs} inputs in {seconds:.0f} s of processor time. An edge is a branch of the readers' code, a feature an edge with how",
+        "often it was taken; the first number of each is that of the shipped files and the kept inputs, the second that of the end.",
+        f"{inputs} inputs of {size / 1e3:.0f} kB are kept in all.",
         "",
         "| reader | inputs | s | edges | features | corpus | kept | findings |",
         "|---|--:|--:|--:|--:|--:|--:|--:|",
@@ -52,7 +64,7 @@ def fuzzing() -> list[str]:
             f"{row['runs']} | {row['seconds']:.0f} | {first}, {last} | {few}, {many} | {row['corpus']} | {row['kept']}"
         )
         lines.append(f"| {name} | {numbers} | {row['findings']} |")
-    return [*lines, ""]
+    return [*lines, "", FAULTS]
 
 
 def mutation() -> list[str]:

@@ -23,6 +23,9 @@ NESTED = (
 )
 """Binary and nested formats: each has three times the processor time of another."""
 
+STATE = r"(\w+) +cov: (\d+) ft: (\d+) "
+"""A line of libFuzzer: what happened, edges and features."""
+
 MISSING = """atheris is not installed. It has wheels for Linux, and none for every Python that pneutouch runs on:
 install it into an environment of its own that has the development dependencies, pip install atheris==3.0.0"""
 
@@ -70,8 +73,10 @@ def shares(names: list[str], seconds: float) -> dict[str, float]:
 def counts(folder: Path) -> dict[str, object]:
     """Runs, seconds, edges and features (first and last) and findings of the target that was fuzzed in ``folder``."""
     log = (folder / "log").read_text(errors="replace") if (folder / "log").is_file() else ""
-    states = [tuple(map(int, each)) for each in re.findall(r" cov: (\d+) ft: (\d+) ", log)]
-    first, last = (states[0], max(states)) if states else ((0, 0), (0, 0))
+    states = [(kind, (int(edges), int(features))) for kind, edges, features in re.findall(STATE, log)]
+    # While it reads the first inputs, libFuzzer reports those that reach more than the ones before.
+    first = next((state for kind, state in states if kind == "INITED"), (0, 0))
+    last = max((state for _, state in states), default=(0, 0))
     stated = folder / "count.json"
     run = json.loads(stated.read_text()) if stated.is_file() else {"runs": 0, "seconds": 0.0, "ended": 0}
     lines = folder / "findings.jsonl"

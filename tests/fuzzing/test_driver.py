@@ -15,6 +15,7 @@ from tests.fuzzing.place import ROOT
 from tests.fuzzing.targets import TARGETS
 
 LOG = """INFO: Seed: 1
+#1\tNEW    cov: 60 ft: 70 corp: 1/1kb exec/s: 0 rss: 100Mb
 #2\tINITED cov: 100 ft: 130 corp: 2/3kb exec/s: 0 rss: 100Mb
 #64\tpulse  cov: 120 ft: 170 corp: 4/9kb lim: 4096 exec/s: 32 rss: 100Mb
 #90\tREDUCE cov: 121 ft: 171 corp: 4/8kb lim: 4096 exec/s: 30 rss: 100Mb L: 12/4096 MS: 1 Custom-
