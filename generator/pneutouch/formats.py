@@ -60,7 +60,7 @@ def version_of(name: str) -> int:
 
 
 def versioned(name: str, document: Mapping[str, Any]) -> dict[str, Any]:
-    """A document with its format, which comes first."""
+    """A document with its format."""
     return {KEY: format_of(name), **document}
 
 
