@@ -28,11 +28,15 @@ TESTS = [
 LIBRARIES = ("pydantic", "scipy.optimize", "scipy.stats", "manifold3d", "trimesh", "xarray")
 
 
+def callers(site: Site, calls: Calls) -> list[str]:
+    """The tests that call a function."""
+    return [name for name, (_, called) in calls.items() if f"{site.path}:{site.function}" in called]
+
+
 def chosen(site: Site, calls: Calls, most: float) -> tuple[list[str], float]:
     """Names of the tests of a change, and their processor time."""
-    inside = [name for name, (_, called) in calls.items() if f"{site.path}:{site.function}" in called]
+    inside = callers(site, calls)
     if not inside:
-        # Outside of functions, or of one that is called when the tests are collected.
         inside = [
             name for name, (_, called) in calls.items() if any(each.startswith(f"{site.path}:") for each in called)
         ]
@@ -89,7 +93,7 @@ def main() -> None:
             driver.calls(given.calls)
         calls: Calls = json.loads(given.calls.read_text())
         for k in numbers:
-            if drawn[k].function:
+            if callers(drawn[k], calls):
                 names, seconds = chosen(drawn[k], calls, given.most)
                 note(k, *driver.outcome(drawn[k], names, seconds), len(names))
         # The rows go through the file: this process ends here.
@@ -101,7 +105,8 @@ def main() -> None:
     rows |= {row["number"]: row for row in json.loads(given.out.read_text())["drawn"]} if given.out.is_file() else {}
     calls = json.loads(given.calls.read_text())
     for k in numbers:
-        if not drawn[k].function:
+        # Outside of functions, or of one that is called while modules are imported and never by a test.
+        if not callers(drawn[k], calls):
             names, seconds = chosen(drawn[k], calls, given.most)
             note(k, *cold(drawn[k], changed(drawn[k])[0], names, seconds), len(names))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import curve_fit
 
 from pneutouch.bench.tensile.puck import PuckSize, fit_puck
 from pneutouch.bench.tensile.read import SpecimenSize, read_tension
@@ -126,6 +127,17 @@ def test_a_puck_gives_its_modulus(tmp_path, bonded):
     assert fit.modulus == pytest.approx(0.2, rel=0.01)
     assert fit.zero == pytest.approx(0.3, abs=0.02)
     assert 1.2 < fit.largest < 1.5
+
+
+def test_the_error_of_a_puck_s_modulus_is_twice_that_of_least_squares(tmp_path):
+    travel = np.linspace(0.0, 3.0, 9)
+    stretch = 1 - travel / 10
+    noise = np.random.default_rng(3).normal(0.0, 0.4, travel.size)
+    force = 0.2 * (stretch**-2 - stretch) * np.pi * 100 + noise
+    fit = fit_puck(write(tmp_path, "Compression (mm),Force (N)", travel, force), PuckSize(20.0, 10.0))
+    modulus, variance = curve_fit(lambda s, m: m * (s - s**-2), fit.stretch, fit.stress)
+    assert fit.modulus == pytest.approx(modulus[0], rel=1e-6)
+    assert fit.error == pytest.approx(2.0 * np.sqrt(variance[0, 0]), rel=1e-5)
 
 
 def test_a_puck_hardly_pressed_is_refused(tmp_path):

@@ -156,3 +156,14 @@ def test_a_factor_of_force_is_one_of_the_contact_pressure_and_moves_nothing() ->
     np.testing.assert_allclose(scaled.forces, 1.3 * face.forces, rtol=1e-15)
     np.testing.assert_allclose(scaled.pressure(rows, angles), 1.3 * face.pressure(rows, angles), rtol=1e-12)
     np.testing.assert_array_equal(scaled.positions(rows, angles), face.positions(rows, angles))
+
+
+def test_between_few_contact_angles_the_pressure_is_smoothed_over_one_edge_along_the_wall() -> None:
+    """One loaded ring of a wall that touches everywhere: a Gauss function of the distance, over what it has of the area."""
+    face = _pressed("ball beside the axis")[1]
+    ring, rows, angles = 4, np.arange(3.0, 6.0), np.array([0.4])
+    forces = np.zeros_like(face.forces)
+    forces[ring, :, 2] = face.areas[ring]
+    pressure = replace(face, forces=forces, touching=face.areas).pressure(rows, angles)[:, 0]
+    share = np.exp(-0.5 * (rows[:, None] - np.arange(face.edges + 1.0)) ** 2) * face.areas.sum(axis=1)
+    np.testing.assert_allclose(pressure, share[:, ring] / share.sum(axis=1), rtol=0.15)

@@ -136,3 +136,13 @@ def test_burst_lies_before_the_limit_for_a_brittle_wall():
     pressure, height = burst(StrainProbe(solid), run, 0.5)
     assert 0.03 < pressure < run.limit.pressure and height < run.limit.outer_apex
     assert burst(StrainProbe(solid), run, 9.0) is None
+
+
+def test_the_tension_of_a_wall_is_that_of_its_stretch_without_a_change_of_volume():
+    """A wall drawn out along its axis is in uniaxial tension all over; one that only swells is in none."""
+    solid = SolidModel(dome(9.25, 1.5, arc=8, through=1), neo_hookean(0.27))
+    probe, drawn = StrainProbe(solid), solid.rest * [1.4**-0.5, 1.4]
+    assert probe.greatest_tension(drawn) == pytest.approx(1.4, rel=1e-9)
+    assert probe.greatest_tension(1.2 * drawn) == pytest.approx(1.4, rel=1e-9)
+    assert probe.greatest_tension(1.2 * solid.rest) == pytest.approx(1.0, abs=1e-6)
+    assert probe.greatest_stretch(1.2 * drawn) == pytest.approx(1.2 * 1.4, rel=1e-9)
