@@ -85,7 +85,9 @@ def _contents() -> list[str]:
         "With a neo-Hookean wall everything scales with the shear modulus mu and the inner radius R0. A dome under a plate is then described by its elastic energy "
         "E(t0/R0, V, h): wall ratio, cavity volume, plate height. Pressure and force are its slopes,",
         "",
-        "    p = dE/dV,   F = -dE/dh,",
+        "$$",
+        r"p = \frac{\partial E}{\partial V} , \qquad F = -\frac{\partial E}{\partial h} ,",
+        "$$",
         "",
         "so a closed path does no work. Gas, dead volume, ambient pressure, modulus and size are not in the table. They enter afterwards and exactly, by "
         "Boyle's law: (p + pa)(V + Vd) keeps its value at first contact.",

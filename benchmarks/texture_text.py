@@ -54,7 +54,9 @@ def _model(data: dict[str, Any]) -> list[str]:
         "The dome (stiffness k) and the specimen (compliance c) are springs in series. The sensor is lowered to the preload F and held at "
         "that height. Where the specimen yields less, the dome is pressed more:",
         "",
-        "    dp = -dp/d(delta) F dc / (1 + k c)",
+        "$$",
+        r"dp = -\frac{dp}{d\delta} \, \frac{F \, dc}{1 + k c}",
+        "$$",
         "",
         "k, dp/d(delta) and the radius rho of the contact patch come from the atlas or the solid. The bars are of Vero, 4,500 times stiffer than the Agilus30 around "
         "them, and taken as fixed: over a bar only the cover is indented, over a gap the whole layer. (A bar spreads the load over "

@@ -22,6 +22,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx_gallery.gen_gallery",
     "formats_table",
+    "mathml",
     "page_titles",
     "reference_pages",
 ]
@@ -47,6 +48,7 @@ autodoc_typehints_format = "short"
 autodoc_member_order = "bysource"
 napoleon_google_docstring = True
 
+html_math_renderer = "mathml"
 html_theme = "pydata_sphinx_theme"
 html_title = "pneutouch"
 html_static_path = ["_static"]
