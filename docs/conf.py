@@ -75,6 +75,9 @@ sphinx_gallery_conf = {
     "remove_config_comments": True,
     "download_all_examples": True,
     "show_memory": False,
+    # The last value of a block is no result: a legend, a list of lines.
+    "capture_repr": (),
+    "write_computation_times": False,
     "min_reported_time": 1e9,
     "subsection_order": [
         f"gallery/{name}" for name in ("designs", "choosing", "contact", "materials", "making", "measuring")

@@ -62,6 +62,9 @@ def test_a_coarse_or_noiseless_channel_is_not_clipped(tmp_path, samples):
 def test_a_reading_far_beyond_the_range_is_questioned(tmp_path, samples):
     (warning,) = read(write(tmp_path / "a.csv", samples), rig=Rig(force_range_N=0.5)).warnings
     assert "beyond the rig's range of 0.5" in warning.why and warning.used
+    # All of the record, but for what a mean of some readings leaves out at its ends.
+    every = read(write(tmp_path / "b.csv", samples)).time
+    assert (warning.start, warning.end) == (every[0], every[-1])
 
 
 @pytest.mark.parametrize(("channel", "name"), [(1, "position_mm"), (2, "force_N"), (3, "pressure_kPa")])

@@ -48,6 +48,7 @@ def test_little_draft_and_a_loose_cone_are_warned_of():
     assert findings("mould fit") == []
     (draft,) = findings("mould fit", "mould.draft_deg=0.5")
     assert draft.severity == "warning" and "mould.draft_deg" in draft.fix and draft.excess.measured == 0.5
+    assert findings("mould fit", "mould.draft_deg=1") == []
     (loose,) = findings("mould fit", "mould.clearance_mm=0.3")
     assert "20 % of the wall" in loose.message and "mould.clearance_mm" in loose.fix
 

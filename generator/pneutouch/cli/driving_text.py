@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from pneutouch.cli.table import table_text
+from pneutouch.rounding import tenths_below
 
 _UNITS = {"sensitivity_kPa_per_N": "kPa/N", "stiffness_N_per_mm": "N/mm", "force_range_N": "N"}
 _NAMES = {"sensitivity_kPa_per_N": "sensitivity", "stiffness_N_per_mm": "stiffness", "force_range_N": "force range"}
@@ -16,8 +17,8 @@ def schedule_text(document: dict[str, Any]) -> str:
     """The answer: how far the pressure reaches, a table of the tasks, and what is to be known of each."""
     rated, top = document["rated_pressure_kPa"], document["highest_kPa"]
     lines = [
-        f"{document['design']}: model {document['model']}, rated pressure {rated:.1f} kPa, computed to {top:.1f} kPa "
-        f"({document['limit']})"
+        f"{document['design']}: model {document['model']}, rated pressure {tenths_below(rated):.1f} kPa, "
+        f"computed to {top:.1f} kPa ({document['limit']})"
     ]
     for figure in dict.fromkeys(task["requirement"] for task in document["tasks"]):
         lines.append(_reach(figure, document["reach"][figure]))
@@ -96,7 +97,7 @@ def _notes(task: dict[str, Any], document: dict[str, Any]) -> list[str]:
     lines = []
     if first["above_rating"]:
         at, rated = first["driving_pressure_kPa"], document["rated_pressure_kPa"]
-        lines.append(f"warning: {required}: {at:.2f} kPa is above the rated pressure of {rated:.1f} kPa")
+        lines.append(f"warning: {required}: {at:.2f} kPa is above the rated pressure of {tenths_below(rated):.1f} kPa")
     if others:
         at = ", ".join(f"{one['driving_pressure_kPa']:.2f}" for one in others)
         lines.append(f"{required}: also at {at} kPa; the lowest is taken")

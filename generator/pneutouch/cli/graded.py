@@ -13,6 +13,7 @@ from pneutouch.cli.progress import bar
 from pneutouch.cli.table import table_text
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.errors import InputError, RuleBrokenError
+from pneutouch.rounding import tenths_below
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 
@@ -90,7 +91,7 @@ def graded_lines(selection: GradedSelectionRun) -> list[str]:
 
 def _row(selection: GradedSelectionRun, trial: GradeTrial) -> list[str]:
     apart = [f"{100 * trial.difference:+.1f} %"] if len(trial.sensitivity_kPa_per_N) > 1 else []
-    rated = "-" if trial.note else f"{trial.rated / KPA:.1f}"
+    rated = "-" if trial.note else f"{tenths_below(trial.rated / KPA):.1f}"
     return [
         *(f"{value:.3f}" for value in trial.sensitivity_kPa_per_N),
         *apart,

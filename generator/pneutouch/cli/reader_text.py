@@ -14,6 +14,7 @@ def reader_text(document: Mapping[str, Any]) -> str:
         f"{document['design']}: force from pressure, by the model {document['model']}"
         + (f", calibration {calibration}" if calibration else ", not calibrated"),
         f"  driving pressure   {low:.4g} to {high:.4g} kPa; rated for {rated:.4g} kPa",
+        f"  contact            {document['conditions']['contact']}",
         f"  contact force      0 to {box['contact_force_N'][1]:.4g} N, to {box['indentation_mm'][1]:.4g} mm of travel",
         f"  pressure rise      0 to {box['pressure_rise_kPa'][1]:.4g} kPa",
         f"  ambient pressure   {box['ambient_pressure_kPa'][0]:.5g} to {box['ambient_pressure_kPa'][1]:.5g} kPa",

@@ -3,6 +3,7 @@
 import numpy as np
 
 from pneutouch.cli.table import table_text
+from pneutouch.rounding import tenths_below
 from pneutouch.selection import Candidate
 from pneutouch.units import KPA
 from pneutouch.workflows.select.run import SelectionRun
@@ -66,6 +67,6 @@ def row_of(selection: SelectionRun, choice: Candidate) -> list[str]:
         f"0-{pool.force[0]:.2f}",
         choice.ends_with,
         "..".join(f"{end:.2f}" if np.isfinite(end) else "none" for end in choice.span),
-        f"{choice.rated / KPA:.1f}",
+        f"{tenths_below(choice.rated / KPA):.1f}",
         f"{choice.binding} ({100 * choice.margins[choice.binding]:+.0f} %)",
     ]

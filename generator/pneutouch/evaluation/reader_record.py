@@ -12,6 +12,7 @@ from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, Reade
 from pneutouch.evaluation.reader_uncertainty import force_uncertainty, why_unknown
 from pneutouch.export.reader.reading import NOISES, UNSTEADY
 from pneutouch.formats import KEY, format_of
+from pneutouch.mechanics.predict import contact_words
 from pneutouch.units import KPA, ML
 
 if TYPE_CHECKING:
@@ -65,6 +66,7 @@ def reader_record(evaluation: Evaluation, grid: ReaderGrid) -> dict[str, Any]:
             "driving_pressures_kPa": scene.design.pneumatics.driving_pressures_kPa,
             "ambient_pressure_kPa": _one(ambient_kPa),
             "dead_volume_mL": sensor.gas.dead_volume / ML,
+            "contact": contact_words(sensor.protocol),
             "assumptions": list(evaluation.prediction.assumptions),
         },
     }

@@ -143,11 +143,11 @@ def predict(
         dead_volume=dead,
         inflation=answer.inflation,
         states=tuple(state.corrected(correction) for state in answer.states),
-        assumptions=(*assumptions, held, _contact(sensor.protocol), *_COMMON_ASSUMPTIONS, gas),
+        assumptions=(*assumptions, held, contact_words(sensor.protocol), *_COMMON_ASSUMPTIONS, gas),
     )
 
 
-def _contact(protocol: IndentationProtocol) -> str:
+def contact_words(protocol: IndentationProtocol) -> str:
     """What presses the sensor, in words."""
     if protocol.body is None and not protocol.friction and not protocol.off_axis:
         return _PLATE

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pneutouch.rounding import tenths_below
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def graded_card(selection: GradedSelectionRun) -> dict[str, Any]:
         rows.append((f"Force range at {at_kPa:g} kPa", f"0 to {force:.1f} N", ""))
     rows += [("Inner radius R0", f"{dome.inner_radius:g} mm", ""), ("Wall t0", f"{dome.wall_thickness:g} mm", "")]
     if not best.note:
-        rows.append(("Rated pressure", f"{best.rated / KPA:.1f} kPa", ""))
+        rows.append(("Rated pressure", f"{tenths_below(best.rated / KPA):.1f} kPa", ""))
     title = selection.grade.label
     return {"rank": 1 if selection.passes else None, "resin": title, "title": title, "at": None, "rows": rows}
 
@@ -73,7 +74,7 @@ def _sizes(selection: SelectionRun, choice: Candidate) -> list[FigureRow]:
 def _limits(selection: SelectionRun, choice: Candidate, rank: int | None) -> list[FigureRow]:
     span = [f"{end:.2f}" if np.isfinite(end) else "none" for end in choice.span]
     rows = [
-        ("Rated pressure", f"{choice.rated / KPA:.1f} kPa", f"S {span[0]} to {span[1]} kPa/N up to it"),
+        ("Rated pressure", f"{tenths_below(choice.rated / KPA):.1f} kPa", f"S {span[0]} to {span[1]} kPa/N up to it"),
         ("Binds", choice.binding, f"margin {100 * choice.margins[choice.binding]:+.0f} %"),
     ]
     if choice.contact is not None:

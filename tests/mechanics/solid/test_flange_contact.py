@@ -14,6 +14,7 @@ from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
 from pneutouch.mechanics.solid.printed import printed_dome
 from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.supply import Liquid
+from tests.mechanics.solid.derivatives import assert_derivatives
 
 DEPTH = 0.75 * 9.25
 
@@ -84,6 +85,12 @@ def test_what_the_wall_puts_on_the_flange_the_flange_puts_on_the_wall(pressed_in
     force = solid.expand(solid.supports[1].at(x).gradient)
     assert np.abs(force[:, 1]).max() > 0.0
     assert abs(force[:, 1].sum()) < 2e-3 * np.abs(force[:, 1]).max()
+
+
+def test_the_tangent_of_all_terms_together_is_the_derivative_of_the_residual(pressed_in):
+    _, scene, x = pressed_in
+    state = assert_derivatives(scene, x, np.random.default_rng(1), step=1e-8, rel=1e-5)
+    assert state.terms[1].fold_blocks.any()
 
 
 def test_the_tangent_and_the_second_variation_hold_the_contact(pressed_in):

@@ -8,6 +8,7 @@ import numpy as np
 from pneutouch.errors import InputError
 from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.parts import assemble
+from pneutouch.rounding import tenths_below
 from pneutouch.selection import Candidate, DroppedRequirement
 from pneutouch.selection.missed import missed_percent
 from pneutouch.units import KPA, ML
@@ -140,7 +141,8 @@ def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:
     if dropped.requirement == "footprint":
         return f"{selection.footprint(dropped.best):.4g} mm instead of {selection.problem.max_footprint:g}"
     if dropped.requirement == "rated pressure":
-        return f"rated {dropped.best.rated / KPA:.1f} kPa, driven at {float(pool.pressure[0]) / KPA:g} kPa"
+        rated_kPa = tenths_below(dropped.best.rated / KPA)
+        return f"rated {rated_kPa:.1f} kPa, driven at {float(pool.pressure[0]) / KPA:g} kPa"
     return f"{2 * float(pool.radius[0] + pool.wall[0]):.4g} mm instead of {selection.problem.max_diameter:g}"
 
 
