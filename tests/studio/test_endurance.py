@@ -175,3 +175,20 @@ def test_moves_leave_no_nodes_and_no_listeners_behind(screen):
     assert after.nodes <= before.nodes + 5
     assert after.listeners == before.listeners
     assert after.documents == before.documents
+
+
+def test_designs_with_other_driving_pressures_leave_no_charts_behind(screen):
+    """Each design has charts of its own, and those of the design before are let go."""
+
+    def opened(name: str) -> Kept:
+        screen.evaluate(f"location.hash = '#{name}'")
+        until(screen, f"document.body.dataset.solved === '#{name}' && {SOLVED}")
+        return Kept.of(screen)
+
+    opened("soft-pad")
+    before = opened("paper-dome")
+    for _ in range(2):
+        opened("soft-pad")
+        after = opened("paper-dome")
+    assert after.nodes <= before.nodes + 5
+    assert after.listeners == before.listeners

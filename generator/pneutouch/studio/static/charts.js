@@ -35,7 +35,7 @@ export const series = (label, stroke, more = {}) => ({
   width: 2,
   spanGaps: true,
   points: { show: false },
-  value: (_, value) => read(value),
+  value: reading,
   ...more,
 });
 
@@ -81,6 +81,10 @@ function markers(host) {
   };
 }
 
+// What a chart keeps of its options stands here: a function made inside `show` would keep the chart before, and that the one before it.
+const reading = (_, value) => read(value);
+const upwards = (_, low, high) => [Math.min(0, low ?? 0), (high ?? 1) * 1.06 || 1];
+
 export function show(id, across, up, lines, data, { bands = [], marks = [], points = null, legend = true } = {}) {
   const host = byId(id);
   const key = JSON.stringify([lines.map((one) => [one.label, one.stroke, one.dash]), bands.length]);
@@ -101,9 +105,9 @@ export function show(id, across, up, lines, data, { bands = [], marks = [], poin
   const options = {
     width: host.clientWidth || 300,
     height: HEIGHT,
-    series: [{ label: across, value: (_, value) => read(value) }, ...lines],
+    series: [{ label: across, value: reading }, ...lines],
     bands,
-    scales: { x: { time: false }, y: { range: (_, low, high) => [Math.min(0, low ?? 0), (high ?? 1) * 1.06 || 1] } },
+    scales: { x: { time: false }, y: { range: upwards } },
     axes: [axis(across), axis(up, { size: 48 })],
     cursor: { drag: { x: false, y: false } },
     hooks: { draw: [markers(host)] },
