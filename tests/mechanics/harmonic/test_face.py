@@ -150,6 +150,16 @@ def test_lines_of_an_object_lie_on_it() -> None:
     assert high - low == pytest.approx(8.0 * (1.0 + np.cos(np.pi / 6.0)), rel=1e-3)
 
 
+def test_lines_of_a_leaning_plate_lie_on_it_and_it_presses_where_it_is_lowest() -> None:
+    face = _pressed("leaning plate")[1]
+    place = face.positions(np.arange(face.edges + 1.0), face.harmonics.contact_angles)
+    assert (face.forces[..., 2] * place[..., 0]).sum() < 0.0
+    for line in face.lines[:1]:
+        np.testing.assert_allclose(
+            line[:, 2] - line[0, 2], np.tan(np.radians(6.0)) * (line[:, 0] - line[0, 0]), atol=1e-9
+        )
+
+
 def test_a_factor_of_force_is_one_of_the_contact_pressure_and_moves_nothing() -> None:
     face = _pressed("ball beside the axis")[1]
     scaled, rows, angles = face.scaled(1.3), face.rows(), np.linspace(0.0, np.pi, 5)

@@ -12,7 +12,7 @@ from pneutouch.mechanics.line.air import AirState
 from pneutouch.mechanics.line.cascade import GasLine
 from pneutouch.mechanics.line.dynamics import SensorDynamics, on_axis
 from pneutouch.mechanics.line.elements import Duct, GasVolume
-from pneutouch.mechanics.line.transient import step_figures, step_response, through
+from pneutouch.mechanics.line.transient import _reaches, step_figures, step_response, through
 
 AIR = AirState(0.101325)
 NARROW = Duct(1000.0, 0.05)
@@ -100,3 +100,9 @@ def test_a_fast_sine_keeps_its_size_where_the_gain_is_one():
     sine = 1.0 - np.cos(2 * math.pi * 10_000.0 * time)
     assert through(np.ones_like, sine, 1 / rate, sharp=False) == pytest.approx(sine, abs=2e-3)
     assert np.abs(through(np.ones_like, sine, 1 / rate) - sine).max() > 0.2
+
+
+def test_the_moment_of_a_share_lies_between_two_times():
+    time = np.linspace(0.0, 1.0, 11)
+    assert _reaches(time, time**2, 0.5) == pytest.approx(0.7 + 0.1 * (0.5 - 0.49) / (0.64 - 0.49), rel=1e-12)
+    assert _reaches(time, 0.4 * time, 0.5) == 1.0
