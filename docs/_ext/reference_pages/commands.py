@@ -81,11 +81,11 @@ def section(name: str) -> str:
     parts = [f"### {name}", plain(" ".join((command.help or "").split()))]
     parts += [f"```text\n{' '.join(words)}\n```", f"For example `{EXAMPLES[name]}`."]
     if arguments:
-        rows = [(code(_name(each)), _kind(each), _default(each), _help(each)) for each in arguments]
-        parts.append(table(("argument", "takes", "default", "meaning"), rows))
+        rows = [(code(_name(each)), _help(each), _kind(each), _default(each)) for each in arguments]
+        parts.append(table(("argument", "meaning", "takes", "default"), rows))
     if options:
-        rows = [(_flags(each), _kind(each), _default(each), _help(each)) for each in options]
-        parts.append(table(("option", "takes", "default", "meaning"), rows))
+        rows = [(_flags(each), _help(each), _kind(each), _default(each)) for each in options]
+        parts.append(table(("option", "meaning", "takes", "default"), rows))
     return "\n\n".join(parts)
 
 

@@ -14,7 +14,7 @@ from reference_pages.markdown import code, plain, table
 
 Schema = dict[str, Any]
 
-HEAD = ("key", "type", "unit", "bounds", "default", "meaning")
+HEAD = ("key", "meaning", "type", "unit", "bounds", "default")
 
 _INTRO = {
     "TOML": "Every TOML file that the program reads, with every key, made from the declarations. A key without a "
@@ -78,7 +78,7 @@ def row(key: str, field: Schema, root: Schema, required: bool) -> tuple[str, ...
     whole = {**resolved(field, root), **field}
     help = plain(whole.get("description", ""))
     default = code(default_text(field["default"])) if "default" in field else "*required*" if required else ""
-    return code(key), _type(field, root), plain(field.get("x-unit", "")), bounds(field), default, help
+    return code(key), help, _type(field, root), plain(field.get("x-unit", "")), bounds(field), default
 
 
 def resolved(schema: Schema, root: Schema) -> Schema:
@@ -95,10 +95,10 @@ def _row_of(
     key: str, field: Schema, root: Schema, required: bool, path: str, places: dict[str, str]
 ) -> tuple[str, ...]:
     """A row; the type of a table that is shown under another key names that place."""
-    name, kind, *rest = row(key, field, root, required)
+    name, help, kind, *rest = row(key, field, root, required)
     here = f"{path}.{key}" if path else key
     shown = next((places[ref] for ref in _references(field) if ref in places), here)
-    return name, kind if shown.removesuffix("[]") == here else f"{kind}, as {code(shown)}", *rest
+    return name, help, kind if shown.removesuffix("[]") == here else f"{kind}, as {code(shown)}", *rest
 
 
 def _forms(schema: Schema) -> list[Schema]:

@@ -197,3 +197,34 @@ def test_a_rise_is_in_megapascal_and_a_sensitivity_in_kilopascal_per_newton():
     found = respond(batch(dead_volume=0.3))
     slope = np.polyfit(found.force[0], found.rise[0] / KPA, 1)[0]
     assert found.lines.sensitivity_kPa_per_N[0] == pytest.approx(slope, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        *[
+            (name, value)
+            for name in ("inner_radius", "shear_modulus", "depth", "plate_radius")
+            for value in (0.0, -1.0)
+        ],
+        ("ambient_pressure", -0.1),
+        ("driving_pressure", -0.1),
+        ("wall_thickness", 0.9 * shipped().recipe.thinnest),
+        ("wall_thickness", 1.1 * shipped().recipe.thickest),
+        ("depth", 1.1 * shipped().recipe.deepest),
+        ("gauge_limit", np.nan),
+        ("break_stretch", np.nan),
+    ],
+)
+def test_what_is_no_sensor_or_outside_the_box_has_no_answer_and_its_neighbour_has(field, value):
+    plain = {
+        "depth": 0.5,
+        "wall_thickness": 0.16,
+        "driving_pressure": 0.0,
+        "gauge_limit": np.inf,
+        "break_stretch": np.inf,
+    }
+    usual = plain.get(field, 1.0)
+    found = respond(batch(**{field: [usual, value]}))
+    assert np.isfinite(found.lines.sensitivity_kPa_per_N[0])
+    assert np.isnan(found.lines.sensitivity_kPa_per_N[1]) and np.isnan(found.range_end[1])
