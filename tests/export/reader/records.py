@@ -58,6 +58,7 @@ def record(*, factor: float = 1.0, relative: bool = True, range_kPa=(-101.325, 9
             "driving_pressures_kPa": [0.0, 12.0],
             "ambient_pressure_kPa": single(AMBIENT_KPA),
             "dead_volume_mL": 0.0,
+            "contact": "rigid, flat, frictionless plate",
             "assumptions": [],
         },
         "difference": {
