@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.bench.figure import BY_KEY, FIGURES, run_figures
+from pneutouch.bench.figure import BY_KEY, FIGURES, FIRST, _relaxation, run_figures
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.spec.campaign import CampaignRun
 from pneutouch.units import KPA
@@ -113,3 +113,19 @@ def test_what_a_run_does_not_determine_is_left_out():
         curve("relaxation", relaxation=(np.arange(3.0), np.ones(3), np.ones(3)))
     )
     assert run_figures(curve("loop")) == {}
+
+
+def test_a_loss_that_is_even_in_the_logarithm_of_time_is_its_slope_over_the_first_value():
+    time = np.geomspace(0.2 * FIRST, 100.0 * FIRST, 20000)
+    force, rise = 10.0 - np.log10(time / FIRST), 4.0 - 0.2 * np.log10(time / FIRST)
+    found = _relaxation(time, force, rise)
+    assert found == pytest.approx(
+        {
+            "relaxation_force_percent": 20.0,
+            "relaxation_force_percent_per_decade": 10.0,
+            "relaxation_pressure_percent": 10.0,
+            "relaxation_pressure_percent_per_decade": 5.0,
+        },
+        rel=1e-3,
+    )
+    assert _relaxation(time[time < FIRST], force[time < FIRST], rise[time < FIRST]) == {}

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from pneutouch.bench.reading import _check_alive
+from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Column, ColumnMap, Rig
 from pneutouch.units import KPA
 from tests.bench.reads import read, refuse
@@ -72,6 +76,22 @@ def test_a_dead_channel_is_named(tmp_path, samples, channel, name):
     dead = samples.copy()
     dead[channel] = 0.5 * KPA
     refuse(write(tmp_path / "a.csv", dead), f"column {name}: dead")
+
+
+def test_a_plate_that_stands_still_is_dead_only_where_the_force_shows_a_press():
+    """A leak is recorded with the plate at rest."""
+    rng = np.random.default_rng(1)
+    still = {
+        "position": np.full(50, 3.0),
+        "force_spread": np.full(50, 0.02),
+        "size": 50,
+        "file": "a.csv",
+        "first_row": [2],
+    }
+    names = {"position": "position_mm", "force": "force_N", "pressure": "pressure_kPa"}
+    _check_alive(SimpleNamespace(**still, force=0.02 * rng.standard_normal(50)), names)
+    with pytest.raises(InputError, match=r"column position_mm: dead: .* from row 2 on while the force changes"):
+        _check_alive(SimpleNamespace(**still, force=np.linspace(0.0, 8.0, 50)), names)
 
 
 def test_a_spike_hides_no_clipping(tmp_path, samples):

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import curve_fit
 
 from pneutouch.bench.tensile.puck import PuckSize, fit_puck
-from pneutouch.bench.tensile.read import SpecimenSize, read_tension
+from pneutouch.bench.tensile.read import SpecimenSize, _size, read_tension
 from pneutouch.bench.tensile.uniaxial import tension
 from pneutouch.errors import InputError
 
@@ -27,6 +27,7 @@ def write(folder, header, *columns, lines=(), delimiter=","):
     [
         ("stretch,stress (MPa)", LAMBDA, STRESS),
         ("Engineering Strain,Engineering Stress (kPa)", LAMBDA - 1, 1e3 * STRESS),
+        ("strain (mm/mm),stress (MPa)", LAMBDA - 1, STRESS),
         ("strain (%),nominal stress [psi]", 100 * (LAMBDA - 1), STRESS / 6.894757e-3),
         ("True Strain,True Stress (MPa)", np.log(LAMBDA), STRESS * LAMBDA),
         ("Dehnung (%),Spannung (N/mm2)", 100 * (LAMBDA - 1), STRESS),
@@ -48,6 +49,12 @@ HEAD = (
     ";;;;",
 )
 COLUMNS = "Time (s);True Strain;True Stress (MPa);Engineering Strain;Engineering Stress (MPa)"
+
+
+def test_the_size_that_a_file_states_is_taken_where_none_is_given():
+    facts = {"Speed (mm/min)": "450", "Specimen Length (mm)": "33", "Width (mm)": "6.1", "Thickness": "2"}
+    assert _size(None, facts) == SpecimenSize(33.0, 6.1, None)
+    assert _size(SpecimenSize(25.0, None, 1.9), facts) == SpecimenSize(25.0, 6.1, 1.9)
 
 
 def database(folder, blank=False, swapped=False):
