@@ -93,8 +93,11 @@ def mutation() -> list[str]:
         lines.append(f"| {part} | {' | '.join(map(str, totals))} |")
     whole, noticed, new = totals[0], totals[1] + totals[2], totals[5]
     shares = [_share("by the tests as they were", noticed, whole), _share("with the new ones", noticed + new, whole)]
-    shares.append(_share("of those that are not equivalent, with the new ones", noticed + new, whole - totals[4]))
-    return [*lines, "", f"Noticed: {'; '.join(shares)}.", "", *_survivors(drawn, read)]
+    sound = "of those that are not equivalent"
+    shares.append(_share(f"{sound}, by the tests as they were", noticed, whole - totals[4]))
+    shares.append(_share(f"{sound}, with the new ones", noticed + new, whole - totals[4]))
+    fresh = "A fresh draw is to be expected near the shares without the new ones, which were written for these faults."
+    return [*lines, "", f"Noticed: {'; '.join(shares)}.", fresh, "", *_survivors(drawn, read)]
 
 
 def _share(words: str, part: int, whole: int) -> str:
