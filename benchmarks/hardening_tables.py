@@ -17,6 +17,9 @@ FAULTS = """What was wrong, and is refused now with a message that names file an
 | reader | input | what it did | shown by |
 |---|---|---|---|
 | 3MF | a part without a name | ended with a traceback | fuzzing |
+| parquet | damaged statistics of a column | ended the process: pyarrow raises where nothing can catch it | fuzzing |
+| tables as text, numbers of options | a cell of 65,536 digits | minutes: the pattern of numbers took the square of its length | fuzzing |
+| names of columns, lines above a tensile table | 65,536 separators | half a minute, likewise | reading the code |
 | voxel slice | no columns, 4294967295 rows | unpacked 4 MB to 4 GB | reading the code |
 | figures.json as a measured leak | a leak that is no finite number | counted as no leak | reading the code |
 | output folder for `compare` | figures and curves that are no finite numbers | compared as they stood | reading the code |

@@ -7,8 +7,11 @@ import pytest
 from pneutouch.bench.headers import meaning_of
 from pneutouch.bench.reading import PLATE
 from pneutouch.bench.source import identify
+from pneutouch.bench.tensile.read import _facts
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap
+from pneutouch.spec.number import plain_number
+from pneutouch.tables.cells import score
 from pneutouch.tables.read import whole
 from pneutouch.tables.unit_words import UNITS, unit_of
 
@@ -202,3 +205,18 @@ def test_habits_of_spreadsheets_and_programs(tmp_path, text, row, first):
     source = identify(path, ColumnMap(), PLATE)
     lines, values = whole(path, [source.columns.position.name], source.layout)
     assert lines.tolist() == [row, row + 1] and values[0, 0] == first
+
+
+@pytest.mark.parametrize("text", ["1" * 300_000 + "x", "1." + "1" * 300_000 + "x", "1e" + "1" * 300_000 + "x"])
+def test_a_long_run_of_digits_is_looked_at_once(text):
+    """A pattern that tries every part of it takes the square of its length: for these hours."""
+    assert score([text], ".") < 0.0 and score([text.replace(".", ",")], ",") < 0.0
+    with pytest.raises(ValueError, match="is no finite number"):
+        plain_number(text)
+
+
+def test_a_name_of_many_separators_has_no_unit(tmp_path):
+    assert meaning_of("_" * 300_000).unit == ""
+    path = tmp_path / "pull.csv"
+    path.write_text("Specimen Length (mm);33\nA" + ";" * 60_000 + "\nstretch,stress (MPa)\n")
+    assert _facts(path) == {"Specimen Length (mm)": "33"}

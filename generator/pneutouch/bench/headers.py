@@ -47,6 +47,9 @@ _OTHER_QUANTITIES = frozenset(
 """Words of a column that is none of the channels, whatever its unit: no measured force, no gauge pressure."""
 
 _SPLIT = re.compile(r"[^\W_]+")
+_LONGEST = 200
+"""Letters of a name that may state its unit without brackets."""
+
 _LAST = re.compile(r"(.*?)(?:[\s_,:;/.-]+|\bin\s+)([^\s_,:;/]+)")
 
 
@@ -96,7 +99,8 @@ def _parted(name: str) -> tuple[str, str]:
     if brackets:
         last = brackets[-1]
         return f"{name[: last.start()]} {name[last.end() :]}".strip(), last[1] or "?"
-    parts = _LAST.fullmatch(name.strip())
+    # The pattern takes the square of the length.
+    parts = _LAST.fullmatch(name.strip()) if len(name) <= _LONGEST else None
     if parts and parts[1].strip() and unit_of(parts[2]):
         return parts[1], parts[2]
     return name, ""

@@ -14,7 +14,7 @@ from pneutouch.tables.layout import TableFormat, TableLayout
 from pneutouch.tables.library_file import library_file
 
 MOST_ROWS, MOST_UNPACKED = 1_000_000_000, 2**30
-"""Rows of a file, a day at 10 kHz; and bytes of the columns of one group of rows once unpacked, which are in memory."""
+"""Rows of a file, a day at 10 kHz; and bytes of one group of rows once unpacked, which is in memory."""
 
 BATCH = 2**17
 """Rows at once: as many as a chunk of a CSV file holds."""
@@ -40,7 +40,7 @@ def parquet_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Ite
             kind = schema.field(name).type
             if not (pa.types.is_integer(kind) or pa.types.is_floating(kind)):
                 raise InputError(f"holds {kind}", file=path, key=f"column {name}", remedy="must be numbers")
-        _check_size(path, file.metadata, set(columns))
+        _check_size(path, file.metadata)
         row, total = 2, file.metadata.num_rows
         for batch in file.iter_batches(BATCH, columns=columns, use_threads=False):
             rows = row + np.arange(batch.num_rows, dtype=float)
@@ -53,17 +53,15 @@ def parquet_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Ite
             yield RowChunk(rows, values, (row - 2) / total, total)
 
 
-def _check_size(path: Path, stated: Any, names: set[str]) -> None:
+def _check_size(path: Path, stated: Any) -> None:
     """Raise InputError for more rows, or larger groups of them, than are read: both pack to almost nothing."""
     if stated.num_rows > MOST_ROWS:
         raise InputError(f"{stated.num_rows} rows; at most {MOST_ROWS}", file=path)
-    for number in range(stated.num_row_groups):
-        group = stated.row_group(number)
-        columns = (group.column(k) for k in range(group.num_columns))
-        size = sum(each.total_uncompressed_size for each in columns if each.path_in_schema in names)
-        if size > MOST_UNPACKED:
-            problem = f"{size / 1e6:.0f} MB in one group of rows; at most {MOST_UNPACKED >> 20} MiB"
-            raise InputError(problem, file=path, remedy="write it in smaller groups of rows, or as CSV")
+    # Of the whole group: with a column's size pyarrow reads its statistics, and ends the process where those are bad.
+    size = max((stated.row_group(k).total_byte_size for k in range(stated.num_row_groups)), default=0)
+    if size > MOST_UNPACKED:
+        problem = f"{size / 1e6:.0f} MB in one group of rows; at most {MOST_UNPACKED >> 20} MiB"
+        raise InputError(problem, file=path, remedy="write it in smaller groups of rows, or as CSV")
 
 
 @contextmanager

@@ -30,6 +30,7 @@ _MOST_STRAIN = 20.0
 
 _BACK, _BROKEN, _AGREE = 2e-3, 0.9, 0.05
 _MOST_FACTS = 60
+_LONGEST_FACT = 500
 _FACT = re.compile(r"([A-Z][^;,\t]*)[;,\t]([^;,\t]+)[;,\t]*")
 
 
@@ -82,7 +83,8 @@ def _facts(path: Path) -> dict[str, str]:
         return {}
     facts: dict[str, str] = {}
     for line in head_lines(path, None)[0][:_MOST_FACTS]:
-        if known := _FACT.fullmatch(line.strip()):
+        # The pattern takes the square of the length.
+        if len(line) <= _LONGEST_FACT and (known := _FACT.fullmatch(line.strip())):
             facts.setdefault(known[1].strip(), known[2].strip())
     return {key: value for key, value in facts.items() if key != "PARAMETER"}
 
