@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import warnings
 import zipfile
 
 _MARK = b"\n=== "
@@ -14,7 +15,9 @@ def archive(content: bytes) -> bytes:
     if content.startswith(_ARCHIVE):
         return content
     packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as file:
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as file, warnings.catch_warnings():
+        # A name that is there twice is what a reader has to refuse.
+        warnings.simplefilter("ignore", UserWarning)
         for part in (b"\n" + content).split(_MARK)[1:]:
             name, _, body = part.partition(b"\n")
             file.writestr(zipfile.ZipInfo(name.decode("latin-1") or "x"), body)
