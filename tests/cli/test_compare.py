@@ -95,6 +95,17 @@ def test_figures_and_names_stay_whole_and_columns_that_do_not_fit_follow_below(c
             assert f"  {cell}  " in f"{line}  "
 
 
+@pytest.mark.parametrize("columns", [10, 16, 20, 24, 28])
+def test_where_not_even_two_columns_fit_no_letter_is_lost(columns):
+    lines = table_text(
+        ["", "resin", "ends with"], [["2 runner-up", "TangoPlus", "inward buckling"]], columns
+    ).splitlines()
+    assert max(map(len, lines)) <= columns
+    letters = "".join("".join(lines).split())
+    every = "2runner-upTangoPlusinwardbuckling"
+    assert all(letters.count(letter) >= every.count(letter) for letter in every)
+
+
 def test_a_table_without_a_head_keeps_its_indent_and_its_width():
     rows = [["paper-dome", "the sensor of the paper, with its specimen and a long title"], ["x", "short"]]
     whole = table_text([], rows, indent="  ")

@@ -42,7 +42,9 @@ def _wrapped(head: Sequence[str], rows: Sequence[Sequence[str]], columns: int) -
     if end < len(widths) and end > 1:
         here = _wrapped(head[:end], [row[:end] for row in rows], columns)
         return [*here, "", *_wrapped([*head[:1], *head[end:]], [[row[0], *row[end:]] for row in rows], columns)]
-    return _folded(head, rows, [each <= _NARROW for each in widths], columns)
+    # Where not even the first two columns fit, every cell is folded: a column that stays whole would be cut off.
+    fits = end == len(widths)
+    return _folded(head, rows, [fits and each <= _NARROW for each in widths], columns)
 
 
 def _folded(head: Sequence[str], rows: Sequence[Sequence[str]], whole: Sequence[bool], columns: int) -> list[str]:
