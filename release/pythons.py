@@ -1,7 +1,7 @@
 """Install the wheel under every supported Python that is found here, and use it: ``make pythons``.
 
-Each gets a virtual environment with the locked dependencies. The commands of `SMOKE` must end well. ``--tests`` runs
-tests too, against the installed wheel.
+The source archive must give the same wheel. Each Python gets a virtual environment with the locked dependencies. The
+commands of `SMOKE` must end well. ``--tests`` runs tests too, against the installed wheel.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import tempfile
 import tomllib
 from collections.abc import Sequence
@@ -53,12 +54,22 @@ def answer(place: str) -> str:
 
 
 def wheel(folder: Path) -> Path:
-    words = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)]
-    subprocess.run(
-        words, cwd=ROOT, check=True, capture_output=True, env=os.environ | {"SOURCE_DATE_EPOCH": "1580601600"}
-    )
-    (made,) = folder.glob("*.whl")
-    return made
+    """The wheel, which the source archive must give with the same bytes: what holds for one holds for both."""
+    (source,) = built("sdist", ROOT, folder / "sdist")
+    with tarfile.open(source) as archive:
+        archive.extractall(folder, filter="data")
+    (direct,) = built("wheel", ROOT, folder / "wheel")
+    (unpacked,) = built("wheel", folder / source.name.removesuffix(".tar.gz"), folder / "again")
+    if direct.read_bytes() != unpacked.read_bytes():
+        raise SystemExit(f"{direct.name}: of the checkout and of {source.name} differ")
+    return direct
+
+
+def built(kind: str, place: Path, folder: Path) -> list[Path]:
+    words = [sys.executable, "-m", "hatchling", "build", "-t", kind, "-d", str(folder)]
+    known = os.environ | {"SOURCE_DATE_EPOCH": "1580601600"}
+    subprocess.run(words, cwd=place, check=True, capture_output=True, env=known)
+    return list(folder.iterdir())
 
 
 def installed(place: str, folder: Path, package: Path, *, tests: bool) -> Path:
@@ -106,6 +117,7 @@ def main() -> int:
     print(f"found: {', '.join(available) or 'none'}; not here: {', '.join(missing) or 'none'}", flush=True)
     with tempfile.TemporaryDirectory() as name:
         package = wheel(Path(name))
+        print(f"{package.name}: the same bytes from the checkout and from the source archive", flush=True)
         for version, place in available.items():
             folder = (given.folder or Path(name)) / f"python{version}"
             python = installed(place, folder, package, tests=bool(given.tests))
