@@ -45,7 +45,7 @@ def bounds() -> list[str]:
         ),
         (
             "measured run, parquet",
-            f"{parquet_table.MOST_ROWS:.0e} rows, {parquet_table.MOST_UNPACKED // mib} MiB unpacked in a group of rows; {MOST_BLOCKS} blocks in memory",
+            f"{parquet_table.MOST_ROWS / mb:g} million rows, {parquet_table.MOST_UNPACKED // mib} MiB unpacked in a group of rows; {MOST_BLOCKS} blocks in memory",
         ),
         (
             "measured run, Excel",
