@@ -19,6 +19,8 @@ FAULTS = """What was wrong, and is refused now with a message that names file an
 | 3MF | a part without a name | ended with a traceback | fuzzing |
 | parquet | damaged statistics of a column | ended the process: pyarrow raises where nothing can catch it | fuzzing |
 | tables as text, numbers of options | a cell of 65,536 digits | minutes: the pattern of numbers took the square of its length | fuzzing |
+| questions of the area Measure | a pressure to hold out of 400 digits; 5,000 digits of rows to skip | ended with a traceback | fuzzing, reading the code |
+| lists of numbers in the Python interface | a number of 400 digits | OverflowError in place of the project's error | reading the code |
 | names of columns, lines above a tensile table | 65,536 separators | half a minute, likewise | reading the code |
 | voxel slice | no columns, 4294967295 rows | unpacked 4 MB to 4 GB | reading the code |
 | figures.json as a measured leak | a leak that is no finite number | counted as no leak | reading the code |
@@ -74,7 +76,7 @@ def fuzzing() -> list[str]:
     runs, seconds = (sum(row[key] for row in rows.values()) for key in ("runs", "seconds"))
     inputs, size = (sum(row[key] for row in rows.values()) for key in ("kept", "kept_bytes"))
     lines = [
-        f"The last run: {runs} inputs in {seconds:.0f} s of processor time. An edge is a branch of the readers' code, a feature an edge with how",
+        f"{runs:,} inputs in {seconds:.0f} s of processor time so far. An edge is a branch of the readers' code, a feature an edge with how",
         "often it was taken; the first number of each is that of the shipped files and the kept inputs, the second that of the end.",
         f"{inputs} inputs of {size / 1e3:.0f} kB are kept in all.",
         "",

@@ -32,6 +32,16 @@ def test_a_pressure_that_was_not_predicted_is_refused(prediction):
     assert (caught.value.key, caught.value.value) == ("pressure_kPa", 10)
 
 
+@pytest.mark.parametrize("value", [10**400, float("nan"), "22", None])
+def test_a_pressure_that_is_no_finite_number_is_refused(prediction, value):
+    with pytest.raises(pt.InputError, match=r"pressure_kPa( = .*)?: must be a finite number"):
+        prediction.at(value)
+
+
+def test_a_pressure_may_be_a_scalar_of_numpy(prediction):
+    assert prediction.at(np.float32(22)) is prediction.at(np.int64(22)) is prediction.at(22)
+
+
 def test_frames_hold_every_state_and_every_point(prediction):
     frame = prediction.to_frame()
     assert list(frame.index) == [0, 22] and frame.index.name == "driving_pressure_kPa"

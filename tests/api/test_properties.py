@@ -116,3 +116,27 @@ def test_more_values_than_a_field_takes_are_refused_and_none_is_left_out(values)
         pt.sweep("paper-dome", wall_thickness_mm=values)
     with pytest.raises(pt.InputError, match=r"driving_pressures_kPa.*at most"):
         pt.load("paper-dome").predict(values)
+
+
+NO_NUMBERS = (10**400, -(10**400), math.inf, math.nan, True, "12", None)
+
+
+@given(values=st.lists(st.floats(0, 100), max_size=3), wrong=st.sampled_from(NO_NUMBERS))
+def test_a_pressure_or_age_that_is_no_finite_number_is_refused_by_its_keyword(values, wrong):
+    given_wrong = [*values, wrong]
+    for call, name in (
+        (lambda: pt.calibrate("nowhere", hold_out_kPa=given_wrong), "hold_out_kPa"),
+        (lambda: pt.simulate("paper-dome", "nowhere", driving_pressures_kPa=given_wrong), "driving_pressures_kPa"),
+        (lambda: pt.simulate("paper-dome", "nowhere", ages_days=given_wrong), "ages_days"),
+        (lambda: pt.scan("lines", "paper-dome", driving_pressures_kPa=given_wrong), "driving_pressures_kPa"),
+        (lambda: pt.scan("lines", "paper-dome", noise_kPa=10**400), "noise_kPa"),
+        (lambda: pt.sweep("paper-dome", inner_radius_mm=[6, 10**400]), "inner_radius_mm"),
+    ):
+        with pytest.raises(pt.InputError, match="must be a finite number") as caught:
+            call()
+        assert name in caught.value.key
+
+
+def test_a_number_where_a_list_is_taken_is_refused_by_its_keyword():
+    with pytest.raises(pt.InputError, match="ages_days = 5: must be a list of numbers"):
+        pt.simulate("paper-dome", "nowhere", ages_days=5)

@@ -114,6 +114,18 @@ def test_text_that_is_no_run_is_refused_in_the_words_of_the_command(tmp_path, as
         ask(measuring.characterize, uploaded(tmp_path / "lab", within=""), runs=[{**runs[0], "file": "../../a.csv"}])
 
 
+@pytest.mark.parametrize("value", [10**400, float("nan"), True, "12"])
+def test_a_pressure_that_is_no_number_is_refused_by_its_key(campaign, ask, value):
+    with pytest.raises(InputError, match=r"hold_out_kPa( = .*)?: must be a finite number"):
+        ask(measuring.calibrate, uploaded(campaign), hold_out_kPa=[12, value])
+
+
+@pytest.mark.parametrize("rows", ["9" * 5000, "1e300", "-1", "2.5", "two"])
+def test_rows_that_are_no_count_are_refused_by_their_key(campaign, ask, rows):
+    with pytest.raises(InputError, match="skip_rows"):
+        ask(measuring.recognised, uploaded(campaign), format={"skip_rows": rows})
+
+
 @pytest.mark.slow
 def test_a_calibration_is_that_of_the_command_and_is_kept_only_where_it_is_saved(
     campaign, mine, tmp_path, ask, command

@@ -11,6 +11,7 @@ from pydantic import BaseModel
 from pneutouch.errors import InputError, PneutouchError, nearest
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
+from pneutouch.spec.number import finite_numbers
 
 WHERE = "the keyword arguments"
 """Stands for the file where values are keyword arguments; `named_by_keyword` takes it out of an error."""
@@ -48,6 +49,14 @@ def _of_keyword(name: str, value: Any) -> Any:
         return plain(value)
     except RecursionError:
         raise InputError("nested too deep", key=name, remedy="give a value, or a list of values") from None
+
+
+def numbers_of(values: Any, name: str) -> tuple[float, ...]:
+    """Finite numbers that were given as the keyword ``name``. Raises InputError."""
+    given = _of_keyword(name, values)
+    if not isinstance(given, list):
+        raise InputError("must be a list of numbers", key=name, value=given)
+    return tuple(finite_numbers(given, name))
 
 
 def changes(model: type[BaseModel], arguments: Mapping[str, Any]) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.api.design import Design, source_of
-from pneutouch.api.fields import named_by_keyword
+from pneutouch.api.fields import named_by_keyword, numbers_of
 from pneutouch.api.results import Result
 from pneutouch.errors import shown
 from pneutouch.units import KPA
@@ -38,7 +38,8 @@ def scan(
     from pneutouch.workflows.scan.run import ScanOptions, run_scan
     from pneutouch.workflows.scan.write import write_scan
 
-    pressures, noise = tuple(p * KPA for p in driving_pressures_kPa), NOISE if noise_kPa is None else noise_kPa * KPA
+    pressures = tuple(p * KPA for p in numbers_of(driving_pressures_kPa, "driving_pressures_kPa"))
+    noise = NOISE if noise_kPa is None else numbers_of([noise_kPa], "noise_kPa")[0] * KPA
     files = tuple(Path(file) for file in data)
     with named_by_keyword():
         options = ScanOptions(pressures, preload_N, speed_mm_per_s, control, noise, seed, files)
@@ -89,7 +90,9 @@ def simulate(
     from pneutouch.workflows.simulate.options import SimulationOptions
     from pneutouch.workflows.simulate.run import simulate as run
 
-    pressures_kPa = None if driving_pressures_kPa is None else _floats(driving_pressures_kPa)
+    pressures_kPa = (
+        None if driving_pressures_kPa is None else numbers_of(driving_pressures_kPa, "driving_pressures_kPa")
+    )
     options = SimulationOptions(
         tuple(resins),
         specimens,
@@ -99,7 +102,7 @@ def simulate(
         rate_Hz,
         seed,
         model or USUAL,
-        _floats(ages_days),
+        numbers_of(ages_days, "ages_days"),
         parquet,
         SimulationTruth(rest=rest_s),
     )
@@ -187,7 +190,7 @@ def calibrate(
     from pneutouch.workflows.calibrate.run import CalibrationOptions, run_calibration
 
     source = None if design is None else source_of(design)
-    names, held = tuple(fit), _floats(hold_out_kPa)
+    names, held = tuple(fit), numbers_of(hold_out_kPa, "hold_out_kPa")
     with named_by_keyword():
         options = CalibrationOptions(Path(data), source, sensor, names, held, priors, save, replace, Path(out))
         return FittedSensor(run_calibration(options, reading=_reading(columns, file_format)))
@@ -197,8 +200,3 @@ def _reading(
     columns: Mapping[str, Mapping[str, Any]] | None, file_format: Mapping[str, Any] | None
 ) -> dict[str, Mapping[str, Any]]:
     return {"columns": columns or {}, "format": file_format or {}}
-
-
-def _floats(values: Iterable[float]) -> tuple[float, ...]:
-    """Numbers as the command line reads them: 0 and 0.0 are written differently."""
-    return tuple(float(value) for value in values)

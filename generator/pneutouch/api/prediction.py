@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pneutouch.api import show
+from pneutouch.api.fields import numbers_of
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError, shown
 from pneutouch.evaluation.document import UncertainStateRecord, full_document, prediction_document
@@ -128,8 +129,9 @@ class Prediction(show.Shown):
 
     def at(self, pressure_kPa: float) -> PredictedState:
         """The state at a driving pressure. Raises InputError for one that was not predicted."""
+        (wanted,) = numbers_of([pressure_kPa], "pressure_kPa")
         for state in self.states:
-            if abs(state.driving_pressure_kPa - pressure_kPa) < _CLOSE:
+            if abs(state.driving_pressure_kPa - wanted) < _CLOSE:
                 return state
         known = ", ".join(f"{state.driving_pressure_kPa:g}" for state in self.states)
         remedy = f"predicted: {known} kPa; give `driving_pressures_kPa` to predict others"

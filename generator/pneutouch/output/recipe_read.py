@@ -2,7 +2,6 @@
 
 import datetime
 import json
-import math
 from collections.abc import Collection
 from dataclasses import replace
 from typing import Any, NoReturn
@@ -19,6 +18,7 @@ from pneutouch.output.manifest import input_hash, versions
 from pneutouch.output.recipe import OPTIONAL, SETTINGS, BuildRecipe, scene_kinds
 from pneutouch.spec.fields import Table
 from pneutouch.spec.names import plain_name
+from pneutouch.spec.number import is_finite
 from pneutouch.spec.read import validate
 
 FINEST_STEP = 1e-3
@@ -134,7 +134,7 @@ def _options(inputs: dict[str, Any], where: str) -> PredictionOptions:
         given["closure"] = _one_of(inputs, "closure", CLOSURES, where)
     if needed["tolerance"]:
         value = inputs["tolerance"]
-        if type(value) not in (int, float) or not (math.isfinite(value) and 0 < value < 100):
+        if not (is_finite(value) and 0 < value < 100):
             raise InputError(f"tolerance = {shown(value)}: must be a positive share, such as 0.02", file=where)
         given["tolerance"] = float(value)
     return PredictionOptions(**given)

@@ -2,8 +2,29 @@
 
 import math
 import re
+import sys
+from collections.abc import Iterable
+
+from pneutouch.errors import InputError
 
 _NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
+
+
+def is_finite(value: object) -> bool:
+    """Whether a value is a number that a float holds. ``math.isfinite`` raises for whole numbers beyond that."""
+    if isinstance(value, bool) or not isinstance(value, float | int):
+        return False
+    return abs(value) <= sys.float_info.max
+
+
+def finite_numbers(values: Iterable[object], key: str) -> list[float]:
+    """The values as floats: 0 and 0.0 are written differently. Raises InputError with ``key`` where one is none."""
+    numbers = []
+    for value in values:
+        if not is_finite(value):
+            raise InputError("must be a finite number", key=key, value=value)
+        numbers.append(float(value))  # type: ignore[arg-type]
+    return numbers
 
 
 def plain_number(text: str) -> float:

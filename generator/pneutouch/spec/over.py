@@ -1,10 +1,10 @@
 """The grammar of ``table.key=VALUES``: values with commas between, or a range ``from:to:count``."""
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
 from pneutouch.errors import InputError
+from pneutouch.spec.number import is_finite
 from pneutouch.spec.toml_text import toml_value
 
 MAX_VALUES = 10_000
@@ -30,7 +30,7 @@ def spread(where: str, key: str, start: Any, stop: Any, count: Any) -> list[floa
     """``count`` values at equal distances, both ends included; whole numbers where all of them are."""
     shown = f"from {start} to {stop} count {count}"
     ends = (start, stop)
-    if any(isinstance(end, bool) or not isinstance(end, int | float) or not math.isfinite(end) for end in ends):
+    if not all(map(is_finite, ends)):
         raise InputError(f"{shown}: the ends must be finite numbers", file=where, key=key)
     if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MAX_VALUES:
         raise InputError(f"{shown}: the count must be a whole number from 2 to {MAX_VALUES}", file=where, key=key)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
@@ -10,6 +9,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, mo
 from pneutouch.errors import shown
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, number
+from pneutouch.spec.number import is_finite
 
 LEAST_COPIES, MOST_COPIES = 1, 200
 
@@ -22,11 +22,7 @@ def _by_key(value: dict[str, Any]) -> WithJsonSchema:
 
 def _setting(given: Any) -> Any:
     """One error, not one for each kind that does not match."""
-
-    def finite(value: Any) -> bool:
-        return isinstance(value, float | int) and not isinstance(value, bool) and math.isfinite(value)
-
-    good = all(map(finite, given)) if isinstance(given, list) else isinstance(given, str) or finite(given)
+    good = all(map(is_finite, given)) if isinstance(given, list) else isinstance(given, str) or is_finite(given)
     if not good:
         raise ValueError(f"{given!r:.60}: must be a finite number, text or a list of finite numbers")
     return given

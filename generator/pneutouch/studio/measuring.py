@@ -14,6 +14,7 @@ from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.evaluation.resins import resin_of
 from pneutouch.spec.campaign import Campaign, CampaignRun, RunKind
 from pneutouch.spec.campaign_file import CAMPAIGN, campaign_of
+from pneutouch.spec.number import finite_numbers
 from pneutouch.studio.campaign import placed, write_runs
 from pneutouch.studio.job import Report
 from pneutouch.studio.measured import groups_document, head_document, run_document, runs_document
@@ -264,8 +265,10 @@ def _reading(arguments: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     if not isinstance(columns, str) or not isinstance(stated, dict):
         raise InputError("columns is a text and format is an object")
     known = {key: value for key, value in stated.items() if value not in (None, "")}
-    if isinstance(known.get("skip_rows"), str) and known["skip_rows"].isdecimal():
-        known["skip_rows"] = int(known["skip_rows"])
+    rows = known.get("skip_rows")
+    # Python's own bound on the digits of a number is no message for a user.
+    if isinstance(rows, str) and rows.isdecimal() and len(rows) < 10:
+        known["skip_rows"] = int(rows)
     return {"columns": parse_columns([columns] if columns.strip() else []), "format": known}
 
 
@@ -285,6 +288,6 @@ def _texts(arguments: Mapping[str, Any], key: str) -> list[str]:
 
 def _numbers(arguments: Mapping[str, Any], key: str) -> list[float]:
     values = arguments.get(key) or []
-    if not isinstance(values, list) or not all(type(value) in (int, float) for value in values):
+    if not isinstance(values, list):
         raise InputError("must be a list of numbers", key=key)
-    return [float(value) for value in values]
+    return finite_numbers(values, key)

@@ -2,7 +2,6 @@
 
 import csv
 import json
-import math
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -13,6 +12,7 @@ from pneutouch.errors import InputError
 from pneutouch.formats import check_format
 from pneutouch.output.files import MANIFEST, digest
 from pneutouch.spec.files import read_bytes
+from pneutouch.spec.number import is_finite
 
 _MOST_BYTES = 100_000_000
 """Of the largest file that is read: hundreds of times a usual one."""
@@ -64,7 +64,7 @@ def interval_of(entry: Mapping[str, Any]) -> tuple[float, float | None, float | 
 def numbers(values: Any) -> list[float]:
     """The values of a list. Raises ValueError where one is no finite number, TypeError for what is no list."""
     for value in values:
-        if type(value) not in (int, float) or not math.isfinite(value):
+        if not is_finite(value):
             raise ValueError(f"{value!r:.40} is no finite number")
     return list(values)
 

@@ -9,6 +9,7 @@ from pneutouch.catalogue import DesignSource
 from pneutouch.errors import InputError, nearest, shown
 from pneutouch.spec.files import design_inside
 from pneutouch.spec.names import file_name, name_of
+from pneutouch.spec.number import is_finite
 from pneutouch.spec.over import MAX_VALUES, parse_over, spread
 from pneutouch.spec.read import Changes, read_toml
 from pneutouch.workflows.sweep.plan import PRESSURES, Settings, SweepAxis, SweepPlan, Value
@@ -130,10 +131,7 @@ def _entries(where: str, key: str, given: Any, label: str) -> Value:
 
 def _scalar(where: str, key: str, given: Any, label: str) -> float | int | str | bool:
     """A value as a journal in JSON can hold it: infinity, where the field takes it, is the text "inf"."""
-    if isinstance(given, bool):
-        allowed = takes_flags(key)
-    else:
-        allowed = isinstance(given, str) or (isinstance(given, int | float) and math.isfinite(given))
+    allowed = takes_flags(key) if isinstance(given, bool) else isinstance(given, str) or is_finite(given)
     if given == math.inf and takes_infinity(key):
         return "inf"
     if not allowed:
