@@ -61,7 +61,7 @@ dist: $(VENV)/.run
 sbom: $(VENV)/.run
 	$(BIN)/python -m release.sbom
 
-# Known weaknesses of the locked dependencies, by pip-audit; fails where the index does not answer for one of them. In an environment of
+# Known vulnerabilities of the locked dependencies, by pip-audit; fails where the index does not answer for one of them. In an environment of
 # its own: pip-audit would bring 25 packages into the locked ones.
 audit: $(VENV)/audit/.pip-audit
 	$(VENV)/audit/bin/pip-audit --require-hashes --disable-pip --strict --requirement requirements.lock
@@ -84,7 +84,7 @@ $(VENV)/fuzz/.atheris: $(VENV)/.dev
 
 # Faults in mechanics, printability and bench, drawn at random, and whether the everyday tests notice them.
 mutants: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.mutants --count 120 --seed 1
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.mutants --count 120 --seed 3 --calls outputs/calls.json --out outputs/mutants-3.json
 
 # The studio in use for an hour, in a browser.
 soak: $(VENV)/.dev

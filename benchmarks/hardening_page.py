@@ -21,7 +21,7 @@ DOCS = Path(__file__).resolve().parents[1] / "docs" / "background"
 
 HEAD = """# Hardening
 
-What is done so that no file and no request of others can stop the program, fill its memory or make it wait without end.
+What is done so that a file or a request of others cannot stop the program or make it wait without end, and how much memory it can take.
 `python -m benchmarks.hardening_page` writes this page from the constants of the code.
 
 ## Bounds of every reader

@@ -51,9 +51,10 @@ def stored(name: str) -> Any:
     return json.loads((DOCS / name).read_text(encoding="utf-8"))
 
 
-LARGEST = """`python -m benchmarks.largest_inputs` writes an input of the greatest size for each reader, and has a new process read it. Peak memory is
-what the process has more than before, as the system counts it. Time is processor time over that of Python's `json.loads` for a list of
-numbers of as many bytes, in the same run. `tests/fuzzing/test_largest.py` reads each again: at most 1.25 times the memory, and 32 MiB.
+LARGEST = """`python -m benchmarks.largest_inputs` writes an input of the greatest size for each reader, and has a new process read it; of a dataset a fifth, of
+a journal a sixteenth of that size, for their memory rises with their size: some 15 GiB for the largest journal. Runs that are read in chunks have
+100 MB. Peak memory is what the process has more than before, as the system counts it. Time is processor time over that of Python's `json.loads` for a list of
+numbers of as many bytes, in the same run. `tests/fuzzing/test_largest.py` reads each again: at most 1.5 times the memory, and 64 MiB.
 """
 
 
@@ -76,7 +77,7 @@ def fuzzing() -> list[str]:
     runs, seconds = (sum(row[key] for row in rows.values()) for key in ("runs", "seconds"))
     inputs, size = (sum(row[key] for row in rows.values()) for key in ("kept", "kept_bytes"))
     lines = [
-        f"{runs:,} inputs in {seconds:.0f} s of processor time so far. An edge is a branch of the readers' code, a feature an edge with how",
+        f"{runs:,} inputs in {seconds:.0f} s of processor time, over several runs. An edge is a branch of the readers' code, a feature an edge with how",
         "often it was taken; the first number of each is that of the shipped files and the kept inputs, the second that of the end.",
         f"{inputs} inputs of {size / 1e3:.0f} kB are kept in all.",
         "",
@@ -92,10 +93,12 @@ def fuzzing() -> list[str]:
     return [*lines, "", FAULTS]
 
 
-DRAWN = """`make mutants` draws faults with the same chance among {sites} places in mechanics, printability and bench: a comparison, a sum, a product, a
-sign, a number, a condition, a result. The everyday tests of seven folders run against each, those first that call the changed function, up to 30 or
-45 s of processor time; tests of commands, of the Python interface and slow ones are left out. Every survivor was read: *equivalent* changes no result
-but for the number of steps that a solver takes, *test* is noticed by a test that was written for it, *left* is neither.
+DRAWN = """`benchmarks.mutants` draws faults with the same chance among {sites} places in mechanics, printability and bench: a comparison, a sum, a
+product, a sign, a number, a condition, a result. The table has the first {first} faults of two draws, without exception. The everyday tests of seven
+folders run against each, those first that call the changed function, up to 30 or 45 s of processor time; tests of commands, of the Python interface and
+slow ones are left out. {outside} of the faults are outside of functions, mostly constants that a comment calls a choice. Every survivor was read: *equivalent*
+changes no result but for the number of steps that a solver takes, *test* is noticed by a test that was written for it, *left* is neither.
+`make mutants` makes a draw of its own.
 """
 
 
@@ -104,7 +107,11 @@ def mutation() -> list[str]:
     drawn = [row | {"seed": draw["seed"]} for draw in draws for row in draw["drawn"]]
     read = {(each["seed"], each["number"]): each for each in tomllib.loads(READ.read_text())["survivor"]}
     lines = [
-        *DRAWN.format(sites=draws[0]["sites"]).split("\n"),
+        *DRAWN.format(
+            sites=draws[0]["sites"],
+            first=" and ".join(str(len(draw["drawn"])) for draw in draws),
+            outside=sum(not row["function"] for row in drawn),
+        ).split("\n"),
         "| part | drawn | killed | timed out | survived | of them equivalent | killed by new tests | left |",
         "|---|--:|--:|--:|--:|--:|--:|--:|",
     ]
@@ -142,8 +149,7 @@ def _survivors(drawn: list[Any], read: dict[Any, Any]) -> list[str]:
 
 
 FOUND = """`make soak` lets a user act at random for an hour, in a browser: sliders, other designs, values that are refused, undo, pins, other areas.
-The first run showed 4,850 elements after 62 acts, of 2,211: each chart held the one that it replaced. Mended, with a test. In the last run
-the other areas, which are filled when they are first shown, came late; they add some 960 elements and 130 listeners, once:
+The other areas are filled when they are first shown: elements and listeners rise once, here near the end.
 """
 
 

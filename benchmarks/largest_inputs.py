@@ -1,6 +1,6 @@
 """What the largest input of each reader takes: ``python -m benchmarks.largest_inputs [READER ...]``.
 
-Peak memory is that of a process forked for it, above what it had before. Processor time is stated over that of ``json.loads`` for as
+Peak memory is that of a new process, above what it has after a small input. Processor time is stated over that of ``json.loads`` for as
 many bytes as the input has unpacked, in the same run: a list of numbers, 20 MB. Stores both in docs/background/largest-inputs.json.
 """
 
@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 from tests.fuzzing.judge import forget_peak, peak
 from tests.fuzzing.seeds import seeds
-from tests.fuzzing.targets import TARGETS, Target
+from tests.fuzzing.targets import TARGETS
 
 from benchmarks import largest_files as files
 
@@ -64,14 +64,15 @@ def measured(case: Case, folder: Path) -> dict[str, Any]:
     small = folder / "small" / target.name
     small.parent.mkdir()
     small.write_bytes(target.written(seeds(case.target)[0]))
-    # A process of its own: what was freed before is not counted as free for it.
-    with ProcessPoolExecutor(1, mp_context=get_context("fork")) as pool:
-        pool.submit(_read, target, small).result()
-        found = pool.submit(_read, target, path).result()
+    # A new process: memory that another one has freed, or left in pieces, would change the peak.
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        pool.submit(_read, case.target, small).result()
+        found = pool.submit(_read, case.target, path).result()
     return found | {"bytes": path.stat().st_size}
 
 
-def _read(target: Target, path: Path) -> dict[str, Any]:
+def _read(name: str, path: Path) -> dict[str, Any]:
+    target = TARGETS[name]
     forget_peak()
     before, start, refusal = peak(), time.process_time(), ""
     try:

@@ -236,6 +236,11 @@ def test_a_leak_run_at_another_pressure(tmp_path):
             leak(tmp_path, start=start)
 
 
+def test_a_vented_leak_run_is_questioned_beyond_a_regulators_scatter(tmp_path):
+    assert leak(tmp_path, 0.0, start=0.8) == ()
+    assert "begins at 1.19 kPa" in leak(tmp_path, 0.0, start=1.2)[0]
+
+
 def test_a_leak_run_that_is_clipped(tmp_path):
     (words,) = leak(tmp_path, 99.0, start=100.0, top=100.0, constant=3600.0)
     assert "are clipped" in words

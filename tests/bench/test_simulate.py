@@ -24,7 +24,7 @@ from pneutouch.bench.simulate import (
 )
 from pneutouch.bench.simulate.inject import line_pressure, sensor_pressure
 from pneutouch.bench.simulate.parameter import parameters
-from pneutouch.bench.simulate.run import _lagging, within
+from pneutouch.bench.simulate.run import _lagging, _shut_in, within
 from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.units import KPA
 from tests.bench.truths import NO_WALL, R0, ends, line, rng
@@ -108,6 +108,19 @@ def test_reset_vents_and_fills_each_time():
     assert rise == pytest.approx(3 * KPA * np.array(test.depths), rel=1e-3)
     kept = simulate_run(curve, replace(test, reset=False), RigModel.perfect(), 100.0, rng(5), **QUIET)
     assert kept.pressure.min() >= 22 * KPA - 1e-12
+
+
+def test_drift_of_a_shut_in_gas_begins_in_every_rest_at_three_fifths():
+    """Until then the regulator holds its pressure; shut in, it is within 0.005 % of it."""
+    rest, drift = 30.0, 0.01 * KPA
+    test = RunProtocol("steps", (1.0, 2.0), 4.0, rest, True)
+    time = np.arange(0, test.knots()[0][-1], 0.01)
+    pressure = _shut_in(test, time, np.full(3, 22 * KPA), drift, np.zeros_like(time))
+    for start in test.knots()[0][:-1:4]:
+        shut = start + 0.6 * rest
+        before, after = np.interp([shut - 0.02, shut + 10.0], time, pressure)
+        assert before == pytest.approx(22 * KPA, rel=5e-5)
+        assert after - 22 * KPA == pytest.approx(10.0 * drift, rel=0.01)
 
 
 def test_drift_is_warming_less_leak():

@@ -37,6 +37,12 @@ def test_a_sensor_without_a_gauge_is_read_by_the_papers():
     assert gauge_reading(None, STANDARD_ATMOSPHERE) == gauge_reading(gauge(PAPER), STANDARD_ATMOSPHERE)
 
 
+def test_an_analog_gauge_is_read_as_often_as_the_papers_recorder_reads():
+    """10 kHz (paper, Supplement C)."""
+    assert gauge_reading(None, STANDARD_ATMOSPHERE).rate_Hz == gauge_reading(gauge(PAPER), STANDARD_ATMOSPHERE).rate_Hz
+    assert gauge_reading(None, STANDARD_ATMOSPHERE).rate_Hz == 10_000
+
+
 def test_naming_the_papers_gauge_changes_no_figure(bare):
     named = evaluate("paper-dome", {"pneumatics.gauge": PAPER}, model="atlas")
     assert named.sensor == bare.sensor

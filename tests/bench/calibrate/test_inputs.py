@@ -14,6 +14,8 @@ from pneutouch.bench.calibrate.parameters import parse_names
 from pneutouch.bench.record import MeasuredCurve, MeasuredIndentation
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Rig
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.fields import declaration, table_of
 from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, exact, run
 
 
@@ -42,6 +44,12 @@ def test_more_parameters_than_values_need_priors(library):
     with pytest.raises(InputError, match=r"4 values for 4 parameters without priors"):
         fit(seen, DESIGNED, chosen(library, "modulus", "wall", "dead-volume", "offset", priors=False))
     assert np.isfinite(fit(seen, DESIGNED, chosen(library, "modulus", "dead-volume")).half_width).all()
+
+
+def test_a_fitted_dead_volume_is_one_that_a_design_may_have(library):
+    stated = declaration(table_of(DesignFile, "pneumatics"), "dead_volume_mL")
+    high_mL = chosen(library, "dead-volume").high[2] / 1e3
+    assert high_mL == pytest.approx(stated.high)
 
 
 def test_a_sensor_outside_the_atlas_is_refused(library):
