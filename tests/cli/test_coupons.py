@@ -49,9 +49,12 @@ def test_a_set_is_written_filled_in_and_changes_the_prediction(here):
     assert load_scene("paper-dome").membrane_material.shear_modulus_MPa.value > 0.17
 
 
-def test_only_the_folder_is_printed():
+def test_only_the_folder_is_printed_and_the_next_command_noted():
     result = run("--only", "puck", "--out", "o")
-    assert result.stdout == "o/coupons-objet260-connex\n"
+    folder = "o/coupons-objet260-connex"
+    assert result.stdout == f"{folder}\n"
+    by_hand = f"print and measure as {folder}/measure.md states, fill in {folder}/results.toml"
+    assert result.stderr.splitlines()[-1] == f"{by_hand}, then: pneutouch coupons --results {folder}/results.toml"
 
 
 @pytest.mark.parametrize(

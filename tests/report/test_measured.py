@@ -119,7 +119,7 @@ def test_failures_questions_doubts_and_leaks_are_listed(said):
         assert f"doubt number {MOST - 1} in a row" in text
         assert f"doubt number {MOST} in a row" not in text
         assert "and 7 more: see figures.json" in text
-        assert f"{MOST + 7} stretches are suspect" in text
+        assert f"{MOST + 7} parts of the records are doubtful" in text
         assert "1 of 252 runs could not be read" in text
         assert "0.02130 0.0031 kPa/min" in text
 

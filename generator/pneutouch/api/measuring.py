@@ -38,8 +38,9 @@ def scan(
     from pneutouch.workflows.scan.run import ScanOptions, run_scan
     from pneutouch.workflows.scan.write import write_scan
 
-    pressures = tuple(p * KPA for p in numbers_of(driving_pressures_kPa, "driving_pressures_kPa"))
-    noise = NOISE if noise_kPa is None else numbers_of([noise_kPa], "noise_kPa")[0] * KPA
+    pressures_kPa = numbers_of(driving_pressures_kPa, "driving_pressures_kPa")
+    noises_kPa = () if noise_kPa is None else numbers_of([noise_kPa], "noise_kPa")
+    pressures, noise = tuple(p * KPA for p in pressures_kPa), noises_kPa[0] * KPA if noises_kPa else NOISE
     files = tuple(Path(file) for file in data)
     with named_by_keyword():
         options = ScanOptions(pressures, preload_N, speed_mm_per_s, control, noise, seed, files)

@@ -129,9 +129,9 @@ class Prediction(show.Shown):
 
     def at(self, pressure_kPa: float) -> PredictedState:
         """The state at a driving pressure. Raises InputError for one that was not predicted."""
-        (wanted,) = numbers_of([pressure_kPa], "pressure_kPa")
+        (required_kPa,) = numbers_of([pressure_kPa], "pressure_kPa")
         for state in self.states:
-            if abs(state.driving_pressure_kPa - wanted) < _CLOSE:
+            if abs(state.driving_pressure_kPa - required_kPa) < _CLOSE:
                 return state
         known = ", ".join(f"{state.driving_pressure_kPa:g}" for state in self.states)
         remedy = f"predicted: {known} kPa; give `driving_pressures_kPa` to predict others"

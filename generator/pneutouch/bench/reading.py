@@ -47,7 +47,7 @@ def read_blocks(source: MeasuredFile, rig: Rig, progress: Callable[[float], None
     """Blocks of a measured file, in s, mm, N, MPa; ``progress`` is called with the share read, 0 to 1.
 
     About `blocks.BLOCK_RATE` blocks a second, or one sample each up to `blocks.SLOW` Hz. The file is read in one pass
-    and never is in memory as a whole. Gaps, clipped stretches and a last row that may be cut are among the warnings.
+    and never is in memory as a whole. Gaps, clipped parts and a last row that may be cut are among the warnings.
 
     Of a run without a plate (the source has the channels of `LEAK`) position and force are zero.
 
@@ -126,7 +126,7 @@ def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
 def _clipped(
     blocks: Blocks, key: str, values: Array, extreme: Array, top: float, unit: float, name: str
 ) -> list[SuspectInterval]:
-    """Stretches at the end of an instrument's range, or at a flat top below it."""
+    """Parts at the end of an instrument's range, or at a flat top below it."""
     beyond = extreme / unit > BEYOND * top
     spikes = _short(blocks, beyond)
     if (beyond & ~spikes).any():
@@ -139,18 +139,18 @@ def _clipped(
         SuspectInterval(
             start, end, f"{key} clipped: at {CLIPPED:g} of the range of {top:g} {name} or beyond", False, "clipped"
         )
-        for start, end in _stretches(blocks, (extreme / unit >= CLIPPED * top) & ~spikes)
+        for start, end in _parts(blocks, (extreme / unit >= CLIPPED * top) & ~spikes)
     ]
     rest = np.where(spikes, 0.0, extreme)
     flat = _flat_top(blocks, values, getattr(blocks, f"{key}_spread"), rest)
     if not warnings:
         why = f"{key} clipped: a flat top at {rest.max() / unit:.4g} {name}"
-        warnings = [SuspectInterval(start, end, why, False, "clipped") for start, end in _stretches(blocks, flat)]
+        warnings = [SuspectInterval(start, end, why, False, "clipped") for start, end in _parts(blocks, flat)]
     return [*warnings, *_spikes(blocks, key, extreme / unit, spikes, f"{name}, beyond the rig's range of {top:g}")]
 
 
 def _short(blocks: Blocks, beyond: Flags) -> Flags:
-    """Which of the flagged blocks, (n,), are in stretches so short that no plate makes them."""
+    """Which of the flagged blocks, (n,), are in parts so short that no plate makes them."""
     most = max(SPIKE * blocks.rate / blocks.size, FEW)
     short: Flags = np.zeros(beyond.size, bool)
     for start, end in _runs(beyond):
@@ -193,14 +193,14 @@ def _runs(mask: Flags) -> list[tuple[int, int]]:
     return [(int(start), int(end)) for start, end in zip(edges[::2], edges[1::2], strict=True)]
 
 
-def _stretches(blocks: Blocks, mask: Flags) -> list[tuple[float, float]]:
-    """Begin and end in s of the stretches in which ``mask`` holds; those less than `FLAT` apart are one."""
-    stretches: list[tuple[float, float]] = []
+def _parts(blocks: Blocks, mask: Flags) -> list[tuple[float, float]]:
+    """Begin and end in s of the parts in which ``mask`` holds; those less than `FLAT` apart are one."""
+    parts: list[tuple[float, float]] = []
     width = blocks.size / blocks.rate
     for start, end in _runs(mask):
         begin, finish = float(blocks.time[start] - width / 2), float(blocks.time[end - 1] + width / 2)
-        if stretches and begin - stretches[-1][1] < FLAT:
-            stretches[-1] = (stretches[-1][0], finish)
+        if parts and begin - parts[-1][1] < FLAT:
+            parts[-1] = (parts[-1][0], finish)
         else:
-            stretches.append((begin, finish))
-    return stretches
+            parts.append((begin, finish))
+    return parts

@@ -27,9 +27,9 @@ SAME_DEPTH = 0.03
 """mm within which two indentations have one depth: some standard deviations of an onset (0.004 to 0.01 mm)."""
 
 MOST = 20
-"""Gaps, clipped stretches and spikes that are listed one by one, of each kind: our choice, for a readable list."""
+"""Gaps, clipped parts and spikes that are listed one by one, of each kind: our choice, for a readable list."""
 
-_MANY = MappingProxyType({"gap": "gaps", "clipped": "clipped stretches", "spike": "spikes"})
+_MANY = MappingProxyType({"gap": "gaps", "clipped": "clipped parts", "spike": "spikes"})
 
 _SIGNIFICANT = 4.0
 """Standard errors that a change must exceed before it is reported: one false alarm in 10^4."""
@@ -50,7 +50,7 @@ def untrusted(blocks: Blocks, indent: MeasuredIndentation, before: float) -> str
 
 
 def listed(warnings: Sequence[SuspectInterval]) -> list[SuspectInterval]:
-    """Warnings as listed: of gaps, clipped stretches and spikes the first `MOST` of each and a sum of the others."""
+    """Warnings as listed: of gaps, clipped parts and spikes the first `MOST` of each and a sum of the others."""
     shown = [warning for warning in warnings if warning.kind not in _MANY]
     for kind, name in _MANY.items():
         alike = [warning for warning in warnings if warning.kind == kind]

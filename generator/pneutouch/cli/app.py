@@ -77,6 +77,14 @@ ModelOption = Annotated[
         show_default="solid; harmonic for contact off the axis",
     ),
 ]
+AnswerModelOption = Annotated[
+    str | None,
+    typer.Option(
+        "--model",
+        help="Model: membrane, atlas, solid, harmonic or auto (the cheapest that is good enough).",
+        show_default="auto",
+    ),
+]
 ToleranceOption = Annotated[
     str | None,
     typer.Option("--tolerance", metavar="SHARE", help="Numerical error that --model auto must meet, such as 2%."),
@@ -217,11 +225,14 @@ def predict(
 @app.command("list")
 def list_(
     kind: Annotated[
-        str | None, typer.Argument(help="designs, specimens, examples, materials, mixing, printers or parts.")
+        str | None,
+        typer.Argument(
+            help="designs, specimens, examples, calibrations, materials, mixing, printers, gauges or parts."
+        ),
     ] = None,
     json: JsonOption = False,
 ) -> None:
-    """List designs, specimens, examples, materials, mixing curves, printers and parts."""
+    """List designs, specimens, examples, calibrations, materials, mixing curves, printers, gauges and parts."""
     with reporting():
         from pneutouch.catalogue.listing import listing
         from pneutouch.cli.text import listing_text

@@ -29,12 +29,13 @@ def measured_text(document: dict[str, Any]) -> str:
 
 
 def _warnings(runs: list[dict[str, Any]]) -> list[str]:
-    """How many stretches were left out, and how many are noted but used."""
+    """How many parts of the records were left out, and how many are noted but used."""
     every = [warning for run in runs for warning in run["warnings"] if warning["kind"] != "note"]
     left = sum(not warning["used"] for warning in every)
     if not every:
         return []
-    return [f"\n{left} doubtful stretches left out, {len(every) - left} noted and used; see figures.json and evidence/"]
+    words = f"{left} doubtful parts of the records left out, {len(every) - left} noted and used"
+    return [f"\n{words}; see figures.json and evidence/"]
 
 
 def _group(group: dict[str, Any]) -> list[str]:

@@ -9,6 +9,7 @@ import typer
 
 from pneutouch.cli.app import JsonOption, app, print_json, reporting
 from pneutouch.cli.complete import coupon_names, names
+from pneutouch.cli.next_step import report_next
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo
 
@@ -72,7 +73,7 @@ def coupons(
         if results is not None:
             _enter(results, out, given, json)
             return
-        from pneutouch.workflows.coupons.build import build_coupons
+        from pneutouch.workflows.coupons.build import RESULTS, SHEET, build_coupons
 
         order = _options(given)
         with bar("making coupons"):
@@ -81,6 +82,8 @@ def coupons(
             print_json({"folder": str(folder), **document})
         else:
             echo(str(folder))
+            by_hand = f"print and measure as {folder / SHEET} states, fill in {folder / RESULTS}"
+            report_next("coupons", "--results", folder / RESULTS, first=by_hand)
 
 
 def _enter(path: Path, out: Path | None, given: dict[str, Any], json: bool) -> None:

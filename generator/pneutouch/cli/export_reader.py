@@ -7,10 +7,10 @@ from typing import Annotated, Any
 import typer
 
 from pneutouch.cli.app import (
+    AnswerModelOption,
     CalibrationOption,
     DesignArgument,
     JsonOption,
-    ModelOption,
     OutOption,
     SetOption,
     ToleranceOption,
@@ -28,7 +28,7 @@ def export_reader(
     design: DesignArgument,
     set_: SetOption = None,
     calibration: CalibrationOption = None,
-    model: ModelOption = None,
+    model: AnswerModelOption = None,
     tolerance: ToleranceOption = None,
     simulator: Annotated[
         str | None,

@@ -67,7 +67,8 @@ def _notes(measured: CampaignReport) -> list[str]:
     else:
         notes.append(f"All {runs} runs were read." if runs > 1 else "The run was read.")
     if suspect:
-        notes.append(f"{suspect} {'stretches are' if suspect > 1 else 'stretch is'} suspect: see Warnings.")
+        parts = "parts of the records are" if suspect > 1 else "part of the records is"
+        notes.append(f"{suspect} {parts} doubtful: see Warnings.")
     return notes
 
 

@@ -120,7 +120,7 @@ def injections(measured: CampaignReport) -> tuple[list[Row], str]:
 
 
 def warning_rows(measured: CampaignReport) -> tuple[list[Row], str]:
-    """Stretches not to be trusted: file, seconds, why, used or not; mere notes are in figures.json."""
+    """Parts not to be trusted: file, seconds, why, used or not; mere notes are in figures.json."""
     rows = [
         [curve.run.file, f"{warning.start:.2f} to {warning.end:.2f}", warning.why, word_of(warning.used)]
         for curve in measured.curves

@@ -131,15 +131,15 @@ export class RunsTable {
     this.notes.replaceChildren(...notes);
   }
 
-  /** Stretches of runs that may be wrong: whether they are used, where they are, and why. */
-  doubtful(stretches) {
-    const left = stretches.filter((one) => !one.used).length;
-    const rows = stretches.map((one) => row([one.file, one.used ? "noted, used" : "left out", `${one.start_s} to ${one.end_s}`, one.why]));
+  /** Parts of runs that may be wrong: whether they are used, where they are, and why. */
+  doubtful(parts) {
+    const left = parts.filter((one) => !one.used).length;
+    const rows = parts.map((one) => row([one.file, one.used ? "noted, used" : "left out", `${one.start_s} to ${one.end_s}`, one.why]));
     return element(
       "details",
       {},
-      element("summary", {}, `${left} doubtful stretches left out, ${stretches.length - left} noted and used`),
-      scroll("Doubtful stretches", table(["file", "", "s", "why"], rows, { class: "words" })),
+      element("summary", {}, `${left} doubtful parts left out, ${parts.length - left} noted and used`),
+      scroll("Doubtful parts", table(["file", "", "s", "why"], rows, { class: "words" })),
     );
   }
 

@@ -18,7 +18,7 @@ from pneutouch.workflows.coupons.order import CouponOptions, CouponOrder, order
 from pneutouch.workflows.coupons.sheet import sheet, stl_name
 from pneutouch.workflows.coupons.template import results_template
 
-RESULTS = "results.toml"
+RESULTS, SHEET = "results.toml", "measure.md"
 
 
 def build_coupons(options: CouponOptions, out: Path, library: Library | None = None) -> tuple[Path, dict[str, Any]]:
@@ -38,7 +38,7 @@ def build_coupons(options: CouponOptions, out: Path, library: Library | None = N
         title = ordered.name if name == ordered.profile else name
         files[f"{title}.3mf"] = threemf(title, bodies, _metadata(ordered, name, bodies))
         files |= {f"stl/{stl_name(piece, ordered)}": stl(piece.body) for piece in pieces}
-    files["measure.md"] = sheet(ordered, trays).encode()
+    files[SHEET] = sheet(ordered, trays).encode()
     files[RESULTS] = results_template(ordered).encode()
     coupons = _coupons(trays)
     write_folder(folder, with_manifest(files, ordered.name, inputs(ordered), coupons=coupons))
@@ -79,7 +79,7 @@ def _metadata(ordered: CouponOrder, name: str, bodies: tuple[Body, ...]) -> dict
     return {
         "Title": f"Coupons for {name}",
         "Application": f"pneutouch {__version__}",
-        "Description": f"{len(bodies)} coupons to print and measure; see measure.md",
+        "Description": f"{len(bodies)} coupons to print and measure; see {SHEET}",
         "input-hash": input_hash(inputs(ordered)),
     }
 

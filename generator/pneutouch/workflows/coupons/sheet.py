@@ -27,10 +27,9 @@ def sheet(order: CouponOrder, trays: Mapping[str, tuple[CouponPiece, ...]]) -> s
     """Markdown for the operator and the bench."""
     parts = [
         f"# Coupons: print and measure ({order.name})",
-        "Print, measure, write the readings into `results.toml`, then run `pneutouch coupons --results results.toml` "
-        "in the "
-        "folder of your designs: it writes profiles of your own machine and resins, which come before the shipped "
-        "ones.",
+        "Print, measure, write the readings into `results.toml`, then run `pneutouch coupons --results FILE`, with the "
+        "path of that file, in the folder from which you use pneutouch: it writes profiles of your own machine and "
+        "resins, which come before the shipped ones.",
         "Lab: ______________________  Date: ______________  Room: _____ °C  Printed on: ______________",
         "## Print",
     ]

@@ -14,7 +14,7 @@ from pneutouch.workflows.coupons.order import CouponItem, CouponOrder
 
 _HEAD = """\
 # Results of coupons. Fill in what was measured, leave [] for what was not, then:
-#   pneutouch coupons --results results.toml
+#   pneutouch coupons --results FILE    (the path of this file)
 # Two readings at least in a list that is filled. Numbers have a point: [27.5, 28.0]
 """
 
