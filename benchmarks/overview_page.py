@@ -79,7 +79,8 @@ def contact() -> Panel:
     """A leaning plate, all figures, against CalculiX."""
     scene = off_axis_speed.measured(stored("off-axis-calculix"))[0]
     found = off_axis_speed.points(scene)
-    base = min(point.seconds for point in found if point.program == off_axis_speed.OURS)
+    # Six harmonics with four as their check, on the usual mesh: what `harmonic` takes for this scene.
+    base = next(point.seconds for point in found if point.label == "M 6, 24 x 2")
     points = [Point(OURS if p.program == off_axis_speed.OURS else "CalculiX", p.seconds / base, p.error) for p in found]
     return Panel("Contact under a leaning plate", "forces and pressure", points)
 
@@ -192,8 +193,11 @@ pages that the table names; `python -m benchmarks.search` measures selection and
 
 ![Error over time in seven panels: prediction, inflation, contact, mesh, voxels, selection, sweep](speed-against-accuracy.svg)
 
-Times are processor times of one core, each divided by that of pneutouch's default in the same run: only such ratios hold on another machine. These were
-taken on {machine}. Filled markers are pneutouch, hollow ones others.
+Times are processor times of one core, each divided by that of pneutouch's default in the same run: only such ratios hold on another machine. Selection
+and sweep were measured on {machine}. Filled markers are pneutouch, hollow ones others: other programs, and other uses of pneutouch's own models
+(loops, grids, root searches, the membrane theory). CalculiX's time in contact is that of its whole process. Errors of prediction, inflation, selection
+and sweep are against extrapolated or refined meshes of pneutouch; those of contact are against the mean of the finest answers of both programs, whose
+half difference, {half}, is the least error that can be seen.
 
 | work | error of pneutouch's default | others: time at no greater error over that of the default, else their least error and its time | measured in |
 |---|---|---|---|
@@ -212,8 +216,8 @@ cells ([accuracy.md](accuracy.md#map-of-validity)).
 """
 
 _MORE = """
-No method raised an error there. Off the axis, 300 random scenes were run: one ended without an equilibrium or a known event
-([off-axis.md](off-axis.md#random-scenes)). Where the program gives no answer at all: [limits.md](limits.md).
+No method raised an error there. Off the axis, 300 random scenes were drawn: 49 were refused, since the object would come down to the connector; of
+the 251 that were solved on a coarse mesh, 38 ended by a jump and one without an equilibrium or a known event ([off-axis.md](off-axis.md#random-scenes)). Where the program gives no answer at all: [limits.md](limits.md).
 """
 
 _SOURCES = (
@@ -242,13 +246,17 @@ def page(found: list[Panel]) -> str:
     count = len(rows) // len(methods)
     return "\n".join(
         [
-            _HEAD.format(machine=stored("search")["machine"]).rstrip("\n"),
+            _HEAD.format(machine=stored("search")["machine"], half=_percent(_unresolved())).rstrip("\n"),
             *(_row(panel, *source) for panel, source in zip(found, _SOURCES, strict=True)),
             _FAILS.format(count=count).rstrip("\n"),
             *lines,
             _MORE,
         ]
     )
+
+
+def _unresolved() -> float:
+    return off_axis_speed.distance(off_axis_speed.measured(stored("off-axis-calculix"))[0])
 
 
 def _row(panel: Panel, name: str, section: str) -> str:
