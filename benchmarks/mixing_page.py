@@ -214,7 +214,7 @@ def _lab() -> list[str]:
         "```",
         f"pneutouch coupons --mixing {SOFT}+{STIFF} --profile j735 --only puck,dumbbell",
         "# print, measure, fill in results.toml",
-        f"pneutouch coupons --results results.toml   # writes printprofiles/mixing/{SOFT}+{STIFF}.toml",
+        f"pneutouch coupons --results outputs/coupons-j735-{SOFT}+{STIFF}/results.toml   # writes printprofiles/mixing/{SOFT}+{STIFF}.toml",
         "```",
         "",
         f"It prints {len(FRACTIONS)} fractions: {steps} %. By every curve the modulus rises by less than 2.5 times from one to the next, as "

@@ -69,6 +69,8 @@ def test_the_installed_package_predicts_without_the_checkout(unpacked, tmp_path)
 def test_every_example_that_the_docs_name_is_reached_from_the_installed_package(unpacked, tmp_path):
     pages = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
     named = {name for page in pages for name in re.findall(r"new .*?--from ([\w-]+)", page.read_text(encoding="utf-8"))}
+    # A design that a page has made before is the reader's own.
+    named = {name for name in named if not name.startswith("my-")}
     assert {"fingertip", "seven-resins", "wall-and-resin", "campaign"} <= named
     code = (
         "from pneutouch.output.new import new_from\n"

@@ -166,9 +166,9 @@ ATTACKS = (
     ),
     Attack("another Host: rebound names, other ports, other writings of the address", (403,), _hosts),
     Attack("no Host, or two", (400,), lambda to: [request(to, Host=None), request(to, host="example.org")]),
-    Attack("a question without Origin, or of another page", (403,), _origins),
+    Attack("a request without Origin, or of another page", (403,), _origins),
     Attack(
-        "a question as text, a form or nothing",
+        "a request as text, a form or nothing",
         (415,),
         lambda to: [request(to, _ASK, _wall("-1"), Content_Type=each) for each in _TYPES],
     ),
@@ -226,7 +226,7 @@ ATTACKS = (
         lambda to: [b"\x16\x03\x01\x02\x00\x01\x00" + b"\0" * 100, b"\xff" * 1000 + b"\r\n\r\n"],
     ),
     Attack(
-        "what is no question: deep, huge or broken JSON, unknown keys",
+        "what is no request of the page: deep, huge or broken JSON, unknown keys",
         (422,),
         lambda to: [request(to, _ASK, each) for each in _NO_QUESTIONS],
     ),
