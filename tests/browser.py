@@ -27,6 +27,10 @@ _LONGEST = 300
 """Seconds that anything is waited for at most: a hung page fails its test, a slow machine does not."""
 
 
+_SAID = "[...document.querySelectorAll('[role=status], [role=alert], [aria-live]')].map((each) => [each.id, each.textContent])"
+"""What a page says of its state, for the report of a condition that never held."""
+
+
 def leave_out_or_fail(found: str | None, environment: Mapping[str, str]) -> None:
     """Leave a test out where there is no browser; fail it where the environment says that there has to be one."""
     if found is None and environment.get(VARIABLE) == "required":
@@ -107,5 +111,5 @@ def until(page: Page, condition: str) -> None:
     """
     end = time.monotonic() + _LONGEST
     while not page.evaluate(f"!!({condition})"):
-        assert time.monotonic() < end, condition
+        assert time.monotonic() < end, (condition, page.evaluate(_SAID))
         page.wait_for_timeout(30)

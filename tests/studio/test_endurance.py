@@ -10,6 +10,7 @@ import threading
 from contextlib import contextmanager
 
 import pytest
+from playwright.sync_api import Page
 
 from tests.browser import until
 from tests.studio.kept import Kept
@@ -54,16 +55,24 @@ def _children(process: subprocess.Popen[str]) -> list[int]:
     return [int(each) for each in listed.stdout.split()]
 
 
+def _killed_at_work(screen: Page, studio: Studio, place: float) -> int | None:
+    """Kill the process that computes while it has a question; its number, None where it had none yet."""
+    [worker] = _children(studio.process)
+    # Stopped first: a question that reaches it is with it when it is killed.
+    os.kill(worker, signal.SIGSTOP)
+    with screen.expect_request("**/api/solved"):
+        move(screen, "Wall thickness, mm", place)
+    os.kill(worker, signal.SIGKILL)
+    reported = "document.getElementById('problems').textContent.includes('ended from outside')"
+    until(screen, f"{reported} || (document.body.dataset.solved === location.hash && {SOLVED})")
+    return worker if screen.evaluate(reported) else None
+
+
 @pytest.mark.slow
 def test_a_killed_process_is_reported_and_the_next_move_is_answered(screen, studio):
     solved(screen, _FIRST)
-    [worker] = _children(studio.process)
-    # Stopped first, so that the question is with it when it is killed.
-    os.kill(worker, signal.SIGSTOP)
-    with screen.expect_request("**/api/solved"):
-        move(screen, "Wall thickness, mm", 290)
-    os.kill(worker, signal.SIGKILL)
-    until(screen, "document.getElementById('problems').textContent.includes('ended from outside')")
+    # Where the studio had not passed the question on yet when the process was killed, another process answers it.
+    worker = next(each for place in range(281, 300) if (each := _killed_at_work(screen, studio, place)))
     move(screen, "Wall thickness, mm", 280)
     until(screen, f"document.body.dataset.solved === location.hash && {SOLVED}")
     assert screen.locator("#problems").text_content() == ""

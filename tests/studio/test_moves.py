@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import pytest
 
 from tests.browser import until
@@ -60,3 +62,15 @@ def test_a_page_that_is_left_in_the_middle_of_a_move_keeps_it_in_its_address(scr
     slider.evaluate("""slider => { slider.value = 250; slider.dispatchEvent(new Event('input'));
     window.dispatchEvent(new Event('pagehide')); }""")
     assert "membrane.wall_thickness_mm=" in screen.evaluate("location.hash")
+
+
+def test_a_slider_that_is_let_go_asks_once(screen, pages):
+    """It reports the place of its last move again, which is no other question."""
+    solved(screen, "#paper-dome")
+    sent = len(pages.requested)
+    for place in (290, 280, 270):
+        move(screen, "Wall thickness, mm", place)
+        until(screen, f"document.body.dataset.solved === location.hash && {SOLVED}")
+    asked = Counter(each.rpartition("/")[2] for each in pages.requested[sent:])
+    assert asked["quick"] == asked["solved"] == 3
+    assert max(asked.values()) == 3

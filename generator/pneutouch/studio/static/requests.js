@@ -31,22 +31,23 @@ export async function post(path, question) {
   return { status: answer.status, content };
 }
 
-/** Sends questions to `path`; while one question has no answer yet the newest other one waits, and older ones are dropped. */
+/** Sends questions to `path`; while one has no answer yet the newest one waits, unless it is the same, and older ones are dropped. */
 export class Line {
   /** `replaced(question)`: the studio gave the place of a question to another one. */
   constructor(path, answered, failed, replaced = () => {}) {
-    Object.assign(this, { path, answered, failed, replaced, busy: false, waiting: null });
+    Object.assign(this, { path, answered, failed, replaced, busy: false, waiting: null, asked: null });
   }
 
   async send(question) {
     if (this.busy) {
-      this.waiting = question;
+      this.waiting = JSON.stringify(question) === this.asked ? null : question;
       return;
     }
     this.busy = true;
     let next = question;
     while (next !== null) {
       this.waiting = null;
+      this.asked = JSON.stringify(next);
       try {
         const { status, content } = await post(this.path, next);
         if (status === 409) this.replaced(next);
