@@ -19,6 +19,7 @@ from benchmarks.scenes import PAPER, SCENES
 from benchmarks.speed_accuracy import METHODS, extrapolate, limit, run
 
 from pneutouch.bench.figure import BY_KEY
+from tests.drawings import same_drawing
 
 
 def page() -> str:
@@ -41,7 +42,7 @@ def test_the_pages_on_friction_and_validation_and_their_charts_are_those_of_the_
     ):
         data = stored(f"{name}.json")
         assert (DOCS / f"{name}.md").read_text(encoding="utf-8") == text(data)
-        assert (DOCS / f"{name}.svg").read_text(encoding="utf-8") == draw(data)
+        assert same_drawing(DOCS / f"{name}.svg", draw(data))
 
 
 def test_tables_are_made_of_the_stored_numbers():

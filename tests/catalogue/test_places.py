@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from pneutouch.catalogue import Library, user_folder
+from pneutouch.catalogue.places import shipped_root
 from tests.conftest import ROOT
 
 
@@ -22,10 +23,17 @@ def checkout(tmp_path):
     return place
 
 
+def test_what_is_shipped_is_that_of_the_checkout():
+    """Installed, it is a copy."""
+    for name in ("designs", "printprofiles"):
+        own, shipped = ({p.name: p.read_bytes() for p in (r / name).glob("*.toml")} for r in (ROOT, shipped_root()))
+        assert own == shipped != {}
+
+
 def test_the_users_folder_is_the_working_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert user_folder() == Path()
-    assert Library.default().folders == (tmp_path, ROOT)
+    assert Library.default().folders == (tmp_path, shipped_root())
 
 
 def test_in_a_checkout_it_is_a_folder_that_git_ignores(checkout, monkeypatch):
@@ -33,7 +41,7 @@ def test_in_a_checkout_it_is_a_folder_that_git_ignores(checkout, monkeypatch):
     assert user_folder() == Path("user")
     assert "user/" in (ROOT / ".gitignore").read_text().splitlines()
     monkeypatch.chdir(ROOT)
-    assert Library.default().folders == (ROOT / "user", ROOT)
+    assert Library.default().folders == (ROOT / "user", shipped_root())
 
 
 def test_a_variable_names_it_everywhere(checkout, tmp_path, monkeypatch):

@@ -65,7 +65,9 @@ def inside(folder: Path, name: str, *, file: str | PathLike[str], key: str) -> P
     """
     path = folder / name
     try:
-        within = not Path(name).is_absolute() and path.resolve().is_relative_to(folder.resolve())
+        target = path.resolve()
+        # From 3.13 on, Python leaves a link that leads to itself as it is.
+        within = not Path(name).is_absolute() and target.is_relative_to(folder.resolve()) and not target.is_symlink()
     except (OSError, ValueError, RuntimeError):
         within = False
     if not within:
