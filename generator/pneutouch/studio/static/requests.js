@@ -35,19 +35,19 @@ export async function post(path, question) {
 export class Line {
   /** `replaced(question)`: the studio gave the place of a question to another one. */
   constructor(path, answered, failed, replaced = () => {}) {
-    Object.assign(this, { path, answered, failed, replaced, busy: false, waiting: null, asked: null });
+    Object.assign(this, { path, answered, failed, replaced, busy: false, waiting: null, sent: null });
   }
 
   async send(question) {
     if (this.busy) {
-      this.waiting = JSON.stringify(question) === this.asked ? null : question;
+      this.waiting = JSON.stringify(question) === this.sent ? null : question;
       return;
     }
     this.busy = true;
     let next = question;
     while (next !== null) {
       this.waiting = null;
-      this.asked = JSON.stringify(next);
+      this.sent = JSON.stringify(next);
       try {
         const { status, content } = await post(this.path, next);
         if (status === 409) this.replaced(next);
