@@ -21,10 +21,8 @@ from benchmarks.mutant_runs import MOST, Calls, Driver, cold
 from benchmarks.mutant_sites import PACKAGE, ROOT, Site, changed, every_site
 
 DOCS = ROOT / "docs" / "background"
-TESTS = [
-    f"tests/{part}"
-    for part in ("mechanics", "bench", "printability", "selection", "evaluation", "texture", "stability")
-]
+FOLDERS = "mechanics bench printability selection evaluation texture stability api catalogue cli export workflows"
+TESTS = [f"tests/{part}" for part in FOLDERS.split()]
 LIBRARIES = ("pydantic", "scipy.optimize", "scipy.stats", "manifold3d", "trimesh", "xarray")
 
 
