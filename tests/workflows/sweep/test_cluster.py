@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import socket
 import sys
+from types import SimpleNamespace
 
 import pytest
 from distributed import Client
@@ -30,6 +31,46 @@ def test_a_lost_worker_changes_no_byte(undisturbed, cluster, tmp_path):
     assert states.startswith("320 points, states: ")
     assert out.read_bytes() == undisturbed
     assert not out.with_name("sweep.nc.parts").exists()
+
+
+class Completed(list):
+    """In place of `distributed.as_completed`: chunks are done in the order in which they are added."""
+
+    def __init__(self, **options):
+        super().__init__()
+
+    add = list.append
+
+    def is_empty(self):
+        return not self
+
+    def __next__(self):
+        return self.pop(0)
+
+
+class LostOnce:
+    """A chunk that was done on a worker which ended before it sent the records: Dask computes it again."""
+
+    def __init__(self, number):
+        self.number, self.states = number, iter(("lost", "finished"))
+
+    @property
+    def status(self):
+        return next(self.states, "finished")
+
+    def result(self):
+        return [{"point": self.number}]
+
+
+def test_a_chunk_that_is_lost_with_its_worker_is_waited_for_again(monkeypatch):
+    monkeypatch.setattr("distributed.as_completed", Completed)
+    numbers = iter(range(9))
+    client = SimpleNamespace(loop=None, nthreads=lambda: {"worker": 1}, submit=lambda *_, **__: LostOnce(next(numbers)))
+    study = SimpleNamespace(fingerprint="", files={})
+    found = [
+        record["point"] for records in module._computed(client, study, list("abcde"), "tcp://") for record in records
+    ]
+    assert sorted(found) == [0, 1, 2, 3, 4]
 
 
 @pytest.mark.slow

@@ -59,6 +59,10 @@ def _computed(client: Client, study: SweepStudy, chunks: list[SweepChunk], addre
         if running.is_empty():
             return
         future = next(running)
+        if future.status == "lost":
+            # Its worker ended after the chunk was done and before it was sent: Dask computes it again.
+            running.add(future)
+            continue
         free += 1
         yield _result(future, address)
 
