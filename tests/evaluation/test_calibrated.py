@@ -12,7 +12,20 @@ from pneutouch.evaluation.uncertainty import known
 from pneutouch.mechanics.uncertainty import FIGURES, monte_carlo
 from pneutouch.report.certainty import SENSITIVITY
 from pneutouch.units import KPA, ML
-from tests.evaluation.calibrated import AT, DEAD, HIGH, LOW, MODULUS, VOLUME, WALL, changed, held, library_of, predicted
+from tests.evaluation.calibrated import (
+    AT,
+    CONTENT,
+    DEAD,
+    HIGH,
+    LOW,
+    MODULUS,
+    VOLUME,
+    WALL,
+    changed,
+    held,
+    library_of,
+    predicted,
+)
 
 
 def test_the_parameters_are_the_fitted_ones_and_the_bodies_the_drawn_ones(place):
@@ -133,6 +146,9 @@ def test_correlated_parameters_spread_as_samples_of_them_do(place):
         sensor, [5.0 * KPA], scene.membrane_material, [], scene.printer, "atlas", calibration=scene.calibration
     )
     (joint,) = (source for source in estimate.budget.sources if source.name == "calibrated parameters")
+    root = np.array([joint.loads[name] for name in ("shear_modulus", "wall_thickness", "dead_volume")])
+    # Logarithms of modulus and wall; the dead volume in mm3, which the file has in mL.
+    np.testing.assert_allclose(root @ root.T, np.array(CONTENT["covariance"]) * np.outer(*[[1, 1, ML]] * 2), atol=1e-9)
     drawn = monte_carlo(estimate.batch, [joint], 0, 2_000)
     k = FIGURES.index("limit_pressure_kPa")
     place_of = estimate.budget.sources.index(joint)
