@@ -35,6 +35,9 @@ def test_a_print_of_a_week_is_fresh_and_one_of_two_weeks_is_not():
     assert ages(0, 14) == ["fresh", "14 days"]
     assert ages(40, 42, 365, 370) == ["41 days", "12 months"]
     assert ages(8) == ["8 days"]
+    # Apart by 3 days or 5 %, whichever is more.
+    assert [len(ages(40, other)) for other in (43, 44)] == [1, 2]
+    assert [len(ages(400, other)) for other in (420, 421)] == [1, 2]
 
 
 def test_groups_are_of_one_resin_age_and_pressure():

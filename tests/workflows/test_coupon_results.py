@@ -147,6 +147,13 @@ def test_entering_again_gives_the_same_bytes_and_keeps_what_was_measured_before(
     assert not list(path.parent.glob(".*"))
 
 
+def test_the_hardness_farthest_from_the_shipped_one_is_questioned(lab):
+    """It may lie below, where it is the smaller number."""
+    puck = {"TangoPlus": {"shore_a": [1.0, 30.0]}}
+    document = lab({"lab": "Soft lab", "date": datetime.date(2026, 11, 21), "puck": puck})
+    assert any(note.startswith("TangoPlus: shore_a = 1 is 26.6 points off") for note in document["notes"])
+
+
 def test_a_profile_of_the_labs_own_is_never_overwritten(lab, tmp_path):
     path = tmp_path / "printprofiles/objet260-connex.toml"
     path.parent.mkdir()

@@ -193,6 +193,16 @@ def test_each_end_of_a_range_lies_where_its_own_quantity_meets_its_level():
         assert np.abs(cut.force[0] - force).max() < 5e-3 * free.force.max()
 
 
+def test_a_range_that_ends_within_the_first_step_ends_where_its_pressure_is_reached():
+    limit = float(shipped().slices(np.array([0.16])).limit_pressure[0])
+    scene = {"driving_pressure": 0.3 * limit, "depth": 0.6}
+    free = respond(batch(**scene))
+    gauge = 0.3 * limit + 0.5 * free.rise[0, 1]
+    early = respond(batch(**scene, gauge_limit=gauge))
+    assert early.ends[0] == GAUGE and 0.0 < early.range_end[0] < free.indentation[0, 1]
+    assert 0.3 * limit + early.rise[0, -1] == pytest.approx(gauge, abs=2e-4 * gauge)
+
+
 def test_a_rise_is_in_megapascal_and_a_sensitivity_in_kilopascal_per_newton():
     found = respond(batch(dead_volume=0.3))
     slope = np.polyfit(found.force[0], found.rise[0] / KPA, 1)[0]
