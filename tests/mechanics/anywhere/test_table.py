@@ -205,5 +205,6 @@ def test_weights_give_back_parabolas_and_sum_to_one():
     np.testing.assert_allclose(weights @ (2 - nodes + 3 * nodes**2), 2 - at + 3 * at**2, atol=1e-12)
     np.testing.assert_allclose(NodeAxis(nodes).weights(nodes), np.eye(5), atol=1e-12)
     np.testing.assert_allclose(NodeAxis(nodes).weights(np.array([2.0])), [[0, 0, 0, 0, 1]], atol=1e-12)
+    np.testing.assert_array_equal(NodeAxis(np.array([0.1])).weights(at), np.ones((41, 1)))
     line = NodeAxis(np.array([0.0, 0.44**2]))
     np.testing.assert_allclose(line.weights(np.array([0.1])) @ np.array([1.0, 1.0 + 0.44**2]), [1.1], atol=1e-12)
