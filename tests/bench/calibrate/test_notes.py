@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.bench.calibrate.notes import amount
-from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, MODULUS, OFFSET, WALL
+from pneutouch.bench.calibrate.notes import _few, amount
+from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, FRICTION_PRIOR, MODULUS, OFFSET, WALL
+from pneutouch.mechanics.contact_correction import GRIPS
 
 
 @pytest.mark.parametrize(
@@ -22,3 +23,12 @@ from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, MODULUS, OFFSET
 )
 def test_a_deviation_is_stated_in_the_unit_of_its_parameter(parameter, deviation, words):
     assert amount(parameter, deviation) == words
+
+
+def test_three_runs_are_named_and_the_others_counted():
+    assert _few(["a", "b", "c"]) == "a, b, c"
+    assert _few(["a", "b", "c", "d", "e"]) == "a, b, c and 2 more"
+
+
+def test_before_any_run_friction_is_anything_from_none_to_grip():
+    assert pytest.approx(np.linspace(0.0, GRIPS, 10_001).std(), rel=1e-3) == FRICTION_PRIOR
