@@ -124,3 +124,11 @@ def test_python_gives_what_the_command_gives(tmp_path, monkeypatch):
     assert written["law"]["source"].endswith("Soft lab")
     with pytest.raises(pt.InputError, match="stretch_to"):
         pt.fit_material(tmp_path / "pull.csv", "Ours", like="DragonSkin20", stretch_to=0.5)
+
+
+def test_a_material_of_no_profile_is_stated_to_need_casting(command, tmp_path):
+    write(tmp_path / "pull.csv")
+    line = ("fit-material", "pull.csv", "--name", "Ours", "--density", "1.1")
+    missing = "printprofiles/materials/Ours.toml has no table [casting], which a material that is cast needs"
+    assert missing in command(*line, cwd=tmp_path).stderr
+    assert "[casting]" not in command(*line[:4], "--like", "DragonSkin20", cwd=tmp_path).stderr

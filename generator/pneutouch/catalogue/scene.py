@@ -12,6 +12,7 @@ from pneutouch.catalogue.gauge import named_gauge
 from pneutouch.catalogue.library import Library
 from pneutouch.catalogue.mixture import mixed_material
 from pneutouch.catalogue.named_parts import mount_of, tube_of
+from pneutouch.catalogue.runs import cannot_run
 from pneutouch.errors import InputError, shown
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import MaterialKind
@@ -165,7 +166,7 @@ def _resolved(name: str, where: str, design: DesignFile, library: Library) -> Re
         mould_printer=find("printers", "mould", "profile") if printer.is_casting else None,
         mould_material=find("materials", "mould", "material") if printer.is_casting else None,
     )
-    check_scene(scene)
+    check_scene(scene, library)
     return scene
 
 
@@ -187,17 +188,23 @@ def _calibration(design: DesignFile, where: str, library: Library) -> SensorCali
     return calibration
 
 
-def check_scene(scene: ResolvedDesign) -> None:
-    """What must hold between the parts of a scene. Raises InputError that names ``scene.where`` and the key."""
+def check_scene(scene: ResolvedDesign, library: Library | None = None) -> None:
+    """What must hold between the parts of a scene. Raises InputError that names ``scene.where`` and the key.
+
+    With the ``library`` that its names were found in, it states which profiles make a material as well.
+    """
     _check_kind(scene, "membrane.material", scene.membrane_material, "elastomer")
     _check_kind(scene, "connector.material", scene.connector_material, "rigid")
-    _check_runs(scene, "print.profile", scene.printer, scene.membrane_material)
-    _check_runs(scene, "print.connector_profile", scene.connector_printer, scene.connector_material)
+    design, membrane = scene.design, scene.design.membrane.material
+    soft = membrane if isinstance(membrane, str) else None
+    _check_runs(scene, "print.profile", scene.printer, soft, scene.membrane_material, library)
+    rigid = design.connector.material, scene.connector_material
+    _check_runs(scene, "print.connector_profile", scene.connector_printer, *rigid, library)
     _check_one_piece(scene)
     _check_glue(scene)
     check_cast_ring(scene.design, scene.where, scene.seat, scene.printer)
     _check_calibration(scene)
-    _check_mould(scene)
+    _check_mould(scene, library)
 
 
 def _mode(printer: Printer, *materials: Material) -> Mode:
@@ -212,17 +219,13 @@ def _check_kind(scene: ResolvedDesign, key: str, material: Material, kind: Mater
         raise InputError(problem, file=scene.where, key=key, remedy=f"it must be {kind}")
 
 
-def _check_runs(scene: ResolvedDesign, key: str, printer: Printer, material: Material) -> None:
+def _check_runs(
+    scene: ResolvedDesign, key: str, printer: Printer, name: str | None, material: Material, library: Library | None
+) -> None:
     if printer.mode_for(material) is None:
-        table, name = key.split(".")
-        value = getattr(getattr(scene.design, table), name)
-        raise InputError(
-            f"the {printer.title} cannot run {material.label}",
-            file=scene.where,
-            key=key,
-            value=value,
-            remedy=f"it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once",
-        )
+        table, field = key.split(".")
+        value = getattr(getattr(scene.design, table), field)
+        raise cannot_run(printer, name, material, library, f"{key} =", file=scene.where, key=key, value=value)
 
 
 def _check_one_piece(scene: ResolvedDesign) -> None:
@@ -254,7 +257,7 @@ def _check_glue(scene: ResolvedDesign) -> None:
         raise InputError(problem, file=scene.where, key="connector.glue", value=named, remedy=remedy)
 
 
-def _check_mould(scene: ResolvedDesign) -> None:
+def _check_mould(scene: ResolvedDesign, library: Library | None) -> None:
     """A membrane is cast in a mould that is printed."""
     if not scene.printer.is_casting:
         return
@@ -269,7 +272,7 @@ def _check_mould(scene: ResolvedDesign) -> None:
             remedy="take the profile of a printer",
         )
     _check_kind(scene, "mould.material", scene.mould_material, "rigid")
-    _check_runs(scene, "mould.profile", scene.mould_printer, scene.mould_material)
+    _check_runs(scene, "mould.profile", scene.mould_printer, scene.design.mould.material, scene.mould_material, library)
 
 
 def _check_calibration(scene: ResolvedDesign) -> None:

@@ -5,6 +5,7 @@ from typing import Any, get_args
 import numpy as np
 
 from pneutouch.catalogue import Library
+from pneutouch.catalogue.runs import makers, own_profile, uncast, without_casting
 from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.inflation import LIMIT_HEIGHT, pressure
 from pneutouch.mechanics.paper_sensor import material_sensor
@@ -87,10 +88,12 @@ def _no_profile(process: str | None, material: str | None, resin: Material | Non
         able = sorted({one.process for one in printers.values() if _resin_of(one, None, None, library)})
         problem, remedy = "no profile of this process runs an elastomer", f"there are profiles of {', '.join(able)}"
         return InputError(problem, key="process", value=process, remedy=remedy)
-    runs = {one.process: name for name, one in printers.items() if one.mode_for(resin) is not None}
+    runs = {one.process: name for name, one in makers(resin, library).items()}
     if not runs:
-        remedy = f"add {', '.join(resin.base_resins)} to the `resins` of a profile in printprofiles"
-        return InputError("no profile runs it", key="material", value=material, remedy=remedy)
+        casts = next((one for one in printers.values() if without_casting(one, resin)), None)
+        if casts is not None:
+            return uncast(casts, resin, str(library.paths("materials")[str(material)]))
+        return InputError("no profile runs it", key="material", value=material, remedy=own_profile(resin))
     where = " or ".join(f"{each} ({name})" for each, name in sorted(runs.items()))
     return InputError(f"{resin.label} is not made by it", key="process", value=process, remedy=f"it takes {where}")
 

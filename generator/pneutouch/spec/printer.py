@@ -198,7 +198,12 @@ class Printer(Table):
         return CAST_STEP_SOURCE if self.resolution is None else self.resolution.source
 
     def mode_for(self, *materials: Material) -> Mode | None:
-        """The finest mode that prints the materials in one job, or None where the machine cannot."""
+        """The finest mode that makes the materials in one job, or None where there is none.
+
+        Casting makes what has a table [casting] alone.
+        """
+        if self.is_casting and not all(material.is_cast for material in materials):
+            return None
         resins = {resin for material in materials for resin in material.base_resins}
         if not resins <= set(self.resins) or len(resins) > self.resins_at_once:
             return None

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from pneutouch.body import Solid
 from pneutouch.catalogue import Library, ResolvedDesign, load_scene
+from pneutouch.catalogue.runs import cannot_run
 from pneutouch.errors import InputError, nearest
 from pneutouch.parts.coupons import COUPONS, Coupon, CouponContext, Nominal
 from pneutouch.parts.mould.open_mould import open_mould
@@ -104,12 +105,7 @@ def order(options: CouponOptions, library: Library | None = None) -> CouponOrder
     for name in _materials(options, scene, printer, profile, library):
         material: Material = library.load("materials", name, key="material")
         if printer.mode_for(material) is None:
-            raise InputError(
-                f"the {printer.title} cannot run {material.label}",
-                key="material",
-                value=name,
-                remedy=f"it runs {', '.join(printer.resins)}",
-            )
+            raise cannot_run(printer, name, material, library, "`profile`", key="material", value=name)
         if printer.is_casting:
             items += _cast(options, name, CouponContext(material, scene), families, library)
             continue

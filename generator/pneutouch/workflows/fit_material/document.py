@@ -10,6 +10,7 @@ import numpy as np
 from pneutouch.bench.tensile.choose import MISFIT
 from pneutouch.bench.tensile.fit import LawFit, difference
 from pneutouch.catalogue import Library
+from pneutouch.catalogue.runs import makers
 from pneutouch.formats import versioned
 from pneutouch.mechanics.laws import hyperelastic
 from pneutouch.mechanics.uncertainty.hardness import young_modulus
@@ -19,7 +20,6 @@ from pneutouch.report.law_chart import LawCurve, law_chart
 from pneutouch.rounding import rounded
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.material import Material
-from pneutouch.spec.printer import Printer
 from pneutouch.workflows.fit_material.fitted import FittedMaterial
 
 HARDNESS_SHARE = (0.4, 0.65)
@@ -94,16 +94,25 @@ def _notes(fitted: FittedMaterial, small: float) -> list[str]:
             f"no law that the data determine is within {100 * MISFIT:g} % of them; {fitted.law.form.label} is off by "
             f"up to {100 * fitted.law.misfit:.2g} %"
         )
-    notes += _hardness(fitted, small)
+    notes += [*_uncast(fitted), *_hardness(fitted, small)]
     notes.append("the intervals hold the scatter of these points alone, not that of other batches, rates or ages")
     return notes
 
 
+def _uncast(fitted: FittedMaterial) -> list[str]:
+    """What a material that no profile makes needs before it can be cast."""
+    if _material(fitted).is_cast or _profile(fitted) is not None:
+        return []
+    return [
+        f"{fitted.path} has no table [casting], which a material that is cast needs: add it there, or fit it again "
+        "like a silicone that is cast"
+    ]
+
+
 def _profile(fitted: FittedMaterial) -> str | None:
     """The profile that makes the material: one that casts where it is cast; None where none runs it."""
-    library = Library.default()
     material = _material(fitted)
-    made = {name: one for name, one in library.all("printers", Printer).items() if one.mode_for(material) is not None}
+    made = makers(material, Library.default())
     cast = [name for name, one in made.items() if one.is_casting == material.is_cast]
     return next(iter([*cast, *made]), None)
 

@@ -6,8 +6,10 @@ from dataclasses import replace
 from typing import Any
 
 from pneutouch.catalogue import DEFAULT, DesignSource, Library, ResolvedDesign, load_scene
+from pneutouch.catalogue.runs import made_by, makers, uncast, without_casting
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.spec.design import CALIBRATION, DesignFile
+from pneutouch.spec.material import Material
 from pneutouch.spec.part import OnePiece, Sleeve
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import parse_changes
@@ -155,7 +157,19 @@ def _some_resin(target: Target, where: str, changes: dict[str, Any], library: Li
             )
     runs = [name for name, m in loaded.items() if m.kind == "elastomer" and printer.mode_for(m) is not None]
     if not runs:
-        raise InputError(
-            f"the {printer.title} runs none of {', '.join(names)}", file=where, remedy="give other materials or profile"
-        )
+        named = loaded if pair or target.given.materials else {}
+        raise _runs_none(printer, named, where, library)
     return runs[0]
+
+
+def _runs_none(printer: Printer, named: dict[str, Material], where: str, library: Library) -> InputError:
+    """The refusal of the materials named, none of which the profile runs, or of a profile that runs no elastomer."""
+    for name, material in named.items():
+        if without_casting(printer, material):
+            return uncast(printer, material, str(library.paths("materials")[name]))
+    takes = [made_by(material, library, "`profile`") for material in named.values()]
+    processes = dict.fromkeys(one.process for material in named.values() for one in makers(material, library).values())
+    if processes:
+        takes.append(f"or give `process` {' or '.join(processes)}")
+    problem = f"the {printer.title} runs {'none of ' if named else ''}{', '.join(named) or 'no known elastomer'}"
+    return InputError(problem, file=where, remedy="; ".join(takes) or "give another `profile`")

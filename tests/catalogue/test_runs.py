@@ -1,0 +1,76 @@
+"""A material that the profile named does not make: what makes it is named, and what its file does not state."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.conftest import ROOT
+
+OWN = ("--set", "membrane.material=OurGel", "--set", "print.profile=our-casting")
+
+
+@pytest.fixture
+def gel(tmp_path):
+    """A silicone without [casting] in a casting profile of the user's own; the material's file."""
+    folder = tmp_path / "printprofiles"
+    (folder / "materials").mkdir(parents=True)
+    profile = (ROOT / "printprofiles/silicone-casting.toml").read_text().replace("resins = [", 'resins = ["OurGel", ')
+    (folder / "our-casting.toml").write_text(profile)
+    whole = (ROOT / "printprofiles/materials/DragonSkin20.toml").read_text().replace('["DragonSkin20"]', '["OurGel"]')
+    whole = whole.replace('"Dragon Skin 20"', '"OurGel"')
+    path = folder / "materials/OurGel.toml"
+    path.write_text(whole.partition("[casting]")[0])
+    return path
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("check", "cast-dome", *OWN),
+        ("build", "cast-dome", *OWN),
+        ("predict", "cast-dome", *OWN),
+        ("coupons", "--profile", "our-casting", "--material", "OurGel"),
+        ("select", "--sensitivity", "2.2", "--at", "5", "--profile", "our-casting", "--material", "OurGel"),
+        ("new", "mine", "--material", "OurGel"),
+    ],
+)
+def test_a_material_is_not_cast_before_its_file_states_how(command, gel, words):
+    done = command(*words)
+    assert done.returncode == 2, done.stderr
+    assert f"{gel}: casting: missing" in done.stderr
+    assert "add the table [casting] with parts_by_mass, pot_life_min, cure_h" in done.stderr
+    assert "fit the material again (fit-material) like a silicone that is cast" in done.stderr
+
+
+def test_it_is_left_out_of_a_search_with_the_reason(command, gel):
+    words = ("--sensitivity", "2.2", "--at", "5", "--profile", "our-casting", "--material", "DragonSkin20")
+    done = command("select", *words, "--material", "OurGel")
+    assert done.returncode == 0, done.stderr
+    assert "OurGel" in done.stdout and "its file has no table [casting]" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "taken"),
+    [
+        (("check", "paper-dome", "--set", "membrane.material=DragonSkin20"), "print.profile = silicone-casting"),
+        (("coupons", "--material", "DragonSkin20"), "--profile silicone-casting"),
+        (("select", "--sensitivity", "2.2", "--at", "5", "--material", "DragonSkin20"), "--profile silicone-casting"),
+    ],
+)
+def test_the_profile_that_makes_a_material_is_named(command, words, taken):
+    done = command(*words)
+    assert done.returncode == 2
+    assert f"Dragon Skin 20 takes {taken} (process casting)" in done.stderr
+
+
+def test_a_search_names_the_process_as_its_option(command):
+    done = command("select", "--sensitivity", "2.2", "--at", "5", "--material", "DragonSkin20")
+    assert "or give --process casting" in done.stderr
+    taken = ("--material", "DragonSkin20", "--process", "casting")
+    assert command("select", "--sensitivity", "2.2", "--at", "5", *taken).returncode == 0
+
+
+def test_a_material_of_no_profile_is_refused_with_the_reason(command, gel):
+    assert "OurGel has no table [casting]" in command("coupons", "--material", "OurGel").stderr
+    (gel.parents[1] / "our-casting.toml").unlink()
+    assert "no profile runs OurGel" in command("coupons", "--material", "OurGel").stderr
