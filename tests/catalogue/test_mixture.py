@@ -282,3 +282,19 @@ def test_a_measured_curve_takes_no_name(tmp_path):
 def test_a_resin_that_is_no_mix_reads_as_before():
     """What a result follows from is hashed, so a resin's content has no new key."""
     assert "curves" not in LIBRARY.load("materials", "FLX9950").model_dump(mode="json")
+
+
+def test_a_mixing_curve_through_a_plastic_is_refused(tmp_path):
+    """A rigid resin may have a modulus; a membrane of it may not."""
+    folder = tmp_path / "printprofiles"
+    (folder / "materials").mkdir(parents=True)
+    (folder / "mixing").mkdir()
+    stiff = read_toml(ROOT / "printprofiles/materials/VeroClear.toml")
+    stiff["shear_modulus_MPa"] = {"value": 700.0, "source": "made up for a test"}
+    (folder / "materials/VeroClear.toml").write_text(toml_text(stiff))
+    curve = read_toml(ROOT / "printprofiles/mixing/TangoPlus+VeroClear.toml")
+    del curve["curves"]
+    point = {"fraction": 1.0, "material": "VeroClear", "source": "the stiff resin alone"}
+    (folder / "mixing/TangoPlus+VeroClear.toml").write_text(toml_text({**curve, "points": [*curve["points"], point]}))
+    with pytest.raises(InputError, match=r'points\.material = "VeroClear": its shear modulus of 700 MPa'):
+        mixed(0.9, library=Library((tmp_path, ROOT)))

@@ -9,7 +9,7 @@ from pneutouch.bench.finding import MARK, CouponFindings, ReadingSource, rounded
 from pneutouch.bench.statistics import Mean, mean, neo_hookean, secant_modulus, shear_from_young
 from pneutouch.errors import InputError
 from pneutouch.spec.coupon import LEAST_READINGS, Dumbbell, DumbbellSpecimen, Puck
-from pneutouch.spec.material import Material
+from pneutouch.spec.material import STIFFEST_ELASTOMER_MPA, Material
 from pneutouch.spec.quantity import Quantity
 
 _SECANT = 0.1
@@ -24,7 +24,7 @@ _FAR_SHORE = 25.0
 """Points off the shipped hardness beyond which another resin may have been measured: our choice. Makers state ranges of
 3 to 5 points, and the seven elastomers of the paper lie about 10 apart."""
 
-_MODULI = (0.01, 20.0)
+_MODULI = (0.01, STIFFEST_ELASTOMER_MPA)
 """MPa: outside these a reading is wrong, our choice; the shipped elastomers have 0.17 to 5.33."""
 
 _FAR_MODULUS = 5.0

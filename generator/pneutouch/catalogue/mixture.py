@@ -11,7 +11,7 @@ from pneutouch.catalogue.along import ArcProfile
 from pneutouch.catalogue.library import Library
 from pneutouch.errors import InputError, shown
 from pneutouch.spec.grade import Grade
-from pneutouch.spec.material import ArcGrading, Material, MixByCurve
+from pneutouch.spec.material import ArcGrading, Material, MixByCurve, elastomer_modulus_problem
 from pneutouch.spec.mixing import MixingCurve, MixingPoint
 from pneutouch.spec.quantity import Quantity
 
@@ -140,6 +140,9 @@ def _resolved(point: MixingPoint, curve: MixingCurve, library: Library, where: s
         )
     if material.shear_modulus_MPa is None:
         raise InputError("has no shear_modulus_MPa", file=where, key="points.material", value=point.material)
+    problem = elastomer_modulus_problem(material.shear_modulus_MPa.nominal)
+    if problem is not None:
+        raise InputError(f"its shear modulus of {problem}", file=where, key="points.material", value=point.material)
     known = material.elongation_at_break_percent
     spread = material.shear_modulus_MPa.spread
     return (

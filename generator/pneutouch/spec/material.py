@@ -134,12 +134,27 @@ class Relaxation(Table):
         return self
 
 
+STIFFEST_ELASTOMER_MPA = 20.0
+"""Greatest shear modulus of an elastomer, our choice: beyond it a number is in another unit, such as kPa. Printed
+elastomers have up to 5.3 MPa, and 20 MPa is a Shore A of 96 by Gent's relation, the end of that scale."""
+
+HARDEST = 99.9
+"""Greatest Shore hardness: at 100 there is no modulus."""
+
+
+def elastomer_modulus_problem(modulus_MPa: float) -> str | None:
+    """What is wrong with the shear modulus of an elastomer, in words; None where nothing is."""
+    if modulus_MPa <= STIFFEST_ELASTOMER_MPA:
+        return None
+    return f"{modulus_MPa:g} MPa is more than the {STIFFEST_ELASTOMER_MPA:g} MPa of any elastomer; is it in kPa?"
+
+
 _POSITIVE = {
     **dict.fromkeys(("density_g_per_cm3", "shear_modulus_MPa", "young_modulus_MPa", "tensile_strength_MPa"), 1e6),
     "elongation_at_break_percent": 1e6,
-    **dict.fromkeys(("shore_a", "shore_a_one_year", "shore_d"), 99.9),
+    **dict.fromkeys(("shore_a", "shore_a_one_year", "shore_d"), HARDEST),
 }
-"""Quantities that are more than 0, and the most that each may be: at a hardness of 100 there is no modulus."""
+"""Quantities that are more than 0, and the most that each may be."""
 
 
 class Material(Table):
@@ -213,6 +228,12 @@ class Material(Table):
     def _elastomer_complete(self) -> Material:
         if self.kind == "elastomer" and (self.shear_modulus_MPa is None or self.poisson_ratio is None):
             raise ValueError("an elastomer needs shear_modulus_MPa and poisson_ratio")
+        modulus = self.shear_modulus_MPa
+        for key in ("value", "low", "high") if self.kind == "elastomer" else ():
+            number = getattr(modulus, key)
+            problem = None if number is None else elastomer_modulus_problem(number)
+            if problem is not None:
+                raise ValueError(f"shear_modulus_MPa.{key}: {problem}")
         return self
 
     @model_serializer(mode="wrap")

@@ -126,3 +126,14 @@ def test_the_resin_that_nothing_explains_keeps_its_own_error(library):
     assert len(errors.pool) == 12
     far = named(paper(library, "FLX9995", near=False), "model")
     assert far.standard[0] == pytest.approx(np.sqrt(np.mean(np.log1p(errors.resin_errors) ** 2)))
+
+
+@pytest.mark.parametrize("shore", [95.0, 97.5, 99.0, 99.9])
+def test_an_assumed_hardening_ends_with_the_scale(library, shore):
+    hard = materials(library)["TangoPlus"].model_copy(
+        update={"shore_a": Quantity(value=shore, source="made up for a test"), "shore_a_one_year": None}
+    )
+    source = next(one for one in modulus.ageing_sources(hard, 1) if one.name == "ageing of the modulus")
+    after = min(shore + modulus.ASSUMED_HARDNESS_CHANGE, 99.9)
+    assert source.standard == pytest.approx(logarithmic_change(shore, after) / np.sqrt(3.0))
+    assert np.isfinite(source.standard).all()

@@ -11,6 +11,7 @@ from pneutouch.bench.tensile.columns import ColumnPair, TensileColumn, column_pa
 from pneutouch.bench.tensile.curve import TensionCurve
 from pneutouch.bench.tensile.fit import LawForm, fit_law
 from pneutouch.errors import InputError
+from pneutouch.spec.material import STIFFEST_ELASTOMER_MPA
 from pneutouch.tables.layout import TableLayout
 from pneutouch.tables.read import layout_of, whole
 from pneutouch.tables.text import head_lines
@@ -21,7 +22,7 @@ LEAST_POINTS = 8
 LEAST_STRETCH = 1.2
 """Where a curve must reach at least: a shorter one gives a modulus and no law."""
 
-MODULI = (0.002, 20.0)
+MODULI = (0.002, STIFFEST_ELASTOMER_MPA)
 """MPa: outside these the numbers are in other units. The softest silicone gels have about 0.005, printed elastomers up
 to 5.3."""
 

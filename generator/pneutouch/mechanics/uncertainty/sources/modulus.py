@@ -8,7 +8,7 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.catalogue.mixture import FROM_CURVE
 from pneutouch.mechanics.uncertainty.hardness import logarithmic_change, logarithmic_slope, shore_a
 from pneutouch.mechanics.uncertainty.source import SENSITIVITY, UncertaintySource, counting
-from pneutouch.spec.material import Material
+from pneutouch.spec.material import HARDEST, Material
 from pneutouch.spec.quantity import Quantity
 
 ASSUMED_FACTOR = 2.7
@@ -170,7 +170,8 @@ def _ageing_by_hardness(material: Material, size: int) -> UncertaintySource:
     shore, _ = _hardness(material)
     aged = material.shore_a_one_year
     known = aged is not None and material.shore_a is not None
-    after = aged.nominal if aged is not None and known else shore + ASSUMED_HARDNESS_CHANGE
+    # The assumed change ends with the scale, at 100 of which there is no modulus.
+    after = aged.nominal if aged is not None and known else max(shore, min(shore + ASSUMED_HARDNESS_CHANGE, HARDEST))
     change = logarithmic_change(shore, after)
     origin = f"{_GENT}: Shore A {shore:.3g} to {after:.3g} in a year, modulus {np.expm1(change):+.0%}; " + (
         aged.source if aged is not None and known else "change assumed, as the seven resins of the paper's Table 1"
