@@ -229,7 +229,7 @@ def test_a_resin_that_makes_no_solid_is_refused(change, words, tmp_path):
     [
         (("value = 0.17", "value = -0.17"), "shear_modulus_MPa: -0.17 must be more than 0 and at most 1e+06"),
         (("low = 0.10", "low = 0.0"), "shear_modulus_MPa: 0 must be more than 0 and at most 1e+06"),
-        (("value = 1.15", "value = 1e300"), "density_g_per_cm3: 1e+300 must be more than 0 and at most 1e+06"),
+        (("value = 1.15", "value = 1e300"), "density_g_per_cm3.value = 1e+300: must be from 0.5 to 3 g/cm3"),
     ],
 )
 def test_a_resin_of_no_matter_is_refused(change, said, tmp_path):

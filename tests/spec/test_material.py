@@ -32,3 +32,17 @@ def test_a_mix_as_stiff_as_a_plastic_is_refused():
     with pytest.raises(InputError, match=r"fraction = 0\.5: shear_modulus_MPa: 120 MPa"):
         validate(MixingPoint, {**point, "shear_modulus_MPa": 120.0}, "mine.toml")
     assert validate(MixingPoint, {**point, "shear_modulus_MPa": 12.0}, "mine.toml").shear_modulus_MPa == 12.0
+
+
+@pytest.mark.parametrize(
+    ("numbers", "said"),
+    [
+        ({"value": 1030.0}, r"density_g_per_cm3\.value = 1030: must be from 0\.5 to 3 g/cm3; is it in kg/m3\?"),
+        ({"low": 1.0, "high": 1100.0}, r"density_g_per_cm3\.high = 1100: .* kg/m3"),
+        ({"value": 0.001}, r"value = 0\.001: must be from 0\.5 to 3 g/cm3$"),
+    ],
+)
+def test_a_density_in_another_unit_is_refused(library, numbers, said):
+    with pytest.raises(InputError, match=said):
+        read(library, "DragonSkin20", density_g_per_cm3=quantity(**numbers))
+    assert read(library, "DragonSkin20", density_g_per_cm3=quantity(low=0.5, high=3.0)).density_g_per_cm3.high == 3.0

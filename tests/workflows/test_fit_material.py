@@ -71,6 +71,11 @@ def test_three_specimens_give_low_high_and_spread(command, tmp_path):
         (("pull.csv", "--name", "Ours", "--density", "1", "--puck", "20"), "such as 20x6"),
         (("pull.csv", "--name", "Ours", "--density", "1", "--shore-a", "200"), "from 0 to 100"),
         (("pull.csv", "--name", "Ours", "--density", "1", "--stretch-to", "0.5"), "from 1.1 to 20"),
+        (
+            ("pull.csv", "--name", "Ours", "--density", "1030"),
+            "--density 1030: must be from 0.5 to 3 g/cm3; is it in kg",
+        ),
+        (("pull.csv", "--name", "Ours", "--density", "0"), "--density 0: must be from 0.5 to 3 g/cm3"),
         (("none.csv", "--name", "Ours", "--density", "1"), "no such file"),
     ],
 )

@@ -9,16 +9,13 @@ from pneutouch.bench.finding import MARK, CouponFindings, ReadingSource, rounded
 from pneutouch.bench.statistics import Mean, mean, neo_hookean, secant_modulus, shear_from_young
 from pneutouch.errors import InputError
 from pneutouch.spec.coupon import LEAST_READINGS, Dumbbell, DumbbellSpecimen, Puck
-from pneutouch.spec.material import STIFFEST_ELASTOMER_MPA, Material
+from pneutouch.spec.material import STIFFEST_ELASTOMER_MPA, Material, density_problem
 from pneutouch.spec.quantity import Quantity
 
 _SECANT = 0.1
 """Strain of the secant modulus."""
 
 _LEAST_POINTS = 3
-
-_DENSITIES = (0.5, 3.0)
-"""g/cm3: outside these a reading is wrong; cured resins and filaments have 0.9 to 1.4."""
 
 _FAR_SHORE = 25.0
 """Points off the shipped hardness beyond which another resin may have been measured: our choice. Makers state ranges of
@@ -47,12 +44,13 @@ def puck(name: str, material: Material, measured: Puck, source: ReadingSource, r
     mass, diameter, thickness = (np.array(v) for v in (measured.mass_g, measured.diameter_mm, measured.thickness_mm))
     densities = 4e3 * mass / (np.pi * diameter**2 * thickness)
     for place, density in enumerate(densities, start=1):
-        if not _DENSITIES[0] <= density <= _DENSITIES[1]:
+        problem = density_problem(density)
+        if problem is not None:
             raise InputError(
                 f"puck.{name}: puck {place}: mass_g = {mass[place - 1]:g}, diameter_mm = {diameter[place - 1]:g} "
                 f"and thickness_mm = {thickness[place - 1]:g} make {density:.3g} g/cm3",
                 file=source.where,
-                remedy=f"must be from {_DENSITIES[0]:g} to {_DENSITIES[1]:g}",
+                remedy=problem,
             )
     how = "mass over measured volume of pucks"
     _add(results, source, name, "density_g_per_cm3", mean(densities.tolist()), how, "density, g/cm3")

@@ -142,6 +142,20 @@ HARDEST = 99.9
 """Greatest Shore hardness: at 100 there is no modulus."""
 
 
+DENSITY_G_PER_CM3 = (0.5, 3.0)
+"""Density of what is printed or cast, our choice: the shipped materials have 1.02 to 1.18, filled ones have
+more, and what has less than half of that is a foam, through which a dome leaks."""
+
+
+def density_problem(density_g_per_cm3: float) -> str | None:
+    """What is wrong with the density of a material, in words; None where nothing is."""
+    low, high = DENSITY_G_PER_CM3
+    if low <= density_g_per_cm3 <= high:
+        return None
+    unit = "; is it in kg/m3?" if low <= 1e-3 * density_g_per_cm3 <= high else ""
+    return f"must be from {low:g} to {high:g} g/cm3{unit}"
+
+
 def elastomer_modulus_problem(modulus_MPa: float) -> str | None:
     """What is wrong with the shear modulus of an elastomer, in words; None where nothing is."""
     if modulus_MPa <= STIFFEST_ELASTOMER_MPA:
@@ -150,7 +164,7 @@ def elastomer_modulus_problem(modulus_MPa: float) -> str | None:
 
 
 _POSITIVE = {
-    **dict.fromkeys(("density_g_per_cm3", "shear_modulus_MPa", "young_modulus_MPa", "tensile_strength_MPa"), 1e6),
+    **dict.fromkeys(("shear_modulus_MPa", "young_modulus_MPa", "tensile_strength_MPa"), 1e6),
     "elongation_at_break_percent": 1e6,
     **dict.fromkeys(("shore_a", "shore_a_one_year", "shore_d"), HARDEST),
 }
@@ -216,6 +230,15 @@ class Material(Table):
             for number in numbers:
                 if number is not None and not 0 < number <= most:
                     raise ValueError(f"{key}: {number:g} must be more than 0 and at most {most:g}")
+        return self
+
+    @model_validator(mode="after")
+    def _as_dense_as_matter_that_is_printed(self) -> Material:
+        for key in ("value", "low", "high"):
+            number = getattr(self.density_g_per_cm3, key)
+            problem = None if number is None else density_problem(number)
+            if problem is not None:
+                raise ValueError(f"density_g_per_cm3.{key} = {number:g}: {problem}")
         return self
 
     @model_validator(mode="after")

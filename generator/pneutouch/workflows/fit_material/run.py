@@ -14,6 +14,7 @@ from pneutouch.bench.tensile.read import read_tension
 from pneutouch.catalogue import Library, user_folder
 from pneutouch.errors import InputError
 from pneutouch.output.files import check_writable, replace_files, write_folder
+from pneutouch.spec.material import density_problem
 from pneutouch.spec.names import plain_name
 from pneutouch.workflows.fit_material.document import document, files
 from pneutouch.workflows.fit_material.fitted import FitOptions, FittedMaterial
@@ -63,6 +64,10 @@ def _check(options: FitOptions) -> None:
             shown = "stretch_to" if key == "largest" else key
             raise InputError(f"must be from {low:g} to {high:g}", key=shown, value=value)
     _check_sizes(_lengths(options))
+    density = options.facts.density
+    problem = None if density is None else density_problem(density)
+    if problem is not None:
+        raise InputError(problem, key="density", value=density)
 
 
 def _lengths(options: FitOptions) -> Sequence[tuple[str, float | None]]:
