@@ -52,8 +52,13 @@ def pack(sizes: Sequence[tuple[float, float]], area: PackingArea, where: str = "
 
 
 def in_rows(sizes: Sequence[tuple[float, float]], area: PackingArea) -> list[PackedPosition | None]:
-    """Places for rectangles in their order, row after row, none turned; None for one that does not fit."""
-    return _rows([(width, depth, False) for width, depth in sizes], range(len(sizes)), area, fill_gaps=False)[1]
+    """Places for rectangles in their order, row after row, none turned; None for one that does not fit.
+
+    Gaps of earlier rows are filled where they do not all fit without that.
+    """
+    boxes = [(width, depth, False) for width, depth in sizes]
+    places = _rows(boxes, range(len(sizes)), area, fill_gaps=False)[1]
+    return places if None not in places else _rows(boxes, range(len(sizes)), area, fill_gaps=True)[1]
 
 
 def _oriented(

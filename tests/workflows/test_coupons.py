@@ -81,6 +81,25 @@ def test_what_does_not_fit_is_refused():
 
 
 @pytest.mark.parametrize(
+    "asked",
+    [
+        *(CouponOptions(design=name) for name in LIBRARY.paths("designs")),
+        *(CouponOptions(profile=name) for name in LIBRARY.paths("printers")),
+    ],
+    ids=lambda asked: asked.design or asked.profile,
+)
+def test_the_coupons_of_every_shipped_design_and_profile_fit_its_trays(asked):
+    for name, items in order(asked, LIBRARY).machines().items():
+        envelope = items[0].printer.envelope
+        boxes = [body.bounds for piece in lay(name, items) for body in piece.copies()]
+        assert len(boxes) == sum(item.copies * len(item.solids()) for item in items)
+        for box in boxes:
+            assert (box >= -1e-9).all() and (box[1] <= (envelope.x, envelope.y, envelope.z)).all()
+        for a, b in itertools.combinations(boxes, 2):
+            assert np.maximum(a[0] - b[1], b[0] - a[1])[:2].max() >= 4.99
+
+
+@pytest.mark.parametrize(
     ("asked", "said"),
     [
         (CouponOptions(profile="objet"), 'profile = "objet": no such name among the printers'),
