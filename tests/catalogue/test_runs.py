@@ -39,7 +39,7 @@ def test_a_material_is_not_cast_before_its_file_states_how(command, gel, words):
     assert done.returncode == 2, done.stderr
     assert f"{gel}: casting: missing" in done.stderr
     assert "add the table [casting] with parts_by_mass, pot_life_min, cure_h" in done.stderr
-    assert "fit the material again (fit-material) like a silicone that is cast" in done.stderr
+    assert "or fit it again: pneutouch fit-material --like DragonSkin20" in done.stderr
 
 
 def test_it_is_left_out_of_a_search_with_the_reason(command, gel):
@@ -73,4 +73,6 @@ def test_a_search_names_the_process_as_its_option(command):
 def test_a_material_of_no_profile_is_refused_with_the_reason(command, gel):
     assert "OurGel has no table [casting]" in command("coupons", "--material", "OurGel").stderr
     (gel.parents[1] / "our-casting.toml").unlink()
-    assert "no profile runs OurGel" in command("coupons", "--material", "OurGel").stderr
+    refused = command("coupons", "--material", "OurGel").stderr
+    remedy = "add OurGel to the resins of a profile of your own: pneutouch new NAME --from PROFILE"
+    assert f"no profile runs OurGel; {remedy}" in refused

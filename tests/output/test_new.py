@@ -1,4 +1,4 @@
-"""New files: a commented design, and copies of designs, specimens and examples."""
+"""New files: a commented design, and copies of designs, specimens, examples and profiles."""
 
 from __future__ import annotations
 
@@ -68,6 +68,69 @@ def test_examples_are_listed_with_their_kind(command):
         "wall-and-resin": "sweep",
     }
     assert "What a fingertip needs" in command("list", "examples").stdout
+
+
+@pytest.mark.parametrize(
+    ("source", "path", "after"),
+    [
+        ("silicone-casting", "printprofiles/ours.toml", "coupons --profile ours"),
+        ("smc-pse543", "printprofiles/gauges/ours.toml", "predict paper-dome --set pneumatics.gauge=ours"),
+        ("DragonSkin20", "printprofiles/materials/ours.toml", "new ours-dome --material ours"),
+        ("VeroClear", "printprofiles/materials/ours.toml", "list materials"),
+    ],
+)
+def test_a_profile_is_copied_to_where_its_name_is_found(command, tmp_path, source, path, after):
+    done = command("new", "ours", "--from", source)
+    assert (done.returncode, done.stdout) == (0, f"{path}\n"), done.stderr
+    shipped = path.replace("ours.toml", f"{source}.toml")
+    assert (tmp_path / path).read_bytes() == (ROOT / shipped).read_bytes()
+    first, then = done.stderr.split(", then: pneutouch ")
+    assert first.startswith("put the title") and first.endswith(path)
+    assert then == f"{after}\n"
+    followed = command(*after.split())
+    assert followed.returncode == 0, followed.stderr
+    again = command("new", "ours", "--from", source)
+    assert again.returncode == 2 and "there is such a file already" in again.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "problem"),
+    [
+        (
+            ["abs-filament", "--from", "j735"],
+            "abs-filament.toml is a printer of this name, which the new file would hide",
+        ),
+        (["--from", "j735"], "j735 is the name of the original; give the copy another name"),
+        (["../ours", "--from", "j735"], "cannot be a name"),
+        (["ours", "--from", "j735", "--set", "print.profile=j735"], "change the file of the copy"),
+        (
+            ["ours", "--from", "j735", "--out", "here"],
+            "--out here: is of designs, specimens and examples; leave it out",
+        ),
+        (["ours", "--from", "smc-pse54"], "Did you mean smc-pse543?"),
+    ],
+)
+def test_a_copy_of_a_profile_hides_none_and_takes_nothing_of_a_design(command, tmp_path, words, problem):
+    done = command("new", *words)
+    assert done.returncode == 2 and problem in done.stderr, done.stderr
+    assert not (tmp_path / "printprofiles").exists() and not (tmp_path / "here").exists()
+
+
+def test_a_silicone_of_a_laboratorys_own_is_cast_on_a_copied_profile(command, tmp_path):
+    """The way from the installed program: a material, a profile that runs it, a design, its print rules."""
+    command("new", "our-casting", "--from", "silicone-casting")
+    command("new", "OurGel", "--from", "DragonSkin20")
+    for path, before, after in (
+        ("printprofiles/our-casting.toml", 'resins = ["DragonSkin20", ', 'resins = ["OurGel", '),
+        ("printprofiles/materials/OurGel.toml", 'base_resins = ["DragonSkin20"]', 'base_resins = ["OurGel"]'),
+    ):
+        text = (tmp_path / path).read_text()
+        assert before in text
+        (tmp_path / path).write_text(text.replace(before, after))
+    done = command("new", "gel-dome", "--material", "OurGel")
+    assert done.returncode == 0 and "profile our-casting " in done.stderr, done.stderr
+    checked = command("check", "gel-dome")
+    assert checked.returncode == 0, checked.stdout + checked.stderr
 
 
 def test_what_there_is_not_is_refused(command):

@@ -135,5 +135,9 @@ def test_a_material_of_no_profile_is_stated_to_need_casting(command, tmp_path):
     write(tmp_path / "pull.csv")
     line = ("fit-material", "pull.csv", "--name", "Ours", "--density", "1.1")
     missing = "printprofiles/materials/Ours.toml has no table [casting], which a material that is cast needs"
-    assert missing in command(*line, cwd=tmp_path).stderr
+    done = command(*line, cwd=tmp_path)
+    assert missing in done.stderr
+    assert (
+        "add Ours to the resins of a profile of your own (pneutouch new PROFILE --from silicone-casting" in done.stderr
+    )
     assert "[casting]" not in command(*line[:4], "--like", "DragonSkin20", cwd=tmp_path).stderr

@@ -27,7 +27,7 @@ def uncast(printer: Printer, material: Material, file: str) -> InputError:
     needed = [key for key, field in Casting.model_fields.items() if field.is_required()]
     remedy = (
         f"the profile {printer.title} casts {material.label}: add the table [casting] with {', '.join(needed)}, or fit "
-        "the material again (fit-material) like a silicone that is cast"
+        "it again: pneutouch fit-material --like DragonSkin20"
     )
     return InputError("missing", file=file, key="casting", remedy=remedy)
 
@@ -61,4 +61,5 @@ def made_by(material: Material, library: Library, setting: str) -> str:
 
 def own_profile(material: Material) -> str:
     """What to do about a material that no profile runs."""
-    return f"add {', '.join(material.base_resins)} to the resins of a profile of your own, printprofiles/PROFILE.toml"
+    resins = ", ".join(material.base_resins)
+    return f"add {resins} to the resins of a profile of your own: pneutouch new NAME --from PROFILE"

@@ -26,7 +26,7 @@ class CommandEntry(NamedTuple):
 
 COMMANDS: dict[str, dict[str, CommandEntry]] = {
     "Design": {
-        "new": CommandEntry("new", "Write a commented design file, or a copy of an example."),
+        "new": CommandEntry("new", "Write a commented design file, or copy a shipped file."),
         "list": CommandEntry("app", "List designs, materials, printers, parts and the like."),
         "select": CommandEntry("select", "Find designs for a target."),
         "predict": CommandEntry("app", "Predict the figures and their uncertainty."),

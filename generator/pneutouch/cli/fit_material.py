@@ -83,7 +83,8 @@ def fit_material(
 
 def _report_next(name: str, profile: str | None) -> None:
     """The prediction of a dome in the material, with the profile that makes it."""
-    first = "" if profile else f"add {name} to the resins of a profile of your own, printprofiles/PROFILE.toml"
+    copied = "pneutouch new PROFILE --from silicone-casting, or from another of pneutouch list printers"
+    first = "" if profile else f"add {name} to the resins of a profile of your own ({copied})"
     made = ("--set", f"print.profile={profile or 'PROFILE'}")
     report_next("predict", "paper-dome", "--set", f"membrane.material={name}", *made, first=first)
 

@@ -1,4 +1,4 @@
-"""``pneutouch new``: a design file to start from."""
+"""``pneutouch new``: a design file to start from, or a copy of what is shipped."""
 
 from typing import Annotated
 
@@ -16,7 +16,11 @@ def new(
     name: Annotated[str | None, typer.Argument(help="Name of the new file: letters, digits, - and _.")] = None,
     from_: Annotated[
         str | None,
-        typer.Option("--from", metavar="EXAMPLE", help="Copy a design, a specimen or an example: see pneutouch list."),
+        typer.Option(
+            "--from",
+            metavar="NAME",
+            help="Copy a design, an example, a printer, a gauge, a material: see pneutouch list.",
+        ),
     ] = None,
     set_: SetOption = None,
     process: Annotated[
@@ -34,7 +38,7 @@ def new(
     ] = None,
     out: DesignFolderOption = None,
 ) -> None:
-    """Write a commented design file, or a copy of an example."""
+    """Write a commented design file, or copy a shipped file."""
     with reporting():
         from pneutouch.output.new import NewFile, new_design, new_from
 
@@ -54,4 +58,10 @@ def new(
         echo(str(made.path))
         if note is not None:
             notify(note)
-        report_next(*made.command, first=made.first)
+        if made.profile is None:
+            report_next(*made.command, first=made.first)
+            return
+        from pneutouch.cli.new_profile import next_of_profile
+
+        command, first = next_of_profile(made.profile, made.path)
+        report_next(*command, first=first)

@@ -1,4 +1,4 @@
-"""Write a new file to start from: a commented design, or a copy of a design, a specimen or an example."""
+"""Write a new file to start from: a commented design, or a copy of a design, a specimen, an example or a profile."""
 
 import os
 from dataclasses import dataclass, replace
@@ -16,16 +16,21 @@ from pneutouch.spec.names import plain_name
 from pneutouch.spec.read import Changes, override, read_toml
 from pneutouch.spec.template import design_template
 
+PROFILES = ("printers", "gauges", "materials")
+"""Kinds of files of a laboratory's own next to its designs."""
+
 
 @dataclass(frozen=True, slots=True)
 class NewFile:
     """A file that was written, and the words of the command that takes it: ``("select", "fingertip.toml")``.
 
-    ``first`` states what has to be done before that command."""
+    ``first`` states what has to be done before that command. ``profile`` is its kind where it is one of `PROFILES`,
+    for which there is no command of two words."""
 
     path: Path
-    command: tuple[str, str]
+    command: tuple[str, ...]
     first: str = ""
+    profile: str | None = None
 
 
 def new_design(
@@ -56,18 +61,24 @@ def new_changed(source: DesignSource, name: str, folder: Path, *, overwrite: boo
 
 
 def new_from(source: str, name: str | None = None, out: Path | None = None, changes: Changes | None = None) -> NewFile:
-    """Copy a design, a specimen or an example, by name, or a design or a specimen by path, to a new name.
+    """Copy a design, a specimen, an example, a printer, a gauge or a material, by name, to a new name.
 
-    The copy goes to ``out``, else a design or a specimen to the user's folder, where it is found by its name, and an
-    example to the working folder; ``name`` left out is the example's own. ``changes`` are of a design alone. Never
-    over a file. Raises InputError.
+    A design or a specimen may be given by its path.
+
+    The copy goes to ``out``, else an example to the working folder and all others to the user's folder, where they are
+    found by their names; ``name`` left out is the example's own. ``changes`` are of a design alone, and printers,
+    gauges and materials go to the user's folder alone. Never over a file. Raises InputError.
     """
     library, shipped = Library.default(), examples()
+    named = source in library.paths("designs") or source in library.paths("specimens") or source in shipped
+    kind = None if named else next((one for one in PROFILES if source in library.paths(one)), None)
+    if kind is not None:
+        return _own_profile(kind, source, name, out, changes, library)
     if changes:
         return _changed(DesignSource.of(source, library), changes, name, out)
-    for kind in ("designs", "specimens"):
-        if source in library.paths(kind):
-            return _copied(kind, library.paths(kind)[source], name, out)
+    for one in ("designs", "specimens"):
+        if source in library.paths(one):
+            return _copied(one, library.paths(one)[source], name, out)
     if source in shipped:
         example = shipped[source]
         called, text = plain_name(name or source, key="name"), example.path.read_text(encoding="utf-8")
@@ -83,8 +94,23 @@ def new_from(source: str, name: str | None = None, out: Path | None = None, chan
     path = Path(source)
     if path.suffix == ".toml" or is_file(path):
         return _copied("specimens" if is_specimen(read_toml(path)) else "designs", path, name, out)
-    known = [*library.paths("designs"), *library.paths("specimens"), *shipped]
-    raise InputError(f"no such design, specimen or example.{nearest(source, known)}", key="from", value=source)
+    known = [*shipped, *(each for one in ("designs", "specimens", *PROFILES) for each in library.paths(one))]
+    problem = f"no such design, specimen, example, printer, gauge or material.{nearest(source, known)}"
+    raise InputError(problem, key="from", value=source)
+
+
+def _own_profile(
+    kind: str, source: str, name: str | None, out: Path | None, changes: Changes | None, library: Library
+) -> NewFile:
+    """A copy of a printer profile, a gauge or a material in the user's folder."""
+    if changes:
+        problem = f"{source} is one of the {kind}, and this changes a design"
+        raise InputError(problem, key="set", remedy="change the file of the copy")
+    if out is not None:
+        remedy = f"leave it out: a copy of one of the {kind} is found in {KINDS[kind].folder} of your folder alone"
+        raise InputError("is of designs, specimens and examples", key="out", value=str(out), remedy=remedy)
+    written = _copied(kind, library.paths(kind)[source], name, None).path
+    return NewFile(written, (), profile=kind)
 
 
 def _changed(source: DesignSource, changes: Changes, name: str | None, out: Path | None) -> NewFile:

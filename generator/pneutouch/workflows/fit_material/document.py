@@ -104,8 +104,8 @@ def _uncast(fitted: FittedMaterial) -> list[str]:
     if _material(fitted).is_cast or _profile(fitted) is not None:
         return []
     return [
-        f"{fitted.path} has no table [casting], which a material that is cast needs: add it there, or fit it again "
-        "like a silicone that is cast"
+        f"{fitted.path} has no table [casting], which a material that is cast needs: add it there, or fit it again: "
+        "pneutouch fit-material --like DragonSkin20"
     ]
 
 
