@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.catalogue import Library, load_scene
+from pneutouch.catalogue import KINDS, Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
-from pneutouch.spec.read import parse_changes, validate
+from pneutouch.spec.read import parse_changes, read_toml, validate
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -263,3 +263,37 @@ def test_a_resin_with_a_law_of_its_own_is_predicted_with_it(tmp_path):
         plain.states[0].figures.sensitivity_kPa_per_N, rel=0.1
     )
     assert any("c10(I1-3)+c01(I2-3)" in line for line in own.assumptions)
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "change", "said"),
+    [
+        ("materials", "TangoPlus", {"colour": "grey"}, 'colour = "grey": must be #RRGGBB in capitals, such as #C8BFB4'),
+        (
+            "printers",
+            "j735",
+            {"envelope_mm": [250, 210, 220]},
+            'envelope_mm = [250, 210, 220]: must be a table such as { x = ..., y = ..., z = ..., source = "..." }',
+        ),
+        (
+            "gauges",
+            "smc-pse543",
+            {"noise_kPa": 0.05},
+            'noise_kPa = 0.05: must be a table such as { value = ..., source = "..." }, from 0 to 1000 kPa',
+        ),
+        (
+            "materials",
+            "TangoPlus",
+            {"density_g_per_cm3": None},
+            'density_g_per_cm3: missing; give density_g_per_cm3 = { value = ..., source = "..." }: Density of the cured',
+        ),
+        ("printers", "j735", {"title": None}, "title: missing; add it: Name of the machine."),
+        ("printers", "j735", {"mode": None}, 'mode: missing; give mode = [{ name = "...", digital_materials = ...'),
+    ],
+)
+def test_a_refusal_shows_the_form(kind, name, change, said):
+    library = Library((ROOT,))
+    content = {**read_toml(library.paths(kind)[name]), **change}
+    with pytest.raises(InputError) as caught:
+        KINDS[kind].validate({key: value for key, value in content.items() if value is not None}, "mine.toml")
+    assert str(caught.value).startswith(f"mine.toml: {said}")

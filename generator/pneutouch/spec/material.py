@@ -178,7 +178,9 @@ class Material(Table):
     code: str = Field(description="Short form for part numbers.")
     kind: MaterialKind = Field(description="elastomer or rigid.")
     base_resins: list[str] = Field(min_length=1, max_length=3, description="Resins the machine jets.")
-    colour: str = Field(pattern=r"^#[0-9A-F]{6}$", description="Display colour; carries no meaning.")
+    colour: str = Field(
+        pattern=r"^#[0-9A-F]{6}$", description="#RRGGBB in capitals, such as #C8BFB4; for display alone."
+    )
     density_g_per_cm3: Quantity = Field(description="Density of the cured material.")
     poisson_ratio: Quantity | None = Field(default=None, description="Poisson's ratio; an elastomer needs it.")
     shear_modulus_MPa: Quantity | None = Field(

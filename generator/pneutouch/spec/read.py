@@ -10,6 +10,7 @@ from pydantic import BaseModel, ValidationError
 from pneutouch.errors import InputError, joined, nearest
 from pneutouch.spec.fields import EntryError, declaration, table_of
 from pneutouch.spec.files import read_bytes
+from pneutouch.spec.form import is_list, table_form
 from pneutouch.spec.toml_errors import toml_problem
 from pneutouch.spec.toml_text import toml_content, toml_value, value_text
 from pneutouch.wording import counted
@@ -127,7 +128,7 @@ def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:
         kind = "table" if isinstance(detail["input"], dict) else "key"
         return InputError(f"unknown {kind}.{nearest(path[-1], _keys(owner))}", file=where, key=key)
     if detail["type"] == "missing":
-        return InputError("missing", file=where, key=key, remedy=f"give {_right(owner, path)}")
+        return InputError("missing", file=where, key=key, remedy=_addition(owner, path))
     if detail["type"] == "value_error":
         error = detail["ctx"]["error"]
         if isinstance(error, EntryError):
@@ -140,11 +141,24 @@ def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:
         return InputError(f"must be {known}", file=where, key=key, value=detail["input"])
     label = f"{key}[{index}]" if index is not None else key
     kind, right = _expected(detail), _right(owner, path)
+    if detail["type"] == "model_type" and (form := table_form(owner, path[-1])):
+        kind = f"{kind}such as {form}, "
     if kind and right[:1].isupper():
         # The help of a field without bounds is a sentence of its own.
         kind = f"{kind.rstrip(' ,:')}: "
     right = f"{kind}{right}".strip()
     return InputError(f"must be {right}" if right else detail["msg"], file=where, key=label, value=detail["input"])
+
+
+def _addition(owner: type[BaseModel] | None, path: list[str]) -> str:
+    """What to add where a key is missing: a table in its form, and what it is."""
+    right, form = _right(owner, path), table_form(owner, path[-1])
+    if form and is_list(owner, path[-1]):
+        form = f"[{form}]"
+    if form:
+        return f"give {path[-1]} = {form}: {right}"
+    # The help of a field without bounds is a sentence of its own.
+    return f"add it: {right}" if right[:1].isupper() else f"give {right}"
 
 
 def _keys(owner: type[BaseModel]) -> list[str]:
