@@ -169,7 +169,11 @@ def test_the_library_never_speaks_of_options():
             "error: --set membrane.wall_thickness_mm: wall_thickness_mm = 9.5 must be less than",
         ),
         (("select", "--sensitivity", "2", "--at", "1200"), "error: --at 1200: must be from 0 to 1000 kPa"),
-        (("select", "--sensitivity", "2", "--tolerance", "5"), "error: --tolerance 5: it must be a positive share of"),
+        (
+            ("select", "--sensitivity", "2", "--tolerance", "500"),
+            "error: --tolerance 500: it must be a positive share of",
+        ),
+        (("select", "--sensitivity", "2", "--same-within", "much"), "error: --same-within much: it must be a positive"),
         (("build", "paper-dome", "--out", "a-file"), "error: --out"),
         (("new", "a b"), "error: NAME"),
     ],

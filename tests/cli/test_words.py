@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from pneutouch.cli.select_fields import SELECT_FIELDS
+from pneutouch.errors import InputError
+
 
 @pytest.mark.parametrize(
     ("words", "flag"),
@@ -47,3 +50,38 @@ def test_what_is_echoed_is_escaped_and_cut(words, word, command):
     assert done.returncode == 2
     assert all(c.isprintable() or c == "\n" for c in done.stderr), ascii(done.stderr)
     assert len(done.stderr) < 1500 and "y" * 401 not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "percent", "note"),
+    [
+        ("5", 5.0, ""),
+        ("5%", 5.0, ""),
+        ("5 %", 5.0, ""),
+        ("7", 7.0, ""),
+        ("0.5%", 0.5, ""),
+        ("0.5", 0.5, "note: --same-within 0.5 is taken as 0.5 %; a share of it is --same-within 50%\n"),
+        ("0.05", 0.05, "note: --same-within 0.05 is taken as 0.05 %; a share of it is --same-within 5%\n"),
+    ],
+)
+def test_per_cent_is_read_with_and_without_its_sign(text, percent, note, capsys):
+    assert SELECT_FIELDS["same_within"].parse(text) == percent
+    assert capsys.readouterr().err == note
+
+
+@pytest.mark.parametrize("text", ["0", "-2", "101", "much", "%", "5%%", ""])
+def test_what_is_no_per_cent_is_refused(text):
+    with pytest.raises(InputError, match="a positive share of at most 100 %") as found:
+        SELECT_FIELDS["tolerance"].parse(text)
+    assert (found.value.key, found.value.value) == ("tolerance", text)
+
+
+def test_a_numerical_error_is_read_in_per_cent_and_below_1_as_a_share(command):
+    words = ["predict", "paper-dome", "--set", "indentation.depth_mm=4.5", "--json", "--tolerance"]
+    signed, plain = command(*words, "2%"), command(*words, "2")
+    assert (signed.returncode, plain.returncode) == (0, 0), plain.stderr
+    assert signed.stdout == plain.stdout
+    assert "note: --tolerance" not in signed.stderr + plain.stderr
+    share = command(*words, "0.02")
+    assert (share.returncode, share.stdout) == (0, signed.stdout)
+    assert "note: --tolerance 0.02 is taken as a share, 2 %" in share.stderr

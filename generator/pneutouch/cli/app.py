@@ -11,6 +11,7 @@ import typer
 from pneutouch import __version__
 from pneutouch.cli.commands import CHANGES, Commands
 from pneutouch.cli.complete import assignment, names
+from pneutouch.cli.percent import error_in_percent
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify, put
 from pneutouch.errors import ComputationError, InputError, PneutouchError
@@ -87,7 +88,12 @@ AnswerModelOption = Annotated[
 ]
 ToleranceOption = Annotated[
     str | None,
-    typer.Option("--tolerance", metavar="SHARE", help="Numerical error that --model auto must meet, such as 2%."),
+    typer.Option(
+        "--tolerance",
+        metavar="PERCENT",
+        help="Numerical error that --model auto must meet, %, such as 2 or 2%; below 1 without % a share.",
+        callback=error_in_percent,
+    ),
 ]
 ClosureOption = Annotated[
     str, typer.Option("--closure", help="Contact closure of the membrane: variational or printed.")

@@ -1,19 +1,14 @@
 """The options of ``select``: a flag for each field of a target, and a target as the words that give it."""
 
 import shlex
+from functools import partial
 from typing import Any
 
 from pneutouch.cli.declared import FieldOption
+from pneutouch.cli.percent import percent_of
 from pneutouch.errors import InputError
 from pneutouch.spec.number import plain_numbers
 from pneutouch.spec.target import Target
-
-
-def _percent(text: str) -> float:
-    from pneutouch.mechanics.models import parse_tolerance
-
-    # A share of 0.07 is 7 percent, and not 7.000000000000001.
-    return float(f"{100 * parse_tolerance(text):.12g}")
 
 
 def _pressures(text: str) -> list[float]:
@@ -27,9 +22,12 @@ def _names(text: str) -> list[str]:
     return [name.strip() for name in text.split(",") if name.strip()]
 
 
+_PERCENT = "PERCENT"
+"""Metavar of an option in per cent."""
+
 SELECT_FIELDS = {
     "sensitivity": FieldOption("target", "sensitivity_kPa_per_N"),
-    "tolerance": FieldOption("target", "tolerance_percent", _percent, "SHARE"),
+    "tolerance": FieldOption("target", "tolerance_percent", partial(percent_of, parameter="tolerance"), _PERCENT),
     "at": FieldOption("target", "driving_pressure_kPa"),
     "force_range": FieldOption("target", "force_range_N"),
     "stiffness_least": FieldOption("target", "stiffness_least_N_per_mm"),
@@ -43,7 +41,7 @@ SELECT_FIELDS = {
     "mix": FieldOption("given", "mix", metavar="SOFT+STIFF"),
     "graded": FieldOption("given", "graded"),
     "same_at": FieldOption("target", "same_sensitivity_at_kPa", _pressures, "KPA,KPA"),
-    "same_within": FieldOption("target", "same_within_percent", _percent, "SHARE"),
+    "same_within": FieldOption("target", "same_within_percent", partial(percent_of, parameter="same_within"), _PERCENT),
     "widest_range": FieldOption("target", "widest_range"),
     "base": FieldOption("setting", "base"),
     "profile": FieldOption("setting", "profile"),
@@ -67,7 +65,7 @@ def target_words(target: Target) -> list[str]:
         if option.key not in table.model_fields_set or value is None or value is False:
             continue
         flag = f"--{name.replace('_', '-')}"
-        words += [flag] if value is True else [flag, _text(value, "%" if option.metavar == "SHARE" else "")]
+        words += [flag] if value is True else [flag, _text(value, "%" if option.metavar == _PERCENT else "")]
     return [*words, *(word for text in target.setting.assignments for word in ("--set", text))]
 
 
