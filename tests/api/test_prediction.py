@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -75,3 +77,34 @@ def test_what_a_prediction_is_made_of_shows_itself_in_a_line(prediction):
     for part in (*parts, *evaluation.assembly.solids, *evaluation.assembly.bodies):
         assert type(part).__name__ in repr(part)
         assert len(repr(part)) < 120 + len(evaluation.scene.where)
+
+
+@pytest.mark.parametrize("name", ["paper-dome", "graded-dome", "cast-dome"])
+def test_a_prediction_passes_between_processes(name):
+    found = pt.load(name).predict()
+    before = pickle.loads(pickle.dumps(found))
+    whole = found.to_dict()
+    after = pickle.loads(pickle.dumps(found))
+    assert before.to_dict() == after.to_dict() == whole
+    assert str(before) == str(found)
+
+
+def test_a_comparison_and_a_checked_design_pass_between_processes():
+    design = pt.load("paper-dome")
+    compared = pt.compare(design, "soft-pad", model="atlas")
+    copy = pickle.loads(pickle.dumps(compared))
+    assert copy.to_dict() == compared.to_dict() and copy.labels == compared.labels
+    assert [p.to_dict() for p in copy.predictions] == [p.to_dict() for p in compared.predictions]
+    checked = design.check()
+    again = pickle.loads(pickle.dumps(design))
+    assert again == design and again.check().to_dict() == checked.to_dict()
+
+
+@pytest.mark.parametrize("run", [lambda: pt.plan("paper-dome"), lambda: pt.respond("paper-dome", model="atlas")])
+def test_a_result_passes_between_processes_and_can_be_saved_there(run, tmp_path):
+    found = run()
+    copy = pickle.loads(pickle.dumps(found))
+    ours, theirs = found.save(tmp_path / "ours"), copy.save(tmp_path / "theirs")
+    names = sorted(path.relative_to(ours) for path in ours.rglob("*") if path.is_file())
+    assert names == sorted(path.relative_to(theirs) for path in theirs.rglob("*") if path.is_file())
+    assert all((ours / name).read_bytes() == (theirs / name).read_bytes() for name in names)

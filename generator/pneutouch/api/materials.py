@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pneutouch.api.fields import named_by_keyword
 from pneutouch.api.results import Result
+
+if TYPE_CHECKING:
+    from pneutouch.workflows.fit_material.fitted import FittedMaterial
 
 
 def fit_material(
@@ -35,7 +40,6 @@ def fit_material(
     from pneutouch.workflows.fit_material.document import document
     from pneutouch.workflows.fit_material.fitted import FitOptions, MaterialFacts
     from pneutouch.workflows.fit_material.run import fit_material as run
-    from pneutouch.workflows.fit_material.run import write_material
 
     files = (data,) if isinstance(data, str | Path) else tuple(data)
     size = SpecimenSize(gauge_length_mm, width_mm, thickness_mm)
@@ -43,4 +47,10 @@ def fit_material(
     facts = MaterialFacts(like, density_g_per_cm3, tuple(shore_a), lab)
     with named_by_keyword():
         fitted = run(FitOptions(tuple(map(Path, files)), name, size, puck, stretch_to, slack, facts))
-    return Result(f"Material {name}", document(fitted), lambda out: write_material(fitted, out)[0])
+    return Result(f"Material {name}", document(fitted), partial(_written, fitted))
+
+
+def _written(fitted: FittedMaterial, out: Path) -> Path:
+    from pneutouch.workflows.fit_material.run import write_material
+
+    return write_material(fitted, out)[0]

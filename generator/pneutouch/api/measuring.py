@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -45,7 +46,7 @@ def scan(
     with named_by_keyword():
         options = ScanOptions(pressures, preload_N, speed_mm_per_s, control, noise, seed, files)
         run = run_scan(str(specimen), source_of(design), options)
-    return Result(f"Scan {run.name}", document(run), lambda out: write_scan(run, out))
+    return Result(f"Scan {run.name}", document(run), partial(write_scan, run))
 
 
 def plan(
@@ -63,7 +64,7 @@ def plan(
             rig=rig_of(file),
             rig_name="" if file is None else file.name,
         )
-    return Result(f"Plan {outcome.name}", outcome.document, lambda out: write_plan(outcome, out))
+    return Result(f"Plan {outcome.name}", outcome.document, partial(write_plan, outcome))
 
 
 def simulate(
@@ -140,7 +141,7 @@ def characterize(
         source = None if design is None else source_of(design)
         reading = _reading(columns, file_format)
         outcome = run(Path(data), source, target=target_file, model=model or USUAL, reading=reading)
-    return Result(f"Measured {outcome.name}", outcome.document, lambda out: write(outcome, out, evidence))
+    return Result(f"Measured {outcome.name}", outcome.document, partial(write, outcome, evidence=evidence))
 
 
 class FittedSensor(Result):

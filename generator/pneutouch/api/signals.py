@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 from pneutouch.api.design import Design, source_of
@@ -44,4 +45,4 @@ def respond(
     with named_by_keyword():
         evaluation = evaluate(source_of(design), **model_options(model, None))
         run = run_respond(evaluation, Load(size, key.endswith("mm"), sine_Hz, duration_s), seed)
-    return Result(f"Response of {evaluation.scene.name}", document(run), lambda out: write_respond(run, out))
+    return Result(f"Response of {evaluation.scene.name}", document(run), partial(write_respond, run))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -174,7 +174,7 @@ def evaluate(
     library = library or Library.default()
     scene = load_scene(design, changes, library)
     options = PredictionOptions(model, closure, clamp, tolerance, aged)
-    return evaluate_scene(scene, lambda: elastomers(library, scene.printer.is_casting), options)
+    return evaluate_scene(scene, partial(elastomers, library, scene.printer.is_casting), options)
 
 
 def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], options: PredictionOptions) -> Evaluation:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, fields
+from functools import partial
 from typing import Any
 
 from pneutouch import __version__
@@ -59,7 +60,7 @@ def evaluate_recipe(recipe: BuildRecipe) -> Evaluation:
     """Draw and predict from a recipe; no library is read. Raises InputError that names the recipe's file."""
     where = recipe.scene.where
     try:
-        return evaluate_scene(recipe.scene, lambda: recipe.resins, recipe.options)
+        return evaluate_scene(recipe.scene, partial(dict, recipe.resins), recipe.options)
     except InputError as error:
         if error.file is None and not str(error).startswith(where):
             error.file = where
