@@ -4,6 +4,7 @@ The command line, the commented design file, the datasheet's table and the error
 declaration; nothing repeats it.
 """
 
+import types
 import typing
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -102,6 +103,33 @@ def table_of(model: type[BaseModel], key: str) -> type[BaseModel] | None:
         if isinstance(kind, type) and issubclass(kind, BaseModel):
             return kind
     return None
+
+
+def entries_of(model: type[BaseModel], key: str) -> str | None:
+    """What the list ``key`` holds: numbers, names, texts, tables or lists; None where it is no list."""
+    lists = [kind for kind in _kinds(model.model_fields[key].annotation) if typing.get_origin(kind) is list]
+    if not lists:
+        return None
+    held = _kinds(typing.get_args(lists[0])[0])
+    if all(kind in (float, int) for kind in held):
+        return "numbers"
+    if all(kind is str for kind in held):
+        return "names" if declaration(model, key).registry else "texts"
+    if all(isinstance(kind, type) and issubclass(kind, BaseModel) for kind in held):
+        return "tables"
+    return "lists" if all(typing.get_origin(kind) is list for kind in held) else None
+
+
+def _kinds(annotation: Any) -> list[Any]:
+    """The types of an annotation without its bounds and without None; words stand for str."""
+    origin, parts = typing.get_origin(annotation), typing.get_args(annotation)
+    if origin is typing.Annotated:
+        return _kinds(parts[0])
+    if origin is typing.Literal:
+        return [*dict.fromkeys(type(word) for word in parts)]
+    if origin in (typing.Union, types.UnionType):
+        return [kind for part in parts for kind in _kinds(part) if kind is not types.NoneType]
+    return [annotation]
 
 
 MaterialKind = Literal["elastomer", "rigid"]

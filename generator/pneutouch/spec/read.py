@@ -7,8 +7,8 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from pneutouch.errors import InputError, joined, nearest
-from pneutouch.spec.fields import EntryError, declaration, table_of
+from pneutouch.errors import InputError, joined, nearest, shown
+from pneutouch.spec.fields import EntryError, declaration, entries_of, table_of
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.form import is_list, table_form
 from pneutouch.spec.toml_errors import toml_problem
@@ -43,7 +43,9 @@ def validate(model: type[Model], content: dict[str, Any], where: str) -> Model:
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        problems = [_explain(model, detail, where) for detail in error.errors()[:_MOST_PROBLEMS]]
+        # What is missing comes last: it may be there under a wrong name.
+        details = sorted(error.errors(), key=lambda detail: detail["type"] == "missing")
+        problems = [_explain(model, detail, where) for detail in details[:_MOST_PROBLEMS]]
         more = error.error_count() - _MOST_PROBLEMS
         if more > 0:
             problems.append(InputError(f"and {more} more problem{'s' if more > 1 else ''}", file=where))
@@ -78,6 +80,15 @@ def override(content: Mapping[str, Any], changes: Changes, model: type[BaseModel
             raise InputError("must be a table", key=table_name, value=section)
         section[key] = value
     return result
+
+
+def _is_one_of_list(table: type[BaseModel], key: str, value: Any) -> bool:
+    """Whether a value is a number or a text, and ``key`` a list of these that one entry is enough for."""
+    if any(getattr(bound, "min_length", 0) > 1 for bound in table.model_fields[key].metadata):
+        return False
+    if isinstance(value, str):
+        return entries_of(table, key) in ("names", "texts")
+    return isinstance(value, float | int) and not isinstance(value, bool) and entries_of(table, key) == "numbers"
 
 
 def parse_changes(assignments: Iterable[str], keys: Collection[str] = ("calibration",)) -> dict[str, Any]:
@@ -119,7 +130,6 @@ def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:
     """The error for one of pydantic's: the key, the value, and what would be right."""
     # Names in angle brackets distinguish the kinds of a value that may be of several; they are no keys.
     path = [str(step) for step in detail["loc"] if not isinstance(step, int) and not str(step).startswith("<")]
-    index = next((step for step in detail["loc"] if isinstance(step, int)), None)
     owner: type[BaseModel] | None = model
     for step in path[:-1]:
         owner = table_of(owner, step) if owner else None
@@ -139,20 +149,36 @@ def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:
     if detail["type"] == "literal_error":
         known = str(detail["ctx"]["expected"]).replace("'", '"')
         return InputError(f"must be {known}", file=where, key=key, value=detail["input"])
-    label = f"{key}[{index}]" if index is not None else key
     kind, right = _expected(detail), _right(owner, path)
     if detail["type"] == "model_type" and (form := table_form(owner, path[-1])):
         kind = f"{kind}such as {form}, "
+    remedy = None
+    if detail["type"] in _OF_LISTS:
+        kind, remedy = _expected_list(detail, owner, path)
+        right = right.removeprefix("a list of ") if kind.startswith("a list of ") else right
+        right = f"each {right}" if right.startswith("one of the ") else right
     if kind and right[:1].isupper():
         # The help of a field without bounds is a sentence of its own.
         kind = f"{kind.rstrip(' ,:')}: "
-    right = f"{kind}{right}".strip()
-    return InputError(f"must be {right}" if right else detail["msg"], file=where, key=label, value=detail["input"])
+    right = kind.rstrip(" ,:") if kind and right == _ANY else f"{kind}{right}".strip()
+    problem = f"must be {right.removesuffix('.') if remedy else right}" if right else detail["msg"]
+    return InputError(problem, file=where, key=_label(detail["loc"]), value=detail["input"], remedy=remedy)
+
+
+def _label(steps: Iterable[int | str]) -> str:
+    """The key of a value with the indices of the lists in it: ``entry.over.membrane.material[0]``."""
+    label = ""
+    for step in steps:
+        if isinstance(step, int):
+            label = f"{label}[{step}]"
+        elif not str(step).startswith("<"):
+            label = f"{label}.{step}" if label else str(step)
+    return label
 
 
 def _addition(owner: type[BaseModel] | None, path: list[str]) -> str:
     """What to add where a key is missing: a table in its form, and what it is."""
-    right, form = _right(owner, path), table_form(owner, path[-1])
+    right, form = _right(owner, path) or f"a table [{'.'.join(path)}]", table_form(owner, path[-1])
     if form and is_list(owner, path[-1]):
         form = f"[{form}]"
     if form:
@@ -174,21 +200,44 @@ def _expected(detail: Any) -> str:
         "finite_number": "a finite number ",
         "bool_type": "true or false: ",
         "string_type": "text: ",
-        "list_type": "a list of numbers, ",
         "model_type": "a table ",
         "dict_type": "a table ",
         "date_type": "a date such as 2026-11-21: ",
         "date_from_datetime_parsing": "a date such as 2026-11-21: ",
         "date_parsing": "a date such as 2026-11-21: ",
-        "too_short": "a list with at least one entry ",
-        "too_long": "a list with at most 50 entries ",
     }
     if detail["type"] == "string_too_short":
         return f"text of at least {counted(detail['ctx']['min_length'], 'character')}: "
     return kinds.get(detail["type"], "")
 
 
+_OF_LISTS = ("list_type", "too_short", "too_long")
+"""Types of pydantic's errors on a list."""
+
+
+def _expected_list(detail: Any, owner: type[BaseModel] | None, path: list[str]) -> tuple[str, str | None]:
+    """What a list must be, and how what was given is written as one, where that is known."""
+    table = owner if owner is not None and path[-1] in owner.model_fields else None
+    held = None if table is None else entries_of(table, path[-1])
+    if held == "tables" and detail["type"] == "list_type":
+        return "a list of tables: ", f"write each as [[{'.'.join(path)}]]"
+    ends = ", " if held in ("numbers", "names") else ": "
+    if detail["type"] == "list_type":
+        given = detail["input"]
+        is_plain = isinstance(given, str | float | int) and not isinstance(given, bool)
+        fits = is_plain if table is None else _is_one_of_list(table, path[-1], given)
+        return f"a list of {held}{ends}" if held else "a list: ", f"write {shown([given])}" if fits else None
+    least = detail["type"] == "too_short"
+    count = detail["ctx"]["min_length" if least else "max_length"]
+    entries = "one entry" if count == 1 else f"{count} entries"
+    return f"a list with at {'least' if least else 'most'} {entries}{' ' if held == 'numbers' else ends}", None
+
+
+_ANY = "a valid value"
+"""What is right where no declaration states it."""
+
+
 def _right(owner: type[BaseModel] | None, path: list[str]) -> str:
     if owner is None or not path or path[-1] not in owner.model_fields:
-        return "a valid value"
+        return _ANY
     return declaration(owner, path[-1]).right
