@@ -119,6 +119,16 @@ def test_new_writes_a_design_that_predicts_and_never_overwrites(command, tmp_pat
         assert command("new", "--", name).returncode == 2
 
 
+def test_one_driving_pressure_is_a_list_of_one(command):
+    words = ["predict", "paper-dome", "--model", "membrane", "--json", "--set"]
+    one = command(*words, "pneumatics.driving_pressures_kPa=5")
+    assert one.returncode == 0, one.stderr
+    assert one.stdout == command(*words, "pneumatics.driving_pressures_kPa=[5]").stdout
+    wrong = command(*words, "pneumatics.driving_pressures_kPa=5000")
+    assert wrong.returncode == 2
+    assert wrong.stderr == "error: --set pneumatics.driving_pressures_kPa[0]=5000: must be from 0 to 1000 kPa\n"
+
+
 def test_build_prints_the_folder_and_nothing_else_on_stdout(built_as_a_user):
     result, folder = built_as_a_user
     assert result.returncode == 0, result.stderr

@@ -55,7 +55,8 @@ def validate(model: type[Model], content: dict[str, Any], where: str) -> Model:
 Changes = Mapping[str, Any]
 """Fields of a file to be changed, each ``table.key`` or a key outside the tables, and their values.
 
-A key outside the tables whose value is None is taken out."""
+A key outside the tables whose value is None is taken out. A single number or text in place of a list of them is a list
+of one."""
 
 
 def override(content: Mapping[str, Any], changes: Changes, model: type[BaseModel]) -> dict[str, Any]:
@@ -78,11 +79,11 @@ def override(content: Mapping[str, Any], changes: Changes, model: type[BaseModel
         section = result.setdefault(table_name, {})
         if not isinstance(section, dict):
             raise InputError("must be a table", key=table_name, value=section)
-        section[key] = value
+        section[key] = [value] if is_one_of_list(table, key, value) else value
     return result
 
 
-def _is_one_of_list(table: type[BaseModel], key: str, value: Any) -> bool:
+def is_one_of_list(table: type[BaseModel], key: str, value: Any) -> bool:
     """Whether a value is a number or a text, and ``key`` a list of these that one entry is enough for."""
     if any(getattr(bound, "min_length", 0) > 1 for bound in table.model_fields[key].metadata):
         return False
@@ -225,7 +226,7 @@ def _expected_list(detail: Any, owner: type[BaseModel] | None, path: list[str]) 
     if detail["type"] == "list_type":
         given = detail["input"]
         is_plain = isinstance(given, str | float | int) and not isinstance(given, bool)
-        fits = is_plain if table is None else _is_one_of_list(table, path[-1], given)
+        fits = is_plain if table is None else is_one_of_list(table, path[-1], given)
         return f"a list of {held}{ends}" if held else "a list: ", f"write {shown([given])}" if fits else None
     least = detail["type"] == "too_short"
     count = detail["ctx"]["min_length" if least else "max_length"]
