@@ -99,3 +99,11 @@ def test_a_comparison_shows_names_that_differ_and_a_figure_shows_itself():
 def test_listings_are_the_command_lines(printed):
     for kind in ("designs", "materials", "printers"):
         assert getattr(pt, kind)() == {entry["name"]: entry["title"] for entry in printed("list", kind)[kind]}
+
+
+def test_a_misspelt_table_of_a_target_file_is_named_first(tmp_path):
+    path = tmp_path / "misspelt.toml"
+    path.write_text("[targets]\nsensitivity_kPa_per_N = 1.9\n")
+    with pytest.raises(pt.InputError, match="Did you mean target") as caught:
+        pt.select(path)
+    assert (caught.value.file, caught.value.key) == (str(path), "targets")

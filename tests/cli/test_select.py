@@ -129,6 +129,23 @@ def test_bad_flags_exit_2(extra, said):
     assert said in result.stderr
 
 
+@pytest.mark.parametrize("options", [(), ("--base", "paper-dome")])
+def test_a_misspelt_table_is_named_before_the_target_that_is_not_there(tmp_path, options):
+    path = tmp_path / "misspelt.toml"
+    path.write_text("[targets]\nsensitivity_kPa_per_N = 1.9\n")
+    result = run("select", str(path), *options)
+    assert result.exit_code == 2
+    assert result.stderr.startswith(f"error: {path}: targets: unknown table. Did you mean target?")
+
+
+def test_a_file_without_a_target_is_named(tmp_path):
+    path = tmp_path / "given.toml"
+    path.write_text("[given]\nwall_thickness_mm = 1.2\n")
+    result = run("select", str(path))
+    assert result.exit_code == 2
+    assert result.stderr.startswith(f"error: {path}: no target; give the file a table [target], or --sensitivity")
+
+
 def test_no_target_is_an_error():
     result = run("select")
     assert result.exit_code == 2

@@ -65,7 +65,7 @@ def select(target: str | Path | None = None, **fields: Any) -> Selection:
     with named_by_keyword(Target):
         content = override({} if target is None else read_toml(Path(target)), changes(Target, fields), Target)
         where = WHERE if target is None else str(target)
-        goal = validate(Target, {"target": {}, **content}, where)
+        goal = validate(Target, {"target": {}, **content} if target is None else content, where)
         where = "select" if target is None else where
         if goal.setting.processes is not None:
             by_process = select_processes(goal, where)

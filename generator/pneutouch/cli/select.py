@@ -137,8 +137,9 @@ def _target(path: Path | None, fields: dict[str, Any], set_: list[str]) -> Targe
         if not isinstance(section, dict):
             raise InputError("must be a table", file=path, key=table, value=section)
         section.update(values)
-    if "target" not in content:
-        raise InputError("no target", remedy="give a target file, or `sensitivity`, `force_range` or a stiffness")
+    if "target" not in content and content.keys() <= Target.model_fields.keys():
+        what = "a target file" if path is None else "the file a table [target]"
+        raise InputError("no target", file=path, remedy=f"give {what}, or `sensitivity`, `force_range` or a stiffness")
     target = validate(Target, content, _FLAGS_ALONE if path is None else str(path))
     if not set_:
         return target
