@@ -140,3 +140,55 @@ def test_a_pressure_or_age_that_is_no_finite_number_is_refused_by_its_keyword(va
 def test_a_number_where_a_list_is_taken_is_refused_by_its_keyword():
     with pytest.raises(pt.InputError, match="ages_days = 5: must be a list of numbers"):
         pt.simulate("paper-dome", "nowhere", ages_days=5)
+
+
+def test_one_driving_pressure_is_a_list_of_one():
+    design = pt.load("paper-dome")
+    one, listed = design.predict(10, model="membrane"), design.predict([10], model="membrane")
+    assert one.to_dict() == listed.to_dict()
+    assert design.replace(driving_pressures_kPa=10) == design.replace(driving_pressures_kPa=[10])
+    compared, by_list = (pt.compare(design, "soft-pad", driving_pressures_kPa=p, model="membrane") for p in (10, [10]))
+    assert compared.to_dict() == by_list.to_dict()
+
+
+@pytest.mark.parametrize("name", ["sine_Hz", "step_N", "step_mm", "peak_N", "peak_mm", "duration_s"])
+@pytest.mark.parametrize("value", ["5", 10**400, math.nan, True, [5]])
+def test_a_load_that_is_no_number_is_refused_by_its_keyword(name, value):
+    with pytest.raises(pt.InputError, match="must be a finite number") as caught:
+        pt.respond("paper-dome", **{name: value})
+    assert caught.value.key == name
+
+
+@pytest.mark.parametrize("name", [6, None, 1.5, ["a"]])
+def test_a_name_that_is_no_text_is_refused(name):
+    for call in (lambda: pt.Design(name), lambda: pt.Design().replace([6] if name is None else name)):
+        with pytest.raises(pt.InputError, match="must be a text; give a text") as caught:
+            call()
+        assert caught.value.key == "name"
+
+
+@pytest.mark.parametrize("given", [5, [5], {"a": 1}, ["steps", None]])
+def test_what_is_no_list_of_texts_is_refused_by_its_keyword(given):
+    for call, name in (
+        (lambda: pt.simulate("paper-dome", "nowhere", kinds=given), "kinds"),
+        (lambda: pt.simulate("paper-dome", "nowhere", resins=given), "resins"),
+        (lambda: pt.plan("paper-dome", resins=given), "resins"),
+        (lambda: pt.calibrate("nowhere", fit=given), "fit"),
+    ):
+        with pytest.raises(pt.InputError, match="must be a list of texts") as caught:
+            call()
+        assert (caught.value.key, caught.value.value) == (name, given)
+
+
+def test_one_kind_and_one_resin_are_lists_of_one():
+    with pytest.raises(pt.InputError, match="Did you mean steps") as caught:
+        pt.simulate("paper-dome", "nowhere", kinds="step")
+    assert (caught.value.key, caught.value.value) == ("kinds", "step")
+    one, listed = pt.plan("paper-dome", resins="TangoPlus"), pt.plan("paper-dome", resins=["TangoPlus"])
+    assert one.to_dict() == listed.to_dict()
+
+
+@pytest.mark.parametrize("call", [pt.characterize, pt.calibrate])
+def test_data_that_are_no_path_are_refused(call):
+    with pytest.raises(pt.InputError, match="data = 5: must be a path; give a campaign's folder"):
+        call(5)

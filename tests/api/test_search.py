@@ -6,6 +6,7 @@ import pytest
 import xarray
 
 import pneutouch as pt
+from pneutouch.api.unmet import unmet_lines
 
 
 def test_a_selection_is_the_command_lines_and_its_designs_meet_the_target(printed):
@@ -107,3 +108,59 @@ def test_a_misspelt_table_of_a_target_file_is_named_first(tmp_path):
     with pytest.raises(pt.InputError, match="Did you mean target") as caught:
         pt.select(path)
     assert (caught.value.file, caught.value.key) == (str(path), "targets")
+
+
+def test_a_design_is_a_base_as_its_file_is(tmp_path):
+    asked = {"sensitivity_kPa_per_N": 1.9, "driving_pressure_kPa": 12}
+    base = pt.load("paper-dome").replace("mine", tube_length_mm=90, plate_diameter_mm=40)
+    file = base.save(tmp_path / "mine.toml")
+    by_object, by_file = pt.select(**asked, base=base), pt.select(**asked, base=str(file))
+    ours, theirs = by_object.to_dict(), by_file.to_dict()
+    assert (ours.pop("base"), theirs.pop("base")) == ("mine", str(file))
+    assert ours.pop("target")["setting"]["base"] == "mine" and theirs.pop("target")["setting"]["base"] == str(file)
+    assert ours == theirs and ours["met"]
+    assert by_object.designs == by_file.designs
+    assert by_object.designs[0].tube_length_mm == 90
+    assert pt.select(**asked, setting={"base": base}).designs == by_file.designs
+
+
+def test_an_error_on_a_base_given_as_an_object_names_the_key_and_no_file():
+    base = pt.Design("leaning", offset_mm=2.0)
+    with pytest.raises(pt.InputError, match="central") as caught:
+        pt.select(sensitivity_kPa_per_N=1.9, base=base)
+    assert (caught.value.file, caught.value.key, caught.value.value) == (None, "contact.offset_mm", 2.0)
+
+
+@pytest.mark.parametrize("target", [{"sensitivity_kPa_per_N": 1.9}, 5, pt.Design()])
+def test_a_target_that_is_no_path_is_refused(target):
+    with pytest.raises(pt.InputError, match="must be a path; give the path of a target file") as caught:
+        pt.select(target)
+    assert (caught.value.key, caught.value.value) == ("target", target)
+
+
+def test_one_resin_is_a_list_of_one():
+    asked = {"sensitivity_kPa_per_N": 1.9, "driving_pressure_kPa": 12}
+    one, listed = pt.select(**asked, materials="TangoPlus"), pt.select(**asked, materials=["TangoPlus"])
+    assert one.to_dict() == listed.to_dict() and one.met
+
+
+def test_a_selection_without_a_design_shows_what_to_drop():
+    found = pt.select(sensitivity_kPa_per_N=1.9, force_range_N=150, max_diameter_mm=25)
+    said, lines = found.to_dict(), repr(found).splitlines()
+    assert lines[0] == "Selection: 0 designs meet the target"
+    assert lines[1].startswith(f"  nearest: {said['nearest']['material']}, R0 ")
+    assert all(name in lines[1] for name in said["nearest"]["misses_percent"])
+    assert lines[2:] == [
+        f"  drop the requirement on {each['requirement']}: {each['attainable']}"
+        for each in said["dropped_requirements"]
+    ]
+    assert len(lines) > 2
+
+
+def test_a_grade_that_misses_shows_by_how_much_and_why():
+    best = {"reason": None, "share_used": {"sensitivity": 1.25, "force range": 0.4}}
+    document = {"nearest_constant_mix": "x", "rejected": None, "design": best}
+    assert unmet_lines(document) == ["nearest grade: beyond what is allowed: sensitivity by 25 %"]
+    assert unmet_lines({**document, "rejected": "it does not fit"}) == ["rejected: it does not fit"]
+    unsolved = {**document, "design": {**best, "reason": "no figures"}}
+    assert unmet_lines(unsolved) == ["nearest grade: no figures"]

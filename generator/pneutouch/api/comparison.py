@@ -85,7 +85,7 @@ class Comparison(show.Shown):
 
 def compare(
     *things: Design | str | Path,
-    driving_pressures_kPa: Iterable[float] | None = None,
+    driving_pressures_kPa: float | Iterable[float] | None = None,
     model: str | None = None,
     tolerance: float | str | None = None,
     closure: str = "variational",

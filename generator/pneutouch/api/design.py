@@ -16,7 +16,7 @@ from pneutouch.api.prediction import Prediction
 from pneutouch.api.results import CheckResult
 from pneutouch.body import Body
 from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
-from pneutouch.errors import shown
+from pneutouch.errors import InputError, shown
 from pneutouch.evaluation.document import curves_document
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.mechanics.models import model_options
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def pressures_changed(driving_pressures_kPa: Iterable[float] | None) -> dict[str, Any]:
+def pressures_changed(driving_pressures_kPa: float | Iterable[float] | None) -> dict[str, Any]:
     """The change that gives a design other driving pressures, kPa; None changes nothing."""
     values_kPa = plain(driving_pressures_kPa)
     return {} if values_kPa is None else {"pneumatics.driving_pressures_kPa": values_kPa}
@@ -50,8 +50,11 @@ class Design(show.Shown):
     def __init__(self, name: str = "design", **fields: Any) -> None:
         self._take(name, {}, fields)
 
-    def _take(self, name: str, content: Any, fields: dict[str, Any]) -> None:
-        plain_name(str(name), key="name")
+    def _take(self, name: Any, content: Any, fields: dict[str, Any]) -> None:
+        if not isinstance(name, str):
+            remedy = "give a text; fields have keywords, such as inner_radius_mm=6"
+            raise InputError("must be a text", key="name", value=name, remedy=remedy)
+        plain_name(name, key="name")
         with named_by_keyword():
             whole = override(content, changes(DesignFile, fields), DesignFile)
             self.file = DesignSource(name, whole, WHERE).changed({})
@@ -95,7 +98,7 @@ class Design(show.Shown):
     def replace(self, name: str | None = None, **fields: Any) -> Design:
         """The design with fields changed, and under another name where one is given."""
         design = type(self).__new__(type(self))
-        design._take(name or self.name, self.source.content, fields)
+        design._take(self.name if name is None or name == "" else name, self.source.content, fields)
         return design
 
     def save(self, name_or_path: str | Path | None = None, *, overwrite: bool = False) -> Path:
@@ -110,7 +113,7 @@ class Design(show.Shown):
 
     def predict(
         self,
-        driving_pressures_kPa: Iterable[float] | None = None,
+        driving_pressures_kPa: float | Iterable[float] | None = None,
         *,
         model: str | None = None,
         tolerance: float | str | None = None,
@@ -119,7 +122,7 @@ class Design(show.Shown):
         aged: bool = False,
         contact_anywhere: bool = False,
     ) -> Prediction:
-        """Predict the figures at driving pressures in kPa (None: the design's).
+        """Predict the figures at driving pressures in kPa, or at one (None: the design's).
 
         ``model`` is "membrane", "atlas", "solid", "harmonic", "auto", the cheapest whose error meets ``tolerance``, a
         fraction, or None: the solid, and harmonic for contact off the axis. ``contact_anywhere`` counts an unknown

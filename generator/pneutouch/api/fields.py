@@ -4,14 +4,16 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
 from itertools import islice
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
 
-from pneutouch.errors import InputError, PneutouchError, nearest
+from pneutouch.errors import InputError, PneutouchError, nearest, shown
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
-from pneutouch.spec.number import finite_numbers
+from pneutouch.spec.number import finite_numbers, is_finite
 
 WHERE = "the keyword arguments"
 """Stands for the file where values are keyword arguments; `named_by_keyword` takes it out of an error."""
@@ -51,12 +53,41 @@ def _of_keyword(name: str, value: Any) -> Any:
         raise InputError("nested too deep", key=name, remedy="give a value, or a list of values") from None
 
 
-def numbers_of(values: Any, name: str) -> tuple[float, ...]:
-    """Finite numbers that were given as the keyword ``name``. Raises InputError."""
+def numbers_of(values: Any, name: str, *, alone: bool = False) -> tuple[float, ...]:
+    """Finite numbers that were given as the keyword ``name``. Raises InputError.
+
+    With ``alone`` one number is a list of one.
+    """
     given = _of_keyword(name, values)
     if not isinstance(given, list):
-        raise InputError("must be a list of numbers", key=name, value=given)
+        if alone and is_finite(given):
+            return (float(given),)
+        remedy = f"write [{shown(given)}]" if is_finite(given) else None
+        raise InputError("must be a list of numbers", key=name, value=given, remedy=remedy)
     return tuple(finite_numbers(given, name))
+
+
+def number_of(value: Any, name: str) -> float | None:
+    """A finite number that was given as the keyword ``name``, or None. Raises InputError."""
+    if isinstance(value, str):
+        raise InputError("must be a finite number", key=name, value=value, remedy="write a number without quotes")
+    return None if value is None else numbers_of([value], name)[0]
+
+
+def texts_of(values: Any, name: str) -> tuple[str, ...]:
+    """Texts that were given as the keyword ``name``; one is a list of one. Raises InputError."""
+    given = _of_keyword(name, values)
+    texts = [given] if isinstance(given, str) else given
+    if not isinstance(texts, list) or not all(isinstance(text, str) for text in texts):
+        raise InputError("must be a list of texts", key=name, value=given)
+    return tuple(texts)
+
+
+def path_of(value: Any, name: str, remedy: str) -> Path:
+    """A path that was given as the keyword ``name``. Raises InputError with the ``remedy`` for all else."""
+    if not isinstance(value, str | PathLike):
+        raise InputError("must be a path", key=name, value=value, remedy=remedy)
+    return Path(value)
 
 
 def changes(model: type[BaseModel], arguments: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.api.design import Design, source_of
-from pneutouch.api.fields import named_by_keyword, numbers_of
+from pneutouch.api.fields import named_by_keyword, numbers_of, path_of, texts_of
 from pneutouch.api.results import Result
 from pneutouch.errors import shown
 from pneutouch.units import KPA
@@ -16,18 +16,20 @@ from pneutouch.units import KPA
 if TYPE_CHECKING:
     from pneutouch.workflows.calibrate.run import CalibrationOutcome
 
+_DATA = "give a campaign's folder, its file or that of one run"
+
 
 def scan(
     specimen: str | Path,
     design: Design | str | Path,
     *,
-    driving_pressures_kPa: Iterable[float] = (0.0, 22.0),
+    driving_pressures_kPa: float | Iterable[float] = (0.0, 22.0),
     preload_N: float = 0.5,
     speed_mm_per_s: float | None = None,
     control: str = "height",
     noise_kPa: float | None = None,
     seed: int = 0,
-    data: Sequence[str | Path] = (),
+    data: str | Path | Sequence[str | Path] = (),
 ) -> Result:
     """Slide a sensor over a texture specimen, given by name or path, and read which pattern each state detects.
 
@@ -39,10 +41,10 @@ def scan(
     from pneutouch.workflows.scan.run import ScanOptions, run_scan
     from pneutouch.workflows.scan.write import write_scan
 
-    pressures_kPa = numbers_of(driving_pressures_kPa, "driving_pressures_kPa")
+    pressures_kPa = numbers_of(driving_pressures_kPa, "driving_pressures_kPa", alone=True)
     noises_kPa = () if noise_kPa is None else numbers_of([noise_kPa], "noise_kPa")
     pressures, noise = tuple(p * KPA for p in pressures_kPa), noises_kPa[0] * KPA if noises_kPa else NOISE
-    files = tuple(Path(file) for file in data)
+    files = (Path(data),) if isinstance(data, str | Path) else tuple(Path(file) for file in data)
     with named_by_keyword():
         options = ScanOptions(pressures, preload_N, speed_mm_per_s, control, noise, seed, files)
         run = run_scan(str(specimen), source_of(design), options)
@@ -50,16 +52,16 @@ def scan(
 
 
 def plan(
-    design: Design | str | Path, *, resins: Sequence[str] = (), specimens: int = 3, rig: str | Path | None = None
+    design: Design | str | Path, *, resins: str | Sequence[str] = (), specimens: int = 3, rig: str | Path | None = None
 ) -> Result:
     """Plan a measurement campaign: runs, steps, and what to expect. ``rig`` is a TOML file; None: the paper's rig."""
     from pneutouch.workflows.plan.run import make_plan, rig_of, write_plan
 
-    file = None if rig is None else Path(rig)
+    file = None if rig is None else path_of(rig, "rig", "give the path of a TOML file")
     with named_by_keyword():
         outcome = make_plan(
             source_of(design),
-            resins=tuple(resins),
+            resins=texts_of(resins, "resins"),
             specimens=specimens,
             rig=rig_of(file),
             rig_name="" if file is None else file.name,
@@ -71,11 +73,11 @@ def simulate(
     design: Design | str | Path,
     out: str | Path = "outputs",
     *,
-    resins: Sequence[str] = (),
+    resins: str | Sequence[str] = (),
     specimens: int = 3,
-    driving_pressures_kPa: Iterable[float] | None = None,
+    driving_pressures_kPa: float | Iterable[float] | None = None,
     runs: int = 3,
-    kinds: Sequence[str] = ("steps", "loop", "relaxation"),
+    kinds: str | Sequence[str] = ("steps", "loop", "relaxation"),
     rate_Hz: float = 100.0,
     rest_s: float | None = None,
     seed: int = 0,
@@ -93,14 +95,16 @@ def simulate(
     from pneutouch.workflows.simulate.run import simulate as run
 
     pressures_kPa = (
-        None if driving_pressures_kPa is None else numbers_of(driving_pressures_kPa, "driving_pressures_kPa")
+        None
+        if driving_pressures_kPa is None
+        else numbers_of(driving_pressures_kPa, "driving_pressures_kPa", alone=True)
     )
     options = SimulationOptions(
-        tuple(resins),
+        texts_of(resins, "resins"),
         specimens,
         pressures_kPa,
         runs,
-        tuple(kinds),
+        texts_of(kinds, "kinds"),
         rate_Hz,
         seed,
         model or USUAL,
@@ -136,11 +140,11 @@ def characterize(
     from pneutouch.workflows.characterize.run import characterize as run
     from pneutouch.workflows.characterize.run import write
 
-    target_file = None if target is None else Path(target)
+    target_file = None if target is None else path_of(target, "target", "give the path of a target file")
     with named_by_keyword():
         source = None if design is None else source_of(design)
         reading = _reading(columns, file_format)
-        outcome = run(Path(data), source, target=target_file, model=model or USUAL, reading=reading)
+        outcome = run(path_of(data, "data", _DATA), source, target=target_file, model=model or USUAL, reading=reading)
     return Result(f"Measured {outcome.name}", outcome.document, partial(write, outcome, evidence=evidence))
 
 
@@ -174,7 +178,7 @@ def calibrate(
     design: Design | str | Path | None = None,
     *,
     sensor: str | None = None,
-    fit: Sequence[str] = ("modulus", "dead-volume", "wall", "offset"),
+    fit: str | Sequence[str] = ("modulus", "dead-volume", "wall", "offset"),
     hold_out_kPa: Sequence[float] = (),
     priors: bool = True,
     save: str | None = None,
@@ -192,9 +196,11 @@ def calibrate(
     from pneutouch.workflows.calibrate.run import CalibrationOptions, run_calibration
 
     source = None if design is None else source_of(design)
-    names, held = tuple(fit), numbers_of(hold_out_kPa, "hold_out_kPa")
+    names, held = texts_of(fit, "fit"), numbers_of(hold_out_kPa, "hold_out_kPa")
     with named_by_keyword():
-        options = CalibrationOptions(Path(data), source, sensor, names, held, priors, save, replace, Path(out))
+        options = CalibrationOptions(
+            path_of(data, "data", _DATA), source, sensor, names, held, priors, save, replace, Path(out)
+        )
         return FittedSensor(run_calibration(options, reading=_reading(columns, file_format)))
 
 

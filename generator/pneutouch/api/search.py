@@ -8,13 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 from pneutouch.api import show
 from pneutouch.api.design import Design, source_of
-from pneutouch.api.fields import WHERE, changes, named_by_keyword
+from pneutouch.api.fields import WHERE, changes, named_by_keyword, path_of
+from pneutouch.api.given_base import given_base, with_base_named
+from pneutouch.api.unmet import unmet_lines
 from pneutouch.catalogue import DesignSource, ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.holding import temporary_folder
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, read_toml, validate
 from pneutouch.spec.target import Target
+from pneutouch.wording import counted
 from pneutouch.workflows.select.document import document
 from pneutouch.workflows.select.gauged import select as run_select
 from pneutouch.workflows.select.graded import select_graded
@@ -44,44 +47,52 @@ class Selection(show.Shown):
         return dict(self._document)
 
     def _head(self) -> str:
-        return f"Selection: {len(self.designs)} designs meet the target"
+        return f"Selection: {counted(len(self.designs), 'design')} meet{'s' * (len(self.designs) == 1)} the target"
 
     def _picture(self) -> Assembly | None:
         return self.designs[0].assembly if self.designs else None
 
     def _rows(self) -> list[Any]:
+        if not self.designs:
+            return [(line,) for line in unmet_lines(self._document)]
         keys = ("material", "inner_radius_mm", "wall_thickness_mm", "driving_pressures_kPa")
         return [
             (design.name, *(f"{key}={show.short(getattr(design, key))}" for key in keys)) for design in self.designs
         ]
 
 
+_REMEDY = "give the path of a target file, or keyword arguments such as sensitivity_kPa_per_N=1.9"
+
+
 def select(target: str | Path | None = None, **fields: Any) -> Selection:
     """Designs for a target: a target file, keyword arguments named as its keys, or both (keywords first).
 
-    ``select(sensitivity_kPa_per_N=1.9, driving_pressure_kPa=12)``. With ``processes=["polyjet", "casting"]`` or
-    ``"any"`` the designs are the best of each process, named after it. Raises InputError naming the keyword.
+    ``select(sensitivity_kPa_per_N=1.9, driving_pressure_kPa=12)``. ``base`` may be a `Design`. With
+    ``processes=["polyjet", "casting"]`` or ``"any"`` the designs are the best of each process, named after it. Raises
+    InputError naming the keyword.
     """
-    with named_by_keyword(Target):
-        content = override({} if target is None else read_toml(Path(target)), changes(Target, fields), Target)
-        where = WHERE if target is None else str(target)
-        goal = validate(Target, {"target": {}, **content} if target is None else content, where)
-        where = "select" if target is None else where
+    file = None if target is None else path_of(target, "target", _REMEDY)
+    named, design = with_base_named(fields)
+    with named_by_keyword(Target), given_base(design) as base:
+        content = override({} if file is None else read_toml(file), changes(Target, named), Target)
+        where = WHERE if file is None else str(file)
+        goal = validate(Target, {"target": {}, **content} if file is None else content, where)
+        where = "select" if file is None else where
         if goal.setting.processes is not None:
-            by_process = select_processes(goal, where)
+            by_process = select_processes(goal, where, base.library)
             chosen = [(process, run.base, run.assignments(run.answer.designs[0])) for process, run in by_process.best]
             content = by_process.document()
         elif goal.given.graded:
-            graded = select_graded(goal, where)
+            graded = select_graded(goal, where, base.library)
             chosen = [("1", graded.base, graded.assignments())] if graded.passes else []
             content = graded_document(graded)
         else:
-            selection = run_select(goal, where)
+            selection = run_select(goal, where, base.library)
             ranked = enumerate(selection.answer.designs, start=1)
             chosen = [(str(rank), selection.base, selection.assignments(choice)) for rank, choice in ranked]
             content = document(selection)
-    designs = (_selected(goal, *each) for each in chosen)
-    return Selection(tuple(designs), content)
+        designs = tuple(_selected(goal, *each) for each in chosen)
+        return Selection(designs, base.named(content))
 
 
 def _selected(goal: Target, label: str, base: ResolvedDesign, changed: list[str]) -> Design:

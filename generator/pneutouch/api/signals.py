@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 
 from pneutouch.api.design import Design, source_of
-from pneutouch.api.fields import named_by_keyword
+from pneutouch.api.fields import named_by_keyword, number_of
 from pneutouch.api.results import Result
 from pneutouch.errors import InputError
 
@@ -36,7 +36,8 @@ def respond(
     from pneutouch.workflows.respond.run import run_respond
 
     sizes = {"step_N": step_N, "step_mm": step_mm, "peak_N": peak_N, "peak_mm": peak_mm}
-    given = {key: value for key, value in sizes.items() if value is not None}
+    given = {key: value for key, size in sizes.items() if (value := number_of(size, key)) is not None}
+    frequency_Hz, length_s = number_of(sine_Hz, "sine_Hz"), number_of(duration_s, "duration_s")
     wrong = [key for key in given if key.startswith("step") == (sine_Hz is not None)]
     if wrong or len(given) > 1:
         remedy = "give one of `peak_N` and `peak_mm` with `sine_Hz`, or one of `step_N` and `step_mm` without"
@@ -44,5 +45,5 @@ def respond(
     key, size = next(iter(given.items()), ("", None))
     with named_by_keyword():
         evaluation = evaluate(source_of(design), **model_options(model, None))
-        run = run_respond(evaluation, Load(size, key.endswith("mm"), sine_Hz, duration_s), seed)
+        run = run_respond(evaluation, Load(size, key.endswith("mm"), frequency_Hz, length_s), seed)
     return Result(f"Response of {evaluation.scene.name}", document(run), partial(write_respond, run))
