@@ -164,3 +164,13 @@ def test_a_grade_that_misses_shows_by_how_much_and_why():
     assert unmet_lines({**document, "rejected": "it does not fit"}) == ["rejected: it does not fit"]
     unsolved = {**document, "design": {**best, "reason": "no figures"}}
     assert unmet_lines(unsolved) == ["nearest grade: no figures"]
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("base", "paper-dom"), ("fits", "finger:200"), ("materials", "Tango"), ("profile", "connex"), ("gauge", "none")],
+)
+def test_errors_of_what_a_selection_names_have_the_keyword_and_no_file(key, value):
+    with pytest.raises(pt.InputError) as caught:
+        pt.select(sensitivity_kPa_per_N=1.9, **{key: value})
+    assert (caught.value.file, caught.value.key, caught.value.value) == (None, key, value)

@@ -216,3 +216,14 @@ def test_options_that_no_scan_can_have_are_refused(command, words, said):
     assert result.returncode == 2, result.stderr
     assert said in result.stderr
     assert "Traceback" not in result.stderr
+
+
+def test_a_specimen_that_is_not_there_is_named_as_one(command):
+    done = command("scan", "texture", "--design", "paper-dome")
+    assert done.returncode == 2
+    assert done.stderr.splitlines()[-1] == (
+        "error: SPECIMEN texture: no such specimen or file; give the name or the path of a specimen. "
+        "Did you mean texture-specimen?"
+    )
+    done = command("scan", "texture-specimen", "--design", "paper-dom")
+    assert "error: --design paper-dom: no such design or file" in done.stderr

@@ -146,6 +146,26 @@ def test_a_file_without_a_target_is_named(tmp_path):
     assert result.stderr.startswith(f"error: {path}: no target; give the file a table [target], or --sensitivity")
 
 
+@pytest.mark.parametrize(
+    ("line", "option", "said"),
+    [
+        ('[setting]\nbase = "paper-dom"\n', ("--base", "paper-dom"), "no such design or file"),
+        ('fits = "finger:200"\n', ("--fits", "finger:200"), "must be from 6 to 100 mm"),
+    ],
+)
+@pytest.mark.parametrize("more", [(), ("--process", "any")])
+def test_an_error_on_the_base_names_what_was_written(tmp_path, line, option, said, more):
+    path = tmp_path / "target.toml"
+    path.write_text(f"[target]\nsensitivity_kPa_per_N = 1.9\n{line}")
+    result = run("select", str(path), *more)
+    assert result.exit_code == 2
+    key = "setting.base" if option[0] == "--base" else "target.fits"
+    assert f'error: {path}: {key} = "{option[1]}": {said}' in result.stderr
+    result = run("select", "--sensitivity", "1.9", *option, *more)
+    assert result.exit_code == 2
+    assert f"error: {' '.join(option)}: {said}" in result.stderr
+
+
 def test_no_target_is_an_error():
     result = run("select")
     assert result.exit_code == 2

@@ -77,7 +77,6 @@ def select(target: str | Path | None = None, **fields: Any) -> Selection:
         content = override({} if file is None else read_toml(file), changes(Target, named), Target)
         where = WHERE if file is None else str(file)
         goal = validate(Target, {"target": {}, **content} if file is None else content, where)
-        where = "select" if file is None else where
         if goal.setting.processes is not None:
             by_process = select_processes(goal, where, base.library)
             chosen = [(process, run.base, run.assignments(run.answer.designs[0])) for process, run in by_process.best]

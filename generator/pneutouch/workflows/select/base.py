@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
@@ -23,6 +25,8 @@ _SEARCHED = {
     "pneumatics.driving_pressures_kPa": "target.driving_pressure_kPa (`at`)",
 }
 """Fields of a design that the search finds, and what settles them instead."""
+
+_FINGER = "connector.finger_diameter_mm"
 
 _WALL_SHARE = 0.15
 """Wall over radius of the dome that a base is drawn with where only the wall is given."""
@@ -54,6 +58,25 @@ def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
 
     Raises InputError where it names what there is not; ``where`` names the target's file.
     """
+    with named_by_target(target, where):
+        return _base_scene(target, where, library)
+
+
+@contextmanager
+def named_by_target(target: Target, where: str) -> Iterator[None]:
+    """Name the key of the target, and its file ``where``, in an error on the base that it names or on its finger."""
+    try:
+        yield
+    except PneutouchError as error:
+        for each in (error, *error.others):
+            if each.key == _FINGER and target.target.fits is not None:
+                each.file, each.key, each.value = where, "target.fits", target.target.fits
+            elif each.file is None and each.key in ("setting.base", "target.fits"):
+                each.file = where
+        raise
+
+
+def _base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
     given, chosen = target.given, setting_changes(target, library)
     sizes = {"membrane.inner_radius_mm": given.inner_radius_mm, "membrane.wall_thickness_mm": given.wall_thickness_mm}
     changes = chosen | {key: size for key, size in sizes.items() if size is not None}
@@ -139,7 +162,7 @@ def _on_finger(finger_mm: float, target: Target, changes: dict[str, Any], librar
         if not sleeves:
             raise InputError("no mount goes over a finger", key="target.fits", value=f"finger:{finger_mm:g}")
         chosen = min(sleeves, key=lambda name: (abs(sleeves[name].finger_diameter - finger_mm), name))
-    return {"connector.mount": chosen, "connector.finger_diameter_mm": finger_mm}
+    return {"connector.mount": chosen, _FINGER: finger_mm}
 
 
 def _some_resin(target: Target, where: str, changes: dict[str, Any], library: Library) -> str:

@@ -13,7 +13,7 @@ from pneutouch.spec.casting import CAST_SEAT
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer, Process
 from pneutouch.spec.target import Target
-from pneutouch.workflows.select.base import setting_changes, settled_base
+from pneutouch.workflows.select.base import named_by_target, setting_changes, settled_base
 from pneutouch.workflows.select.document import document
 from pneutouch.workflows.select.gauged import select
 from pneutouch.workflows.select.run import STEPS, SelectionRun
@@ -58,7 +58,8 @@ def select_processes(
     """
     library = CachedLibrary((library or Library.default()).folders)
     names = _named(target, library)
-    usual = settled_base(target, setting_changes(target, library), library).print.profile
+    with named_by_target(target, where):
+        usual = settled_base(target, setting_changes(target, library), library).print.profile
     runs, profiles, left_out = {}, {}, {}
     for number, process in enumerate(names):
         offered = _profile(process, usual, target.given.materials, library)

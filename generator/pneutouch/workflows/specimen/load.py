@@ -5,7 +5,7 @@ from typing import Any
 
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.library import is_specimen
-from pneutouch.errors import InputError
+from pneutouch.errors import InputError, nearest
 from pneutouch.parts.specimen import Box, PatternContext
 from pneutouch.spec.fields import Table
 from pneutouch.spec.material import Material
@@ -53,7 +53,13 @@ def load_specimen(name: str, changes: Changes | None = None, library: Library | 
     """
     library = library or Library.default()
     files = library.paths("specimens")
-    path = files[name] if name in files else library.design_file(name)
+    try:
+        path = files[name] if name in files else library.design_file(name)
+    except InputError as error:
+        if error.key != "design":
+            raise
+        remedy = f"give the name or the path of a specimen.{nearest(name, files)}"
+        raise InputError("no such specimen or file", key="specimen", value=name, remedy=remedy) from None
     content = override(read_toml(path), changes or {}, Specimen)
     if not is_specimen(content):
         raise InputError(
