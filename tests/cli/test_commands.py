@@ -119,6 +119,44 @@ def test_new_writes_a_design_that_predicts_and_never_overwrites(command, tmp_pat
         assert command("new", "--", name).returncode == 2
 
 
+@pytest.mark.parametrize(
+    ("words", "place", "name"),
+    [
+        (["select", "fingertip"], "fingertip: no such file", "fingertip"),
+        (["select", "fingertip.toml"], "fingertip.toml: no such file", "fingertip"),
+        (["sweep", "wall-and-resin"], "wall-and-resin: no such file", "wall-and-resin"),
+        (["tray", "seven-resins"], 'design = "seven-resins": no such design or file', "seven-resins"),
+        (["characterize", "campaign"], "campaign: no such file or folder", "campaign"),
+        (["predict", "seven-resins"], "DESIGN seven-resins: no such design or file", "seven-resins"),
+    ],
+)
+def test_an_example_s_name_in_place_of_a_file_states_how_to_copy_it(command, words, place, name):
+    done = command(*words)
+    assert done.returncode == 2
+    said = done.stderr.splitlines()[-1]
+    assert place in said and f"is copied by `pneutouch new --from {name}`" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["select", "no-target.txt"], "no-target.txt: no such file; give the path of a target file"),
+        (
+            ["select", "paper-dome"],
+            "paper-dome: no such file; give the path of a target file; a design is given as --base",
+        ),
+        (
+            ["sweep", "paper-dome"],
+            "paper-dome: no such file; give the path of a sweep file; a design to vary is given as",
+        ),
+    ],
+)
+def test_a_file_that_is_not_there_is_named(command, words, said):
+    done = command(*words)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"error: {said}")
+
+
 def test_one_driving_pressure_is_a_list_of_one(command):
     words = ["predict", "paper-dome", "--model", "membrane", "--json", "--set"]
     one = command(*words, "pneumatics.driving_pressures_kPa=5")

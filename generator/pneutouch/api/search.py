@@ -12,10 +12,11 @@ from pneutouch.api.fields import WHERE, changes, named_by_keyword, path_of
 from pneutouch.api.given_base import given_base, with_base_named
 from pneutouch.api.unmet import unmet_lines
 from pneutouch.catalogue import DesignSource, ResolvedDesign
+from pneutouch.catalogue.examples import read_given
 from pneutouch.errors import InputError
 from pneutouch.holding import temporary_folder
 from pneutouch.spec.design import DesignFile
-from pneutouch.spec.read import override, read_toml, validate
+from pneutouch.spec.read import override, validate
 from pneutouch.spec.target import Target
 from pneutouch.wording import counted
 from pneutouch.workflows.select.document import document
@@ -74,7 +75,7 @@ def select(target: str | Path | None = None, **fields: Any) -> Selection:
     file = None if target is None else path_of(target, "target", _REMEDY)
     named, design = with_base_named(fields)
     with named_by_keyword(Target), given_base(design) as base:
-        content = override({} if file is None else read_toml(file), changes(Target, named), Target)
+        content = override({} if file is None else read_given(file, _REMEDY), changes(Target, named), Target)
         where = WHERE if file is None else str(file)
         goal = validate(Target, {"target": {}, **content} if file is None else content, where)
         if goal.setting.processes is not None:

@@ -2,8 +2,11 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from pneutouch.catalogue.places import shipped_root
+from pneutouch.errors import InputError
+from pneutouch.spec.files import exists
 from pneutouch.spec.read import read_toml
 
 FOLDER = "docs/examples"
@@ -27,6 +30,27 @@ class Example:
 def examples() -> dict[str, Example]:
     """The shipped examples by name."""
     return {path.stem: _example(path) for path in sorted((shipped_root() / FOLDER).glob("*.toml"))}
+
+
+def example_remedy(name: str) -> str | None:
+    """How the example of a name is had, which was given where a file is taken; None where there is none."""
+    name = name.removesuffix(".toml")
+    example = examples().get(name)
+    if example is None:
+        return None
+    what = f"a {example.kind} file for {COMMANDS[example.kind]}"
+    return f"the example of this name, {what}, is copied by `pneutouch new --from {name}`"
+
+
+def read_given(path: Path, otherwise: str) -> dict[str, Any]:
+    """Content of a TOML file that a user gave. Raises InputError, which states the example of this name where there is
+    one in place of the file, and ``otherwise`` what to give."""
+    try:
+        return read_toml(path)
+    except InputError as error:
+        if not exists(path):
+            error.remedy = example_remedy(str(path)) or otherwise
+        raise
 
 
 def _example(path: Path) -> Example:

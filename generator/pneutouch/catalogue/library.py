@@ -12,6 +12,7 @@ from typing import Any, TypeVar, cast
 
 from pydantic import BaseModel
 
+from pneutouch.catalogue.examples import example_remedy
 from pneutouch.catalogue.places import PACKAGE, shipped_root, user_folder
 from pneutouch.errors import InputError, nearest, one_line
 from pneutouch.spec.design import DesignFile
@@ -131,12 +132,9 @@ class Library:
                 f"{name}: is a texture specimen; it can be built, checked and scanned, this command needs the design "
                 "of a sensor"
             )
-        raise InputError(
-            "no such design or file",
-            key="design",
-            value=name,
-            remedy=f"give the name or the path of a design.{nearest(name, paths)}",
-        )
+        example, remedy = example_remedy(name), f"give the name or the path of a design.{nearest(name, paths)}"
+        remedy = f"{example}; or {remedy}" if example else remedy
+        raise InputError("no such design or file", key="design", value=name, remedy=remedy)
 
     def specimen_file(self, name: str) -> Path | None:
         """The file of a specimen given by name or path, or None where the name is a sensor's or of nothing."""

@@ -53,10 +53,11 @@ def field_tables(options: Mapping[str, FieldOption], values: Mapping[str, Any]) 
 
 
 @contextmanager
-def named_by_flag(given: Mapping[str, str], where: str) -> Iterator[None]:
+def named_by_flag(given: Mapping[str, str], where: str, *, alone: bool) -> Iterator[None]:
     """Name the option, and no file, in an error about a field of ``where`` that was given as one.
 
-    ``given``: the options' parameters by ``table.key``. A ``where`` that is no file is not named.
+    ``given``: the options' parameters by ``table.key``. Where they are ``alone``, ``where`` is no file, and is
+    not named.
     """
     try:
         yield
@@ -65,7 +66,7 @@ def named_by_flag(given: Mapping[str, str], where: str) -> Iterator[None]:
             parameter = given.get((each.key or "").partition("[")[0])
             if each.file in (None, where) and parameter is not None:
                 each.file, each.key = None, parameter
-            elif each.file == where and not where.endswith(".toml"):
+            elif alone and each.file == where:
                 each.file = None
         raise
 

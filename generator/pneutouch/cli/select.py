@@ -57,7 +57,7 @@ def select(
     where = str(target or _FLAGS_ALONE)
     stated = {name: SELECT_FIELDS[name] for name, value in fields.items() if value is not None}
     given = {f"{option.table}.{option.key}": name for name, option in stated.items()}
-    with reporting(), named_by_flag(given, where):
+    with reporting(), named_by_flag(given, where, alone=target is None):
         from pneutouch.output.files import check_writable
         from pneutouch.output.new import check_free
 
@@ -124,10 +124,11 @@ def _graded(target: Target, where: str, place: DesignPlace | None, *, json: bool
 
 def _target(path: Path | None, fields: dict[str, Any], set_: list[str]) -> Target:
     """The target of a file, options in place of its fields; or of options alone."""
+    from pneutouch.catalogue.examples import read_given
     from pneutouch.spec.files import design_inside
-    from pneutouch.spec.read import read_toml, validate
+    from pneutouch.spec.read import validate
 
-    content = {} if path is None else read_toml(path)
+    content = {} if path is None else read_given(path, "give the path of a target file; a design is given as `base`")
     setting = content.get("setting")
     if path is not None and isinstance(setting, dict) and isinstance(setting.get("base"), str):
         setting["base"] = design_inside(path.parent, setting["base"], file=path, key="setting.base")

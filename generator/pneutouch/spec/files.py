@@ -58,6 +58,14 @@ def is_file(path: Path) -> bool:
         return False
 
 
+def exists(path: Path) -> bool:
+    """Whether there is anything of this name; False, too, for a name that no file can have."""
+    try:
+        return path.exists()
+    except (OSError, ValueError):
+        return False
+
+
 def inside(folder: Path, name: str, *, file: str | PathLike[str], key: str) -> Path:
     """The path of ``name`` in ``folder``. Raises InputError where it leads out of the folder, by a link too.
 

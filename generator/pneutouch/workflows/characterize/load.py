@@ -13,6 +13,7 @@ from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.source import MeasuredFile, identify
 from pneutouch.bench.trace import Trace, trace
 from pneutouch.catalogue import ResolvedDesign
+from pneutouch.catalogue.examples import example_remedy
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.evaluation.resins import resin_of
 from pneutouch.spec.campaign import Campaign, CampaignRun
@@ -168,7 +169,7 @@ def recognise(run: CampaignRun, campaign: Campaign, folder: Path) -> MeasuredFil
 
 def _single(data: Path, scene: ResolvedDesign | None) -> Campaign:
     if not data.exists():
-        raise InputError("no such file or folder", file=data)
+        raise InputError("no such file or folder", file=data, remedy=example_remedy(str(data)))
     if scene is None:
         raise InputError("a single file needs its sensor", file=data, remedy="give `design`")
     run = CampaignRun(file=data.name, sensor=file_name(data.stem)[:_LONGEST], resin=resin_of(scene))

@@ -13,6 +13,7 @@ from pneutouch.bench.source import MeasuredFile
 from pneutouch.bench.summary import summarize
 from pneutouch.bench.trace import Trace
 from pneutouch.catalogue import DesignSource, Library, load_scene
+from pneutouch.catalogue.examples import example_remedy
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.fitted import check_fitted
@@ -139,7 +140,7 @@ def _design_of(data: Path) -> tuple[str, dict[str, Any]]:
     """The design that a campaign names, and what changes it."""
     if not (data.is_dir() or data.suffix == ".toml"):
         if not data.exists():
-            raise InputError("no such file or folder", file=data)
+            raise InputError("no such file or folder", file=data, remedy=example_remedy(str(data)))
         raise InputError("a single file needs its sensor", file=data, remedy="give `design`")
     campaign, folder = campaign_of(data)
     name = design_of(campaign, folder)

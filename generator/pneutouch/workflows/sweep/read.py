@@ -6,12 +6,13 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch.catalogue import DesignSource
+from pneutouch.catalogue.examples import read_given
 from pneutouch.errors import InputError, nearest, shown
 from pneutouch.spec.files import design_inside
 from pneutouch.spec.names import file_name, name_of
 from pneutouch.spec.number import is_finite
 from pneutouch.spec.over import MAX_VALUES, parse_over, spread
-from pneutouch.spec.read import Changes, read_toml
+from pneutouch.spec.read import Changes
 from pneutouch.workflows.sweep.plan import PRESSURES, Settings, SweepAxis, SweepPlan, Value
 from pneutouch.workflows.sweep.swept_field import takes_flags, takes_infinity
 
@@ -26,7 +27,7 @@ def plan_of_file(path: Path, changes: Changes | None = None, **options: str | No
 
     Raises InputError naming file, key and value.
     """
-    where, content = str(path), read_toml(path)
+    where, content = str(path), read_given(path, "give the path of a sweep file; a design to vary is given as `design`")
     for key in content:
         if key not in KEYS:
             raise InputError(f"{key}: unknown key.{nearest(key, KEYS)}", file=where)
