@@ -15,7 +15,7 @@ _HOMES = {
     "api.measuring": ("FittedSensor", "calibrate", "characterize", "plan", "scan", "simulate"),
     "api.signals": ("respond",),
     "api.materials": ("fit_material",),
-    "api.listing": ("Listing", "calibrations", "designs", "materials", "printers"),
+    "api.listing": ("Listing", "calibrations", "designs", "gauges", "materials", "printers"),
     "errors": ("ComputationError", "InputError", "PneutouchError", "RuleBrokenError"),
 }
 __all__ = [*sorted(name for names in _HOMES.values() for name in names), "__version__"]

@@ -6,6 +6,7 @@ from pneutouch.api.driving import DrivingResult as DrivingResult
 from pneutouch.api.listing import Listing as Listing
 from pneutouch.api.listing import calibrations as calibrations
 from pneutouch.api.listing import designs as designs
+from pneutouch.api.listing import gauges as gauges
 from pneutouch.api.listing import materials as materials
 from pneutouch.api.listing import printers as printers
 from pneutouch.api.materials import fit_material as fit_material

@@ -98,7 +98,7 @@ def test_a_comparison_shows_names_that_differ_and_a_figure_shows_itself():
 
 
 def test_listings_are_the_command_lines(printed):
-    for kind in ("designs", "materials", "printers"):
+    for kind in ("designs", "materials", "printers", "gauges"):
         assert getattr(pt, kind)() == {entry["name"]: entry["title"] for entry in printed("list", kind)[kind]}
 
 

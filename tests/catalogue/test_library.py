@@ -7,6 +7,7 @@ import itertools
 import pytest
 
 from pneutouch.catalogue import Library, load_scene
+from pneutouch.catalogue.listing import listing
 from pneutouch.errors import InputError
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
@@ -112,3 +113,10 @@ def test_a_specimen_asked_for_as_a_design_is_called_by_its_name(library):
         InputError, match="texture-specimen: is a texture specimen; it can be built, checked and scanned"
     ):
         load_scene("texture-specimen", None, library)
+
+
+@pytest.mark.parametrize("kind", ["ports", "seats", "mounts", "tubes"])
+def test_a_kind_of_part_is_listed_under_parts(kind):
+    with pytest.raises(InputError, match=f'^kind = "{kind}": unknown; they are listed under parts$'):
+        listing(kind)
+    assert kind in {entry["kind"] for entry in listing("parts")["parts"]}

@@ -1,4 +1,4 @@
-"""What can be named: designs, calibrations, materials and printers."""
+"""What can be named: designs, calibrations, materials, printers and gauges."""
 
 from typing import Any
 
@@ -34,6 +34,11 @@ def calibrations() -> Listing:
 def printers() -> Listing:
     """The printers."""
     return _listed("printers")
+
+
+def gauges() -> Listing:
+    """The pressure gauges, which ``design.replace(gauge=NAME)`` takes."""
+    return _listed("gauges")
 
 
 def _listed(kind: str) -> Listing:

@@ -35,7 +35,10 @@ def listing(kind: str | None, library: Library | None = None) -> dict[str, list[
     A file that cannot be read has no title, and ``file`` and ``error``: its path and what is wrong with it.
     """
     if kind is not None and kind not in _GROUPS:
-        raise InputError(f"unknown.{nearest(kind, _GROUPS)}", key="kind", value=kind)
+        group = next((group for group, kinds in _GROUPS.items() if kind in kinds), None)
+        remedy = None if group is None else f"they are listed under {group}"
+        hint = "" if group else nearest(kind, _GROUPS)
+        raise InputError(f"unknown.{hint}" if hint else "unknown", key="kind", value=kind, remedy=remedy)
     library = library or Library.default()
     groups = _GROUPS if kind is None else {kind: _GROUPS[kind]}
     listed = {
