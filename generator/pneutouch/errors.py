@@ -61,7 +61,7 @@ class PneutouchError(Exception):
         place = known or self.key or ""
         if self.value is not None:
             # An option takes its value after a space, a field of a file after an equals sign.
-            equals = " = " if not known else "=" if " " in known else " "
+            equals = "" if not place else " = " if not known else "=" if " " in known else " "
             place = f"{place}{equals}{_typed(self.value) if known else shown(self.value)}"
         text = self.problem if not self.remedy else f"{self.problem}; {self.remedy}"
         text = re.sub(r"`(\w+)`", lambda name: option(name[1]) or name[0], text)

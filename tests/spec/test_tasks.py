@@ -40,10 +40,31 @@ def test_a_toml_and_a_csv_file_hold_the_same_tasks(tmp_path):
     assert read_tasks(tmp_path / "a.toml") == read_tasks(tmp_path / "a.csv")
 
 
+@pytest.mark.parametrize("delimiter", [";", "\t"])
+@pytest.mark.parametrize("mark", [",", "."])
+def test_cells_may_be_separated_by_semicolons_or_tabs(tmp_path, delimiter, mark):
+    (tmp_path / "a.csv").write_text("name,sensitivity_kPa_per_N,stiffness_N_per_mm\ngrasp,,2.4\n,1.95,\n")
+    text = "name;sensitivity_kPa_per_N;stiffness_N_per_mm\ngrasp;;2.4\n;1.95;\n"
+    (tmp_path / "b.csv").write_text("\ufeff" + text.replace(".", mark).replace(";", delimiter))
+    assert read_tasks(tmp_path / "b.csv") == read_tasks(tmp_path / "a.csv")
+
+
 @pytest.mark.parametrize(
     ("name", "text", "message"),
     [
-        ("a.csv", "name,stiffness\ngrasp,2\n", "unknown column. Did you mean stiffness_N_per_mm?"),
+        (
+            "a.csv",
+            "name,stiffness\ngrasp,2\n",
+            'a.csv: header = "stiffness": unknown column. Did you mean stiffness_N_per_mm?',
+        ),
+        ("a.csv", "name;stiffness\ngrasp;2\n", 'a.csv: header = "stiffness": unknown column. Did you mean stiffness'),
+        (
+            "a.csv",
+            "name;force_range_N\ngrasp;1,234\n",
+            'force_range_N = "1,234": must be a number; write it with a decimal',
+        ),
+        ("a.csv", "name;force_range_N\ngrasp;1,2,3\n", 'force_range_N = "1,2,3": must be a number'),
+        ("a.csv", "name,force_range_N\ngrasp,1_0\n", 'force_range_N = "1_0": must be a number'),
         ("a.csv", "name,stiffness_N_per_mm\n", "holds no task"),
         ("a.csv", "name,stiffness_N_per_mm\ngrasp\n", "line 2 has 1 cells, the header 2"),
         ("a.csv", "name,stiffness_N_per_mm\ngrasp,high\n", 'line 2: stiffness_N_per_mm = "high": must be a number'),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,6 +13,7 @@ from pneutouch.errors import InputError, nearest
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, declaration, number
 from pneutouch.spec.files import read_bytes
+from pneutouch.spec.number import plain_number
 from pneutouch.spec.read import read_toml, validate
 
 TASK_FIGURES = {
@@ -53,6 +55,12 @@ class DrivingTask(Table):
         return float(getattr(self, self.figure))
 
 
+_DELIMITERS = (",", ";", "\t")
+"""What separates the cells of a CSV file: that which its header has most of."""
+
+_DECIMAL_COMMA = re.compile(r"[+-]?(\d+,\d*|,\d+)([eE][+-]?\d+)?")
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
+
 MOST_TASKS = 50
 """Of one file."""
 
@@ -85,7 +93,10 @@ def parse_task(text: str) -> DrivingTask:
 
 
 def read_tasks(path: Path) -> list[DrivingTask]:
-    """The tasks of a TOML file (tables ``[[task]]``) or of a CSV file (columns of the same keys). Raises InputError."""
+    """The tasks of a TOML file (tables ``[[task]]``) or of a CSV file (columns of the same keys).
+
+    Semicolons or tabs may separate the cells; a comma is then a decimal one. Raises InputError.
+    """
     if path.suffix.lower() != ".csv":
         return validate(TaskFile, read_toml(path), str(path)).task
     rows = _csv_rows(path)
@@ -99,7 +110,10 @@ def _csv_rows(path: Path) -> list[tuple[int, dict[str, str]]]:
     except UnicodeDecodeError as error:
         raise InputError(f"not UTF-8 text (byte {error.start})", file=path) from None
     try:
-        reader = csv.reader(text.splitlines(), strict=True)
+        written = text.splitlines()
+        head_line = next((line for line in written if line.strip()), "")
+        delimiter = max(_DELIMITERS, key=head_line.count)
+        reader = csv.reader(written, delimiter=delimiter, strict=True)
         lines = [(reader.line_num, [cell.strip() for cell in row]) for row in reader if any(map(str.strip, row))]
     except csv.Error as error:
         raise InputError(f"no CSV table: {error}", file=path) from None
@@ -110,18 +124,29 @@ def _csv_rows(path: Path) -> list[tuple[int, dict[str, str]]]:
     head, known = lines[0][1], list(DrivingTask.model_fields)
     for column in head:
         if column not in known:
-            raise InputError(f"unknown column.{nearest(column, known)}", file=path, value=column)
+            raise InputError(f"unknown column.{nearest(column, known)}", file=path, key="header", value=column)
     for line, row in lines[1:]:
         if len(row) != len(head):
             raise InputError(f"line {line} has {len(row)} cells, the header {len(head)}", file=path)
-    return [(line, {k: cell for k, cell in zip(head, row, strict=True) if cell}) for line, row in lines[1:]]
+    mark = "." if delimiter == "," else ","
+    return [(line, {k: _pointed(k, c, mark) for k, c in zip(head, row, strict=True) if c}) for line, row in lines[1:]]
+
+
+def _pointed(key: str, cell: str, mark: str) -> str:
+    """A cell as TOML has it: a decimal comma of a figure as a point, where commas do not separate the cells.
+
+    One that may separate thousands stays, and is refused as no number.
+    """
+    decimal = mark == "," and key in TASK_FIGURES.values() and not _THOUSANDS.fullmatch(cell)
+    return cell.replace(",", ".") if decimal and _DECIMAL_COMMA.fullmatch(cell) else cell
 
 
 def _of_row(row: dict[str, str], where: str) -> DrivingTask:
     content: dict[str, Any] = dict(row)
     for key in content.keys() & set(TASK_FIGURES.values()):
         try:
-            content[key] = float(row[key])
+            content[key] = plain_number(row[key])
         except ValueError:
-            raise InputError("must be a number", file=where, key=key, value=row[key]) from None
+            remedy = "write it with a decimal point, without marks of thousands" if "," in row[key] else None
+            raise InputError("must be a number", file=where, key=key, value=row[key], remedy=remedy) from None
     return validate(DrivingTask, content, where)
