@@ -124,9 +124,19 @@ def test_time_in_milliseconds_is_identified(tmp_path, samples):
     refused(tmp_path, slow, "column time_s", "holds last 2.4e+03 s", "is the column in ms? set columns.time.unit")
 
 
-def test_what_no_unit_explains_is_a_question():
+def test_what_no_unit_explains_is_a_question_with_its_keys():
     words = check_plausible(ideal(factor=(1, 20.0, 1)), COLUMNS, replace(EXPECTED, depth=6.9), Path("run.csv"))
     assert len(words) == 1 and "column force_N" in words[0] and "no unit explains that" in words[0]
+    assert "runs.resin" in words[0] and "design" in words[0]
+
+
+@pytest.mark.parametrize(("times", "left"), [(185.0, "1.8 times"), (50.0, "0.49 times")])
+def test_far_from_the_prediction_a_unit_explains_a_reading_that_it_brings_near(times, left):
+    """A column in gf read as N, of a sensor twice as stiff as predicted or half as stiff: no sensor is 185 times."""
+    expected = ExpectedRun(6.9, float(SENSOR.force(6.9)), SENSOR.slope * float(SENSOR.force(6.9)))
+    with pytest.raises(InputError) as caught:
+        check_plausible(ideal(factor=(1, times, 1)), COLUMNS, expected, Path("run.csv"))
+    assert f"is the column in gf, {left} the prediction then? set columns.force.unit" in str(caught.value)
 
 
 @settings(max_examples=50, deadline=None)
@@ -158,10 +168,26 @@ def test_wrong_signs_are_reported(tmp_path, samples, row, words):
     refused(tmp_path, wrong, words)
 
 
-def test_another_driving_pressure_is_a_question(tmp_path, samples):
-    (words,) = analyse(tmp_path, samples, sensor=replace(SENSOR, driving=22 * KPA))
-    assert "column pressure_kPa: 12 kPa before contact" in words and "driving_pressure_kPa = 22" in words
+@pytest.mark.parametrize("expected", [EXPECTED, None])
+def test_another_driving_pressure_is_refused_until_answered(tmp_path, samples, expected):
+    sensor = replace(SENSOR, driving=22 * KPA)
+    said = "column pressure_kPa: 12 kPa before contact", "driving_pressure_kPa = 22", "driving_pressure_kPa = 12 below"
+    refused(tmp_path, samples, *said, sensor=sensor, expected=expected)
+    assert analyse(tmp_path, samples, expected=expected) == ()
+
+
+def test_a_driving_pressure_a_little_off_is_a_question(tmp_path, samples):
+    (words,) = analyse(tmp_path, samples, sensor=replace(SENSOR, driving=14 * KPA))
+    assert "column pressure_kPa: 12 kPa before contact" in words and "driving_pressure_kPa = 14" in words
     assert analyse(tmp_path, samples, sensor=replace(SENSOR, driving=12.9 * KPA)) == ()
+
+
+@pytest.mark.parametrize("driving", [0.0, 12.0])
+@pytest.mark.parametrize("expected", [EXPECTED, None])
+def test_an_absolute_pressure_is_refused_with_what_to_subtract(driving, expected):
+    absolute = replace(ideal(deepest=DEPTH, driving=driving), driving=(driving + 101.3) * KPA)
+    with pytest.raises(InputError, match=r"looks like an absolute pressure; subtract the ambient pressure"):
+        check_plausible(absolute, COLUMNS, expected, Path("run.csv"))
 
 
 def test_the_odd_one_of_three_is_named():
@@ -200,8 +226,8 @@ def test_without_a_prediction_time_and_driving_pressure_are_checked_and_magnitud
     assert analyse(tmp_path, samples, expected=None) == ()
     assert check_plausible(ideal(factor=(1, 20.0, 1)), COLUMNS, None, Path("run.csv")) == ()
     refused(tmp_path, samples * np.array([[1e3], [1], [1], [1]]), "is the column in ms?", expected=None)
-    (words,) = analyse(tmp_path, samples, sensor=replace(SENSOR, driving=22 * KPA), expected=None)
-    assert "driving_pressure_kPa = 22" in words
+    (words,) = analyse(tmp_path, samples, sensor=replace(SENSOR, driving=14 * KPA), expected=None)
+    assert "driving_pressure_kPa = 14" in words
 
 
 @pytest.mark.parametrize("expected", [EXPECTED, None])

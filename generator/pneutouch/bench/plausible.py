@@ -12,7 +12,7 @@ from pneutouch.bench.record import Blocks, MeasuredCurve
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import CampaignRun, ColumnMap, Rig
 from pneutouch.tables.unit_words import UNITS
-from pneutouch.units import KPA
+from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 
 __all__ = ["ExpectedRun", "check_leak", "check_plausible"]
 
@@ -26,6 +26,16 @@ UNIT_NEAR = 1.8
 RESET_KPA, RESET_SHARE = 1.0, 0.1
 """How far the pressure before contact may be from the driving pressure: our choice, a regulator's scatter."""
 
+BEYOND = 10.0
+"""Factor from the prediction of force or rise from which no sensor is the reason: our choice, three times `FAR`.
+Another unit then explains a reading that it brings within `FAR`."""
+
+DRIVING_FAR = 3.0
+"""Times `RESET_KPA` or `RESET_SHARE` beyond which no gauge zero and no regulator is the reason: our choice."""
+
+ABSOLUTE = (0.6, 1.1)
+"""Excess before contact, in standard atmospheres, that looks like an absolute pressure: up to 4 km above the sea."""
+
 SWAP_MARGIN = math.log(2.0)
 """How much nearer to the prediction the swapped reading must be (log of a factor) at no driving pressure."""
 
@@ -35,6 +45,7 @@ _RESTS = 0.05
 _OR_MINUS = " (in `columns` a minus before the name turns the sign)"
 
 _HOLD_FAR = 50.0
+_WHY = "another resin (runs.resin) or design (design), a smaller plate, or a wrong calibration?"
 _WHY_TIME = "holds of another protocol, another kind of run, or another column?"
 
 _START = 1.0
@@ -68,17 +79,18 @@ class ExpectedRun:
 def check_plausible(
     curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun | None, file: Path
 ) -> tuple[str, ...]:
-    """Questions about a run that may nevertheless be correct.
+    """Questions about a run that may nevertheless be correct and is used.
 
     Without a prediction (``expected`` None) only signs, times and the driving pressure are checked. Raises InputError
     for what is impossible: a sign that is wrong, force and pressure swapped, a magnitude that is off by more than `FAR`
-    and right in another unit of `spec.campaign.UNITS`."""
+    and right in another unit of `spec.campaign.UNITS` (beyond `BEYOND`: near in another unit), a pressure before
+    contact that is `DRIVING_FAR` times as far from the driving pressure as a reset leaves it."""
     _check_signs(curve, columns, file)
     if expected is not None:
         _check_swap(curve, columns, expected, file)
     time = _check_time(curve, columns, file)
     magnitudes = [] if expected is None else _magnitudes(curve, columns, expected, file)
-    return tuple(text for text in (*magnitudes, time, _driving(curve, columns)) if text is not None)
+    return tuple(text for text in (*magnitudes, time, _driving(curve, columns, file)) if text is not None)
 
 
 def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
@@ -144,12 +156,15 @@ def _magnitude(file: Path, columns: ColumnMap, key: str, ratio: float, reads: st
     times = f"{ratio:.2g} times it" if ratio < 100 else f"{ratio:.0f} times it"
     problem = f"column {column.name}: {reads} where {predicted}, {times}"
     declared = UNITS[key][column.unit]
+    near = FAR if key in ("force", "pressure") and not 1 / BEYOND <= ratio <= BEYOND else UNIT_NEAR
     off = {unit: abs(math.log(max(ratio, 1e-12) * factor / declared)) for unit, factor in UNITS[key].items()}
     nearest = min(off, key=lambda unit: off[unit])
-    if nearest != column.unit and off[nearest] < math.log(UNIT_NEAR):
+    if nearest != column.unit and off[nearest] < math.log(near):
         same = " or ".join(unit for unit in off if math.isclose(UNITS[key][unit], UNITS[key][nearest]))
-        raise InputError(f"{problem}; is the column in {same}? set columns.{key}.unit", file=file)
-    why = _WHY_TIME if key == "time" else "another resin or design, a smaller plate, or a wrong calibration?"
+        is_exact = off[nearest] < math.log(UNIT_NEAR)
+        then = "" if is_exact else f", {ratio * UNITS[key][nearest] / declared:.2g} times the prediction then"
+        raise InputError(f"{problem}; is the column in {same}{then}? set columns.{key}.unit", file=file)
+    why = _WHY_TIME if key == "time" else _WHY
     return f"{problem}; no unit explains that: {why}"
 
 
@@ -217,11 +232,22 @@ def _check_time(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | N
     return _magnitude(file, columns, "time", length / usual, reads, f"the protocol has {usual:g} s")
 
 
-def _driving(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
+def _driving(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None:
     stated_kPa, read_kPa = curve.run.driving_pressure_kPa, curve.driving / KPA
-    if abs(read_kPa - stated_kPa) <= max(RESET_KPA, RESET_SHARE * stated_kPa):
+    off_kPa, near_kPa = read_kPa - stated_kPa, max(RESET_KPA, RESET_SHARE * stated_kPa)
+    if abs(off_kPa) <= near_kPa:
         return None
-    return (
+    problem = (
         f"column {columns.pressure.name}: {read_kPa:.3g} kPa before contact; the campaign states "
-        f"driving_pressure_kPa = {stated_kPa:g}; another run's file, a gauge not zeroed, or absolute pressure?"
+        f"driving_pressure_kPa = {stated_kPa:g}"
     )
+    if abs(off_kPa) <= DRIVING_FAR * near_kPa:
+        return f"{problem}; another run's file, or a gauge not zeroed?"
+    set_so = f"driving_pressure_kPa = {read_kPa:.0f} below its [[runs]] entry" if read_kPa > -RESET_KPA else ""
+    if ABSOLUTE[0] < off_kPa * KPA / STANDARD_ATMOSPHERE < ABSOLUTE[1]:
+        problem += ", which looks like an absolute pressure"
+        remedy = f"subtract the ambient pressure in the file (pressures are gauge pressures), or state {set_so}"
+    else:
+        remedy = "state the run's own file, its unit (columns.pressure.unit) or a file of a zeroed gauge"
+        remedy += f", or {set_so}" if set_so else ""
+    raise InputError(problem, file=file, remedy=remedy)

@@ -22,7 +22,7 @@ def calibration_text(document: OutcomeRecord) -> str:
         "" if chi is None else f"chi-squared per degree of freedom: {chi:.2f}",
         _response(document["response"]),
         "\n".join(f"note: {note}" for note in document["notes"]),
-        "\n".join(f"not read: {file}: {why}" for file, why in document["failures"]),
+        "\n".join(f"not used: {file}: {why}" for file, why in document["failures"]),
         "\n".join(f"written: {path}" for path in document["written"]),
     ]
     return "\n\n".join(part for part in parts if part)

@@ -53,7 +53,7 @@ def characterize(
     json: JsonOption = False,
     **fields: Any,
 ) -> None:
-    """Turn measured runs into figures and compare them with the prediction; exit 3 where files could not be read."""
+    """Turn measured runs into figures and compare them with the prediction; exit 3 where files are not used."""
     with reporting():
         from pneutouch.cli.progress import bar
         from pneutouch.errors import InputError, nearest
@@ -78,7 +78,7 @@ def characterize(
             notify(reading_text(outcome.read_as))
         for file, message in outcome.measured.failures:
             words = InputError(message).message(partial(option, context.command))
-            notify(f"error: {file}: not read: {words}")
+            notify(f"error: {file}: not used: {words}")
         if outcome.failed:
             raise typer.Exit(3)
         if outcome.missed:

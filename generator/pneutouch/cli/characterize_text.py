@@ -24,7 +24,7 @@ def measured_text(document: dict[str, Any]) -> str:
         error = "" if entry["standard_error"] is None else f" ± {entry['standard_error']:.2g}"
         lines.append(f"\n{entry['sensor']}: {entry['figure']} {entry['value']:.4g}{error} {entry['unit']}")
     lines += _warnings(document["runs"])
-    lines += [f"\nquestion: {entry['file']}: {entry['question']}" for entry in document["questions"]]
+    lines += [f"\nquestion: {entry['file']}: {entry['question']} The run is used." for entry in document["questions"]]
     return "\n".join(lines)
 
 

@@ -120,6 +120,34 @@ def test_an_injection_in_absolute_pressure_fails_alone(folder, library):
     assert [file for file, _ in outcome.measured.failures] == [name] and len(outcome.measured.comparisons) == 2
 
 
+@pytest.mark.parametrize(
+    ("column", "change", "key"),
+    [
+        ("force_N", lambda values: values * 185, "columns.force.unit"),
+        ("pressure_kPa", lambda values: values + 101.325, "driving_pressure_kPa = 0"),
+        ("pressure_kPa", lambda values: values + 22.0, "driving_pressure_kPa = 0"),
+    ],
+)
+def test_a_run_that_contradicts_the_campaign_is_not_used(folder, library, command, column, change, key):
+    frame = table(folder)
+    frame[column] = change(frame[column])
+    written(frame, folder)
+    result = command("characterize", str(folder), "--model", "atlas", "--json", "--evidence", "none")
+    assert result.returncode == 3
+    document = json.loads(result.stdout)
+    assert [one["file"] for one in document["failures"]] == [FIRST] and FIRST not in str(document["runs"])
+    assert key in document["failures"][0]["message"]
+
+
+def test_a_run_with_an_open_question_is_used_and_said_to_be(folder, library, command):
+    frame = table(folder)
+    frame["pressure_kPa"] += 1.5
+    written(frame, folder)
+    result = command("characterize", str(folder), "--model", "atlas", "--evidence", "none")
+    assert result.returncode == 0
+    assert "not zeroed? The run is used." in " ".join(result.stdout.split())
+
+
 def test_a_leak_run_that_is_clipped_is_refused_and_one_at_another_pressure_asked_about(folder, library):
     clipped, other = (f"runs/TangoPlus-{k}-22kPa-leak-1.csv" for k in (1, 2))
     for name, pressure in ((clipped, 100.0), (other, 60.0)):

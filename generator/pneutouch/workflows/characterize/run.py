@@ -68,7 +68,7 @@ class CharacterizationResult:
 
     @property
     def failed(self) -> bool:
-        """Whether a file could not be read."""
+        """Whether a file is not used."""
         return bool(self.measured.failures)
 
     @property
