@@ -7,6 +7,7 @@ import json
 import pytest
 
 import pneutouch as pt
+from pneutouch.cli.driving_text import schedule_text
 
 ZERO = ("--model", "atlas")
 
@@ -20,6 +21,14 @@ def test_for_answers_with_pressure_band_and_next_step(command):
     assert last == "next: pneutouch predict paper-dome --set 'pneumatics.driving_pressures_kPa=[13.25]'"
     again = command("predict", "paper-dome", "--set", "pneumatics.driving_pressures_kPa=[13.25]", *ZERO, "--json")
     assert json.loads(again.stdout)["states"][0]["sensitivity_kPa_per_N"] == pytest.approx(2.1, rel=1e-3)
+
+
+def test_only_a_sensor_that_a_fit_covers_is_to_be_calibrated(command):
+    done = command("predict", "paper-dome", "--for", "sensitivity=2.1", *ZERO, "--json")
+    document = json.loads(done.stdout)
+    assert document["is_fitted"] and "calibrate it (pneutouch calibrate)" in schedule_text(document)
+    other = schedule_text({**document, "is_fitted": False})
+    assert "no calibration covers such a sensor" in other and "pneutouch calibrate" not in other
 
 
 def test_a_figure_out_of_reach_ends_with_code_1_and_its_range(command):

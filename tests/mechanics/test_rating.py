@@ -56,6 +56,13 @@ def test_a_measured_modulus_is_a_remedy_only_for_what_it_reaches(library):
     assert found.remedy_for(25 * KPA) == found.remedy
 
 
+def test_only_a_sensor_that_a_fit_covers_is_to_be_calibrated(library):
+    """A silicone with a law of its own is outside the atlas, which every fit is made with."""
+    cast = rated(library, "DragonSkin20", Limits(0.04, None, 0.1))
+    assert rated(library).remedy.endswith("confirm the nominal modulus, or calibrate a built sensor")
+    assert cast.remedy.endswith("confirm the nominal modulus")
+
+
 def test_the_narrower_the_modulus_is_known_the_higher_the_rating(library):
     pressures = [rated(library, spread=spread).pressure for spread in (0.3, 0.2, 0.1, 0.05, 0.01)]
     assert np.all(np.diff(pressures) > 0)

@@ -103,9 +103,12 @@ def _notes(task: dict[str, Any], document: dict[str, Any]) -> list[str]:
         lines.append(f"{required}: also at {at} kPa; the lowest is taken")
     band = first["band"]
     if band is not None and (band["open_low"] or band["open_high"]):
+        advice = "calibrate it (pneutouch calibrate), then repeat with --calibration"
+        if not document["is_fitted"]:
+            advice = "measure it (pneutouch characterize): no calibration covers such a sensor"
         lines.append(
             f"{required}: its uncertainty exceeds what pressure can correct: the sensor in hand may not reach it; "
-            "calibrate it (pneutouch calibrate), then repeat with --calibration"
+            f"{advice}"
         )
     return lines
 

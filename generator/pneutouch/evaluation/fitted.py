@@ -2,18 +2,13 @@
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
-from pneutouch.mechanics.atlas_states import outside_atlas
-from pneutouch.mechanics.contact_correction import plate_alone
+from pneutouch.mechanics.fit_cover import outside_fit
 from pneutouch.mechanics.sensor import Sensor
 
 
 def check_fitted(scene: ResolvedDesign, sensor: Sensor) -> None:
-    """Raise InputError where the atlas, which every fit is made with, does not cover the sensor at a depth it has.
-
-    Friction and objects are the solid's correction of it (`mechanics.contact_correction`).
-    """
-    plate = plate_alone(sensor)
-    why = outside_atlas(plate.replace(depth=min(plate.protocol.depth, 0.75 * plate.dome.inner_radius)))
+    """Raise InputError where the atlas, which every fit is made with, does not cover the sensor at a depth it has."""
+    why = outside_fit(sensor)
     if why is None:
         return
     contact = scene.design.contact

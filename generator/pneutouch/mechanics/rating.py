@@ -7,6 +7,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.fit_cover import outside_fit
 from pneutouch.mechanics.limits import RATED_SHARE, Limits
 from pneutouch.mechanics.models import DISCRETISATION
 from pneutouch.mechanics.sensor import Sensor
@@ -68,11 +69,13 @@ class Rating:
         pressure: The rated pressure, MPa.
         limits: The limits that are met, the one with the least lower end first.
         measured: What the rated pressure would be with the modulus measured on coupons and confirmed, MPa.
+        is_fitted: Whether a calibration of a built sensor would cover it.
     """
 
     pressure: float
     limits: tuple[UncertainLimit, ...]
     measured: float
+    is_fitted: bool = True
 
     @property
     def limit(self) -> UncertainLimit:
@@ -128,7 +131,7 @@ class Rating:
         measured_kPa = tenths_below(self.measured / KPA)
         return (
             f"measure the modulus on coupons (to {COUPON:.0%}), which makes it {measured_kPa:.1f} kPa if they confirm "
-            "the nominal modulus, or calibrate a built sensor"
+            f"the nominal modulus{', or calibrate a built sensor' if self.is_fitted else ''}"
         )
 
     def remedy_for(self, pressure: float) -> str | None:
@@ -198,4 +201,4 @@ def rating(
         float(rated_pressure(np.array([least]), relative, limits.gauge)[0])
         for relative in (spread.standard, spread.measured)
     )
-    return Rating(rated, tuple(sorted(intervals, key=lambda limit: limit.low)), measured)
+    return Rating(rated, tuple(sorted(intervals, key=lambda limit: limit.low)), measured, outside_fit(sensor) is None)

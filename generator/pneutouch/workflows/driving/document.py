@@ -31,6 +31,7 @@ def schedule_document(schedule: DrivingSchedule) -> dict[str, Any]:
         "rated_pressure_kPa": rating.pressure / KPA,
         "highest_kPa": float(curves.pressures[-1]) / KPA,
         "limit": curves.evaluation.prediction.limits.binding,
+        "is_fitted": rating.is_fitted,
         "dead_volume_mL": curves.gas.dead_volume / ML,
         "ambient_pressure_kPa": curves.gas.ambient / KPA,
         "temperature_C": REFERENCE_TEMPERATURE - 273.15,
