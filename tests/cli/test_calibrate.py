@@ -219,6 +219,51 @@ def test_a_fit_that_is_no_calibration_is_reported(campaign, place, soft):
     assert plain.stderr.splitlines()[-1] == "next: pneutouch predict mine --set pneumatics.dead_volume_mL=0.3"
 
 
+@pytest.fixture
+def stretched(monkeypatch):
+    """Forces of the runs multiplied by a factor, as by a wrong gain of the load cell; the travel is kept."""
+
+    def stretch(factor, power=1.0):
+        def exchanged(*given):
+            sensor, seen, notes = observations_of(*given)
+            curves = (
+                replace(curve, force=factor * curve.force.max() * (curve.force / curve.force.max()) ** power)
+                for curve in seen.curves
+            )
+            return sensor, replace(seen, curves=tuple(curves)), notes
+
+        monkeypatch.setattr("pneutouch.workflows.calibrate.run.observations_of", exchanged)
+
+    return stretch
+
+
+def test_a_usual_fit_has_no_warning_and_a_poor_one_has(campaign, place, stretched):
+    words = ("calibrate", str(campaign), "--design", "mine", "--out", "out")
+    usual = run(*words, "--json")
+    assert json.loads(usual.stdout)["warnings"] == []
+    stretched(1.5)
+    poor = run(*words, "--save", "poor", "--json")
+    assert poor.exit_code == 0, poor.stderr
+    (said,) = json.loads(poor.stdout)["warnings"]
+    assert said.startswith("the fitted model describes the runs poorly: it is off in force by 1")
+    assert f"\nwarning: {said}\n" in calibration_text(json.loads(poor.stdout))
+
+
+@pytest.mark.parametrize(("factor", "power"), [(0.4, 1.0), (1.0, 0.1)])
+def test_runs_that_contradict_the_fitted_model_give_no_calibration(campaign, place, stretched, factor, power):
+    stretched(factor, power)
+    words = ("calibrate", str(campaign), "--design", "mine", "--out", "out")
+    result = run(*words, "--json")
+    assert result.exit_code == 1, result.stderr
+    said = json.loads(result.stdout)
+    reason = "no calibration was saved: the runs contradict the fitted model: it is off in force by"
+    assert said["calibration"] is None and said["notes"][-1].startswith(reason) and len(said["warnings"]) == 1
+    assert not (place / "calibrations").exists()
+    saved = run(*words, "--save", "dome-1")
+    assert saved.exit_code == 2 and not (place / "calibrations").exists()
+    assert "the runs contradict the fitted model" in saved.stderr and "check units, columns" in saved.stderr
+
+
 def test_one_that_was_to_be_saved_is_an_error_with_its_report(campaign, place, soft):
     words = ("--no-priors", "--fit", "modulus", "--save", "dome-1")
     result = run("calibrate", str(campaign), "--design", "mine", "--out", "out", *words)

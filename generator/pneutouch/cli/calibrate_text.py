@@ -6,7 +6,7 @@ from pneutouch.workflows.calibrate.record import EstimateRecord, OutcomeRecord, 
 
 
 def calibration_text(document: OutcomeRecord) -> str:
-    """The estimates and the design's values, the goodness of the fit, notes, and the files written."""
+    """The estimates and the design's values, the goodness of the fit, warnings, notes, and the files written."""
     rows = [
         [e["key"], f"{e['value']:.4g}", _interval(e), f"designed {e['designed']:.4g}"] for e in document["estimates"]
     ]
@@ -21,6 +21,7 @@ def calibration_text(document: OutcomeRecord) -> str:
         table_text([], rows),
         "" if chi is None else f"chi-squared per degree of freedom: {chi:.2f}",
         _response(document["response"]),
+        "\n".join(f"warning: {warning}" for warning in document["warnings"]),
         "\n".join(f"note: {note}" for note in document["notes"]),
         "\n".join(f"not used: {file}: {why}" for file, why in document["failures"]),
         "\n".join(f"written: {path}" for path in document["written"]),

@@ -20,7 +20,7 @@ A share that is the same everywhere is a modulus to the model, so no residual sh
 carries more at the end of a 4 s hold than at rest; no Prony data of these resins are published, the paper's Fig. S1
 calls relaxation low, and what the air reads of it is less than what the plate does."""
 
-_LARGEST = 0.3
+LARGEST = 0.3
 """Greatest size considered: our choice, no longer a model of the sensor."""
 
 _LENGTH = 0.5
@@ -96,7 +96,7 @@ def sizes_of(
     sizes = np.maximum(floor, 1e-6)
     for _ in range(2):
         for kind in np.unique(shared.kind[shared.kind < TRAVEL]):
-            tried = np.geomspace(max(floor[kind], 1e-4), _LARGEST, _GRID)
+            tried = np.geomspace(max(floor[kind], 1e-4), LARGEST, _GRID)
             costs = []
             for size in tried:
                 sizes[kind] = size

@@ -109,13 +109,19 @@ def prepare(
 
 
 def savable(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
-    """`calibration_content`, checked. Raises InputError with the key ``fit`` where it cannot be a calibration.
+    """`calibration_content`, checked. Raises InputError where it cannot be a calibration.
 
     That is: a modulus, a wall or a friction that was fitted has no interval, the data do not determine the friction,
-    or a value or its uncertainty is beyond the bounds.
+    the runs contradict the fitted model, or a value or its uncertainty is beyond the bounds. The key is ``fit`` where
+    another choice of parameters may help.
     """
     _check_friction(calibration)
     content = calibration_content(calibration, source)
+    if calibration.misfit.contradicted:
+        raise InputError(
+            f"the runs contradict the fitted model: it is off in {calibration.misfit.words}",
+            remedy="check units, columns, driving pressures, design and contact of the runs",
+        )
     try:
         KINDS["calibrations"].validate(content, "calibration")
     except InputError as error:

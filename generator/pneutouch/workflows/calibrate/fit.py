@@ -19,6 +19,7 @@ from pneutouch.bench.calibrate import (
 from pneutouch.bench.calibrate.further import SuggestedTest
 from pneutouch.bench.calibrate.goodness import RunResiduals, SystematicDeviation, misses, residuals
 from pneutouch.bench.calibrate.identify import Identifiability, identify
+from pneutouch.bench.calibrate.misfit import ModelMisfit, misfit
 from pneutouch.bench.calibrate.notes import fit_notes
 from pneutouch.bench.calibrate.response import ResponseGap, response_gap
 from pneutouch.bench.record import MeasuredCurve
@@ -68,6 +69,21 @@ class Calibration:
         """What the fitted model leaves out of the curves; None without curves."""
         return response_gap(self.fit)
 
+    @cached_property
+    def misfit(self) -> ModelMisfit:
+        """How far the runs are from the fitted model as a whole."""
+        return misfit(self.fit, self.residuals)
+
+    @property
+    def warnings(self) -> list[str]:
+        """What makes the calibration doubtful: a model that does not describe the runs."""
+        if not self.misfit.doubtful:
+            return []
+        return [
+            f"the fitted model describes the runs poorly: it is off in {self.misfit.words}; check units, columns, "
+            "driving pressures, design and contact"
+        ]
+
     @property
     def notes_for_reader(self) -> list[str]:
         """Notes for the reader in addition to the numbers."""
@@ -88,6 +104,7 @@ class Calibration:
             "unidentified": [NAMES[k] for k in self.identified.unseen],
             "further_tests": [further_record(self.fit, test) for test in self.further],
             "held_out": [held_out_record(one) for one in self.held_out],
+            "warnings": self.warnings,
             "notes": self.notes_for_reader,
         }
 

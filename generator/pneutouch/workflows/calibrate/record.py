@@ -134,6 +134,7 @@ class CalibrationRecord(FitRecord):
     unidentified: list[str]
     further_tests: list[FurtherRecord]
     held_out: list[HeldOutRecord]
+    warnings: list[str]
     notes: list[str]
 
 

@@ -142,7 +142,8 @@ def _write(
         if options.save is not None:
             folder = write_calibration(calibration, options.out, source, unsaved)
             problem = f"{error.problem} (the fit is in {folder})"
-            raise InputError(problem, key=error.key, remedy=error.remedy) from None
+            file = None if error.key else options.data
+            raise InputError(problem, file=file, key=error.key, remedy=error.remedy) from None
     written = [write_calibration(calibration, options.out, source, unsaved)]
     if not unsaved:
         written.append(_saved(calibration, name, options.root, source, replace=options.replace))
