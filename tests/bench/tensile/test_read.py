@@ -111,6 +111,13 @@ def test_points_that_are_wrong(tmp_path):
     refused(write(tmp_path, "stretch,stress (MPa)", cyclic, stress), "the stretch falls")
 
 
+def test_a_stress_recorded_as_negative(tmp_path):
+    refused(write(tmp_path, "stretch,stress (MPa)", LAMBDA, -STRESS), "the stress that is greatest in size is")
+    refused(write(tmp_path, "strain,stress (MPa)", 1 - LAMBDA, -STRESS), "turn the signs")
+    noisy = STRESS - 0.01 * STRESS.max()
+    assert read_tension(write(tmp_path, "stretch,stress (MPa)", LAMBDA, noisy)).stress.max() > 0
+
+
 def test_points_after_the_break_are_left_out(tmp_path):
     stress = np.concatenate([STRESS[:50], np.zeros(10)])
     curve = read_tension(write(tmp_path, "stretch,stress (MPa)", LAMBDA, stress))

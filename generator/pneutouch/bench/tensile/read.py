@@ -61,6 +61,7 @@ def read_tension(path: Path, size: SpecimenSize | None = None) -> TensionCurve:
     elif pair.load.kind == "stress" and not pair.load.stated:
         notes.append(f"column {pair.load.name} is taken as nominal stress (force over the undeformed cross-section)")
     _agrees(path, pairs, layout, pair, stretch, stress)
+    _check_sign(stress, file, f"column {pair.load.name}")
     curve = _loading(TensionCurve(stretch, stress, file, tuple(notes), facts=facts))
     _plausible(curve)
     return curve
@@ -163,6 +164,14 @@ def _agrees(
                 remedy="engineering stress is force over the undeformed cross-section, true stress is that times the "
                 "stretch: are the names exchanged?",
             )
+
+
+def _check_sign(stress: Array, file: str, key: str) -> None:
+    """Raise InputError where the stress that is greatest in size is below zero."""
+    deep = float(stress[np.argmax(np.abs(stress))])
+    if deep < 0.0:
+        remedy = "tension is positive, stretch and stress alike: turn the signs in the file"
+        raise InputError(f"the stress that is greatest in size is {deep:.4g} MPa", file=file, key=key, remedy=remedy)
 
 
 def _loading(curve: TensionCurve) -> TensionCurve:
