@@ -213,6 +213,12 @@ def test_runs_alike_and_other_sensors_are_left_alone(factors):
     assert outliers([*alike, stiffer, inflated]) == []
 
 
+def test_a_sign_that_was_turned_is_turned_back_by_leaving_the_minus_out():
+    turned = ColumnMap.model_validate({"force": {"name": "force_N", "unit": "N", "sign": -1}})
+    with pytest.raises(InputError, match=r"set columns\.force\.sign = 1 \(in `columns` leave out the minus"):
+        check_plausible(ideal(factor=(1, -1, 1)), turned, None, Path("run.csv"))
+
+
 @pytest.mark.parametrize(
     ("factor", "words"),
     [((1, -1, 1), "columns.force.sign"), ((1, 1, -1), "columns.pressure.sign"), ((-1, 1, 1), "position.sign")],

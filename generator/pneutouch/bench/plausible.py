@@ -42,7 +42,11 @@ SWAP_MARGIN = math.log(2.0)
 _RESTS = 0.05
 """Share of the greatest force or rise by which points may be negative: noise about the origin."""
 
-_OR_MINUS = " (in `columns` a minus before the name turns the sign)"
+_MINUS = {
+    1: " (in `columns` a minus before the name turns the sign)",
+    -1: " (in `columns` leave out the minus before the name)",
+}
+"""What `workflows.characterize.parse_columns` takes in place of a sign, by the sign that is wrong."""
 
 _HOLD_FAR = 50.0
 _WHY = "another resin (runs.resin) or design (design), a smaller plate, or a wrong calibration?"
@@ -176,13 +180,14 @@ def _check_signs(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> None:
             raise InputError(
                 f"column {column.name}: falls by {_number(-deep / unit)} {name} as the sensor is pressed",
                 file=file,
-                remedy=f"it must rise: set columns.{key}.sign = {-column.sign}{_OR_MINUS}",
+                remedy=f"it must rise: set columns.{key}.sign = {-column.sign}{_MINUS[column.sign]}",
             )
     if curve.indentation[-1] <= 0:
         raise InputError(
             f"column {columns.position.name}: falls as the force rises",
             file=file,
-            remedy=f"it must count into the sensor: set columns.position.sign = {-columns.position.sign}{_OR_MINUS}",
+            remedy=f"it must count into the sensor: set columns.position.sign = {-columns.position.sign}"
+            f"{_MINUS[columns.position.sign]}",
         )
 
 
