@@ -159,6 +159,32 @@ def test_an_error_names_the_option_and_the_lines_to_paste(tmp_path, recording):
     assert entry["columns"]["force"] == {"name": "load", "unit": "gf"}
 
 
+def twins(tmp_path, recording, unit):
+    """A campaign of two files of one instrument, whose forces are named to be in ``unit``."""
+    path = logger(tmp_path, *recording)
+    path.write_text(path.read_text().replace("load_g", f"load_{unit}"))
+    (tmp_path / "other.log").write_bytes(path.read_bytes())
+    entries = [
+        f'[[runs]]\nfile = "{name}"\nsensor = "A"\nresin = "TangoPlus"\nrun = {k + 1}\n'
+        for k, name in enumerate((path.name, "other.log"))
+    ]
+    (tmp_path / "campaign.toml").write_text('design = "paper-dome"\n' + "".join(entries))
+    return run("characterize", tmp_path, "--model", "atlas", "--evidence", "none", "--out", tmp_path / "out")
+
+
+def test_what_is_wrong_in_several_files_is_printed_once(tmp_path, recording):
+    result = twins(tmp_path, recording, "")
+    assert result.exit_code == 2 and result.stderr.count("[columns]") == 1
+    assert "none of its files can be read\nlogger.log, other.log: column load_: " in result.stderr
+
+
+def test_columns_that_an_error_rejects_are_not_to_be_kept(tmp_path, recording):
+    assert "note: logger.log and 1 more: read as follows" in twins(tmp_path, recording, "g").stderr
+    rejected = twins(tmp_path, recording, "N")
+    assert rejected.exit_code == 3 and "set columns.force.unit" in rejected.stderr
+    assert "to keep it" not in rejected.stderr
+
+
 def test_a_minus_turns_the_sign(tmp_path, recording):
     time, position, force, pressure = recording
     path = logger(tmp_path, time, position, -force, pressure)

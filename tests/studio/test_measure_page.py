@@ -233,7 +233,7 @@ def test_each_hostile_file_is_named_with_its_reason_and_the_studio_lives(tmp_pat
     [
         (b"\xff\xfe\0", "campaign.toml"),
         (b"a = " + b"[" * 50_000, "campaign.toml"),
-        (b"[[runs]]\nfile = 7", "campaign.toml: runs.file[0] = 7: must be text"),
+        (b"[[runs]]\nfile = 7", "campaign.toml: runs[0].file = 7: must be text"),
         (b'[[runs]]\nfile = "../../../../etc/passwd"\nsensor = "a"\nresin = "TangoPlus"', "leads out of the folder"),
         (b'design = "/etc/passwd"\n[[runs]]\nfile = "a.csv"\nsensor = "a"\nresin = "TangoPlus"', "leads out of"),
         (b"x = 1\n" * 400_000, "larger than"),

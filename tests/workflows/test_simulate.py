@@ -181,6 +181,13 @@ def planned(tmp_path_factory):
     return folder
 
 
+def test_a_design_that_is_not_there_names_the_plan(planned, tmp_path):
+    text = (planned / "campaign.toml").read_text().replace('"paper-dome"', '"paperdome"')
+    (tmp_path / "campaign.toml").write_text(text)
+    with pytest.raises(InputError, match=r'campaign\.toml: design = "paperdome": no such design'):
+        simulate(str(tmp_path), tmp_path / "out", None, QUICK)
+
+
 QUICK = SimulationOptions(rate=20.0, model="atlas", truth=SimulationTruth(rest=0.2, specimens=100))
 
 

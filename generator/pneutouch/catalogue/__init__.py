@@ -6,6 +6,7 @@ The names are loaded when they are first used: to list names needs none of what 
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from pneutouch.catalogue.campaign_design import known_design
     from pneutouch.catalogue.library import KINDS, Library
     from pneutouch.catalogue.places import user_folder
     from pneutouch.catalogue.scene import (
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     )
 
 _HOMES = {
+    "campaign_design": ("known_design",),
     "library": ("KINDS", "Library"),
     "places": ("user_folder",),
     "scene": ("DEFAULT", "DesignSource", "ResolvedDesign", "check_scene", "load_scene", "split_calibration"),
@@ -30,6 +32,7 @@ __all__ = [
     "Library",
     "ResolvedDesign",
     "check_scene",
+    "known_design",
     "load_scene",
     "split_calibration",
     "user_folder",

@@ -3,6 +3,7 @@
 from pneutouch.cli.table import table_text
 from pneutouch.wording import counted
 from pneutouch.workflows.calibrate.record import EstimateRecord, OutcomeRecord, ResponseRecord
+from pneutouch.workflows.characterize.reading import same_failures
 
 
 def calibration_text(document: OutcomeRecord) -> str:
@@ -23,7 +24,7 @@ def calibration_text(document: OutcomeRecord) -> str:
         _response(document["response"]),
         "\n".join(f"warning: {warning}" for warning in document["warnings"]),
         "\n".join(f"note: {note}" for note in document["notes"]),
-        "\n".join(f"not used: {file}: {why}" for file, why in document["failures"]),
+        "\n".join(f"not used: {files}: {why}" for files, why in same_failures(document["failures"])),
         "\n".join(f"written: {path}" for path in document["written"]),
     ]
     return "\n\n".join(part for part in parts if part)

@@ -58,6 +58,7 @@ def characterize(
         from pneutouch.cli.progress import bar
         from pneutouch.errors import InputError, nearest
         from pneutouch.mechanics.models import USUAL
+        from pneutouch.workflows.characterize.reading import same_failures
         from pneutouch.workflows.characterize.run import EVIDENCE, write
         from pneutouch.workflows.characterize.run import characterize as run
 
@@ -76,9 +77,9 @@ def characterize(
             echo(f"\n{folder}")
         if outcome.read_as:
             notify(reading_text(outcome.read_as))
-        for file, message in outcome.measured.failures:
+        for files, message in same_failures(outcome.measured.failures):
             words = InputError(message).message(partial(option, context.command))
-            notify(f"error: {file}: not used: {words}")
+            notify(f"error: {files}: not used: {words}")
         if outcome.failed:
             raise typer.Exit(3)
         if outcome.missed:

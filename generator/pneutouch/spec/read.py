@@ -1,7 +1,7 @@
 """Read a TOML file into a model, or report which key is wrong and the correct form."""
 
 import tomllib
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -134,7 +134,7 @@ def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:
     owner: type[BaseModel] | None = model
     for step in path[:-1]:
         owner = table_of(owner, step) if owner else None
-    key = ".".join(path)
+    key = _label(detail["loc"])
     if detail["type"] == "extra_forbidden" and owner is not None:
         kind = "table" if isinstance(detail["input"], dict) else "key"
         return InputError(f"unknown {kind}.{nearest(path[-1], _keys(owner))}", file=where, key=key)
@@ -144,12 +144,21 @@ def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:
         error = detail["ctx"]["error"]
         if isinstance(error, EntryError):
             return InputError(str(error), file=where, key=f"{key}[{error.index}]", value=error.value)
+        if key.endswith("]") and not isinstance(detail["input"], Mapping):
+            # One value may be written for a list of one, and the message holds it.
+            key = key.rpartition("[")[0]
         return InputError(str(error), file=where, key=key)
     if not path:
         return InputError(str(detail["msg"]), file=where)
     if detail["type"] == "literal_error":
         known = str(detail["ctx"]["expected"]).replace("'", '"')
         return InputError(f"must be {known}", file=where, key=key, value=detail["input"])
+    problem, remedy = _unlike(detail, owner, path)
+    return InputError(problem, file=where, key=key, value=detail["input"], remedy=remedy)
+
+
+def _unlike(detail: Any, owner: type[BaseModel] | None, path: list[str]) -> tuple[str, str | None]:
+    """What a value must be that is of another kind or beyond its bounds, and how it is written, where that is known."""
     kind, right = _expected(detail), _right(owner, path)
     if detail["type"] == "model_type" and (form := table_form(owner, path[-1])):
         kind = f"{kind}such as {form}, "
@@ -162,8 +171,7 @@ def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:
         # The help of a field without bounds is a sentence of its own.
         kind = f"{kind.rstrip(' ,:')}: "
     right = kind.rstrip(" ,:") if kind and right == _ANY else f"{kind}{right}".strip()
-    problem = f"must be {right.removesuffix('.') if remedy else right}" if right else detail["msg"]
-    return InputError(problem, file=where, key=_label(detail["loc"]), value=detail["input"], remedy=remedy)
+    return f"must be {right.removesuffix('.') if remedy else right}" if right else str(detail["msg"]), remedy
 
 
 def _label(steps: Iterable[int | str]) -> str:

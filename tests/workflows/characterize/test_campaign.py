@@ -224,6 +224,15 @@ def test_aged_runs_are_not_set_beside_a_fresh_prediction(folder, library):
         ),
         (lambda c: c.pop("runs"), "runs: missing"),
         (lambda c: c.pop("design"), "give `design`"),
+        (
+            lambda c: c.update(design="paperdome"),
+            r'campaign\.toml: design = "paperdome": no such design.* paper-dome\?',
+        ),
+        (lambda c: c["runs"][2].update(kind2="steps"), r"campaign\.toml: runs\[2\]\.kind2: unknown key"),
+        (lambda c: c["runs"][2].update(kind="step"), r'campaign\.toml: runs\[2\]\.kind = "step": must be "steps"'),
+        (lambda c: c["runs"][1].update(run="x"), r'campaign\.toml: runs\[1\]\.run = "x": must be a whole number'),
+        (lambda c: c["runs"][1].pop("sensor"), r"campaign\.toml: runs\[1\]\.sensor: missing"),
+        (lambda c: c["runs"][0].update(volumes_mL=[0.0, 1.0, 2.0]), r"campaign\.toml: runs\[0\]: volumes_mL: given"),
     ],
 )
 def test_a_wrong_campaign_file_says_what_is_wrong(folder, library, change, said):

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pneutouch.bench.calibrate import NAMES, Observations
-from pneutouch.catalogue import DesignSource, Library, load_scene, split_calibration, user_folder
+from pneutouch.catalogue import DesignSource, Library, known_design, load_scene, split_calibration, user_folder
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.fitted import check_fitted
 from pneutouch.output.files import check_writable
 from pneutouch.parts import assemble
-from pneutouch.spec.campaign_file import CAMPAIGN, design_of
+from pneutouch.spec.campaign_file import CAMPAIGN
 from pneutouch.spec.design import CALIBRATION
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.calibrate.files import (
@@ -27,7 +27,16 @@ from pneutouch.workflows.calibrate.fit import Calibration, calibrate, observatio
 from pneutouch.workflows.calibrate.further import with_further_tests
 from pneutouch.workflows.calibrate.place import check_place, check_unlike
 from pneutouch.workflows.calibrate.record import OutcomeRecord
-from pneutouch.workflows.characterize import CampaignData, Progress, Reading, answers, load_curves, read_as, sound
+from pneutouch.workflows.characterize import (
+    CampaignData,
+    Progress,
+    Reading,
+    answers,
+    load_curves,
+    read_as,
+    sound,
+    undisputed,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +95,7 @@ def run_calibration(
     if options.save is not None:
         check_place(options.save, options.root)
     loaded = load_curves(options.data, progress=progress, reading=reading)
-    design = options.design or design_of(loaded.campaign, loaded.folder)
+    design = options.design or known_design(loaded.campaign, loaded.folder, library)
     if design is None:
         raise InputError("names no design", file=options.data, remedy="give `design`")
     # A design that is calibrated already is fitted from its drawing again, or the prior would hold the data twice.
@@ -122,7 +131,7 @@ def run_calibration(
         "calibration": None if unsaved else name,
         "written": [str(path) for path in written],
         "failures": failures,
-        "read_as": read_as(loaded.sources, len(loaded.campaign.runs)),
+        "read_as": read_as(undisputed(loaded.sources, refused), len(loaded.campaign.runs)),
     }
     return CalibrationOutcome(document, calibration, source, _named(design), loaded.campaign.assignments)
 

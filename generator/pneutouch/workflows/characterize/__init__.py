@@ -2,7 +2,7 @@
 
 from pneutouch.workflows.characterize.load import CampaignData, Progress, load_curves, recognise
 from pneutouch.workflows.characterize.predicted import answers
-from pneutouch.workflows.characterize.reading import Reading, parse_columns, read_as
+from pneutouch.workflows.characterize.reading import Reading, parse_columns, read_as, same_failures, undisputed
 from pneutouch.workflows.characterize.run import CharacterizationResult, characterize, sound
 
 __all__ = [
@@ -16,5 +16,7 @@ __all__ = [
     "parse_columns",
     "read_as",
     "recognise",
+    "same_failures",
     "sound",
+    "undisputed",
 ]

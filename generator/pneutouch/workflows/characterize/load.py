@@ -21,7 +21,7 @@ from pneutouch.spec.campaign_file import campaign_of
 from pneutouch.spec.files import is_file
 from pneutouch.spec.names import file_name
 from pneutouch.units import KPA
-from pneutouch.workflows.characterize.reading import Reading, with_reading
+from pneutouch.workflows.characterize.reading import Reading, same_failures, with_reading
 
 Progress = Callable[[int, int], None]
 """Receives the megabytes read and the megabytes in all."""
@@ -98,7 +98,12 @@ def load_curves(
         meter.past(size)
     if not (gathered.curves or gathered.injections or gathered.leaks):
         raise InputError(
-            "\n".join([f"{data}: none of its files can be read", *(text for _, text in gathered.failures)])
+            "\n".join(
+                [
+                    f"{data}: none of its files can be read",
+                    *(f"{files}: {text}" for files, text in same_failures(gathered.failures)),
+                ]
+            )
         )
     if not (data.is_dir() or data.suffix == ".toml"):
         assert scene is not None

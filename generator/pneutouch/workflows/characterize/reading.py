@@ -1,7 +1,7 @@
 """How files are read where a command or a function states it, in place of [columns] and [format] of a campaign."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from pneutouch.bench.source import MeasuredFile, campaign_lines
@@ -78,14 +78,33 @@ def read_as(sources: Mapping[str, MeasuredFile], runs: int) -> list[dict[str, An
     return [{**entry, "whole_campaign": len(entry["files"]) == runs} for entry in alike.values()]
 
 
+def undisputed(sources: Mapping[str, MeasuredFile], failures: Sequence[tuple[str, str]]) -> dict[str, MeasuredFile]:
+    """The files whose columns no failure, (file, message), puts in question."""
+    disputed = {file for file, message in failures if "columns." in message}
+    return {file: source for file, source in sources.items() if file not in disputed}
+
+
+def same_failures(failures: Iterable[Sequence[str]]) -> list[tuple[str, str]]:
+    """Failures, (file, message), those of one message together: the names of their files, and the message without."""
+    alike: dict[str, list[str]] = {}
+    for file, message in failures:
+        _, named, problem = message.partition(f"{file}: ")
+        alike.setdefault(problem if named else message, []).append(file)
+    return [(_named(files, _NAMED), problem) for problem, files in alike.items()]
+
+
+def _named(files: Sequence[str], most: int) -> str:
+    more = f" and {len(files) - most} more" if len(files) > most else ""
+    return f"{', '.join(files[:most])}{more}"
+
+
 def reading_text(read_as: Sequence[Mapping[str, Any]]) -> str:
     """How files were read whose columns or format were found by their look, as the lines to keep."""
     blocks = []
     for entry in read_as:
         files, whole = entry["files"], entry["whole_campaign"]
-        named = files[:1] if whole else files[:_NAMED]
-        more = f" and {len(files) - len(named)} more" if len(files) > len(named) else ""
+        named = _named(files, 1 if whole else _NAMED)
         place = "into campaign.toml" if whole else "below the [[runs]] entry of each of these files in campaign.toml"
         lines = campaign_lines(entry, "" if whole else "runs.")
-        blocks.append(f"note: {', '.join(named)}{more}: read as follows; to keep it, put it {place}\n{lines}")
+        blocks.append(f"note: {named}: read as follows; to keep it, put it {place}\n{lines}")
     return "\n".join(blocks).rstrip()

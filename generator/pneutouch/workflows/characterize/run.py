@@ -12,7 +12,7 @@ from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.source import MeasuredFile
 from pneutouch.bench.summary import summarize
 from pneutouch.bench.trace import Trace
-from pneutouch.catalogue import DesignSource, Library, load_scene
+from pneutouch.catalogue import DesignSource, Library, known_design, load_scene
 from pneutouch.catalogue.examples import example_remedy
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
@@ -24,14 +24,14 @@ from pneutouch.output.manifest import entry, input_hash, manifest
 from pneutouch.parts import assemble
 from pneutouch.report.measured import CampaignReport
 from pneutouch.spec.campaign import AS_DESIGNED
-from pneutouch.spec.campaign_file import CAMPAIGN, campaign_of, design_of
+from pneutouch.spec.campaign_file import CAMPAIGN, campaign_of
 from pneutouch.spec.names import file_name
 from pneutouch.spec.read import Changes, parse_changes, read_toml, validate
 from pneutouch.spec.target import Target
 from pneutouch.workflows.characterize.document import document
 from pneutouch.workflows.characterize.load import CampaignData, Progress, load_curves
 from pneutouch.workflows.characterize.predicted import StatePrediction, answers, compared
-from pneutouch.workflows.characterize.reading import Reading, read_as
+from pneutouch.workflows.characterize.reading import Reading, read_as, undisputed
 from pneutouch.workflows.characterize.tables import injections, points_csv, segments_csv
 from pneutouch.workflows.characterize.verdict import ageing, verdicts
 
@@ -95,7 +95,7 @@ def characterize(
     off the axis. Raises InputError where nothing can be read; files that fail are listed in the outcome.
     """
     library = library or Library.default()
-    name, named = (design, {}) if design is not None else _design_of(data)
+    name, named = (design, {}) if design is not None else _design_of(data, library)
     request = None if target is None else validate(Target, read_toml(target), str(target))
     given = {**named, **(changes or {})}
     loaded = load_curves(data, load_scene(name, given, library), progress, reading)
@@ -130,20 +130,20 @@ def characterize(
         measured,
         loaded.traces,
         f"{_stem(data)}-measured",
-        read_as(loaded.sources, len(loaded.campaign.runs)),
+        read_as(undisputed(loaded.sources, failures), len(loaded.campaign.runs)),
         name.name if isinstance(name, DesignSource) else name,
         loaded.sources,
     )
 
 
-def _design_of(data: Path) -> tuple[str, dict[str, Any]]:
+def _design_of(data: Path, library: Library) -> tuple[str, dict[str, Any]]:
     """The design that a campaign names, and what changes it."""
     if not (data.is_dir() or data.suffix == ".toml"):
         if not data.exists():
             raise InputError("no such file or folder", file=data, remedy=example_remedy(str(data)))
         raise InputError("a single file needs its sensor", file=data, remedy="give `design`")
     campaign, folder = campaign_of(data)
-    name = design_of(campaign, folder)
+    name = known_design(campaign, folder, library)
     if name is None:
         raise InputError(
             "the campaign names no design", file=folder, remedy='give `design`, or design = "..." in its file'

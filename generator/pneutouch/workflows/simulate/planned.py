@@ -3,9 +3,9 @@
 from dataclasses import replace
 from pathlib import Path
 
-from pneutouch.catalogue import DesignSource
+from pneutouch.catalogue import DesignSource, Library, known_design
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign_file import CAMPAIGN, campaign_of, design_of
+from pneutouch.spec.campaign_file import CAMPAIGN, campaign_of
 from pneutouch.spec.files import is_file
 from pneutouch.spec.names import file_name
 from pneutouch.spec.read import Changes, parse_changes
@@ -16,7 +16,7 @@ _STATED = ("resins", "specimens", "driving_pressures_kPa", "runs", "kinds", "age
 
 
 def as_planned(
-    design: str | DesignSource, changes: Changes | None, options: SimulationOptions
+    design: str | DesignSource, changes: Changes | None, options: SimulationOptions, library: Library
 ) -> tuple[str | DesignSource, Changes | None, SimulationOptions]:
     """Design, changes and options of a plan, where ``design`` is the folder of one; else as they are.
 
@@ -28,7 +28,7 @@ def as_planned(
     for key in _STATED:
         if getattr(options, key) != getattr(SimulationOptions(), key):
             raise InputError(f"the plan in {folder} states it", key=key, remedy="leave it out, or name the design")
-    named, file = design_of(campaign, folder), folder / CAMPAIGN
+    named, file = known_design(campaign, folder, library), folder / CAMPAIGN
     if named is None:
         raise InputError("names no design", file=file, key="design", remedy='write design = "..." into it')
     for place, run in enumerate(campaign.runs):

@@ -67,9 +67,9 @@ def simulate(
     ``design`` may be the folder of a plan, whose runs are simulated. Runs are written to a hidden folder next to the
     one to be as they are made. Raises InputError for what cannot be.
     """
-    design, changes, options = as_planned(design, changes, options)
     check_options(options)
     library = library or Library.default()
+    design, changes, options = as_planned(design, changes, options, library)
     subjects = resins_of(design, changes, options.resins, options.truth, library)
     _check_rate(subjects[0].scene, options.rate)
     if options.model == USUAL:
