@@ -175,7 +175,8 @@ def twins(tmp_path, recording, unit):
 def test_what_is_wrong_in_several_files_is_printed_once(tmp_path, recording):
     result = twins(tmp_path, recording, "")
     assert result.exit_code == 2 and result.stderr.count("[columns]") == 1
-    assert "none of its files can be read\nlogger.log, other.log: column load_: " in result.stderr
+    named = ", ".join(str(tmp_path / name) for name in ("logger.log", "other.log"))
+    assert f"none of its files can be read\n{named}: column load_: " in result.stderr
 
 
 def test_columns_that_an_error_rejects_are_not_to_be_kept(tmp_path, recording):

@@ -97,14 +97,9 @@ def load_curves(
             gathered.failures.append((run.file, str(error)))
         meter.past(size)
     if not (gathered.curves or gathered.injections or gathered.leaks):
-        raise InputError(
-            "\n".join(
-                [
-                    f"{data}: none of its files can be read",
-                    *(f"{files}: {text}" for files, text in same_failures(gathered.failures)),
-                ]
-            )
-        )
+        failures = same_failures([(str(folder / file), text) for file, text in gathered.failures])
+        lines = [f"{files}: {text}" for files, text in failures]
+        raise InputError("\n".join([f"{data}: none of its files can be read", *lines]))
     if not (data.is_dir() or data.suffix == ".toml"):
         assert scene is not None
         gathered.curves = [_at_its_pressure(curve, scene) for curve in gathered.curves]
