@@ -1,19 +1,18 @@
 """Read a TOML file into a model, or report which key is wrong and the correct form."""
 
 import tomllib
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from pneutouch.errors import InputError, joined, nearest, shown
-from pneutouch.spec.fields import EntryError, declaration, entries_of, table_of
+from pneutouch.errors import InputError, joined, nearest
+from pneutouch.spec.explain import explained, is_one_of_list
+from pneutouch.spec.fields import table_of
 from pneutouch.spec.files import read_bytes
-from pneutouch.spec.form import is_list, table_form
 from pneutouch.spec.toml_errors import toml_problem
 from pneutouch.spec.toml_text import toml_content, toml_value, value_text
-from pneutouch.wording import counted
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -45,7 +44,7 @@ def validate(model: type[Model], content: dict[str, Any], where: str) -> Model:
     except ValidationError as error:
         # What is missing comes last: it may be there under a wrong name.
         details = sorted(error.errors(), key=lambda detail: detail["type"] == "missing")
-        problems = [_explain(model, detail, where) for detail in details[:_MOST_PROBLEMS]]
+        problems = [explained(model, detail, where) for detail in details[:_MOST_PROBLEMS]]
         more = error.error_count() - _MOST_PROBLEMS
         if more > 0:
             problems.append(InputError(f"and {more} more problem{'s' if more > 1 else ''}", file=where))
@@ -83,15 +82,6 @@ def override(content: Mapping[str, Any], changes: Changes, model: type[BaseModel
     return result
 
 
-def is_one_of_list(table: type[BaseModel], key: str, value: Any) -> bool:
-    """Whether a value is a number or a text, and ``key`` a list of these that one entry is enough for."""
-    if any(getattr(bound, "min_length", 0) > 1 for bound in table.model_fields[key].metadata):
-        return False
-    if isinstance(value, str):
-        return entries_of(table, key) in ("names", "texts")
-    return isinstance(value, float | int) and not isinstance(value, bool) and entries_of(table, key) == "numbers"
-
-
 def parse_changes(assignments: Iterable[str], keys: Collection[str] = ("calibration",)) -> dict[str, Any]:
     """Changes from texts ``table.key=value``, whose values are TOML or bare words. Raises InputError.
 
@@ -125,128 +115,3 @@ def assignments(changes: Changes) -> list[str]:
 def _is_bare(value: Any) -> bool:
     """Whether a text reads as itself without quotes."""
     return isinstance(value, str) and value == value.strip() and _bare_list(value) == value
-
-
-def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:
-    """The error for one of pydantic's: the key, the value, and what would be right."""
-    # Names in angle brackets distinguish the kinds of a value that may be of several; they are no keys.
-    path = [str(step) for step in detail["loc"] if not isinstance(step, int) and not str(step).startswith("<")]
-    owner: type[BaseModel] | None = model
-    for step in path[:-1]:
-        owner = table_of(owner, step) if owner else None
-    key = _label(detail["loc"])
-    if detail["type"] == "extra_forbidden" and owner is not None:
-        kind = "table" if isinstance(detail["input"], dict) else "key"
-        return InputError(f"unknown {kind}.{nearest(path[-1], _keys(owner))}", file=where, key=key)
-    if detail["type"] == "missing":
-        return InputError("missing", file=where, key=key, remedy=_addition(owner, path))
-    if detail["type"] == "value_error":
-        error = detail["ctx"]["error"]
-        if isinstance(error, EntryError):
-            return InputError(str(error), file=where, key=f"{key}[{error.index}]", value=error.value)
-        if key.endswith("]") and not isinstance(detail["input"], Mapping):
-            # One value may be written for a list of one, and the message holds it.
-            key = key.rpartition("[")[0]
-        return InputError(str(error), file=where, key=key)
-    if not path:
-        return InputError(str(detail["msg"]), file=where)
-    if detail["type"] == "literal_error":
-        known = str(detail["ctx"]["expected"]).replace("'", '"')
-        return InputError(f"must be {known}", file=where, key=key, value=detail["input"])
-    problem, remedy = _unlike(detail, owner, path)
-    return InputError(problem, file=where, key=key, value=detail["input"], remedy=remedy)
-
-
-def _unlike(detail: Any, owner: type[BaseModel] | None, path: list[str]) -> tuple[str, str | None]:
-    """What a value must be that is of another kind or beyond its bounds, and how it is written, where that is known."""
-    kind, right = _expected(detail), _right(owner, path)
-    if detail["type"] == "model_type" and (form := table_form(owner, path[-1])):
-        kind = f"{kind}such as {form}, "
-    remedy = None
-    if detail["type"] in _OF_LISTS:
-        kind, remedy = _expected_list(detail, owner, path)
-        right = right.removeprefix("a list of ") if kind.startswith("a list of ") else right
-        right = f"each {right}" if right.startswith("one of the ") else right
-    if kind and right[:1].isupper():
-        # The help of a field without bounds is a sentence of its own.
-        kind = f"{kind.rstrip(' ,:')}: "
-    right = kind.rstrip(" ,:") if kind and right == _ANY else f"{kind}{right}".strip()
-    return f"must be {right.removesuffix('.') if remedy else right}" if right else str(detail["msg"]), remedy
-
-
-def _label(steps: Iterable[int | str]) -> str:
-    """The key of a value with the indices of the lists in it: ``entry.over.membrane.material[0]``."""
-    label = ""
-    for step in steps:
-        if isinstance(step, int):
-            label = f"{label}[{step}]"
-        elif not str(step).startswith("<"):
-            label = f"{label}.{step}" if label else str(step)
-    return label
-
-
-def _addition(owner: type[BaseModel] | None, path: list[str]) -> str:
-    """What to add where a key is missing: a table in its form, and what it is."""
-    right, form = _right(owner, path) or f"a table [{'.'.join(path)}]", table_form(owner, path[-1])
-    if form and is_list(owner, path[-1]):
-        form = f"[{form}]"
-    if form:
-        return f"give {path[-1]} = {form}: {right}"
-    # The help of a field without bounds is a sentence of its own.
-    return f"add it: {right}" if right[:1].isupper() else f"give {right}"
-
-
-def _keys(owner: type[BaseModel]) -> list[str]:
-    """The keys of a table as they are written."""
-    return [field.alias or key for key, field in owner.model_fields.items()]
-
-
-def _expected(detail: Any) -> str:
-    """The kind of value a field takes, where the value is of the wrong kind altogether."""
-    kinds = {
-        "float_type": "a number ",
-        "int_type": "a whole number ",
-        "finite_number": "a finite number ",
-        "bool_type": "true or false: ",
-        "string_type": "text: ",
-        "model_type": "a table ",
-        "dict_type": "a table ",
-        "date_type": "a date such as 2026-11-21: ",
-        "date_from_datetime_parsing": "a date such as 2026-11-21: ",
-        "date_parsing": "a date such as 2026-11-21: ",
-    }
-    if detail["type"] == "string_too_short":
-        return f"text of at least {counted(detail['ctx']['min_length'], 'character')}: "
-    return kinds.get(detail["type"], "")
-
-
-_OF_LISTS = ("list_type", "too_short", "too_long")
-"""Types of pydantic's errors on a list."""
-
-
-def _expected_list(detail: Any, owner: type[BaseModel] | None, path: list[str]) -> tuple[str, str | None]:
-    """What a list must be, and how what was given is written as one, where that is known."""
-    table = owner if owner is not None and path[-1] in owner.model_fields else None
-    held = None if table is None else entries_of(table, path[-1])
-    if held == "tables" and detail["type"] == "list_type":
-        return "a list of tables: ", f"write each as [[{'.'.join(path)}]]"
-    ends = ", " if held in ("numbers", "names") else ": "
-    if detail["type"] == "list_type":
-        given = detail["input"]
-        is_plain = isinstance(given, str | float | int) and not isinstance(given, bool)
-        fits = is_plain if table is None else is_one_of_list(table, path[-1], given)
-        return f"a list of {held}{ends}" if held else "a list: ", f"write {shown([given])}" if fits else None
-    least = detail["type"] == "too_short"
-    count = detail["ctx"]["min_length" if least else "max_length"]
-    entries = "one entry" if count == 1 else f"{count} entries"
-    return f"a list with at {'least' if least else 'most'} {entries}{' ' if held == 'numbers' else ends}", None
-
-
-_ANY = "a valid value"
-"""What is right where no declaration states it."""
-
-
-def _right(owner: type[BaseModel] | None, path: list[str]) -> str:
-    if owner is None or not path or path[-1] not in owner.model_fields:
-        return _ANY
-    return declaration(owner, path[-1]).right
