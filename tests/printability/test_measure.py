@@ -177,6 +177,8 @@ def test_cubes_fill_the_volume_whichever_way_up():
     for up in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.6, 0.0, 0.8)):
         model = voxels(solid, up)
         assert (model.label > 0).sum() * model.cube == pytest.approx(solid.volume(), rel=0.02)
+        # What is outside is joined all around: the cubes at the six sides are empty.
+        assert not any(model.label.take(end, axis).any() for axis in range(3) for end in (0, -1))
 
 
 @pytest.mark.parametrize("opening", [1.5, 2.5, 3.5, 4.5])

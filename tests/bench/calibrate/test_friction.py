@@ -8,6 +8,7 @@ import pytest
 from pneutouch.bench.calibrate import Observations, fit
 from pneutouch.bench.calibrate.goodness import misses
 from pneutouch.bench.calibrate.identify import identify
+from pneutouch.bench.calibrate.model import FittedContact
 from pneutouch.bench.calibrate.parameters import FRICTION, MODULUS, NAMES, USUAL, parse_names
 from pneutouch.catalogue import load_scene
 from pneutouch.errors import InputError
@@ -46,6 +47,21 @@ def test_friction_is_not_fitted_unless_it_is_named(library):
     assert named.frictions[0] == 0.0 and named.frictions[-1] == GRIPS and FRICTION in named.fitted
     rough = chosen(library, *USUAL, sensor=sensor_of(library).replace(friction=np.inf))
     assert rough.start[FRICTION] == GRIPS and FRICTION in rough.others
+
+
+def test_sensors_differ_by_the_greatest_change_of_modulus_wall_or_gas_volume(library):
+    sensor = sensor_of(library)
+    cavity = 2 * np.pi / 3 * sensor.dome.inner_radius**3
+    here = FittedContact(sensor, (0.0, GRIPS))
+
+    def other(**changes):
+        return FittedContact(sensor.replace(**changes), (0.0, GRIPS))
+
+    assert here.distance(here) == 0.0
+    assert here.distance(other(shear_modulus=1.3 * sensor.wall.shear_modulus)) == pytest.approx(np.log(1.3))
+    assert here.distance(other(wall_thickness=0.9 * sensor.dome.wall_thickness)) == pytest.approx(-np.log(0.9))
+    more = np.log((cavity + 800.0) / (cavity + 300.0))
+    assert here.distance(other(dead_volume=800.0)) == pytest.approx(more, rel=1e-6)
 
 
 @pytest.mark.slow

@@ -198,6 +198,15 @@ def test_systems_without_their_leading_unknowns_have_the_same_solution():
     assert np.allclose(whole, sides.solve(band, blocks, b))
 
 
+def test_a_singular_system_has_a_response_that_is_not_finite():
+    solid = coarse()
+    sides = OneSidedBlocks(solid)
+    nothing = np.zeros((len(solid.mesh.outer), 6, 6))
+    rows = np.eye(3, solid.size)
+    found = sides.response(sides.widened(np.zeros((solid.contact_pattern.width + 1, solid.size))), nothing, rows, 0)
+    assert found.shape == (3, 3) and np.isnan(found).all()
+
+
 def test_too_few_leading_unknowns_or_indefinite_ones_are_kept():
     solid = coarse()
     scene = SolidScene(solid, Gas.filled(0.1, 2.1, 0.6, 0.2), None)
