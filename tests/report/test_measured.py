@@ -120,7 +120,7 @@ def test_failures_questions_doubts_and_leaks_are_listed(said):
         assert f"doubt number {MOST} in a row" not in text
         assert "and 7 more: see figures.json" in text
         assert f"{MOST + 7} parts of the records are doubtful" in text
-        assert "1 of 252 runs could not be read" in text
+        assert "Not used: 1 of 252 runs" in text
         assert "0.02130 0.0031 kPa/min" in text
 
 
@@ -190,7 +190,7 @@ def test_without_a_prediction_the_sheet_says_why_and_invents_none(library):
 def test_a_campaign_of_which_nothing_could_be_read_still_gives_a_sheet(least):
     files = measured_datasheet(replace(least, comparisons=(), curves=(), failures=(FAILURE,)))
     text = text_of(files["measured-datasheet.pdf"])
-    assert "1 of 1 run could not be read" in text
+    assert "Not used: 1 of 1 run" in text
     assert FAILURE[1] in text
     assert b"<svg" not in files["measured-datasheet.html"]
 

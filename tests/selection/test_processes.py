@@ -138,4 +138,4 @@ def test_what_a_command_cannot_search_is_refused_by_its_options(command, words, 
 def test_a_key_of_a_file_that_cannot_be_searched_is_named_with_the_file(command, tmp_path):
     (tmp_path / "target.toml").write_text(FILE.replace('"casting"]', '"cast"]'))
     refused = command("select", "target.toml")
-    assert refused.returncode == 2 and 'target.toml: setting.processes = "cast": must be "any"' in refused.stderr
+    assert refused.returncode == 2 and 'target.toml: setting.processes[1] = "cast": must be "any"' in refused.stderr

@@ -213,7 +213,7 @@ def test_each_hostile_file_is_named_with_its_reason_and_the_studio_lives(tmp_pat
         row[0]: row[1]
         for row in page.evaluate(
             "[...document.querySelectorAll('#area-measure .finding.error')].map(e =>"
-            "[e.children[0].textContent.replace('not read ', ''), e.children[1].textContent])"
+            "[e.children[0].textContent.replace('not used ', ''), e.children[1].textContent])"
         )
     }
     assert set(found) == set(says)

@@ -63,7 +63,7 @@ class CampaignReport:
         folder: Where the campaign lies, as the user gave it.
         comparisons: Groups in the order of resin, age and pressure.
         curves: Every curve read, injections aside.
-        failures: Files that could not be read, with the message.
+        failures: Files that are not used, with the message.
         questions: What looks wrong and was not changed: file or run, and the question.
         verdicts: Of the target, empty without one.
         injections: Figures of leak and injection runs: sensor, name, value, standard error, unit.

@@ -63,7 +63,7 @@ def _notes(measured: CampaignReport) -> list[str]:
     if any(v.passed is None for v in measured.verdicts):
         notes.append("Not decided: the interval holds values on both sides of the limit; more specimens would decide.")
     if failed:
-        notes.append(f"{failed} of {counted(runs, 'run')} could not be read: see Failures.")
+        notes.append(f"Not used: {failed} of {counted(runs, 'run')}, see Failures.")
     else:
         notes.append(f"All {runs} runs were read." if runs > 1 else "The run was read.")
     if suspect:

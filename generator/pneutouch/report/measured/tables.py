@@ -131,7 +131,7 @@ def warning_rows(measured: CampaignReport) -> tuple[list[Row], str]:
 
 
 def failures(measured: CampaignReport) -> tuple[list[Row], str]:
-    """Files that could not be read, and why."""
+    """Files that are not used, and why."""
     # The message begins with the file's path, which is printed next to it.
     return cut([[file, why.split(f"{file}: ", 1)[-1]] for file, why in measured.failures], MOST)
 

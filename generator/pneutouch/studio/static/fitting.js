@@ -92,7 +92,7 @@ export class Fitting {
       element("div", { class: "pair" }, this.correlation(fitted.correlation), this.heldOut(fitted.held_out), this.response(fitted.response)),
       ...fitted.warnings.map((warning) => element("div", { class: "finding warning" }, element("p", {}, warning))),
       ...fitted.notes.map((note) => element("div", { class: "finding note" }, element("p", {}, note))),
-      ...fitted.failures.map(([file, why]) => element("div", { class: "finding error" }, element("p", {}, element("b", {}, "not read"), ` ${file}`), element("p", { class: "reason" }, why))),
+      ...fitted.failures.map(([file, why]) => element("div", { class: "finding error" }, element("p", {}, element("b", {}, "not used"), ` ${file}`), element("p", { class: "reason" }, why))),
       element("img", { src: job.file(content.chart, true), alt: "Residuals: measured less fitted over the indentation, a panel for force and for pressure rise", class: "chart-image", loading: "lazy" }),
       element("p", { class: "links" }, element("a", { href: job.archive, download: true }, "all files of the fit, zip")),
       command(content),

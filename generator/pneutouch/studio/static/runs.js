@@ -110,7 +110,7 @@ export class RunsTable {
 
   state(run) {
     if (run.left) return element("span", { class: "muted" }, "left out");
-    if (run.problem) return element("span", { class: "bad" }, "not read");
+    if (run.problem) return element("span", { class: "bad" }, "not used");
     if (run.questions?.length) return element("span", { class: "suspect" }, "question");
     if (run.doubtful?.some((one) => !one.used)) return element("span", { class: "suspect" }, "read in part");
     return element("span", { class: "good" }, run.planned === false || run.doubtful ? "read" : "found");
@@ -122,7 +122,7 @@ export class RunsTable {
     const note = (kind, word, file, text) =>
       notes.push(element("div", { class: `finding ${kind}` }, element("p", {}, element("b", {}, word), ` ${file}`), element("p", { class: "reason" }, text)));
     for (const run of runs) {
-      if (run.problem) note("error", "not read", run.file, run.problem);
+      if (run.problem) note("error", "not used", run.file, run.problem);
       for (const text of run.questions ?? []) note("warning", "question", run.file, text);
     }
     const doubtful = runs.flatMap((run) => (run.doubtful ?? []).map((one) => ({ ...one, file: run.file })));
