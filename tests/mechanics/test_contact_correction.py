@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.mechanics.contact_correction import GRIPS, NODES, contact_ratio
+from pneutouch.mechanics.contact_correction import GRIPS, NODES, _log_ratio, contact_ratio
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.mechanics.solid_states import solid_states
@@ -35,6 +35,14 @@ def test_the_ratio_makes_the_plates_curve_that_under_friction(sensor):
     assert np.abs(force - rough.force).max() < 0.003 * rough.force.max()
     assert np.abs(rise - rough.pressure_rise).max() < 0.003 * rough.pressure_rise.max()
     assert np.abs(plate.force - rough.force).max() > 0.03 * rough.force.max()
+
+
+def test_beyond_the_end_of_either_press_the_ratio_is_that_of_the_end():
+    travel = np.array([0.0, 1.0, 2.0, 3.0])
+    plate = np.array([travel, [1.0, 1.0, 1.0, 1.0], [2.0, 2.0, 2.0, 2.0]])
+    short = np.array([travel[:3], [1.0, 2.0, 4.0], [2.0, 6.0, 18.0]])
+    found = _log_ratio(short, plate, np.array([1.0, 2.0, 2.5, 9.0]))
+    assert found == pytest.approx(np.log([[2.0, 4.0, 4.0, 4.0], [3.0, 9.0, 9.0, 9.0]]))
 
 
 def test_without_friction_a_plate_is_left_as_it_is(sensor):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -33,6 +35,20 @@ def test_least_squares_against_the_normal_equations():
     assert found.sensitivity_kPa_per_N == pytest.approx(17 / 8.75, rel=1e-12)
     assert found.sensitivity_through_origin_kPa_per_N == pytest.approx(45 / 21, rel=1e-12)
     assert found.r_squared == pytest.approx((17 / 8.75) ** 2 * 8.75 / 34, rel=1e-12)
+
+
+@given(st.floats(0.2, 5), st.floats(0.2, 5))
+def test_figures_of_a_curve_with_factors_are_those_of_the_scaled_curve(force_factor, rise_factor):
+    depth, force = np.linspace(0, 3, 13), np.linspace(0, 3, 13) ** 1.5
+    rise = 2.0 + 3.0 * np.tanh(force)
+    plain = figures(depth, force, rise)
+    found, expected = (
+        asdict(each)
+        for each in (plain.scaled(force_factor, rise_factor), figures(depth, force_factor * force, rise_factor * rise))
+    )
+    assert found["saturation_force"] is not None
+    for key, value in expected.items():
+        assert found[key] == pytest.approx(value, rel=1e-6), key
 
 
 def test_curves_that_determine_no_line_have_no_figures():
