@@ -39,7 +39,7 @@ def test_the_best_of_each_process_is_a_design_named_after_it(printed):
         assert design.profile == said["processes"][process]["profile"]
     with pytest.raises(pt.InputError) as caught:
         pt.select(sensitivity_kPa_per_N=1.9, processes=["cast"])
-    assert (caught.value.file, caught.value.key) == (None, "processes")
+    assert (caught.value.file, caught.value.key) == (None, "processes[0]")
 
 
 @pytest.mark.parametrize(
