@@ -42,6 +42,9 @@ def test_points_are_those_of_the_law(kind, sensor, bias):
     # The two shallowest may end before the force to which the others are fitted.
     light = [why for why in whys(result) if ": too light" in why]
     assert all(why.startswith(("indentation 1:", "indentation 2:")) for why in light)
+    borrowed = [number for number, one in enumerate(result.indents, start=1) if not one.fitted]
+    assert [why.partition(":")[0] for why in light] == [f"indentation {number}" for number in borrowed]
+    assert borrowed or sensor is not LAWS[2]
     (missed,) = (why for why in whys(result) if why not in light)
     assert "samples missed" in missed
 
