@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from pneutouch.bench.calibrate.notes import _few, amount
+from pneutouch.bench.calibrate import notes
+from pneutouch.bench.calibrate.notes import _MOVED, _few, _shared, amount
 from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, FRICTION_PRIOR, MODULUS, OFFSET, WALL
 from pneutouch.mechanics.contact_correction import GRIPS
 
@@ -32,3 +35,12 @@ def test_three_runs_are_named_and_the_others_counted():
 
 def test_before_any_run_friction_is_anything_from_none_to_grip():
     assert pytest.approx(np.linspace(0.0, GRIPS, 10_001).std(), rel=1e-3) == FRICTION_PRIOR
+
+
+def test_a_gain_is_stated_to_move_what_it_moves_by_a_part_of_its_interval(monkeypatch):
+    half_width = np.array([0.1, 0.02])
+    fit = SimpleNamespace(parameters=SimpleNamespace(fitted=(MODULUS, WALL)), half_width=half_width)
+    shifts = _MOVED * half_width * np.array([[1.1, 0.9], [-0.9, 0.9]])
+    monkeypatch.setattr(notes, "gain_shifts", lambda fit: shifts)
+    (said,) = _shared(fit)
+    assert said.startswith("a force reading 1 % too high in all runs moves ") and said.count("+") == 1
