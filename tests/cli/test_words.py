@@ -60,11 +60,11 @@ def test_what_is_echoed_is_escaped_and_cut(words, word, command):
         ("5 %", 5.0, ""),
         ("7", 7.0, ""),
         ("0.5%", 0.5, ""),
-        ("0.5", 0.5, "note: --same-within 0.5 is taken as 0.5 %; a share of it is --same-within 50%\n"),
-        ("0.05", 0.05, "note: --same-within 0.05 is taken as 0.05 %; a share of it is --same-within 5%\n"),
+        ("0.5", 50.0, "note: --same-within 0.5 is taken as a share, 50 %; 0.5 per cent is --same-within 0.5%\n"),
+        ("0.05", 5.0, "note: --same-within 0.05 is taken as a share, 5 %; 0.05 per cent is --same-within 0.05%\n"),
     ],
 )
-def test_per_cent_is_read_with_and_without_its_sign(text, percent, note, capsys):
+def test_per_cent_is_read_with_and_without_its_sign_and_below_1_as_a_share(text, percent, note, capsys):
     assert SELECT_FIELDS["same_within"].parse(text) == percent
     assert capsys.readouterr().err == note
 

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from pneutouch.catalogue import KINDS, Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
+from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
 from pneutouch.spec.printer import Printer
@@ -346,6 +347,16 @@ SENSITIVE = {"target": {"sensitivity_kPa_per_N": 1.0}}
         ),
         (
             DesignFile,
+            {"pneumatics": {"driving_pressures_kPa": 5000.0}},
+            "pneumatics.driving_pressures_kPa = 5000.0: must be a list of numbers, from 0 to 1000 kPa",
+        ),
+        (
+            DesignFile,
+            {"contact": {"profile_mm": [1, [2.0, 3.0]]}},
+            "contact.profile_mm[0] = 1: must be a list of numbers, from -250 to 250 mm",
+        ),
+        (
+            DesignFile,
             {"pneumatics": {"driving_pressures_kPa": 5.0}},
             "pneumatics.driving_pressures_kPa = 5.0: must be a list of numbers, from 0 to 1000 kPa; write [5.0]",
         ),
@@ -355,6 +366,22 @@ def test_a_list_is_refused_by_what_it_holds(model, content, said):
     with pytest.raises(InputError) as caught:
         validate(model, content, "a.toml")
     assert str(caught.value).startswith(f"a.toml: {said}"), caught.value
+
+
+@pytest.mark.parametrize(
+    ("model", "content", "said"),
+    [
+        (Printer, {"resins_at_once": 0}, "resins_at_once = 0: must be at least 1"),
+        (DesignFile, {"document": {"title": 81 * "x"}}, "must be text of at most 80 characters"),
+        (Tray, {"entry": [{"design": "x", "over": 5}]}, 'entry[0].over = 5: must be a table: one "table.key" with its'),
+        (Campaign, {"columns": {"force": "F"}}, 'columns.force = "F": must be a table such as { name = "..." }\n'),
+        (DesignFile, {"membrane": {"material": {"to": "A", "fraction": 0.1}}}, "material.from: missing; add it: Soft"),
+    ],
+)
+def test_a_refusal_is_a_whole_sentence(model, content, said):
+    with pytest.raises(InputError) as caught:
+        validate(model, content, "a.toml")
+    assert said in f"{caught.value}\n"
 
 
 def test_too_many_values_are_refused_by_their_greatest_number():

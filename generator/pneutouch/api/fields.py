@@ -1,6 +1,6 @@
 """Fields of a file as keyword arguments: their names alone where they are unique, else with their table's in front."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
 from itertools import islice
@@ -76,11 +76,24 @@ def number_of(value: Any, name: str) -> float | None:
 
 def texts_of(values: Any, name: str) -> tuple[str, ...]:
     """Texts that were given as the keyword ``name``; one is a list of one. Raises InputError."""
-    given = _of_keyword(name, values)
+    given = _of_keyword(name, _entries(values))
     texts = [given] if isinstance(given, str) else given
     if not isinstance(texts, list) or not all(isinstance(text, str) for text in texts):
         raise InputError("must be a list of texts", key=name, value=given)
     return tuple(texts)
+
+
+def paths_of(values: Any, name: str, remedy: str) -> tuple[Path, ...]:
+    """Paths that were given as the keyword ``name``; one is a list of one. Raises InputError."""
+    given = _entries(values)
+    return tuple(path_of(each, name, remedy) for each in (given if isinstance(given, list) else [given]))
+
+
+def _entries(values: Any) -> Any:
+    """A set, a generator or another collection as a list; what is none is left as it is."""
+    if isinstance(values, Iterable) and not isinstance(values, str | Mapping):
+        return list(islice(values, _MOST))
+    return values
 
 
 def path_of(value: Any, name: str, remedy: str) -> Path:

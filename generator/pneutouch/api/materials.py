@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pneutouch.api.fields import named_by_keyword
+from pneutouch.api.fields import named_by_keyword, paths_of
 from pneutouch.api.results import Result
 
 if TYPE_CHECKING:
@@ -41,12 +41,12 @@ def fit_material(
     from pneutouch.workflows.fit_material.fitted import FitOptions, MaterialFacts
     from pneutouch.workflows.fit_material.run import fit_material as run
 
-    files = (data,) if isinstance(data, str | Path) else tuple(data)
+    files = paths_of(data, "data", "give the path of a table, or a list of such paths")
     size = SpecimenSize(gauge_length_mm, width_mm, thickness_mm)
     puck = None if puck_mm is None else PuckSize(*puck_mm, bonded)
     facts = MaterialFacts(like, density_g_per_cm3, tuple(shore_a), lab)
     with named_by_keyword():
-        fitted = run(FitOptions(tuple(map(Path, files)), name, size, puck, stretch_to, slack, facts))
+        fitted = run(FitOptions(files, name, size, puck, stretch_to, slack, facts))
     return Result(f"Material {name}", document(fitted), partial(_written, fitted))
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.api.design import Design, source_of
-from pneutouch.api.fields import named_by_keyword, numbers_of, path_of, texts_of
+from pneutouch.api.fields import named_by_keyword, numbers_of, path_of, paths_of, texts_of
 from pneutouch.api.results import Result
 from pneutouch.errors import shown
 from pneutouch.units import KPA
@@ -44,7 +44,7 @@ def scan(
     pressures_kPa = numbers_of(driving_pressures_kPa, "driving_pressures_kPa", alone=True)
     noises_kPa = () if noise_kPa is None else numbers_of([noise_kPa], "noise_kPa")
     pressures, noise = tuple(p * KPA for p in pressures_kPa), noises_kPa[0] * KPA if noises_kPa else NOISE
-    files = (Path(data),) if isinstance(data, str | Path) else tuple(Path(file) for file in data)
+    files = paths_of(data, "data", "give the path of a CSV file, or a list of such paths")
     with named_by_keyword():
         options = ScanOptions(pressures, preload_N, speed_mm_per_s, control, noise, seed, files)
         run = run_scan(str(specimen), source_of(design), options)

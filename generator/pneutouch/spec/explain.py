@@ -1,5 +1,6 @@
 """What is wrong with a value that pydantic refuses, and what would be right."""
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -51,11 +52,29 @@ def _unlike(detail: Any, owner: type[BaseModel] | None, path: list[str]) -> tupl
         kind, remedy = _expected_list(detail, owner, path)
         right = right.removeprefix("a list of ") if kind.startswith("a list of ") else right
         right = f"each {right}" if right.startswith("one of the ") else right
-    if kind and right[:1].isupper():
-        # The help of a field without bounds is a sentence of its own.
+    if kind and _is_sentence(right):
         kind = f"{kind.rstrip(' ,:')}: "
-    right = kind.rstrip(" ,:") if kind and right == _ANY else f"{kind}{right}".strip()
-    return f"must be {right.removesuffix('.') if remedy else right}" if right else str(detail["msg"]), remedy
+    elif _is_sentence(right):
+        kind, right = _bounds(detail), ""
+    right = kind.rstrip(" ,:") if right in ("", _ANY) and kind else f"{kind}{right}".strip()
+    if remedy and not right.endswith(".."):
+        right = right.removesuffix(".")
+    return f"must be {right}" if right else str(detail["msg"]), remedy
+
+
+def _is_sentence(right: str) -> bool:
+    """Whether what is right is the help of a field without bounds, which is a sentence of its own."""
+    return right[:1].isupper() or right.startswith("one ")
+
+
+def _bounds(detail: Any) -> str:
+    """The bounds of a number or a text that pydantic names, in words; empty where it names none."""
+    words = {"ge": "at least", "gt": "more than", "le": "at most", "lt": "less than"}
+    given = detail.get("ctx", {})
+    numbers = [f"{word} {given[key]:g}" for key, word in words.items() if isinstance(given.get(key), int | float)]
+    if "max_length" in given:
+        numbers.append(f"text of at most {counted(given['max_length'], 'character')}")
+    return " and ".join(numbers)
 
 
 def _label(steps: Iterable[int | str]) -> str:
@@ -111,14 +130,15 @@ _OF_LISTS = ("list_type", "too_short", "too_long")
 def _expected_list(detail: Any, owner: type[BaseModel] | None, path: list[str]) -> tuple[str, str | None]:
     """What a list must be, and how what was given is written as one, where that is known."""
     table = owner if owner is not None and path[-1] in owner.model_fields else None
-    held = None if table is None else entries_of(table, path[-1])
+    within = next((k for k, step in enumerate(reversed(detail["loc"])) if not isinstance(step, int)), 0)
+    held = None if table is None else entries_of(table, path[-1], within)
     if held == "tables" and detail["type"] == "list_type":
         return "a list of tables: ", f"write each as [[{'.'.join(path)}]]"
     ends = ", " if held in ("numbers", "names") else ": "
     if detail["type"] == "list_type":
         given = detail["input"]
         is_plain = isinstance(given, str | float | int) and not isinstance(given, bool)
-        fits = is_plain if table is None else is_one_of_list(table, path[-1], given)
+        fits = is_plain if table is None else not within and _is_entry(table, path[-1], given)
         return f"a list of {held}{ends}" if held else "a list: ", f"write {shown([given])}" if fits else None
     least = detail["type"] == "too_short"
     count = detail["ctx"]["min_length" if least else "max_length"]
@@ -126,14 +146,22 @@ def _expected_list(detail: Any, owner: type[BaseModel] | None, path: list[str]) 
     return f"a list with at {'least' if least else 'most'} {entries}{' ' if held == 'numbers' else ends}", None
 
 
+def _is_entry(table: type[BaseModel], key: str, value: Any) -> bool:
+    """Whether a list ``key`` of this one value would be right, as far as its declaration states."""
+    known = declaration(table, key)
+    low, high = (-math.inf if known.low is None else known.low), (math.inf if known.high is None else known.high)
+    return is_one_of_list(table, key, value) and (isinstance(value, str) or low <= value <= high)
+
+
 _ANY = "a valid value"
 """What is right where no declaration states it."""
 
 
 def _right(owner: type[BaseModel] | None, path: list[str]) -> str:
-    if owner is None or not path or path[-1] not in owner.model_fields:
+    written = {} if owner is None else {field.alias or key: key for key, field in owner.model_fields.items()}
+    if owner is None or not path or path[-1] not in written:
         return _ANY
-    return declaration(owner, path[-1]).right
+    return declaration(owner, written[path[-1]]).right
 
 
 def is_one_of_list(table: type[BaseModel], key: str, value: Any) -> bool:

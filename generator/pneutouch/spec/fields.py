@@ -105,12 +105,17 @@ def table_of(model: type[BaseModel], key: str) -> type[BaseModel] | None:
     return None
 
 
-def entries_of(model: type[BaseModel], key: str) -> str | None:
-    """What the list ``key`` holds: numbers, names, texts, tables or lists; None where it is no list."""
-    lists = [kind for kind in _kinds(model.model_fields[key].annotation) if typing.get_origin(kind) is list]
-    if not lists:
-        return None
-    held = _kinds(typing.get_args(lists[0])[0])
+def entries_of(model: type[BaseModel], key: str, within: int = 0) -> str | None:
+    """What the list ``key`` holds: numbers, names, texts, tables or lists; None where it is no list.
+
+    ``within`` counts the lists around the one that is meant: 1 for a list in the list ``key``.
+    """
+    held = _kinds(model.model_fields[key].annotation)
+    for _ in range(within + 1):
+        lists = [kind for kind in held if typing.get_origin(kind) is list]
+        if not lists:
+            return None
+        held = _kinds(typing.get_args(lists[0])[0])
     if all(kind in (float, int) for kind in held):
         return "numbers"
     if all(kind is str for kind in held):
