@@ -9,6 +9,7 @@ import threading
 from collections.abc import Iterator
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
+from typing import Any
 
 from pneutouch.errors import ComputationError
 from pneutouch.workflows.sweep.work import Record, SweepChunk, compute
@@ -37,6 +38,8 @@ def in_pool(chunks: list[SweepChunk], folder: Path, workers: int) -> Iterator[li
     waiting, others = iter(chunks), set(multiprocessing.active_children())
     with _single_threaded(), futures.ProcessPoolExecutor(workers, context, _prepare_worker) as pool:
         running: set[futures.Future[list[Record]]] = set()
+        # A private name: no public one gives the end that the pool keeps open itself.
+        results: Any = pool._result_queue
         try:
             while True:
                 while len(running) < _QUEUED * workers and (chunk := next(waiting, None)) is not None:
@@ -55,8 +58,14 @@ def in_pool(chunks: list[SweepChunk], folder: Path, workers: int) -> Iterator[li
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
             # They would end what they compute first.
-            for process in set(multiprocessing.active_children()) - others:
+            stopped = set(multiprocessing.active_children()) - others
+            for process in stopped:
                 process.terminate()
+            for process in stopped:
+                process.join()
+            if stopped:
+                # The pool's thread waits for the rest of a message that a process was sending, without end but for this.
+                results._writer.close()
 
 
 @contextlib.contextmanager
