@@ -183,7 +183,7 @@ def test_a_characterization_is_that_of_the_command(campaign, tmp_path, ask, comm
     assert content["document"] == document
     (failed,) = [run for run in content["runs"] if run["problem"]]
     assert (failed["file"], failed["problem"]) == (STEPS, document["failures"][0]["message"])
-    assert failed["problem"] in said.stderr
+    assert failed["problem"].partition(f"{STEPS}: ")[2] in said.stderr and STEPS in said.stderr
     for path in measured.rglob("*"):
         if path.is_file():
             assert (ask.folders[0] / measured.name / path.relative_to(measured)).read_bytes() == path.read_bytes()

@@ -64,7 +64,7 @@ def in_pool(chunks: list[SweepChunk], folder: Path, workers: int) -> Iterator[li
             for process in stopped:
                 process.join()
             if stopped:
-                # The pool's thread waits for the rest of a message that a process was sending, without end but for this.
+                # The pool's thread waits for the rest of a message that a process was sending; only this ends that.
                 results._writer.close()
 
 
