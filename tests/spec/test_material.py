@@ -46,3 +46,23 @@ def test_a_density_in_another_unit_is_refused(library, numbers, said):
     with pytest.raises(InputError, match=said):
         read(library, "DragonSkin20", density_g_per_cm3=quantity(**numbers))
     assert read(library, "DragonSkin20", density_g_per_cm3=quantity(low=0.5, high=3.0)).density_g_per_cm3.high == 3.0
+
+
+@pytest.mark.parametrize("density", [0.1, 7.9, 25.0])
+def test_a_connector_may_be_of_wood_or_steel(library, density):
+    of_steel = read(library, "VeroClear", density_g_per_cm3=quantity(value=density))
+    assert of_steel.density_g_per_cm3.value == density
+
+
+@pytest.mark.parametrize(
+    ("density", "said"),
+    [
+        (7900.0, r"mine\.toml: density_g_per_cm3\.value = 7900: must be from 0\.1 to 25 g/cm3 .*; is it in kg/m3\?"),
+        (0.05, r"value = 0\.05: must be from 0\.1 to 25 g/cm3 for a rigid material$"),
+    ],
+)
+def test_a_rigid_material_of_no_known_density_is_refused(library, density, said):
+    with pytest.raises(InputError, match=said):
+        read(library, "VeroClear", density_g_per_cm3=quantity(value=density))
+    with pytest.raises(InputError, match=r"value = 7\.9: must be from 0\.5 to 3 g/cm3$"):
+        read(library, "DragonSkin20", density_g_per_cm3=quantity(value=7.9))

@@ -11,6 +11,7 @@ from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, mod
 from pneutouch.spec.casting import Casting
 from pneutouch.spec.fields import MaterialKind, Table
 from pneutouch.spec.quantity import Quantity
+from pneutouch.spec.relaxation import Relaxation
 
 
 class PaperMeasurements(Table):
@@ -108,32 +109,6 @@ class MixByCurve(Table):
     )
 
 
-class RelaxationTerm(Table):
-    """One term of a Prony series."""
-
-    share: float = Field(gt=0, lt=1, description="Of the instantaneous modulus.")
-    time_s: float = Field(gt=0, description="Relaxation time.")
-
-
-class Relaxation(Table):
-    """Fall of a resin's modulus after a step of strain, over its first value: 1 - sum of share (1 - exp(-t/time_s))."""
-
-    terms: list[RelaxationTerm] = Field(min_length=1, max_length=20, description="In ascending order of time_s.")
-    temperature_C: float | None = Field(default=None, description="Of the test, where it is known.")
-    source: str = Field(min_length=8, description="Table, page, DOI or measurement; how far it was verified.")
-
-    @model_validator(mode="after")
-    def _relaxes_to_a_solid(self) -> Relaxation:
-        total = math.fsum(term.share for term in self.terms)
-        if not total < 1:
-            raise ValueError(f"terms: shares add up to {total:.9g}; it must be less than 1, so that a modulus is left")
-        times = [term.time_s for term in self.terms]
-        for k, (before, after) in enumerate(pairwise(times)):
-            if not after > before:
-                raise ValueError(f"terms[{k + 1}].time_s = {after:g}: must be more than the one before, {before:g}")
-        return self
-
-
 STIFFEST_ELASTOMER_MPA = 20.0
 """Greatest shear modulus of an elastomer, our choice: beyond it a number is in another unit, such as kPa. Printed
 elastomers have up to 5.3 MPa, and 20 MPa is a Shore A of 96 by Gent's relation, the end of that scale."""
@@ -142,18 +117,20 @@ HARDEST = 99.9
 """Greatest Shore hardness: at 100 there is no modulus."""
 
 
-DENSITY_G_PER_CM3 = (0.5, 3.0)
-"""Density of what is printed or cast, our choice: the shipped materials have 1.02 to 1.18, filled ones have
-more, and what has less than half of that is a foam, through which a dome leaks."""
+DENSITY_G_PER_CM3: dict[MaterialKind, tuple[float, float]] = {"elastomer": (0.5, 3.0), "rigid": (0.1, 25.0)}
+"""Least and greatest density by kind, our choice. The shipped materials have 1.02 to 1.18 and filled elastomers more;
+an elastomer of less than half of that is a foam, through which a dome leaks. Rigid is anything from light wood to the
+densest metal."""
 
 
-def density_problem(density_g_per_cm3: float) -> str | None:
-    """What is wrong with the density of a material, in words; None where nothing is."""
-    low, high = DENSITY_G_PER_CM3
+def density_problem(density_g_per_cm3: float, kind: MaterialKind = "elastomer") -> str | None:
+    """What is wrong with the density of a material of this kind, in words; None where nothing is."""
+    low, high = DENSITY_G_PER_CM3[kind]
     if low <= density_g_per_cm3 <= high:
         return None
     unit = "; is it in kg/m3?" if low <= 1e-3 * density_g_per_cm3 <= high else ""
-    return f"must be from {low:g} to {high:g} g/cm3{unit}"
+    whose = "" if kind == "elastomer" else f" for a {kind} material"
+    return f"must be from {low:g} to {high:g} g/cm3{whose}{unit}"
 
 
 def elastomer_modulus_problem(modulus_MPa: float) -> str | None:
@@ -235,10 +212,10 @@ class Material(Table):
         return self
 
     @model_validator(mode="after")
-    def _as_dense_as_matter_that_is_printed(self) -> Material:
+    def _as_dense_as_its_kind(self) -> Material:
         for key in ("value", "low", "high"):
             number = getattr(self.density_g_per_cm3, key)
-            problem = None if number is None else density_problem(number)
+            problem = None if number is None else density_problem(number, self.kind)
             if problem is not None:
                 raise ValueError(f"density_g_per_cm3.{key} = {number:g}: {problem}")
         return self
