@@ -76,3 +76,16 @@ def test_a_material_of_no_profile_is_refused_with_the_reason(command, gel):
     refused = command("coupons", "--material", "OurGel").stderr
     remedy = "add OurGel to the resins of a profile of your own: pneutouch new NAME --from PROFILE"
     assert f"no profile runs OurGel; {remedy}" in refused
+
+
+def test_a_refusal_passes_over_a_profile_that_is_not_valid(command, tmp_path):
+    """The broken file is another matter: what is refused is the material, with the profiles that can be read."""
+    (tmp_path / "printprofiles").mkdir()
+    (tmp_path / "printprofiles/broken.toml").write_text('title = "Ours"\nresins = 3\n')
+    done = command("predict", "paper-dome", "--set", "membrane.material=DragonSkin20")
+    assert done.returncode == 2
+    assert "Dragon Skin 20 takes print.profile = silicone-casting (process casting)" in done.stderr
+    assert "broken.toml" not in done.stderr
+    search = command("select", "--sensitivity", "2.2", "--at", "5", "--material", "DragonSkin20")
+    assert search.returncode == 2 and "--profile silicone-casting" in search.stderr
+    assert "--process casting" in search.stderr and "broken.toml" not in search.stderr

@@ -6,6 +6,7 @@ Files in the user's folder come before the shipped ones, so a lab's own printer 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -119,6 +120,14 @@ class Library:
     def all(self, kind: str, model: type[Model]) -> dict[str, Model]:
         """Load everything of one kind; ``model`` is the kind's model, for the type checker."""
         return {name: cast(Model, self.load(kind, name)) for name in self.paths(kind)}
+
+    def readable(self, kind: str, model: type[Model]) -> dict[str, Model]:
+        """As `all`, without the files that are not valid: what a message proposes must not fail by one of these."""
+        content: dict[str, Model] = {}
+        for name in self.paths(kind):
+            with suppress(InputError):
+                content[name] = cast(Model, self.load(kind, name))
+        return content
 
     def design_file(self, name: str) -> Path:
         """The file of a design given by name or by path."""

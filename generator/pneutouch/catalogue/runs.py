@@ -12,8 +12,8 @@ from pneutouch.spec.printer import Printer
 
 
 def makers(material: Material, library: Library) -> dict[str, Printer]:
-    """The profiles that make a material, by name."""
-    printers = library.all("printers", Printer)
+    """The profiles that make a material, by name; files that are not valid are passed over, as `list` does."""
+    printers = library.readable("printers", Printer)
     return {name: one for name, one in printers.items() if one.mode_for(material) is not None}
 
 
@@ -52,7 +52,9 @@ def made_by(material: Material, library: Library, setting: str) -> str:
     """The profiles that make a material and their processes, as a remedy."""
     profiles = [f"{name} (process {one.process})" for name, one in makers(material, library).items()]
     if not profiles:
-        casts = next((one for one in library.all("printers", Printer).values() if without_casting(one, material)), None)
+        casts = next(
+            (one for one in library.readable("printers", Printer).values() if without_casting(one, material)), None
+        )
         if casts is not None:
             return f"{material.label} has no table [casting], which the profile {casts.title} needs"
         return f"no profile runs {material.label}; {own_profile(material)}"

@@ -51,7 +51,7 @@ def profile_note(
     """Which profile, and where none was given which resin, `process_values` took, with other profiles of that resin."""
     profile, chosen = str(values["print"]["profile"]), str(values["membrane"]["material"])
     resin: Material = library.load("materials", chosen)
-    printers = library.all("printers", Printer)
+    printers = library.readable("printers", Printer)
     others = [
         name
         for name, one in printers.items()
@@ -83,7 +83,7 @@ def _resin_of(printer: Printer, name: str | None, resin: Material | None, librar
 
 
 def _no_profile(process: str | None, material: str | None, resin: Material | None, library: Library) -> InputError:
-    printers = library.all("printers", Printer)
+    printers = library.readable("printers", Printer)
     if resin is None:
         able = sorted({one.process for one in printers.values() if _resin_of(one, None, None, library)})
         problem, remedy = "no profile of this process runs an elastomer", f"there are profiles of {', '.join(able)}"
