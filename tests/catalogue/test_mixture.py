@@ -14,6 +14,7 @@ from pneutouch.catalogue.mixture import mixed_material, mixing
 from pneutouch.errors import InputError
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.selection.mixes import greatest, levels
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
@@ -296,5 +297,55 @@ def test_a_mixing_curve_through_a_plastic_is_refused(tmp_path):
     del curve["curves"]
     point = {"fraction": 1.0, "material": "VeroClear", "source": "the stiff resin alone"}
     (folder / "mixing/TangoPlus+VeroClear.toml").write_text(toml_text({**curve, "points": [*curve["points"], point]}))
-    with pytest.raises(InputError, match=r'points\.material = "VeroClear": its shear modulus of 700 MPa'):
+    with pytest.raises(
+        InputError, match=r"here: membrane\.material: fraction = 0\.9: .* shear modulus of [\d.]+ MPa is more"
+    ):
         mixed(0.9, library=Library((tmp_path, ROOT)))
+
+
+def stiff_curve(tmp_path, factor=1.0):
+    """A measured curve that goes on to 35 MPa, all moduli times a factor."""
+    points = [point(f, shear_modulus_MPa=factor * mu) for f, mu in ((0.0, 0.2), (0.2, 0.8), (0.5, 35.0))]
+    return changed(tmp_path, curves=None, points=points)
+
+
+def test_a_stiff_point_of_a_curve_is_no_fault_of_a_soft_mix(tmp_path):
+    library = stiff_curve(tmp_path)
+    assert 0.2 < mixed(0.15, library=library).shear_modulus_MPa.value < 0.8
+    law = mixing("TangoPlus", "VeroClear", library)
+    top = law.wall_top
+    assert float(law.modulus_at(np.array(top))) == pytest.approx(20.0, rel=5e-3)
+    assert mixed(top, library=library).shear_modulus_MPa.value <= 20.0
+    assert greatest(law) == top
+    resins = [mixed(float(fraction), library=library) for fraction in levels(law)]
+    assert resins[-1].shear_modulus_MPa.value == pytest.approx(20.0, rel=5e-3)
+
+
+@pytest.mark.parametrize(("fraction", "at"), [(0.5, None), ([0.0, 0.5], None)], ids=["constant", "graded"])
+def test_the_stiffest_place_of_a_mix_is_bounded(tmp_path, fraction, at):
+    """The mean of the grade is below the bound, its rim is not."""
+    library = stiff_curve(tmp_path)
+    with pytest.raises(InputError) as error:
+        mixed(fraction, at, library=library)
+    said = (
+        "here: membrane.material: fraction = 0.5: by the mixing curve TangoPlus+VeroClear its shear modulus of 35 MPa"
+    )
+    assert said in str(error.value)
+    assert "take at most 0.464" in str(error.value) and "of VeroClear, or correct" in str(error.value)
+
+
+def test_a_curve_in_kPa_is_refused_where_it_is_used(tmp_path):
+    with pytest.raises(InputError, match=r"shear modulus of [\d.]+ MPa is more than the 20 MPa .* is it in kPa"):
+        mixed(0.1, library=stiff_curve(tmp_path, 1000.0))
+
+
+def test_a_mix_as_dense_as_a_metal_is_refused(tmp_path):
+    folder = tmp_path / "printprofiles/materials"
+    folder.mkdir(parents=True)
+    heavy = read_toml(ROOT / "printprofiles/materials/VeroClear.toml")
+    heavy["density_g_per_cm3"] = {"value": 19.0, "source": "made up for a test"}
+    (folder / "VeroClear.toml").write_text(toml_text(heavy))
+    with pytest.raises(
+        InputError, match=r"here: membrane\.material = .*: a mix of 4\.7\d g/cm3 must be from 0\.5 to 3"
+    ):
+        mixed(0.2, library=Library((tmp_path, ROOT)))

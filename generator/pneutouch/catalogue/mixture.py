@@ -11,7 +11,14 @@ from pneutouch.catalogue.along import ArcProfile
 from pneutouch.catalogue.library import Library
 from pneutouch.errors import InputError, shown
 from pneutouch.spec.grade import Grade
-from pneutouch.spec.material import ArcGrading, Material, MixByCurve, elastomer_modulus_problem
+from pneutouch.spec.material import (
+    STIFFEST_ELASTOMER_MPA,
+    ArcGrading,
+    Material,
+    MixByCurve,
+    density_problem,
+    elastomer_modulus_problem,
+)
 from pneutouch.spec.mixing import MixingCurve, MixingPoint
 from pneutouch.spec.quantity import Quantity
 
@@ -22,6 +29,8 @@ _STATIONS = 65
 """Places along the arc at which a grade's modulus is stored; straight between them it is within 1e-3 of the curve."""
 
 _SLACK = 1e-12
+_FINE = 2001
+"""Fractions at which the end of the soft mixes is searched."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +48,19 @@ class ResolvedMixingCurve:
         top = float(self.fraction[-1])
         line = ArcProfile(tuple(self.fraction / top), tuple(np.log(self.modulus)))
         return np.asarray(np.exp(line(np.asarray(fraction) / top)))
+
+    @property
+    def wall_top(self) -> float:
+        """The greatest fraction, to four decimals, at which `stiffest_at` is no more than a wall's may be."""
+        at = np.linspace(0.0, float(self.fraction[-1]), _FINE)
+        stiff = self.stiffest_at(at) > STIFFEST_ELASTOMER_MPA
+        if not stiff.any():
+            return float(at[-1])
+        return float(np.floor(1e4 * at[max(int(np.argmax(stiff)) - 1, 0)]) / 1e4)
+
+    def stiffest_at(self, fraction: Array) -> Array:
+        """Greatest modulus in MPa: of an assumed curve's band, else the curve's own."""
+        return self.band_at(fraction)[1] if self.curve.is_assumed else self.modulus_at(fraction)
 
     def band_at(self, fraction: Array) -> tuple[Array, Array]:
         """Least and greatest modulus in MPa: the points at their ``fraction_high`` and ``fraction_low``.
@@ -140,9 +162,6 @@ def _resolved(point: MixingPoint, curve: MixingCurve, library: Library, where: s
         )
     if material.shear_modulus_MPa is None:
         raise InputError("has no shear_modulus_MPa", file=where, key="points.material", value=point.material)
-    problem = elastomer_modulus_problem(material.shear_modulus_MPa.nominal)
-    if problem is not None:
-        raise InputError(f"its shear modulus of {problem}", file=where, key="points.material", value=point.material)
     known = material.elongation_at_break_percent
     spread = material.shear_modulus_MPa.spread
     return (
@@ -155,7 +174,8 @@ def _resolved(point: MixingPoint, curve: MixingCurve, library: Library, where: s
 def mixed_material(grade: Grade, library: Library, *, file: str | None, key: str = "membrane.material") -> Material:
     """The material of a grade; of one that varies the mean over the dome's wall, with its course ``along`` the arc.
 
-    Raises InputError for resins without a curve and for fractions beyond its last point.
+    Raises InputError for resins without a curve, for fractions beyond its last point, and for a mix that is stiffer or
+    denser than a membrane may be.
     """
     # The names first: of an unknown resin there is no curve either, and the error would name the pair.
     soft: Material = library.load("materials", grade.from_, file=file, key=f"{key}.from")
@@ -172,7 +192,12 @@ def mixed_material(grade: Grade, library: Library, *, file: str | None, key: str
     # The dome's wall has its area even over the height: the weight of an arc position is the cosine of its latitude.
     weight = np.sin(0.5 * np.pi * arc)
     share = grade.fractions[0] if grade.is_constant else float(np.average(fraction, weights=weight))
+    _check_soft(grade, law, fraction, file, key)
     content = _content(grade, soft, stiff, share)
+    density = content["density_g_per_cm3"]["value"]
+    wrong = density_problem(density)
+    if wrong is not None:
+        raise InputError(f"a mix of {density:.3g} g/cm3 {wrong}", file=file, key=key, value=grade.label)
     content["shear_modulus_MPa"] = _modulus(law, fraction, weight)
     content["elongation_at_break_percent"] = _elongation(law, fraction)
     content["curves"] = _by_curves(grade, library, law, fraction, weight)
@@ -181,6 +206,23 @@ def mixed_material(grade: Grade, library: Library, *, file: str | None, key: str
             arc=arc.tolist(), stiff_fraction=fraction.tolist(), shear_modulus_MPa=law.modulus_at(fraction).tolist()
         ).model_dump()
     return Material.model_validate({name: value for name, value in content.items() if value is not None})
+
+
+def _check_soft(grade: Grade, law: ResolvedMixingCurve, fraction: Array, file: str | None, key: str) -> None:
+    """Raise InputError where the mix, or the band of its modulus, is stiffer somewhere than a membrane may be."""
+    end = law.stiffest_at(fraction)
+    worst = int(np.argmax(end))
+    problem = elastomer_modulus_problem(float(end[worst]))
+    if problem is not None:
+        pair, top = f"{grade.from_}+{grade.to}", law.wall_top
+        less = f"take at most {top:g} of {grade.to}, or " if top > 0 else ""
+        raise InputError(
+            f"by the mixing curve {pair} its shear modulus of {problem}",
+            file=file,
+            key=f"{key}: fraction",
+            value=float(fraction[worst]),
+            remedy=f"{less}correct printprofiles/mixing/{pair}.toml",
+        )
 
 
 def _by_curves(

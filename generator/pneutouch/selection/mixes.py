@@ -23,8 +23,8 @@ MixedResin = Callable[[float], CandidateResin]
 
 
 def greatest(law: ResolvedMixingCurve) -> float:
-    """The greatest fraction to which a mix is offered: that of the curve, and of every other curve of its pair."""
-    return min(float(law.fraction[-1]), law.curve.common_top)
+    """The greatest fraction offered of a mix: every curve of its pair goes to it, and a wall may be as stiff."""
+    return min(law.wall_top, law.curve.common_top)
 
 
 def levels(law: ResolvedMixingCurve, count: int = LEVELS) -> Array:

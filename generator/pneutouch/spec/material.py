@@ -110,8 +110,9 @@ class MixByCurve(Table):
 
 
 STIFFEST_ELASTOMER_MPA = 20.0
-"""Greatest shear modulus of an elastomer, our choice: beyond it a number is in another unit, such as kPa. Printed
-elastomers have up to 5.3 MPa, and 20 MPa is a Shore A of 96 by Gent's relation, the end of that scale."""
+"""Greatest shear modulus of a wall that this program models, our choice: beyond it a number is mostly in another unit,
+such as kPa, though some polyurethane elastomers are stiffer. Printed elastomers have up to 5.3 MPa, and 20 MPa is a
+Shore A of 96 by Gent's relation, the end of that scale."""
 
 HARDEST = 99.9
 """Greatest Shore hardness: at 100 there is no modulus."""
@@ -137,7 +138,8 @@ def elastomer_modulus_problem(modulus_MPa: float) -> str | None:
     """What is wrong with the shear modulus of an elastomer, in words; None where nothing is."""
     if modulus_MPa <= STIFFEST_ELASTOMER_MPA:
         return None
-    return f"{modulus_MPa:g} MPa is more than the {STIFFEST_ELASTOMER_MPA:g} MPa of any elastomer; is it in kPa?"
+    most = f"{STIFFEST_ELASTOMER_MPA:g} MPa to which walls are modelled here"
+    return f"{modulus_MPa:g} MPa is more than the {most}; is it in kPa?"
 
 
 _POSITIVE = {

@@ -37,11 +37,13 @@ def resins_of(pair: str, *, file: str | None = None, key: str) -> tuple[str, str
 
 
 def blends(pair: str, library: Library) -> list[CouponMix]:
-    """What is printed of a pair, no farther than its mixing curve. Raises InputError where there is none."""
+    """What is printed of a pair, to where its mixing curve ends or is as stiff as a membrane may be.
+
+    Raises InputError where there is no curve."""
     soft, stiff = resins_of(pair, key="mixing")
     for name in (soft, stiff):
         library.load("materials", name, key="mixing")
-    top = float(mixing(soft, stiff, library, key="mixing").fraction[-1])
+    top = mixing(soft, stiff, library, key="mixing").wall_top
     grades = [
         Grade.model_validate({"from": soft, "to": stiff, "fraction": fraction})
         for fraction in FRACTIONS

@@ -60,7 +60,7 @@ def pair_of(name: str, printer: Printer, library: Library, where: str, named: bo
     """
     soft, stiff = (part.strip() for part in name.split("+"))
     pair = ResinPair(soft, stiff, mixing(soft, stiff, library, file=where, key="given.mix"), library, where)
-    if printer.mode_for(pair.material(pair.grade(0.5 * float(pair.law.fraction[-1])))) is None:
+    if printer.mode_for(pair.material(pair.grade(0.5 * pair.law.wall_top))) is None:
         remedy = "name a pair that it holds with `mix`, or another printer with `profile`"
         raise InputError(
             f"given.mix = {shown(name)}{'' if named else ' (none was named)'}: the {printer.title} cannot mix "
