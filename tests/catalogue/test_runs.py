@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+import pneutouch as pt
+from pneutouch.errors import InputError
 from tests.conftest import ROOT
 
 OWN = ("--set", "membrane.material=OurGel", "--set", "print.profile=our-casting")
@@ -68,6 +70,26 @@ def test_a_search_names_the_process_as_its_option(command):
     assert "or give --process casting" in done.stderr
     taken = ("--material", "DragonSkin20", "--process", "casting")
     assert command("select", "--sensitivity", "2.2", "--at", "5", *taken).returncode == 0
+
+
+def test_a_search_in_python_names_the_keyword_that_it_has(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError, match="or give `processes` casting"):
+        pt.select(sensitivity_kPa_per_N=2.2, driving_pressure_kPa=5, materials="DragonSkin20")
+    with pytest.raises(InputError, match='= "cast": must be "any"'):
+        pt.select(sensitivity_kPa_per_N=2.2, driving_pressure_kPa=5, processes="cast")
+
+
+def test_a_process_is_left_out_with_the_table_that_a_file_lacks(command, gel):
+    words = ("--sensitivity", "2.2", "--at", "5", "--material", "OurGel", "--process", "casting")
+    done = command("select", *words)
+    said = done.stdout + done.stderr
+    assert done.returncode == 1, said
+    assert f"casting: left out: {gel}: casting: missing" in said
+    assert "add the table [casting] with parts_by_mass, pot_life_min, cure_h" in said
+    assert "no profile of it" not in said
+    printed = command("select", *words[:-1], "polyjet")
+    assert "polyjet: left out: no profile of it makes OurGel" in printed.stdout + printed.stderr
 
 
 def test_a_material_of_no_profile_is_refused_with_the_reason(command, gel):

@@ -151,6 +151,9 @@ def option(command: Any, parameter: str) -> str | None:
     # An option may be named by what it takes: --write NAME.
     named = [one for one in known.values() if one.metavar == parameter.upper()]
     if not names and not named:
+        # A list of the library may be an option of one: --process for processes.
+        named = [one for name, one in known.items() if parameter in (f"{name}s", f"{name}es")]
+    if not names and not named:
         return None
     one = known[names[-1]] if names else named[0]
     return str(one.metavar or one.name).upper() if one.param_type_name == "argument" else max(one.opts, key=len)

@@ -193,6 +193,6 @@ def _runs_none(printer: Printer, named: dict[str, Material], where: str, library
     takes = [made_by(material, library, "`profile`") for material in named.values()]
     processes = dict.fromkeys(one.process for material in named.values() for one in makers(material, library).values())
     if processes:
-        takes.append(f"or give `process` {' or '.join(processes)}")
+        takes.append(f"or give `processes` {' or '.join(processes)}")
     problem = f"the {printer.title} runs {'none of ' if named else ''}{', '.join(named) or 'no known elastomer'}"
     return InputError(problem, file=where, remedy="; ".join(takes) or "give another `profile`")

@@ -8,6 +8,7 @@ from typing import Any, get_args
 
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.cached_library import CachedLibrary
+from pneutouch.catalogue.runs import uncast, without_casting
 from pneutouch.errors import InputError
 from pneutouch.spec.casting import CAST_SEAT
 from pneutouch.spec.material import Material
@@ -64,7 +65,7 @@ def select_processes(
     for number, process in enumerate(names):
         offered = _profile(process, usual, target.given.materials, library)
         if offered is None:
-            left_out[process] = f"no profile of it makes {' or '.join(target.given.materials or ['an elastomer'])}"
+            left_out[process] = _unmade(process, target.given.materials, library)
             continue
         profiles[process], resins = offered
 
@@ -97,6 +98,17 @@ def _profile(process: str, usual: str, resins: list[str] | None, library: Librar
         if printers[name].process == process and makes:
             return name, makes if resins else None
     return None
+
+
+def _unmade(process: str, resins: list[str] | None, library: Library) -> str:
+    """Why no profile of a process makes the resins named: also which file does not state how it is cast."""
+    printers = [one for one in library.readable("printers", Printer).values() if one.process == process]
+    for name in resins or ():
+        material: Material = library.load("materials", name, key="given.materials")
+        casts = next((one for one in printers if without_casting(one, material)), None)
+        if casts is not None:
+            return str(uncast(casts, material, str(library.paths("materials")[name])))
+    return f"no profile of it makes {' or '.join(resins or ['an elastomer'])}"
 
 
 def _of(target: Target, process: str, profile: str, resins: list[str] | None) -> Target:
