@@ -195,3 +195,33 @@ def test_a_process_the_resin_is_not_made_by_is_refused(command, tmp_path, words,
     done = command("new", "mine", *words)
     assert done.returncode == 2 and problem in done.stderr, done.stderr
     assert not (tmp_path / "designs").exists()
+
+
+def test_a_process_cannot_be_given_with_a_copy_and_the_remedy_is_one(command):
+    """``--set`` changes a design; a profile is changed in its file."""
+    refused = command("new", "x", "--from", "TangoPlus", "--process", "casting")
+    assert refused.returncode == 2
+    assert "--process cannot be given with a copy" in refused.stderr
+    assert "it is one of the materials: change the file of the copy" in refused.stderr and "--set" not in refused.stderr
+    of_design = command("new", "x", "--from", "paper-dome", "--process", "casting")
+    assert of_design.returncode == 2 and "change it with --set" in of_design.stderr
+
+
+def test_every_known_name_is_listed_once(command, tmp_path):
+    command("new", "ours", "--from", "j735")
+    command("new", "ours", "--from", "smc-pse543")
+    listed = command("new", "x", "--from", "zzzzzzzzzzzzzzzz").stderr
+    names = listed.partition("Known: ")[2].strip().rstrip(".").split(", ")
+    assert "ours" in names and len(names) == len(set(names))
+
+
+def test_a_name_of_two_kinds_is_not_copied_by_chance(command, tmp_path):
+    command("new", "ours", "--from", "j735")
+    assert command("new", "ours", "--from", "smc-pse543").returncode == 0
+    for more in ((), ("--process", "casting")):
+        refused = command("new", "x", "--from", "ours", *more)
+        assert refused.returncode == 2, refused.stdout
+        assert "--from ours: stands for one of the printers (" in refused.stderr
+        assert "ours.toml) and one of the gauges (" in refused.stderr
+        assert "give the one to copy a name of its own" in refused.stderr
+    assert not (tmp_path / "printprofiles/x.toml").exists()

@@ -40,13 +40,14 @@ def new(
 ) -> None:
     """Write a commented design file, or copy a shipped file."""
     with reporting():
-        from pneutouch.output.new import NewFile, new_design, new_from
+        from pneutouch.output.new import NewFile, change_of_copy, new_design, new_from
 
         note, started = None, {"--process": process, "--material": material}
         if from_ is not None:
             given = " and ".join(flag for flag, value in started.items() if value is not None)
             if given:
-                raise InputError(f"{given} cannot be given with a copy", key="from", remedy="change it with `set`")
+                remedy = change_of_copy(from_)
+                raise InputError(f"{given} cannot be given with a copy", key="from", value=from_, remedy=remedy)
             made = new_from(from_, name, out, changes(set_))
         elif set_:
             raise InputError("no design to change", key="set", remedy="give one with `from`")

@@ -19,6 +19,9 @@ from pneutouch.spec.template import design_template
 PROFILES = ("printers", "gauges", "materials")
 """Kinds of files of a laboratory's own next to its designs."""
 
+_DRAWN = ("designs", "specimens")
+"""Kinds of files of what is printed."""
+
 
 @dataclass(frozen=True, slots=True)
 class NewFile:
@@ -70,13 +73,12 @@ def new_from(source: str, name: str | None = None, out: Path | None = None, chan
     gauges and materials go to the user's folder alone. Never over a file. Raises InputError.
     """
     library, shipped = Library.default(), examples()
-    named = source in library.paths("designs") or source in library.paths("specimens") or source in shipped
-    kind = None if named else next((one for one in PROFILES if source in library.paths(one)), None)
+    kind = _profile_kind(source, library)
     if kind is not None:
         return _own_profile(kind, source, name, out, changes, library)
     if changes:
         return _changed(DesignSource.of(source, library), changes, name, out)
-    for one in ("designs", "specimens"):
+    for one in _DRAWN:
         if source in library.paths(one):
             return _copied(one, library.paths(one)[source], name, out)
     if source in shipped:
@@ -94,9 +96,31 @@ def new_from(source: str, name: str | None = None, out: Path | None = None, chan
     path = Path(source)
     if path.suffix == ".toml" or is_file(path):
         return _copied("specimens" if is_specimen(read_toml(path)) else "designs", path, name, out)
-    known = [*shipped, *(each for one in ("designs", "specimens", *PROFILES) for each in library.paths(one))]
+    known = dict.fromkeys([*shipped, *(name for one in (*_DRAWN, *PROFILES) for name in library.paths(one))])
     problem = f"no such design, specimen, example, printer, gauge or material.{nearest(source, known)}"
     raise InputError(problem, key="from", value=source)
+
+
+def change_of_copy(source: str) -> str:
+    """How a copy of a name is changed, as a remedy. Raises InputError as `new_from` does for a name of two kinds."""
+    kind = _profile_kind(source, Library.default())
+    return "change it with `set`" if kind is None else f"it is one of the {kind}: change the file of the copy"
+
+
+def _profile_kind(source: str, library: Library) -> str | None:
+    """The kind of profile that a name stands for; None where it stands for what is printed, an example or nothing.
+
+    Raises InputError where it stands for several, one of them a profile.
+    """
+    kinds = [one for one in (*_DRAWN, *PROFILES) if source in library.paths(one)]
+    found = [f"{one} ({library.paths(one)[source]})" for one in kinds]
+    if source in examples():
+        kinds, found = ["examples", *kinds], ["examples", *found]
+    profiles = [one for one in kinds if one in PROFILES]
+    if profiles and len(kinds) > 1:
+        problem = f"stands for one of the {' and one of the '.join(found)}"
+        raise InputError(problem, key="from", value=source, remedy="give the one to copy a name of its own")
+    return profiles[0] if profiles else None
 
 
 def _own_profile(
