@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.errors import InputError
-from pneutouch.packing import PackingArea, pack
+from pneutouch.packing import PackingArea, in_rows, pack
 
 SIDES = st.floats(2.0, 60.0, allow_nan=False).map(lambda x: round(x, 3))
 SIZES = st.lists(st.tuples(SIDES, SIDES), min_size=1, max_size=40)
@@ -88,3 +88,40 @@ def test_a_long_part_is_turned_where_only_that_fits():
 def test_a_part_that_fits_no_way_is_refused():
     with pytest.raises(InputError, match="0 of 1 parts fit on the tray of 100 x 50 mm"):
         pack([(60.0, 60.0)], PackingArea(100.0, 50.0, 0.0, 1.0))
+
+
+def plain_rows(sizes, room):
+    """How many of ``sizes`` go into rows one after another, none turned; those that do not fit are passed over."""
+    x, y, depth, count = room.margin, room.margin, 0.0, 0
+    for width, length in sizes:
+        inside = x + width <= room.width - room.margin + 1e-9
+        if not (count and inside and length <= depth + 1e-9):
+            start = y + depth + room.spacing if count else y
+            if start + length > room.depth - room.margin + 1e-9 or width > room.width - 2 * room.margin + 1e-9:
+                continue
+            x, y, depth = room.margin, start, length
+        x += width + room.spacing
+        count += 1
+    return count
+
+
+FEW = st.lists(st.tuples(SIDES, SIDES), min_size=5, max_size=25)
+SMALL = st.builds(PackingArea, st.floats(80, 160), st.floats(80, 160), st.just(2.0), st.just(2.0))
+
+
+@given(FEW, SMALL)
+def test_filling_gaps_places_no_fewer_than_plain_rows(sizes, room):
+    places = in_rows(sizes, room)
+    found = [place for place in places if place is not None]
+    assert len(found) >= plain_rows(sizes, room)
+    placed = list(boxes([size for size, place in zip(sizes, places, strict=True) if place is not None], found))
+    for k, one in enumerate(placed):
+        assert one[2] <= room.width - room.margin + 1e-6 and one[3] <= room.depth - room.margin + 1e-6
+        for other in placed[:k]:
+            assert gap(one, other) >= room.spacing - 1e-6
+
+
+def test_a_gap_is_not_filled_where_that_costs_a_part():
+    """Gaps filled, two of the seven do not fit; in plain rows one does not."""
+    sizes = [(19.0, 27.0), (26.0, 23.0), (28.0, 4.0), (12.0, 27.0), (20.0, 20.0), (6.0, 27.0), (17.0, 39.0)]
+    assert in_rows(sizes, PackingArea(60.0, 60.0, 0.0, 1.0)).count(None) == 1

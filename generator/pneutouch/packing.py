@@ -54,11 +54,15 @@ def pack(sizes: Sequence[tuple[float, float]], area: PackingArea, where: str = "
 def in_rows(sizes: Sequence[tuple[float, float]], area: PackingArea) -> list[PackedPosition | None]:
     """Places for rectangles in their order, row after row, none turned; None for one that does not fit.
 
-    Gaps of earlier rows are filled where they do not all fit without that.
+    Gaps of earlier rows are filled where not all fit without that, unless plain rows then hold more.
     """
     boxes = [(width, depth, False) for width, depth in sizes]
-    places = _rows(boxes, range(len(sizes)), area, fill_gaps=False)[1]
-    return places if None not in places else _rows(boxes, range(len(sizes)), area, fill_gaps=True)[1]
+    plain = _rows(boxes, range(len(sizes)), area, fill_gaps=False)[1]
+    if None not in plain:
+        return plain
+    filled = _rows(boxes, range(len(sizes)), area, fill_gaps=True)[1]
+    # A gap may take a part that would have begun a row, and the row then has no room for the parts after it.
+    return min(filled, plain, key=lambda places: places.count(None))
 
 
 def _oriented(

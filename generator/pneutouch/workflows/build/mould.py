@@ -85,7 +85,7 @@ def _part(name: str) -> str:
 
 
 def _plates(mould: MouldAssembly) -> list[list[TrayItem]]:
-    """Every part as often as it is made, on as few build plates as rows of them take."""
+    """Every part as often as it is made, on build plates one after another, each as full as `in_rows` packs it."""
     envelope = mould.printer.envelope
     area = PackingArea(envelope.x, envelope.y, _BORDER, _GAP)
     left = [
