@@ -8,7 +8,7 @@ from pydantic import BaseModel
 
 from pneutouch.errors import InputError, nearest, shown
 from pneutouch.spec.fields import EntryError, declaration, entries_of, table_of
-from pneutouch.spec.form import is_list, table_form
+from pneutouch.spec.form import table_form
 from pneutouch.wording import counted
 
 
@@ -91,7 +91,7 @@ def _label(steps: Iterable[int | str]) -> str:
 def _addition(owner: type[BaseModel] | None, path: list[str]) -> str:
     """What to add where a key is missing: a table in its form, and what it is."""
     right, form = _right(owner, path) or f"a table [{'.'.join(path)}]", table_form(owner, path[-1])
-    if form and is_list(owner, path[-1]):
+    if form and owner is not None and entries_of(owner, path[-1]) is not None:
         form = f"[{form}]"
     if form:
         return f"give {path[-1]} = {form}: {right}"

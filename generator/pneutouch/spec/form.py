@@ -26,13 +26,4 @@ def table_form(owner: type[BaseModel] | None, key: str) -> str:
     return f"{{ {', '.join(entries)} }}"
 
 
-def is_list(owner: type[BaseModel] | None, key: str) -> bool:
-    """Whether ``key`` of ``owner`` is a list."""
-    return (
-        owner is not None
-        and key in owner.model_fields
-        and typing.get_origin(owner.model_fields[key].annotation) is list
-    )
-
-
 _FORMS: dict[typing.Any, str] = {str: '"..."'}
