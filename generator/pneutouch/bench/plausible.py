@@ -27,8 +27,8 @@ RESET_KPA, RESET_SHARE = 1.0, 0.1
 """How far the pressure before contact may be from the driving pressure: our choice, a regulator's scatter."""
 
 BEYOND = 10.0
-"""Factor from the prediction of force or rise from which no sensor is the reason: our choice, three times `FAR`.
-Another unit then explains a reading that it brings within `FAR`."""
+"""Factor above the prediction of force or rise from which no sensor is the reason: our choice, three times `FAR`.
+Another unit then explains a reading that it brings within `FAR`. Below the prediction a leak or a dead volume may be."""
 
 DRIVING_FAR = 3.0
 """Times `RESET_KPA` or `RESET_SHARE` beyond which no gauge zero and no regulator is the reason: our choice."""
@@ -50,6 +50,7 @@ _MINUS = {
 
 _HOLD_FAR = 50.0
 _WHY = "another resin (runs.resin) or design (design), a smaller plate, or a wrong calibration?"
+_WHY_LEAK = "a leak, a dead volume that is not stated (pneumatics.dead_volume_mL), another resin or design?"
 _WHY_TIME = "holds of another protocol, another kind of run, or another column?"
 
 _START = 1.0
@@ -160,7 +161,7 @@ def _magnitude(file: Path, columns: ColumnMap, key: str, ratio: float, reads: st
     times = f"{ratio:.2g} times it" if ratio < 100 else f"{ratio:.0f} times it"
     problem = f"column {column.name}: {reads} where {predicted}, {times}"
     declared = UNITS[key][column.unit]
-    near = FAR if key in ("force", "pressure") and not 1 / BEYOND <= ratio <= BEYOND else UNIT_NEAR
+    near = FAR if key in ("force", "pressure") and ratio > BEYOND else UNIT_NEAR
     off = {unit: abs(math.log(max(ratio, 1e-12) * factor / declared)) for unit, factor in UNITS[key].items()}
     nearest = min(off, key=lambda unit: off[unit])
     if nearest != column.unit and off[nearest] < math.log(near):
@@ -168,7 +169,7 @@ def _magnitude(file: Path, columns: ColumnMap, key: str, ratio: float, reads: st
         is_exact = off[nearest] < math.log(UNIT_NEAR)
         then = "" if is_exact else f", {ratio * UNITS[key][nearest] / declared:.2g} times the prediction then"
         raise InputError(f"{problem}; is the column in {same}{then}? set columns.{key}.unit", file=file)
-    why = _WHY_TIME if key == "time" else _WHY
+    why = _WHY_LEAK if key == "pressure" and ratio < 1.0 else _WHY_TIME if key == "time" else _WHY
     return f"{problem}; no unit explains that: {why}"
 
 
@@ -246,13 +247,13 @@ def _driving(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None
         f"column {columns.pressure.name}: {read_kPa:.3g} kPa before contact; the campaign states "
         f"driving_pressure_kPa = {stated_kPa:g}"
     )
-    if abs(off_kPa) <= DRIVING_FAR * near_kPa:
+    # No state reads below 0: that is a zero, whatever its size.
+    if abs(off_kPa) <= DRIVING_FAR * near_kPa or read_kPa < 0.0:
         return f"{problem}; another run's file, or a gauge not zeroed?"
-    set_so = f"driving_pressure_kPa = {read_kPa:.0f} below its [[runs]] entry" if read_kPa > -RESET_KPA else ""
+    set_so = f"state driving_pressure_kPa = {read_kPa:.0f} below its [[runs]] entry"
     if ABSOLUTE[0] < off_kPa * KPA / STANDARD_ATMOSPHERE < ABSOLUTE[1]:
         problem += ", which looks like an absolute pressure"
-        remedy = f"subtract the ambient pressure in the file (pressures are gauge pressures), or state {set_so}"
+        remedy = f"subtract the ambient pressure in the file (pressures are gauge pressures), or {set_so}"
     else:
-        remedy = "state the run's own file, its unit (columns.pressure.unit) or a file of a zeroed gauge"
-        remedy += f", or {set_so}" if set_so else ""
+        remedy = f"name the right file, set columns.pressure.unit, subtract the gauge's zero in the file, or {set_so}"
     raise InputError(problem, file=file, remedy=remedy)

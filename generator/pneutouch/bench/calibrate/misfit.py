@@ -35,8 +35,8 @@ class ModelMisfit:
 
     @property
     def contradicted(self) -> bool:
-        """Whether the model is none of the sensor: it is off by more than the greatest discrepancy that a fit considers
-        (`LARGEST`), or by more than that and the scatter explain."""
+        """Whether the model with what was fitted does not describe the sensor: it is off by more than the greatest
+        discrepancy that a fit considers (`LARGEST`), or by more than that and the scatter explain."""
         return max(self.shares) > LARGEST or self.chi_squared > CONTRADICTED_CHI
 
     @property

@@ -10,7 +10,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.identify import UNSEEN
-from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, KEYS, NAMES, OFFSET, outside_value
+from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, KEYS, MODULUS, NAMES, OFFSET, WALL, outside_value
 from pneutouch.bench.calibrate.response import ResponseGap
 from pneutouch.catalogue import KINDS
 from pneutouch.errors import InputError
@@ -115,13 +115,16 @@ def savable(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
     the runs contradict the fitted model, or a value or its uncertainty is beyond the bounds. The key is ``fit`` where
     another choice of parameters may help.
     """
-    _check_friction(calibration)
-    content = calibration_content(calibration, source)
     if calibration.misfit.contradicted:
+        held = not {MODULUS, WALL} <= set(calibration.fit.parameters.fitted)
         raise InputError(
             f"the runs contradict the fitted model: it is off in {calibration.misfit.words}",
-            remedy="check units, columns, driving pressures, design and contact of the runs",
+            key="fit" if held else None,
+            remedy=f"{'fit modulus and wall, or ' if held else ''}check units, columns, driving pressures, design and "
+            "contact of the runs",
         )
+    _check_friction(calibration)
+    content = calibration_content(calibration, source)
     try:
         KINDS["calibrations"].validate(content, "calibration")
     except InputError as error:

@@ -34,6 +34,7 @@ from pneutouch.workflows.characterize import (
     answers,
     load_curves,
     read_as,
+    same_failures,
     sound,
     undisputed,
 )
@@ -106,6 +107,9 @@ def run_calibration(
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
     expected = answers(design, changes, pairs, "solid" if built.protocol.other_contact else "atlas", library)
     curves, refused, questions = sound(loaded, expected)
+    if not (curves or loaded.injections) and refused:
+        lines = [f"{files}: {why}" for files, why in same_failures([*loaded.failures, *refused])]
+        raise InputError("\n".join(["none of its runs can be used", *lines]), file=options.data)
     sensor, observations, notes = observations_of(loaded.campaign, curves, loaded.injections, scene, options.sensor)
     used_files = {curve.run.file for curve in observations.curves}
     notes = [*notes, *(f"{file}: {text}" for file, text in questions if file in used_files)]
