@@ -61,7 +61,7 @@ def in_rows(sizes: Sequence[tuple[float, float]], area: PackingArea) -> list[Pac
     if None not in plain:
         return plain
     filled = _rows(boxes, range(len(sizes)), area, fill_gaps=True)[1]
-    # A gap may take a part that would have begun a row, and the row then has no room for the parts after it.
+    # A gap may take a part that would have begun a row, and the row then has no space for the parts after it.
     return min(filled, plain, key=lambda places: places.count(None))
 
 

@@ -17,7 +17,7 @@ def makers(material: Material, library: Library) -> dict[str, Printer]:
     return {name: one for name, one in printers.items() if one.mode_for(material) is not None}
 
 
-def lacks_casting(printer: Printer, material: Material) -> bool:
+def casting_missing(printer: Printer, material: Material) -> bool:
     """Whether a profile would cast a material whose file has no table [casting]."""
     return printer.is_casting and not material.is_cast and set(material.base_resins) <= set(printer.resins)
 
@@ -40,7 +40,7 @@ def cannot_run(
     ``name`` is the material's, None of a mix; ``setting`` is what takes another profile, such as ``print.profile``;
     ``place`` holds file, key and value of what was given.
     """
-    if lacks_casting(printer, material):
+    if casting_missing(printer, material):
         known = {} if library is None else library.paths("materials")
         return uncast(printer, material, str(known.get(name or "", place.get("file") or name)))
     at_once = f"it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once"
@@ -53,7 +53,7 @@ def made_by(material: Material, library: Library, setting: str) -> str:
     profiles = [f"{name} (process {one.process})" for name, one in makers(material, library).items()]
     if not profiles:
         casts = next(
-            (one for one in library.readable("printers", Printer).values() if lacks_casting(one, material)), None
+            (one for one in library.readable("printers", Printer).values() if casting_missing(one, material)), None
         )
         if casts is not None:
             return f"{material.label} has no table [casting], which the profile {casts.title} needs"

@@ -113,12 +113,12 @@ def _profile_kind(source: str, library: Library) -> str | None:
     Raises InputError where it stands for several, one of them a profile.
     """
     kinds = [one for one in (*_DRAWN, *PROFILES) if source in library.paths(one)]
-    found = [f"{one} ({library.paths(one)[source]})" for one in kinds]
+    owners = [f"{one} ({library.paths(one)[source]})" for one in kinds]
     if source in examples():
-        kinds, found = ["examples", *kinds], ["examples", *found]
+        kinds, owners = ["examples", *kinds], ["examples", *owners]
     profiles = [one for one in kinds if one in PROFILES]
     if profiles and len(kinds) > 1:
-        problem = f"stands for one of the {' and one of the '.join(found)}"
+        problem = f"stands for one of the {' and one of the '.join(owners)}"
         raise InputError(problem, key="from", value=source, remedy="give the one to copy a name of its own")
     return profiles[0] if profiles else None
 

@@ -5,7 +5,7 @@ from typing import Any, get_args
 import numpy as np
 
 from pneutouch.catalogue import Library
-from pneutouch.catalogue.runs import lacks_casting, makers, own_profile, uncast
+from pneutouch.catalogue.runs import casting_missing, makers, own_profile, uncast
 from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.inflation import LIMIT_HEIGHT, pressure
 from pneutouch.mechanics.paper_sensor import material_sensor
@@ -90,7 +90,7 @@ def _no_profile(process: str | None, material: str | None, resin: Material | Non
         return InputError(problem, key="process", value=process, remedy=remedy)
     runs = {one.process: name for name, one in makers(resin, library).items()}
     if not runs:
-        casts = next((one for one in printers.values() if lacks_casting(one, resin)), None)
+        casts = next((one for one in printers.values() if casting_missing(one, resin)), None)
         if casts is not None:
             return uncast(casts, resin, str(library.paths("materials")[str(material)]))
         return InputError("no profile runs it", key="material", value=material, remedy=own_profile(resin))

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from pneutouch.catalogue import DEFAULT, DesignSource, Library, ResolvedDesign, load_scene
-from pneutouch.catalogue.runs import lacks_casting, made_by, makers, uncast
+from pneutouch.catalogue.runs import casting_missing, made_by, makers, uncast
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.spec.design import CALIBRATION, DesignFile
 from pneutouch.spec.material import Material
@@ -188,7 +188,7 @@ def _some_resin(target: Target, where: str, changes: dict[str, Any], library: Li
 def _runs_none(printer: Printer, named: dict[str, Material], where: str, library: Library) -> InputError:
     """The refusal of the materials named, none of which the profile runs, or of a profile that runs no elastomer."""
     for name, material in named.items():
-        if lacks_casting(printer, material):
+        if casting_missing(printer, material):
             return uncast(printer, material, str(library.paths("materials")[name]))
     takes = [made_by(material, library, "`profile`") for material in named.values()]
     processes = dict.fromkeys(one.process for material in named.values() for one in makers(material, library).values())

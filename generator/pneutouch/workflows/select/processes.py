@@ -8,7 +8,7 @@ from typing import Any, get_args
 
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.cached_library import CachedLibrary
-from pneutouch.catalogue.runs import lacks_casting, uncast
+from pneutouch.catalogue.runs import casting_missing, uncast
 from pneutouch.errors import InputError
 from pneutouch.spec.casting import CAST_SEAT
 from pneutouch.spec.material import Material
@@ -105,7 +105,7 @@ def _unmade(process: str, resins: list[str] | None, library: Library) -> str:
     printers = [one for one in library.readable("printers", Printer).values() if one.process == process]
     for name in resins or ():
         material: Material = library.load("materials", name, key="given.materials")
-        casts = next((one for one in printers if lacks_casting(one, material)), None)
+        casts = next((one for one in printers if casting_missing(one, material)), None)
         if casts is not None:
             return str(uncast(casts, material, str(library.paths("materials")[name])))
     return f"no profile of it makes {' or '.join(resins or ['an elastomer'])}"

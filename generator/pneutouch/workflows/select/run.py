@@ -11,7 +11,7 @@ import numpy as np
 
 from pneutouch.catalogue import Library, ResolvedDesign
 from pneutouch.catalogue.cached_library import CachedLibrary
-from pneutouch.catalogue.runs import lacks_casting
+from pneutouch.catalogue.runs import casting_missing
 from pneutouch.errors import InputError
 from pneutouch.evaluation.elastomers import elastomers
 from pneutouch.evaluation.evaluate import Evaluation
@@ -226,7 +226,7 @@ def _resins(
         # A cast resin's law is the solid's: the search goes by the neo-Hookean fit, corrected by the solid.
         plain = material.model_copy(update={"law": None}) if casting else material
         wall = material_sensor(plain).wall
-        if lacks_casting(scene.printer, material):
+        if casting_missing(scene.printer, material):
             out[name] = "its file has no table [casting]"
         elif not prints(scene, material):
             out[name] = f"the {scene.printer.title} cannot run it{with_connector(scene)}"
