@@ -28,7 +28,7 @@ RESET_KPA, RESET_SHARE = 1.0, 0.1
 
 BEYOND = 10.0
 """Factor above the prediction of force or rise from which no sensor is the reason: our choice, three times `FAR`.
-Another unit then explains a reading that it brings within `FAR`. Below the prediction a leak or a dead volume may be."""
+Another unit then explains a reading that it brings within `FAR`. A rise that is too small may be a leak."""
 
 DRIVING_FAR = 3.0
 """Times `RESET_KPA` or `RESET_SHARE` beyond which no gauge zero and no regulator is the reason: our choice."""
