@@ -139,6 +139,20 @@ def test_far_from_the_prediction_a_unit_explains_a_reading_that_it_brings_near(t
     assert f"is the column in gf, {left} the prediction then? set columns.force.unit" in str(caught.value)
 
 
+@pytest.mark.parametrize("times", [0.03, 0.06])
+def test_a_rise_far_too_small_is_a_question_about_a_leak_or_a_dead_volume(times):
+    """Of a sensor with a long tube it is right, and no unit may be taken for it."""
+    expected = ExpectedRun(6.9, float(SENSOR.force(6.9)), SENSOR.slope * float(SENSOR.force(6.9)))
+    (words,) = check_plausible(ideal(factor=(1, 1, times), driving=0.0), COLUMNS, expected, Path("run.csv"))
+    assert "column pressure_kPa" in words and "pneumatics.dead_volume_mL" in words
+
+
+def test_a_zero_far_below_is_a_question():
+    low = replace(ideal(deepest=DEPTH), driving=-3.5 * KPA)
+    (words,) = check_plausible(low, COLUMNS, None, Path("run.csv"))
+    assert "-3.5 kPa before contact" in words and "not zeroed" in words
+
+
 @settings(max_examples=50, deadline=None)
 @given(force=st.floats(0.45, 2.2), rise=st.floats(0.45, 2.2), depth=st.floats(0.5, 2.0))
 def test_no_question_within_a_factor_of_two(force, rise, depth):

@@ -115,6 +115,8 @@ def savable(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
     the runs contradict the fitted model, or a value or its uncertainty is beyond the bounds. The key is ``fit`` where
     another choice of parameters may help.
     """
+    _check_friction(calibration)
+    content = calibration_content(calibration, source)
     if calibration.misfit.contradicted:
         held = not {MODULUS, WALL} <= set(calibration.fit.parameters.fitted)
         raise InputError(
@@ -123,8 +125,6 @@ def savable(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
             remedy=f"{'fit modulus and wall, or ' if held else ''}check units, columns, driving pressures, design and "
             "contact of the runs",
         )
-    _check_friction(calibration)
-    content = calibration_content(calibration, source)
     try:
         KINDS["calibrations"].validate(content, "calibration")
     except InputError as error:
