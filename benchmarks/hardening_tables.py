@@ -8,6 +8,9 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+from benchmarks.mutant_sites import PARTS
+from benchmarks.mutants import FOLDERS
+
 DOCS = Path(__file__).resolve().parents[1] / "docs" / "background"
 READ = Path(__file__).with_name("mutants_read.toml")
 
@@ -94,11 +97,15 @@ def fuzzing() -> list[str]:
 
 
 DRAWN = """`benchmarks.mutants` draws faults with the same chance among {sites} places in mechanics, printability and bench: a comparison, a sum, a
-product, a sign, a number, a condition, a result. The table has the first {first} faults of two draws, without exception. The everyday tests of seven
-folders run against each, those first that call the changed function, up to 30 or 45 s of processor time; tests of commands, of the Python interface and
-slow ones are left out. {outside} of the faults are outside of functions, mostly constants that a comment calls a choice. Every survivor was read: *equivalent*
-changes no result but for the number of steps that a solver takes, *test* is noticed by a test that was written for it, *left* is neither.
-`make mutants` makes a draw of its own.
+product, a sign, a number, a condition, a result. The everyday tests of {folders} folders run against each, those first that call the changed
+function, up to 45 s of processor time; slow tests, and those of pages and of the studio, are left out. {outside} of the last {last} faults are outside of
+functions, mostly constants that a comment calls a choice. Every survivor was read: *equivalent* changes no result but for the number of steps that a solver takes,
+*test* is noticed by a test that was written for it afterwards, *left* is neither. `make mutants` makes a draw of its own.
+"""
+
+SHARES = """A share in the last two columns is of all faults and of those that are not equivalent, by the tests as they were when the draw was made, with its 95 %
+interval. Draws 1 and 2 ran the tests of seven folders alone, up to 30 or 45 s. The last draw is what a further one is to be expected near.
+The table of survivors has those of the last draw and what the others left.
 """
 
 
@@ -106,45 +113,55 @@ def mutation() -> list[str]:
     draws = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(DOCS.glob("mutants-*.json"))]
     drawn = [row | {"seed": draw["seed"]} for draw in draws for row in draw["drawn"]]
     read = {(each["seed"], each["number"]): each for each in tomllib.loads(READ.read_text())["survivor"]}
+    last = [row for row in drawn if row["seed"] == draws[-1]["seed"]]
+    head = "faults | killed | timed out | survived | of them equivalent | killed by new tests | left"
     lines = [
         *DRAWN.format(
-            sites=draws[0]["sites"],
-            first=" and ".join(str(len(draw["drawn"])) for draw in draws),
-            outside=sum(not row["function"] for row in drawn),
+            sites=draws[-1]["sites"],
+            folders=len(FOLDERS.split()),
+            outside=sum(not row["function"] for row in last),
+            last=len(last),
         ).split("\n"),
-        "| part | drawn | killed | timed out | survived | of them equivalent | killed by new tests | left |",
-        "|---|--:|--:|--:|--:|--:|--:|--:|",
+        f"| draw | {head} | noticed | of those not equivalent |",
+        "|---|--:|--:|--:|--:|--:|--:|--:|---|---|",
     ]
-    parts = [*dict.fromkeys(row["module"].split("/")[0] for row in drawn)]
-    totals: list[int] = []
-    for part in [*sorted(parts), "all"]:
-        rows = [row for row in drawn if part in ("all", row["module"].split("/")[0])]
-        counts = [sum(row["outcome"] == outcome for row in rows) for outcome in ("killed", "timed out", "survived")]
-        verdicts = [read[row["seed"], row["number"]]["verdict"] for row in rows if row["outcome"] == "survived"]
-        totals = [len(rows), *counts, *(verdicts.count(each) for each in ("equivalent", "test", "left"))]
-        lines.append(f"| {part} | {' | '.join(map(str, totals))} |")
-    whole, noticed, new = totals[0], totals[1] + totals[2], totals[5]
-    shares = [_share("by the tests as they were", noticed, whole), _share("with the new ones", noticed + new, whole)]
-    sound = "of those that are not equivalent"
-    shares.append(_share(f"{sound}, by the tests as they were", noticed, whole - totals[4]))
-    shares.append(_share(f"{sound}, with the new ones", noticed + new, whole - totals[4]))
-    fresh = "A fresh draw is to be expected near the shares without the new ones, which were written for these faults."
-    return [*lines, "", f"Noticed: {'; '.join(shares)}.", fresh, "", *_survivors(drawn, read)]
+    for draw in draws:
+        counts = _counts([row for row in drawn if row["seed"] == draw["seed"]], read)
+        noticed = counts[1] + counts[2]
+        shares = _share(noticed, counts[0]), _share(noticed, counts[0] - counts[4])
+        lines.append(f"| {draw['seed']} | {' | '.join(map(str, counts))} | {' | '.join(shares)} |")
+    every = _counts(drawn, read)
+    now, sound = every[1] + every[2] + every[5], every[0] - every[4]
+    today = f"With the tests that were written for survivors, {_share(now, sound)} of the faults of all draws that are not equivalent are noticed."
+    lines += ["", *SHARES.split("\n"), today, "", f"| part, last draw | {head} |", "|---|--:|--:|--:|--:|--:|--:|--:|"]
+    for part in PARTS:
+        counts = _counts([row for row in last if row["module"].startswith(f"{part}/")], read)
+        lines.append(f"| {part} | {' | '.join(map(str, counts))} |")
+    return [*lines, "", *_survivors(drawn, read, draws[-1]["seed"])]
 
 
-def _share(words: str, part: int, whole: int) -> str:
+def _counts(rows: list[Any], read: dict[Any, Any]) -> list[int]:
+    """Faults, those of each outcome, and the survivors of each verdict."""
+    outcomes = [sum(row["outcome"] == outcome for row in rows) for outcome in ("killed", "timed out", "survived")]
+    verdicts = [read[row["seed"], row["number"]]["verdict"] for row in rows if row["outcome"] == "survived"]
+    return [len(rows), *outcomes, *(verdicts.count(each) for each in ("equivalent", "test", "left"))]
+
+
+def _share(part: int, whole: int) -> str:
     low, high = wilson(part, whole)
-    return f"{100 * part / whole:.0f} % ({part} of {whole}, {100 * low:.0f} to {100 * high:.0f} %) {words}"
+    return f"{100 * part / whole:.0f} % ({100 * low:.0f} to {100 * high:.0f})"
 
 
-def _survivors(drawn: list[Any], read: dict[Any, Any]) -> list[str]:
+def _survivors(drawn: list[Any], read: dict[Any, Any], last: int) -> list[str]:
+    """The survivors of the last draw, and those that earlier ones left."""
     lines = ["| survivor | change | what it is |", "|---|---|---|"]
-    for row in drawn:
+    for row in sorted(drawn, key=lambda row: row["seed"] != last):
         if row["outcome"] == "survived":
             each = read[row["seed"], row["number"]]
-            where = f"`{row['module']}` {row['function']}".strip()
-            change = row["change"].partition(": ")[2].replace("|", "\\|")
-            lines.append(f"| {where} | `{change}` | {each['verdict']}: {each['words']} |")
+            if row["seed"] == last or each["verdict"] == "left":
+                where = f"`{row['module']}` {row['function']}".strip()
+                change = row["change"].partition(": ")[2].replace("|", "\\|")
+                lines.append(f"| {where} | `{change}` | {each['verdict']}: {each['words']} |")
     return [*lines, ""]
 
 
