@@ -54,8 +54,8 @@ def _unlike(detail: Any, owner: type[BaseModel] | None, path: list[str]) -> tupl
         right = f"each {right}" if right.startswith("one of the ") else right
     if kind and _is_sentence(right):
         kind = f"{kind.rstrip(' ,:')}: "
-    elif _is_sentence(right):
-        kind, right = _bounds(detail), ""
+    elif _is_sentence(right) and (bounds := _bounds(detail)):
+        kind, right = bounds, ""
     right = kind.rstrip(" ,:") if right in ("", _ANY) and kind else f"{kind}{right}".strip()
     if remedy and not right.endswith(".."):
         right = right.removesuffix(".")
