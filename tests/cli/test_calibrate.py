@@ -264,6 +264,17 @@ def test_runs_that_contradict_the_fitted_model_give_no_calibration(campaign, pla
     assert "the runs contradict the fitted model" in saved.stderr and "check units, columns" in saved.stderr
 
 
+def test_a_contradicted_fit_with_modulus_held_names_the_choice_of_parameters(campaign, place, stretched):
+    """Another modulus might describe the runs: the key is the option that fits it, and the remedy says so first."""
+    stretched(1.0, 0.1)
+    words = ("calibrate", str(campaign), "--design", "mine", "--out", "out", "--fit", "wall,dead-volume")
+    result = run(*words, "--save", "dome-1")
+    assert result.exit_code == 2 and not (place / "calibrations").exists()
+    said = " ".join(result.stderr.split())
+    assert "--fit: the runs contradict the fitted model" in said
+    assert "fit modulus and wall, or check units, columns, driving pressures" in said
+
+
 def test_one_that_was_to_be_saved_is_an_error_with_its_report(campaign, place, soft):
     words = ("--no-priors", "--fit", "modulus", "--save", "dome-1")
     result = run("calibrate", str(campaign), "--design", "mine", "--out", "out", *words)

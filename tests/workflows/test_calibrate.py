@@ -244,7 +244,7 @@ def test_runs_of_other_sensors_and_kinds_are_not_taken(observations, scene):
         observations_of(both, [curve], [], scene)
     with pytest.raises(InputError, match='sensor = "C": no such sensor'):
         observations_of(both, [curve], [], scene, "C")
-    with pytest.raises(InputError, match='sensor = "B": no readable run'):
+    with pytest.raises(InputError, match='sensor = "B": no run of kind steps'):
         observations_of(both, [curve], [], scene, "B")
     held = CampaignRun(file="i.csv", sensor="A", resin="TangoPlus", kind="injection", driving_pressure_kPa=5.0)
     with pytest.raises(InputError, match=r"i\.csv: driving_pressure_kPa = 5: an injection must begin at ambient"):

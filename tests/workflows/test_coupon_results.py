@@ -113,6 +113,14 @@ def test_measured_quantities_replace_the_shipped_ones_with_their_source(lab, tmp
     assert {change["key"] for change in document["changes"]} >= {"shear_modulus_MPa", "accuracy_mm", "smallest.hole_mm"}
 
 
+def test_pucks_weighed_in_milligrams_are_asked_about(lab, tmp_path):
+    content = measured()
+    content["puck"]["TangoPlus"]["mass_g"] = [1090.0, 1100.0]
+    with pytest.raises(InputError, match=r"puck 1: mass_g = 1090.*from 0\.5 to 3 g/cm3; is mass_g in mg\?"):
+        lab(content)
+    assert not (tmp_path / "printprofiles").exists()
+
+
 def test_the_new_profiles_change_clearance_and_modulus(lab, tmp_path):
     before = load_scene("paper-dome", None, LIBRARY)
     lab(measured())

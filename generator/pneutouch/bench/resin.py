@@ -44,7 +44,7 @@ def puck(name: str, material: Material, measured: Puck, source: ReadingSource, r
     mass, diameter, thickness = (np.array(v) for v in (measured.mass_g, measured.diameter_mm, measured.thickness_mm))
     densities = 4e3 * mass / (np.pi * diameter**2 * thickness)
     for place, density in enumerate(densities, start=1):
-        problem = density_problem(density)
+        problem = density_problem(density, thousandfold="is mass_g in mg?")
         if problem is not None:
             raise InputError(
                 f"puck.{name}: puck {place}: mass_g = {mass[place - 1]:g}, diameter_mm = {diameter[place - 1]:g} "

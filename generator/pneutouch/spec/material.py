@@ -124,12 +124,17 @@ an elastomer of less than half of that is a foam, through which a dome leaks. Ri
 densest metal."""
 
 
-def density_problem(density_g_per_cm3: float, kind: MaterialKind = "elastomer") -> str | None:
-    """What is wrong with the density of a material of this kind, in words; None where nothing is."""
+def density_problem(
+    density_g_per_cm3: float, kind: MaterialKind = "elastomer", thousandfold: str = "is it in kg/m3?"
+) -> str | None:
+    """What is wrong with the density of a material of this kind, in words; None where nothing is.
+
+    ``thousandfold`` is the question where a thousandth of it would be right.
+    """
     low, high = DENSITY_G_PER_CM3[kind]
     if low <= density_g_per_cm3 <= high:
         return None
-    unit = "; is it in kg/m3?" if low <= 1e-3 * density_g_per_cm3 <= high else ""
+    unit = f"; {thousandfold}" if low <= 1e-3 * density_g_per_cm3 <= high else ""
     whose = "" if kind == "elastomer" else f" for a {kind} material"
     return f"must be from {low:g} to {high:g} g/cm3{whose}{unit}"
 

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.calibrate import notes
-from pneutouch.bench.calibrate.notes import _MOVED, _few, _shared, amount
+from pneutouch.bench.calibrate.notes import _MOVED, _shared, amount
 from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, FRICTION_PRIOR, MODULUS, OFFSET, WALL
 from pneutouch.mechanics.contact_correction import GRIPS
+from pneutouch.wording import listed
 
 
 @pytest.mark.parametrize(
@@ -29,8 +30,8 @@ def test_a_deviation_is_stated_in_the_unit_of_its_parameter(parameter, deviation
 
 
 def test_three_runs_are_named_and_the_others_counted():
-    assert _few(["a", "b", "c"]) == "a, b, c"
-    assert _few(["a", "b", "c", "d", "e"]) == "a, b, c and 2 more"
+    assert listed(["a", "b", "c"], 3) == "a, b, c"
+    assert listed(["a", "b", "c", "d", "e"], 3) == "a, b, c and 2 more"
 
 
 def test_before_any_run_friction_is_anything_from_none_to_grip():

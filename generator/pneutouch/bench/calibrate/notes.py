@@ -15,7 +15,7 @@ from pneutouch.bench.calibrate.observations import clipped
 from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, LOGARITHMIC, USUAL
 from pneutouch.bench.calibrate.response import ASSUMED_SCATTER, response_gap
 from pneutouch.units import ML
-from pneutouch.wording import counted
+from pneutouch.wording import counted, listed
 
 CHANNELS = ("force", "pressure rise", "injection's pressure")
 WORDS = ("shear modulus", "wall thickness", "dead volume", "contact offset", "friction")
@@ -77,7 +77,7 @@ def _left_out(fit: CalibrationFit) -> list[str]:
     if any(count for _, count in over):
         notes.append(
             f"{_points(sum(count for _, count in over))} left out: at the end of the force sensor's range "
-            f"({_few([label for label, count in over if count])})"
+            f"({listed([label for label, count in over if count], 3)})"
         )
     for curve, lost, travel in zip(fit.observations.curves, fit.left_out, fit.points.travel, strict=True):
         if lost.any():
@@ -200,10 +200,6 @@ def _shared(fit: CalibrationFit) -> list[str]:
         if moved:
             parts.append(f"a {what} reading 1 % too high in all runs moves {moved}")
     return parts
-
-
-def _few(labels: Sequence[str]) -> str:
-    return ", ".join(labels[:3]) + (f" and {len(labels) - 3} more" if len(labels) > 3 else "")
 
 
 def _held(one: HeldOutPrediction) -> str:

@@ -27,7 +27,7 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.parts import assemble
-from pneutouch.spec.campaign import Campaign, CampaignRun
+from pneutouch.spec.campaign import Campaign, CampaignRun, RunKind
 from pneutouch.units import KPA
 from pneutouch.workflows.calibrate.document import (
     correlated_record,
@@ -39,6 +39,9 @@ from pneutouch.workflows.calibrate.document import (
     response_records,
 )
 from pneutouch.workflows.calibrate.record import CalibrationRecord
+
+FITTED_KINDS: tuple[RunKind, ...] = ("steps", "injection")
+"""Kinds of runs that are fitted."""
 
 
 @dataclass(frozen=True)
@@ -136,6 +139,18 @@ def calibrate(
     return Calibration(scene, sensor, title, fitted, *judged, held, tuple(notes))
 
 
+def chosen_sensor(campaign: Campaign, sensor: str | None) -> str:
+    """The sensor named, or the only one. Raises InputError where there are several and none is named, or not that."""
+    known = sorted({run.sensor for run in campaign.runs})
+    if sensor is None and len(known) > 1:
+        raise InputError(f"the campaign holds {', '.join(known)}", key="sensor", remedy="name one")
+    chosen = known[0] if sensor is None else sensor
+    if chosen not in known:
+        remedy = f"there are {', '.join(known)}"
+        raise InputError("no such sensor in the campaign", key="sensor", value=chosen, remedy=remedy)
+    return chosen
+
+
 def observations_of(
     campaign: Campaign,
     curves: Sequence[MeasuredCurve],
@@ -145,16 +160,9 @@ def observations_of(
 ) -> tuple[str, Observations, list[str]]:
     """The sensor's name, its runs of kinds steps and injection, and remarks.
 
-    Raises InputError where the campaign holds several sensors and none is named, or not the one named, or nothing of
-    it.
+    Raises InputError as `chosen_sensor` does, and where there is no run of it.
     """
-    known = sorted({run.sensor for run in campaign.runs})
-    if sensor is None and len(known) > 1:
-        raise InputError(f"the campaign holds {', '.join(known)}", key="sensor", remedy="name one")
-    chosen = known[0] if sensor is None else sensor
-    if chosen not in known:
-        remedy = f"there are {', '.join(known)}"
-        raise InputError("no such sensor in the campaign", key="sensor", value=chosen, remedy=remedy)
+    chosen = chosen_sensor(campaign, sensor)
     steps = tuple(curve for curve in curves if curve.run.sensor == chosen and curve.run.kind == "steps")
     pushed = [fitted for fitted in injections if fitted[0].sensor == chosen]
     for run, _, _ in pushed:
@@ -162,7 +170,7 @@ def observations_of(
             given = f"driving_pressure_kPa = {run.driving_pressure_kPa:g}"
             raise InputError(f"{given}: an injection must begin at ambient pressure, 0", file=run.file)
     if not steps and not pushed:
-        missing = "no readable run of kind steps or injection"
+        missing = f"no run of kind {' or '.join(FITTED_KINDS)}"
         raise InputError(missing, key="sensor", value=chosen, remedy="there must be at least one")
     given_kPa = campaign.ambient_pressure_kPa
     ambient = (scene.design.pneumatics.ambient_pressure_kPa if given_kPa is None else given_kPa) * KPA

@@ -1,10 +1,12 @@
 """The command behind ``pneutouch calibrate``: a campaign's folder in, its calibration and files out."""
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from pneutouch.bench.calibrate import NAMES, Observations
+from pneutouch.bench.record import MeasuredCurve
 from pneutouch.catalogue import DesignSource, Library, known_design, load_scene, split_calibration, user_folder
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
@@ -23,7 +25,7 @@ from pneutouch.workflows.calibrate.files import (
     save,
     write_calibration,
 )
-from pneutouch.workflows.calibrate.fit import Calibration, calibrate, observations_of
+from pneutouch.workflows.calibrate.fit import FITTED_KINDS, Calibration, calibrate, chosen_sensor, observations_of
 from pneutouch.workflows.calibrate.further import with_further_tests
 from pneutouch.workflows.calibrate.place import check_place, check_unlike
 from pneutouch.workflows.calibrate.record import OutcomeRecord
@@ -96,6 +98,7 @@ def run_calibration(
     if options.save is not None:
         check_place(options.save, options.root)
     loaded = load_curves(options.data, progress=progress, reading=reading)
+    sensor = chosen_sensor(loaded.campaign, options.sensor)
     design = options.design or known_design(loaded.campaign, loaded.folder, library)
     if design is None:
         raise InputError("names no design", file=options.data, remedy="give `design`")
@@ -107,10 +110,8 @@ def run_calibration(
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
     expected = answers(design, changes, pairs, "solid" if built.protocol.other_contact else "atlas", library)
     curves, refused, questions = sound(loaded, expected)
-    if not (curves or loaded.injections) and refused:
-        lines = [f"{files}: {why}" for files, why in same_failures([*loaded.failures, *refused])]
-        raise InputError("\n".join(["none of its runs can be used", *lines]), file=options.data)
-    sensor, observations, notes = observations_of(loaded.campaign, curves, loaded.injections, scene, options.sensor)
+    _check_left(options.data, loaded, sensor, curves, refused)
+    _, observations, notes = observations_of(loaded.campaign, curves, loaded.injections, scene, sensor)
     used_files = {curve.run.file for curve in observations.curves}
     notes = [*notes, *(f"{file}: {text}" for file, text in questions if file in used_files)]
     source = _source(options.data, loaded, sensor, observations)
@@ -138,6 +139,18 @@ def run_calibration(
         "read_as": read_as(undisputed(loaded.sources, refused), len(loaded.campaign.runs)),
     }
     return CalibrationOutcome(document, calibration, source, _named(design), loaded.campaign.assignments)
+
+
+def _check_left(
+    data: Path, loaded: CampaignData, sensor: str, curves: Sequence[MeasuredCurve], refused: Sequence[tuple[str, str]]
+) -> None:
+    """Raise InputError, with the reasons, where the sensor has runs to fit and none of them can be used."""
+    files = {run.file for run in loaded.campaign.runs if run.sensor == sensor and run.kind in FITTED_KINDS}
+    left = {curve.run.file for curve in curves} | {run.file for run, _, _ in loaded.injections}
+    reasons = [(file, why) for file, why in (*loaded.failures, *refused) if file in files]
+    if reasons and not files & left:
+        lines = [f"{named}: {why}" for named, why in same_failures(reasons)]
+        raise InputError("\n".join([f"no run of sensor {sensor} can be used", *lines]), file=data)
 
 
 def _write(

@@ -9,6 +9,7 @@ from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign, ColumnMap, FileFormat
 from pneutouch.spec.read import validate
 from pneutouch.tables.unit_words import UNITS, unit_of
+from pneutouch.wording import listed
 
 Reading = Mapping[str, Mapping[str, Any]]
 """Tables ``columns`` and ``format`` as in a campaign file."""
@@ -90,12 +91,7 @@ def same_failures(failures: Iterable[Sequence[str]]) -> list[tuple[str, str]]:
     for file, message in failures:
         _, named, problem = message.partition(f"{file}: ")
         alike.setdefault(problem if named else message, []).append(file)
-    return [(_named(files, _NAMED), problem) for problem, files in alike.items()]
-
-
-def _named(files: Sequence[str], most: int) -> str:
-    more = f" and {len(files) - most} more" if len(files) > most else ""
-    return f"{', '.join(files[:most])}{more}"
+    return [(listed(files, _NAMED), problem) for problem, files in alike.items()]
 
 
 def reading_text(read_as: Sequence[Mapping[str, Any]]) -> str:
@@ -103,7 +99,7 @@ def reading_text(read_as: Sequence[Mapping[str, Any]]) -> str:
     blocks = []
     for entry in read_as:
         files, whole = entry["files"], entry["whole_campaign"]
-        named = _named(files, 1 if whole else _NAMED)
+        named = listed(files, 1 if whole else _NAMED)
         place = "into campaign.toml" if whole else "below the [[runs]] entry of each of these files in campaign.toml"
         lines = campaign_lines(entry, "" if whole else "runs.")
         blocks.append(f"note: {named}: read as follows; to keep it, put it {place}\n{lines}")
