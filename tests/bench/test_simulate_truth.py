@@ -9,6 +9,7 @@ import pytest
 
 from pneutouch.bench.protocol import protocol
 from pneutouch.bench.simulate import (
+    ModelDeviation,
     RigModel,
     ScatterModel,
     SimulatedSpecimens,
@@ -30,6 +31,19 @@ from tests.bench.truths import NO_WALL, R0, ends, rng
 @pytest.fixture(scope="module")
 def atlas(sensor) -> PressCurves:
     return press_curves(sensor, [0.0, 22 * KPA], 0.75 * R0, "atlas", steps=28)
+
+
+@pytest.mark.parametrize("smooth", [0.02, 0.05])
+def test_a_smooth_deviation_has_the_standard_deviation_that_is_stated(atlas, smooth):
+    """Of force and rise of 400 specimens at five travels, on two driving pressures."""
+    draw = np.random.default_rng(4)
+    made = [ModelDeviation(smooth=smooth).deviated(atlas, draw).curves for _ in range(400)]
+    for k, plain in enumerate(atlas.curves):
+        at = np.linspace(5, plain.force.size - 1, 5).astype(int)
+        for name in ("force", "rise"):
+            shares = [np.log(getattr(each[k], name)[at] / getattr(plain, name)[at]) for each in made]
+            # Root mean square over the travel: it differs from place to place by the waves' shape.
+            assert np.sqrt(np.mean(np.square(shares))) == pytest.approx(smooth, rel=0.25)
 
 
 def test_relaxation_truth_is_that_of_the_quiet_record(pressed):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from pneutouch.mechanics.contact_correction import plate_alone
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indenter import ball, cone
 from pneutouch.mechanics.solid_states import solid_states
-from pneutouch.mechanics.uncertainty import FIGURES, INPUTS, ContactModel, batch_of
+from pneutouch.mechanics.uncertainty import FIGURES, INPUTS, ContactModel, batch_of, contact_presses
 from pneutouch.mechanics.uncertainty.contact import SPREAD
 from pneutouch.mechanics.uncertainty.neighbours import log_figures
 from pneutouch.mechanics.uncertainty.source import CONTACT_FIGURES, DEAD, SENSITIVITY
@@ -69,6 +70,45 @@ def test_the_derivative_by_the_modulus_is_the_solids_with_friction(rough):
     found = rough.uncertainty[1]["elasticities"][STATED]["shear_modulus"]
     assert found == pytest.approx((more - less) / 0.2, abs=0.02)
     assert any(note.startswith("the contact has friction (0.5)") for note in rough.uncertainty[1]["notes"])
+
+
+def test_the_figures_are_in_the_units_of_a_prediction(evaluated):
+    answer = evaluated("paper-dome", model="atlas")
+    found = np.exp(log_figures(batch_of(plate_alone(answer.sensor), (22 * KPA,)))[:, 0])
+    (state,) = [one for one in answer.prediction.document()["states"] if one["driving_pressure_kPa"] == 22.0]
+    limit_kPa = answer.prediction.document()["limit_point"]["driving_pressure_kPa"]
+    assert found[:2] == pytest.approx([state["sensitivity_kPa_per_N"], limit_kPa], rel=1e-6)
+
+
+def test_the_shift_of_a_contact_is_taken_at_a_softer_and_a_stiffer_wall(evaluated):
+    """The softer wall first: the change by the modulus enters with its own sign at either end."""
+    sensor = evaluated("paper-dome", model="atlas").sensor
+    modulus, shape = sensor.wall.shear_modulus, (len(FIGURES), 2)
+    stub = SimpleNamespace(
+        sensor=sensor,
+        pressures=(0.0, 22 * KPA),
+        logs=log_figures(batch_of(plate_alone(sensor), (0.0, 22 * KPA))) + 0.5,
+        _change=lambda moved: np.full(shape, moved.wall.shear_modulus / modulus),
+    )
+    nodes = ContactModel.shift(stub, 0.3).nodes[:, list(CONTACT_FIGURES)]
+    expected = 0.5 + np.array([math.exp(-0.3), 0.0, math.exp(0.3)])
+    np.testing.assert_allclose(nodes, np.broadcast_to(expected[:, None, None], nodes.shape))
+
+
+@pytest.mark.parametrize(
+    ("top_kPa", "tried"), [(99.0, [(0, 30)]), (25.0, [(0, 30), (0, 20)]), (5.0, [(0, 30), (0, 20), (0, 10), (0,)])]
+)
+def test_the_ends_are_solved_and_the_highest_left_out_where_it_is_not_reached(monkeypatch, evaluated, top_kPa, tried):
+    asked = []
+
+    def logs_of(sensor, pressures):
+        asked.append(tuple(round(p / KPA) for p in pressures))
+        return np.full((len(FIGURES), len(pressures)), 0.0 if max(pressures) <= top_kPa * KPA else np.nan)
+
+    monkeypatch.setattr(contact_presses, "pressed_logs", logs_of)
+    sensor = evaluated("paper-dome", model="atlas").sensor
+    contact_presses.solved_at(sensor, [p * KPA for p in (0, 10, 20, 30)], [], least=2)
+    assert asked == tried
 
 
 @pytest.mark.slow

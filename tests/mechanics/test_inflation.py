@@ -122,6 +122,13 @@ def test_beyond_the_limit_point_is_an_error_not_a_number():
         relative_height(np.array([0.0, 0.0425]), 9.25, 1.5, 0.17)
 
 
+def test_the_rows_that_the_error_is_stated_against_soften_up_to_the_limit_point():
+    """The slope of a neo-Hookean membrane's pressure over its height falls all the way, and is 0 at the end."""
+    pressure, height = RISING_BRANCH.T
+    slopes = np.diff(pressure) / np.diff(height)
+    assert (np.diff(slopes) < 0.0).all() and 0.0 < slopes[-1] < 0.02 * slopes[0]
+
+
 @pytest.mark.slow
 def test_shooting_meets_every_row_that_the_error_is_stated_against():
     for p, h in RISING_BRANCH[1:-1]:

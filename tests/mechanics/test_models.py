@@ -6,6 +6,7 @@ import json
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -13,6 +14,7 @@ from hypothesis import strategies as st
 from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.models import MODELS, NUMERICAL, models_for, parse_tolerance
+from pneutouch.mechanics.predict import contact_words
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.units import KPA, ML
@@ -181,6 +183,19 @@ def test_beyond_the_limit_point_every_model_says_so_with_nearly_the_same_limit()
 def test_gas_of_a_dead_volume_in_millilitres_is_stated():
     found = predict("x", PAPER.replace(dead_volume=2 * ML), [0.0], model="auto")
     assert "dead volume 2 mL" in found.assumptions[-1]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({}, "rigid, flat, frictionless plate"),
+        ({"body": ball(5.0), "friction": 0.5}, ", friction coefficient 0.5 (Coulomb), central and straight down"),
+        ({"body": ball(5.0), "offset": 1.5}, "frictionless, its axis 1.5 mm off the dome's, straight down"),
+        ({"tilt": np.radians(5.0)}, "rigid flat plate, frictionless, leaning by 5°, straight down"),
+    ],
+)
+def test_what_presses_the_sensor_is_stated(changes, words):
+    assert words in contact_words(PAPER.replace(**changes).protocol)
 
 
 def test_the_command_line_takes_a_tolerance(command, root):

@@ -31,7 +31,7 @@ def test_a_rigid_cavity_has_boyle_gay_lussac_and_an_exponential_leak():
     assert gas.by_temperature(293.15) == pytest.approx((gas.pressure + AMBIENT) / 293.15)
     seconds = gas.holding_time(2.0, 0.03, 0.015)
     assert seconds == pytest.approx(total / 2.0 * np.log(2.0), rel=1e-9)
-    assert gas.holding_time(0.0, 0.03, 0.015) == np.inf
+    assert gas.holding_time(0.0, 0.03, 0.015) == gas.holding_time(2.0, 0.03, 0.0) == np.inf
 
 
 @given(

@@ -170,6 +170,9 @@ def test_a_wall_on_its_base_is_stated_and_changes_the_deep_press_alone():
     assert on_base.states[0].figures.sensitivity_kPa_per_N == pytest.approx(2.3218, rel=0.002)
     assert any("lies down" in line for line in on_base.assumptions)
     assert not any("lies down" in line for line in through.assumptions)
+    own, others = set(on_base.assumptions), set(through.assumptions)
+    assert len(own - others) == 1 and any("below the base plane" in line for line in others - own)
+    assert len(own & others) >= 6
     with pytest.raises(InputError, match="passes through its base plane"):
         predict("paper", PAPER.replace(base=None), [0.0], model="atlas")
 

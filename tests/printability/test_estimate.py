@@ -39,6 +39,8 @@ def test_lying_down_takes_fewer_layers():
 def test_a_wide_job_takes_more_swaths():
     (job,) = estimate(PrintSubject((item(box(120, 120, 2)),)))
     assert job.swaths == 3
+    seconds = printer().mode_for(item(box(1, 1, 1)).body.material).layer_seconds.nominal
+    assert job.seconds == pytest.approx(job.layers * 3 * seconds)
 
 
 def test_filament_is_laid_down_by_volume_and_supported_under_overhangs():

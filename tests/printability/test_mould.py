@@ -34,6 +34,17 @@ def test_the_shipped_design_s_mould_breaks_no_rule():
     assert all("mould." in finding.fix or "syringe" in finding.fix for finding in listed)
 
 
+@pytest.mark.parametrize("rule", ["edges", "mesh"])
+def test_of_edges_and_meshes_a_mould_has_errors_alone(rule, monkeypatch):
+    """Remarks on them stand in `mould fit`, which measures them with rays."""
+    made = mould()
+    (holes,) = [finding for finding in check_mould(made) if finding.rule == "holes"][:1]
+    fault, remark = (replace(holes, rule=rule, severity=severity) for severity in ("error", "warning"))
+    monkeypatch.setattr("pneutouch.printability.mould.check", lambda subject: [remark, fault, holes])
+    listed = check_mould(made)
+    assert listed[0] == fault and holes in listed and remark not in listed
+
+
 def test_a_mould_larger_than_its_printer_is_an_error():
     made = mould()
     small = made.printer.model_copy(update={"envelope_mm": made.printer.envelope.model_copy(update={"x": 40.0})})

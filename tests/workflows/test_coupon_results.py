@@ -11,6 +11,7 @@ from pneutouch.bench.machine import smallest_sound
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.parts import assemble
 from pneutouch.spec.coupon import GaugeSize, read_results
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.coupons.order import CouponOptions, order
@@ -139,7 +140,8 @@ def test_leak_and_dead_volume_are_told(lab):
     assert told["dead volume, mL"]["value"] == pytest.approx(cavity * 17.75 / (58.9 - 17.75))
     assert told["dead volume, mL"]["spread"] > 0
     assert any("dead_volume_mL = 0.43" in note for note in document["notes"])
-    assert told["dead volume as drawn, mL"]["value"] > 1
+    drawn_mL = assemble(load_scene("paper-dome", None, LIBRARY)).drawn_volume / 1e3
+    assert told["dead volume as drawn, mL"]["value"] == pytest.approx(drawn_mL, rel=1e-3) == pytest.approx(1.5, abs=0.1)
 
 
 def test_entering_again_gives_the_same_bytes_and_keeps_what_was_measured_before(lab, tmp_path):

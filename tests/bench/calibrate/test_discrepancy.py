@@ -9,8 +9,9 @@ import pytest
 from scipy.stats import norm
 
 from pneutouch.bench.calibrate import USUAL, Observations, fit, parameters
-from pneutouch.bench.calibrate.discrepancy import FLOOR
+from pneutouch.bench.calibrate.discrepancy import FLOOR, shared_of
 from pneutouch.bench.calibrate.intervals import _half
+from pneutouch.bench.calibrate.observations import points_of
 from pneutouch.bench.calibrate.parameters import WALL
 from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, other
 from tests.bench.calibrate.simulated import designed, held, trial
@@ -51,6 +52,19 @@ def test_intervals_hold_the_truth_of_200_simulated_sensors(library):
 def test_intervals_hold_the_truth_of_the_solids_sensors(library):
     """Of 8 trials at 95 %, fewer than 5 are hit with a chance of 4e-4."""
     assert np.all(shares(library, ("TangoPlus", "FLX9960"), 4, PLANS, "solid") >= 5 / 8)
+
+
+def test_the_common_share_and_the_smooth_one_of_a_channel_have_the_same_variance(library):
+    points = points_of(Observations(curves(other(shear_modulus=0.2), (0.0, 22.0), 2, np.random.default_rng(6))))
+    shared = shared_of(points)
+    for channel in np.unique(points.channels):
+        of_it = (
+            shared.columns[:, shared.kind == channel] / np.where(points.values == 0.0, np.inf, points.values)[:, None]
+        )
+        here = (points.channels == channel) & (points.values != 0.0)
+        # One column is the share of all readings, the others those that vary along the travel.
+        assert of_it[here, 0] == pytest.approx(1.0)
+        assert (of_it[here, 1:] ** 2).sum(axis=1) == pytest.approx(1.0, abs=0.02)
 
 
 @pytest.mark.parametrize("share", [0.03, 0.08])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -41,6 +43,19 @@ def test_a_pressure_left_out_is_predicted(library, solid_curves, pressure):
     assert result.rise_error < 0.015
     assert result.force_worst >= result.force_error
     assert (result.points, result.left_out) == (26, 0)
+
+
+def test_the_greatest_errors_of_force_and_rise_are_those_of_the_points_that_are_off(library, solid_curves):
+    """One force of one run is 10 % of full scale too high, one pressure of another 20 % too low."""
+    spoilt = list(solid_curves)
+    first, second = (k for k, one in enumerate(solid_curves) if one.driving == 0.0)
+    force, rise = solid_curves[first].force.copy(), solid_curves[second].rise.copy()
+    force[9] += 0.1 * force.max()
+    rise[9] -= 0.2 * rise.max()
+    spoilt[first], spoilt[second] = replace(spoilt[first], force=force), replace(spoilt[second], rise=rise)
+    names = chosen(library, "modulus", "dead-volume")
+    result = predict_held_out(Observations(tuple(spoilt)), DESIGNED, names, 0.0)
+    assert (result.force_worst, result.rise_worst) == (pytest.approx(0.1, abs=0.02), pytest.approx(0.2, abs=0.02))
 
 
 def test_the_prediction_is_better_than_the_designs(library, solid_curves):

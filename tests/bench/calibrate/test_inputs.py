@@ -16,6 +16,7 @@ from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Rig
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
+from pneutouch.units import KPA
 from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, exact, run
 
 
@@ -36,6 +37,22 @@ def one(at, force, rise) -> Observations:
 def test_nothing_to_fit_is_refused(library, observations, words):
     with pytest.raises(InputError, match=words):
         fit(observations, DESIGNED, chosen(library, "modulus"))
+
+
+def test_a_noisy_channel_has_the_noise_in_its_error_and_the_other_has_not():
+    """By a hundred and a thousand times its value, in newton and MPa: it grows as the noise itself, not as a power."""
+    (plain,) = exact(DESIGNED, (22.0,))
+    for channel, unit in ((0, 1.0), (1, KPA)):
+        sizes = []
+        for times in (0.0, 100.0, 1000.0):
+            noise = np.zeros(2)
+            noise[channel] = times * unit
+            points = points_of(Observations((replace(plain, noise=tuple(noise)),)))
+            sizes.append([points.errors[points.channels == each][0] for each in (0, 1)])
+        quiet, noisy, noisier = np.array(sizes)
+        assert noisier[1 - channel] == quiet[1 - channel]
+        assert noisy[channel] == pytest.approx(100.0 * unit, rel=1e-3)
+        assert noisier[channel] == pytest.approx(1000.0 * unit, rel=1e-3)
 
 
 def test_more_parameters_than_values_need_priors(library):

@@ -7,9 +7,29 @@ from scipy.optimize import minimize_scalar
 from pneutouch.mechanics.laws import mooney_rivlin, neo_hookean, yeoh
 from pneutouch.mechanics.solid.errors import UnreachableLoadError
 from pneutouch.mechanics.solid.inflate import inflate, state_at
-from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.mesh import dome, longest_outer_edge
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe, burst
+
+
+def test_every_third_of_both_faces_has_points_away_from_the_clamp():
+    """At rest the greatest stretch of each of the six zones is one; a zone without points would have none."""
+    solid = SolidModel(dome(9.25, 1.5), neo_hookean(0.17, 0.49))
+    probe = StrainProbe(solid)
+    assert probe.stretch_by_zone(solid.rest) == pytest.approx(np.ones(6), abs=1e-7)
+    # A wall that is wider, more towards its base, is stretched by as much in the zone there.
+    x = solid.rest.copy()
+    x[:, 0] *= 1.0 + 0.2 * (1.0 - x[:, 1] / x[:, 1].max())
+    base, _, top = probe.stretch_by_zone(x)[:3]
+    assert base == pytest.approx(1.2, abs=0.03) and top < base - 0.05
+
+
+@pytest.mark.parametrize("wall_ratio", [0.015, 0.02, 0.1, 0.3])
+def test_the_longest_outer_edge_is_that_of_the_default_mesh(wall_ratio):
+    mesh = dome(9.25, 9.25 * wall_ratio)
+    ends = mesh.nodes[mesh.outer[:, 1]] - mesh.nodes[mesh.outer[:, 0]]
+    longest = np.linalg.norm(ends, axis=1).max() / 9.25
+    assert float(longest_outer_edge(np.array(wall_ratio))) == pytest.approx(longest, rel=1e-9)
 
 
 def sphere_limit(a, b):

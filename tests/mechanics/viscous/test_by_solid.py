@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from pneutouch.mechanics.solid.friction_loop import friction_loop
 from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid_states import press_settings, solid_probe, solid_states
-from pneutouch.mechanics.viscous.by_solid import loop_by_solid, relaxation_by_solid
+from pneutouch.mechanics.viscous.by_solid import _Run, loop_by_solid, relaxation_by_solid
 from pneutouch.mechanics.viscous.prony import Prony
 from pneutouch.mechanics.viscous.runs import loop, relaxation
 from tests.mechanics.viscous.test_follow import SENSOR, A, B
@@ -96,3 +98,16 @@ def test_figures_under_friction_hold_on_finer_steps(friction, monkeypatch):
     for name, steps in (("_RAMP_STEPS", 60), ("_LOOP_STEPS", 72)):
         monkeypatch.setattr(f"{module}.{name}", steps)
     assert coarse == pytest.approx(figures(), abs=0.003)
+
+
+@pytest.mark.parametrize("stop", [None, "first", "second"])
+def test_a_step_that_is_not_solved_is_taken_in_two_halves_and_the_first_that_fails_is_the_reason(stop):
+    reached = []
+
+    def reach(time, travel, cuts):
+        reached.append((time, travel, cuts))
+        return ({"first": 1, "second": 2}.get(stop) == len(reached) and "no equilibrium found") or None
+
+    run = SimpleNamespace(_now=SimpleNamespace(time=1.0, travel=2.0), _reach=reach)
+    assert _Run._halved(run, 3.0, 6.0, 0) == (None if stop is None else "no equilibrium found")
+    assert reached == [(2.0, 4.0, 1), (3.0, 6.0, 1)][: 1 if stop == "first" else 2]
