@@ -31,28 +31,8 @@ def run(*arguments: str):
 def campaign(tmp_path_factory):
     """One specimen of one resin, two pressures, two runs each and an injection; the design states the air behind it."""
     out = tmp_path_factory.mktemp("simulated")
-    result = run(
-        "simulate",
-        "paper-dome",
-        "--set",
-        DEAD,
-        "--resins",
-        "TangoPlus",
-        "--specimens",
-        "1",
-        "--pressures",
-        "0,22",
-        "--runs",
-        "2",
-        "--kinds",
-        "steps,injection",
-        "--rest",
-        "10",
-        "--model",
-        "atlas",
-        "--out",
-        str(out),
-    )
+    words = "--resins TangoPlus --specimens 1 --pressures 0,22 --runs 2 --kinds steps,injection --rest 10 --model atlas"
+    result = run("simulate", "paper-dome", "--set", DEAD, *words.split(), "--out", str(out))
     assert result.exit_code == 0, result.stderr
     return out / "paper-dome-campaign"
 

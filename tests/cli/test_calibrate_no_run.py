@@ -59,6 +59,13 @@ def test_why_its_runs_are_not_used_is_said_where_another_sensors_are(folder):
     assert "driving_pressure_kPa = 0" in said and B not in said
 
 
+def test_of_two_sensors_without_a_usable_run_the_named_one_has_its_own_reasons(folder):
+    for file in (A, B):
+        absolute(folder / file)
+    said = refused(folder, "TangoPlus-1")
+    assert f"no run of sensor TangoPlus-1 can be used {A}: " in said and B not in said
+
+
 def test_a_file_that_cannot_be_read_is_a_reason_too(folder):
     (folder / A).write_text("time_s,force_N\n")
     said = refused(folder, "TangoPlus-1")
@@ -86,4 +93,5 @@ def test_the_same_reason_of_several_files_is_said_once(folder):
 
 def test_a_sensor_with_runs_of_other_kinds_alone_is_told_the_kinds(folder):
     rewritten(folder, lambda run: None if run["file"] == A else run)
+    absolute(folder / B)
     assert "no run of kind steps or injection" in refused(folder, "TangoPlus-1")
