@@ -5,14 +5,13 @@ from __future__ import annotations
 import sys
 
 from tests.figures.compare import changes, leaves, plain
-from tests.figures.renames import read_renames
 from tests.figures.store import GROUPS, collect, stored
 
 
 def main(groups: list[str]) -> int:
-    renames, before, failed = read_renames(), stored(), False
+    before, failed = stored(), False
     for group in groups:
-        lines = list(changes(before[group], plain(collect(group)), renames))
+        lines = list(changes(before[group], plain(collect(group))))
         numbers = sum(isinstance(leaf, int | float) for leaf in leaves(before[group]))
         sys.stdout.write("\n  ".join((f"{group}: {numbers} numbers, {len(lines)} differences", *lines)) + "\n")
         sys.stdout.flush()

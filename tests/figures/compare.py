@@ -5,10 +5,8 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
-
-from tests.figures.renames import Rename, renamed
 
 # Processors of two kinds differ in what their linear algebra rounds: by 2.2e-6 in the interval of a calibration, by 2e-8
 # elsewhere (an EPYC with AVX-512 over the one that the reference was computed on).
@@ -62,19 +60,19 @@ def is_prose(value: Any) -> bool:
     return isinstance(value, str) and " " in value
 
 
-def differences(old: Any, new: Any, renames: Sequence[Rename] = (), path: tuple[str, ...] = ()) -> Iterator[str]:
-    """A line for each figure that differs: path, old, new. The paths are those of the new document."""
+def differences(old: Any, new: Any, path: tuple[str, ...] = ()) -> Iterator[str]:
+    """A line for each figure that differs: path, old, new."""
     where = ".".join(path) or "document"
     if isinstance(old, dict) and isinstance(new, dict):
-        yield from differences_of_keys(old, new, renames, path)
+        yield from differences_of_keys(old, new, path)
     elif isinstance(old, list) and isinstance(new, list):
         if len(old) != len(new):
             yield f"{where}: {len(old)} entries before, {len(new)} now"
         near = scale(old) * (OF_LIST if FITTED.isdisjoint(path) else OF_FIT)
         for at, pair in enumerate(zip(old, new, strict=False)):
             if not all(is_number(each) and math.isfinite(each) for each in pair) or abs(pair[0] - pair[1]) > near:
-                yield from differences(*pair, renames, (*path, str(at)))
-    elif not equal(old, new, renames):
+                yield from differences(*pair, (*path, str(at)))
+    elif not equal(old, new):
         yield f"{where}: {old!r} before, {new!r} now"
 
 
@@ -87,47 +85,38 @@ def scale(values: list[Any]) -> float:
     return max((abs(each) for each in values if is_number(each) and math.isfinite(each)), default=0.0)
 
 
-def differences_of_keys(
-    old: dict[str, Any], new: dict[str, Any], renames: Sequence[Rename], path: tuple[str, ...]
-) -> Iterator[str]:
-    before = {renamed(key, path, renames): item for key, item in old.items()}
-    for key in sorted(before.keys() | new.keys()):
+def differences_of_keys(old: dict[str, Any], new: dict[str, Any], path: tuple[str, ...]) -> Iterator[str]:
+    for key in sorted(old.keys() | new.keys()):
         inner = (*path, key)
         if key not in new:
-            yield f"{'.'.join(inner)}: {short(before[key])} before, not there now"
-        elif key not in before:
+            yield f"{'.'.join(inner)}: {short(old[key])} before, not there now"
+        elif key not in old:
             yield f"{'.'.join(inner)}: not there before, {short(new[key])} now"
         else:
-            yield from differences(before[key], new[key], renames, inner)
+            yield from differences(old[key], new[key], inner)
 
 
 def short(value: Any) -> str:
     return f"{value!r:.60}"
 
 
-def equal(old: Any, new: Any, renames: Sequence[Rename] = ()) -> bool:
+def equal(old: Any, new: Any) -> bool:
     if isinstance(old, bool) or isinstance(new, bool) or old is None or new is None:
         return old is new
     if isinstance(old, str) and isinstance(new, str):
-        return (
-            old == new
-            or (is_prose(old) and is_prose(new))
-            or any((old, new) == (rename.old, rename.new) for rename in renames)
-        )
+        return old == new or (is_prose(old) and is_prose(new))
     if isinstance(old, int | float) and isinstance(new, int | float):
         return math.isclose(old, new, rel_tol=RELATIVE, abs_tol=ABSOLUTE) or (math.isnan(old) and math.isnan(new))
     return False
 
 
-def changes(old: dict[str, Any], new: dict[str, Any], renames: Sequence[Rename]) -> Iterator[str]:
-    """Differences of the documents of one group, each command and file under the renames that concern it."""
+def changes(old: dict[str, Any], new: dict[str, Any]) -> Iterator[str]:
+    """Differences of the documents of one group."""
     for run, document in old.items():
-        command, now = run.split()[0], new[run]
-        here = [rename for rename in renames if rename.concerns(command)]
+        now = new[run]
         for part in ("exit", "json"):
-            yield from differences(document[part], now[part], here, (run, part))
+            yield from differences(document[part], now[part], (run, part))
         files = document["files"]
-        yield from differences(dict.fromkeys(files), dict.fromkeys(now["files"]), (), (run, "files"))
+        yield from differences(dict.fromkeys(files), dict.fromkeys(now["files"]), (run, "files"))
         for name in files.keys() & now["files"].keys():
-            here = [rename for rename in renames if rename.concerns(command, (name.rsplit("/", 1)[-1],))]
-            yield from differences(files[name], now["files"][name], here, (run, name))
+            yield from differences(files[name], now["files"][name], (run, name))

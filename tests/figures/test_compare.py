@@ -1,4 +1,4 @@
-"""The comparison itself: what it finds, what it lets pass, and what it reads of the table of renamed keys."""
+"""The comparison itself: what it finds and what it lets pass."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import math
 import pytest
 
 from tests.figures.compare import differences, plain
-from tests.figures.renames import Rename, read_renames
 
 DOCUMENT = {
     "design": "paper-dome",
@@ -78,41 +77,6 @@ def test_a_whole_number_in_a_list_is_not_true():
     assert list(differences({"passed": [True, 1]}, {"passed": [1, 1]})) == ["passed.0: True before, 1 now"]
 
 
-def test_a_renamed_key_is_no_change_at_any_depth_and_its_value_still_counts():
-    new = {**DOCUMENT, "notes": DOCUMENT["told"], "states": [{**DOCUMENT["states"][0], "notes": 3}]}
-    del new["told"], new["states"][0]["told"]
-    assert list(differences(DOCUMENT, new, [Rename(("*",), "told", "notes")])) == ["states.0.notes: 2 before, 3 now"]
-
-
-def test_a_dotted_key_is_renamed_below_its_parent_alone():
-    new = {**DOCUMENT, "states": [{**DOCUMENT["states"][0], "notes": 2}]}
-    del new["states"][0]["told"]
-    assert not list(differences(DOCUMENT, new, [Rename(("*",), "states.told", "states.notes")]))
-
-
-def test_a_dotted_key_is_found_where_its_parent_is_renamed_too():
-    new = {**DOCUMENT, "loads": [{**DOCUMENT["states"][0], "notes": 2}]}
-    del new["loads"][0]["told"], new["states"]
-    renames = [Rename(("*",), "states", "loads"), Rename(("*",), "states.told", "loads.notes")]
-    assert not list(differences(DOCUMENT, new, renames))
-
-
-def test_a_dotted_key_is_found_where_its_parent_has_a_dotted_key_of_its_own():
-    old, new = ({"inputs": {name: {key: [1.0]}}} for name, key in (("asked", "ages"), ("options", "ages_days")))
-    renames = [
-        Rename(("*",), "inputs.asked", "inputs.options"),
-        Rename(("*",), "inputs.asked.ages", "inputs.options.ages_days"),
-    ]
-    assert not list(differences(old, new, renames))
-    assert list(differences(old, new, renames[:1]))
-
-
-def test_a_name_that_stands_as_a_value_is_renamed_with_the_key():
-    new = {**DOCUMENT, "states": [{**DOCUMENT["states"][0], "load_N": [0.0, 1.5], "figures": ["load_N"]}]}
-    del new["states"][0]["force_N"]
-    assert not list(differences(DOCUMENT, new, [Rename(("*",), "force_N", "load_N")]))
-
-
 def test_what_follows_bytes_and_versions_is_left_out():
     one = {
         "versions": {"numpy": "2.4"},
@@ -122,21 +86,3 @@ def test_what_follows_bytes_and_versions_is_left_out():
     other = {"versions": {}, "files": {"a.stl": {"bytes": 8, "sha256": "1" * 64}}, "of": {"be9aa6cdd3c7": {"b": 1}}}
     assert plain(one) == plain(other) == {"files": {"a.stl": {}}, "of": [{"b": 1}]}
     assert plain("/home/user/designs/paper-dome.toml") == "paper-dome.toml"
-
-
-def test_the_table_is_read_and_concerns_the_documents_it_names():
-    text = """
-| file or command | old key | new key |
-| --- | --- | --- |
-| `pneutouch calibrate`, `figures.json` | `told` | `notes` |
-| `*` | `shares.body's own` | `shares.material` |
-
-| other | table | here |
-| --- | --- | --- |
-| predict | no | rename |
-"""
-    calibrate, everywhere = read_renames(text)
-    assert (calibrate.old, calibrate.new) == ("told", "notes")
-    assert calibrate.concerns("calibrate") and calibrate.concerns("characterize", ["figures.json"])
-    assert not calibrate.concerns("characterize", ["manifest.json"])
-    assert everywhere.concerns("predict") and everywhere.old == "shares.body's own"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from tests.figures.compare import changes, plain
-from tests.figures.renames import read_renames
 from tests.figures.store import EVERYDAY, GROUPS, collect, stored
 
 
@@ -13,7 +12,7 @@ from tests.figures.store import EVERYDAY, GROUPS, collect, stored
     "group", [pytest.param(name, marks=() if name in EVERYDAY else pytest.mark.slow) for name in GROUPS]
 )
 def test_the_figures_are_those_of_the_reference_state(group):
-    lines = list(changes(stored()[group], plain(collect(group)), read_renames()))
+    lines = list(changes(stored()[group], plain(collect(group))))
     assert not lines, f"{len(lines)} figures differ:\n" + "\n".join(lines[:100])
 
 
