@@ -7,6 +7,7 @@ import json
 import pytest
 
 from pneutouch.errors import InputError
+from pneutouch.formats import format_of
 
 
 def test_figures_nested_too_deep_are_refused(tmp_path):
@@ -26,11 +27,16 @@ def forged(folder, **files):
     for name, content in contents.items():
         (folder / name).write_bytes(content)
     listed = {name: {"sha256": digest(content)} for name, content in contents.items()}
-    (folder / "manifest.json").write_text(json.dumps({"files": listed, "versions": []}))
+    (folder / "manifest.json").write_text(
+        json.dumps({"format": format_of("manifest"), "files": listed, "versions": []})
+    )
     return folder
 
 
-@pytest.mark.parametrize("text", ["[" * 100_000, "[]", "1", "{", '{"model": "solid"}', '{"states": [1]}'])
+STATED = '{"format": "pneutouch/prediction/1", %s}'
+
+
+@pytest.mark.parametrize("text", ["[" * 100_000, "[]", "1", "{", STATED % '"model": "solid"', STATED % '"states": [1]'])
 def test_a_forged_prediction_of_a_build_is_refused(text, tmp_path):
     from pneutouch.workflows.compare.predicted import of_build
 
@@ -38,7 +44,7 @@ def test_a_forged_prediction_of_a_build_is_refused(text, tmp_path):
         of_build(forged(tmp_path, prediction_json=text))
 
 
-GROUP = '{"design": "a", "simulated": 0, "runs": [%s], "groups": [{"resin": "a", "age": "b", "figures": %s, "files": ["x"]}]}'
+GROUP = '{"format": "pneutouch/figures/1", "design": "a", "simulated": 0, "runs": [%s], "groups": [{"resin": "a", "age": "b", "figures": %s, "files": ["x"]}]}'
 
 
 @pytest.mark.parametrize(
@@ -64,9 +70,11 @@ def test_a_leak_that_is_no_number_is_refused_and_not_read_as_none(value, pressur
 
     path = tmp_path / "figures.json"
     entry = '{"unit": "kPa/min", "value": %s, "figure": "leak, %s kPa"}'
-    path.write_text('{"design": "a", "injections": [%s]}' % (entry % ("0.1", "12")))
+    path.write_text('{"format": "pneutouch/figures/1", "design": "a", "injections": [%s]}' % (entry % ("0.1", "12")))
     assert _of_campaign(path, "a").rate_kPa_per_min == pytest.approx(0.1)
-    path.write_text('{"design": "a", "injections": [%s]}' % (entry % (value, pressure)))
+    path.write_text(
+        '{"format": "pneutouch/figures/1", "design": "a", "injections": [%s]}' % (entry % (value, pressure))
+    )
     with pytest.raises(InputError, match="a leak that is no finite number"):
         _of_campaign(path, "a")
 

@@ -2,7 +2,7 @@
 
 Every such file states ``format = "pneutouch/NAME/VERSION"``; a campaign does in ``campaign_format``, as its ``format``
 is that of the measured files. A version counts changes after which an older program would misread the file; keys that
-are added do not raise it. Files without the key, or with a number alone, are those of programs before the key existed.
+are added do not raise it.
 """
 
 from __future__ import annotations
@@ -50,12 +50,12 @@ _STATED = re.compile(r"pneutouch/([a-z-]+)/([1-9][0-9]{0,5})")
 
 
 def format_of(name: str) -> str:
-    """What a file of this format states: ``pneutouch/prediction/1``."""
+    """Value of the key ``format`` in a file of this kind: ``pneutouch/prediction/1``."""
     return f"pneutouch/{name}/{FORMATS[name].version}"
 
 
 def version_of(name: str) -> int:
-    """The version of a kind of document; 1 where files state none: people write them, or commands only print them."""
+    """Version of a kind of document; 1 for kinds without a format, which people write or commands only print."""
     return FORMATS[name].version if name in FORMATS else 1
 
 
@@ -65,18 +65,15 @@ def versioned(name: str, document: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def problem_of(name: str, stated: object) -> tuple[str, str] | None:
-    """What is wrong with the format that a file states, and what to do; None where the file can be read.
+    """Problem with the format that a file states and its remedy; None for a file that can be read.
 
-    ``stated`` is None for a file that states none, or a number in a file of an earlier program.
+    ``stated`` is None for a file without the key.
     """
-    known = FORMATS[name].version
-    if stated is None:
-        return None
     match = _STATED.fullmatch(stated) if isinstance(stated, str) else None
-    version = int(match[2]) if match else stated
-    if (match and match[1] != name) or not isinstance(version, int) or isinstance(version, bool) or version < 1:
-        return "not the format of this file", f"it must be {shown(format_of(name))}"
-    if version > known:
+    if match is None or match[1] != name:
+        problem = "missing" if stated is None else "not the format of this file"
+        return problem, f"it must be {shown(format_of(name))}"
+    if int(match[2]) > FORMATS[name].version:
         return (
             "of a later version",
             f"this pneutouch reads {shown(format_of(name))}: take a newer one, or write it again",
@@ -85,7 +82,7 @@ def problem_of(name: str, stated: object) -> tuple[str, str] | None:
 
 
 def check_format(name: str, content: Mapping[str, Any], file: object, key: str = KEY) -> None:
-    """Raise InputError with file, key and value where ``content`` is of another or of a later format."""
+    """Raise InputError with file, key and value if ``content`` has no format, another one or a later one."""
     problem = problem_of(name, content.get(key))
     if problem is not None:
-        raise InputError(problem[0], file=str(file), key=key, value=content[key], remedy=problem[1])
+        raise InputError(problem[0], file=str(file), key=key, value=content.get(key), remedy=problem[1])

@@ -139,24 +139,32 @@ def read_leak(path: Path) -> object:
 
 def read_prediction(path: Path) -> object:
     """The prediction of an output folder, by one who makes its manifest agree with it."""
+    from pneutouch.formats import format_of
     from pneutouch.output.files import MANIFEST, digest
     from pneutouch.workflows.compare.predicted import of_build
     from tests.fuzzing.seeds import recipe
 
     inputs, version, stated = recipe()
     files = {path.name: {"sha256": digest(path.read_bytes())}}
-    head = {"name": "a", "inputs": inputs, "versions": {"pneutouch": version}, "input_hash": stated}
+    head = {
+        "format": format_of("manifest"),
+        "name": "a",
+        "inputs": inputs,
+        "versions": {"pneutouch": version},
+        "input_hash": stated,
+    }
     (path.parent / MANIFEST).write_text(json.dumps(head | {"files": files}))
     return of_build(path.parent).sensor({})
 
 
 def read_figures(path: Path) -> object:
     """The figures of a folder of results, likewise."""
+    from pneutouch.formats import format_of
     from pneutouch.output.files import MANIFEST, digest
     from pneutouch.workflows.compare.measured import measured_columns
     from tests.fuzzing.seeds import POINTS
 
     (path.parent / "points.csv").write_bytes(POINTS)
     files = {name: {"sha256": digest((path.parent / name).read_bytes())} for name in (path.name, "points.csv")}
-    (path.parent / MANIFEST).write_text(json.dumps({"name": "a", "files": files}))
+    (path.parent / MANIFEST).write_text(json.dumps({"format": format_of("manifest"), "name": "a", "files": files}))
     return measured_columns(path.parent)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pneutouch.formats import format_of, versioned
 from tests.fuzzing.files import library
 from tests.fuzzing.parts import parts
 from tests.fuzzing.place import ROOT
@@ -35,6 +36,7 @@ FOLDERS = {
 
 POINTS = b"file,indentation_mm,contact_force_N,pressure_rise_kPa\na.csv,0,0,0\na.csv,1,0.5,1.2\n"
 MEASUREMENT = {
+    "format": format_of("figures"),
     "design": "paper-dome",
     "simulated": False,
     "runs": [{"file": "a.csv", "kind": "steps", "sensor": "A"}],
@@ -58,7 +60,11 @@ MEASUREMENT = {
 
 TASKS = '[[task]]\nname = "grip"\nsensitivity_kPa_per_N = 1.9\n[[task]]\nforce_range_N = 15\n[[task]]\nstiffness_N_per_mm = 2\n'
 TASKS_CSV = "name,sensitivity_kPa_per_N,stiffness_N_per_mm,force_range_N\ngrip,1.9,,\ntouch,,2,\nhold,,,15\n"
-FIGURES = {"design": "paper-dome", "injections": [{"unit": "kPa/min", "value": 0.1, "figure": "leak, 12 kPa"}]}
+FIGURES = {
+    "format": format_of("figures"),
+    "design": "paper-dome",
+    "injections": [{"unit": "kPa/min", "value": 0.1, "figure": "leak, 12 kPa"}],
+}
 QUESTIONS = (
     {"base": "paper-dome", "values": {}},
     {"base": "agilus-dome", "values": {"membrane.wall_thickness_mm": "1.4", "pneumatics.gauge": None}},
@@ -119,7 +125,9 @@ def seeds(target: str) -> list[bytes]:
         "question": QUESTIONS,
         "search": SEARCHES,
         "measured": [MEASURED],
-        "exported": [{"pneutouch_studio": 1, "version": "1.0", **question} for question in QUESTIONS[:2]],
+        "exported": [
+            {"format": format_of("exported-design"), "version": "1.0", **question} for question in QUESTIONS[:2]
+        ],
         "figures": [MEASUREMENT],
         "journal": [{"sweep": "ab", "records": [{"point": 0, "states": [{"status": "ok"}], "values": {"a": 1.0}}]}],
     }
@@ -206,7 +214,7 @@ def _recipe() -> str:
 def _prediction() -> bytes:
     from pneutouch.evaluation.document import prediction_document
 
-    return json.dumps(prediction_document(_evaluated())).encode()
+    return json.dumps(versioned("prediction", prediction_document(_evaluated()))).encode()
 
 
 def _threemf() -> bytes:
@@ -232,6 +240,7 @@ def _datasets() -> list[bytes]:
         {"a": ("a", np.array([1, 2], np.int32)), "b": ("b", np.arange(3.0), {"units": "kPa"})},
         {"input_hash": "ab", "title": "a sweep"},
     )
+    content.attrs["format"] = format_of("dataset")
     content.attrs[_CONTENT_HASH] = _content_hash(content)
     return [netcdf(content)]
 
@@ -244,7 +253,7 @@ def _slice() -> bytes:
 
 def _stack() -> bytes:
     content = {
-        "format": 1,
+        "format": format_of("stack"),
         "layers": 30,
         "prefix": "a_",
         "sha256": "ab" * 32,

@@ -119,7 +119,7 @@ def calibrated(modulus: float, wall: float, correlation: float) -> SensorCalibra
     both = correlation * modulus * wall
     return SensorCalibration.model_validate(
         {
-            "format": 1,
+            "format": "pneutouch/calibration/1",
             "title": "made up",
             "covariance": [[modulus**2, both], [both, wall**2]],
             "source": {

@@ -87,7 +87,7 @@ TAMPERED = {
     "tolerance given": (put(0.1, *at("tolerance")), "tolerance = 0.1: must not be given with model membrane"),
     "inputs a list": (put([], "inputs"), "inputs"),
     "no inputs": (remove("inputs"), "inputs: missing"),
-    "another form": (put(2, "format"), "format = 2: of a later version; this pneutouch reads"),
+    "another form": (put(2, "format"), "format = 2: not the format of this file"),
     "form as text": (put("1", "format"), 'format = "1": not the format of this file'),
     "name with a way out": (put("../../home/x", "name"), 'name = "../../home/x": cannot be a name; use letters'),
     "name absolute": (put("/etc/x", "name"), "cannot be a name; use letters"),

@@ -156,8 +156,6 @@ def test_an_exported_design_comes_back(tmp_path, library):
     assert opened(path)["question"] == {"base": "paper-dome", "values": values}
     path.write_text(export(version="0.0.1"))
     assert opened(path)["notes"] == [f"exported by pneutouch 0.0.1 (here {__version__})"]
-    path.write_text(export(format=..., pneutouch_studio=1, values=values))
-    assert opened(path)["question"]["values"] == values
 
 
 @pytest.mark.parametrize(
@@ -168,7 +166,7 @@ def test_an_exported_design_comes_back(tmp_path, library):
         ("[]", "not an exported design"),
         ("{}", "not a design that was exported here"),
         (export(format="pneutouch/exported-design/2"), "of a later version"),
-        (export(format=..., pneutouch_studio=2), "pneutouch_studio = 2: of a later version"),
+        (export(format=1), "format = 1: not the format of this file"),
         (export(format="pneutouch/plan/1"), "not the format of this file"),
         (export(base=...), "has the keys"),
         (export(more=1), "has the keys"),

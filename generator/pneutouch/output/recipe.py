@@ -74,7 +74,7 @@ def scene_kinds() -> dict[str, str]:
 
 
 OPTIONAL = ("calibration", "gauge", "mould_printer", "mould_material")
-"""Fields of a scene that a recipe leaves out where they are None: recipes without them are those of older versions."""
+"""Fields of a scene that a recipe leaves out where they are None."""
 
 
 def scene_parts(scene: ResolvedDesign) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from pneutouch.errors import InputError, nearest, shown
 from pneutouch.evaluation.elastomers import Resins
 from pneutouch.evaluation.evaluate import CLAMPS, PredictionOptions
 from pneutouch.export.threemf_read import Package
-from pneutouch.formats import check_format, format_of
+from pneutouch.formats import check_format
 from pneutouch.mechanics.contact import CLOSURES
 from pneutouch.mechanics.models import MODEL_CHOICES
 from pneutouch.output.manifest import input_hash, versions
@@ -56,7 +56,7 @@ def read_recipe(package: Package) -> BuildRecipe:
 class _Head(Table):
     """The outermost table of a recipe."""
 
-    format: int | str = format_of("recipe")
+    format: str
     name: str
     version: str
     inputs: dict[str, Any]

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from pneutouch.errors import shown
-from pneutouch.formats import format_of, problem_of
+from pneutouch.formats import problem_of
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, number
 from pneutouch.spec.grade import ResinOrMix
@@ -118,7 +118,7 @@ class SensorCalibration(Table):
     ``covariance`` is of ln MPa (modulus), ln mm (wall), mL (dead volume), mm (offset) and 1 (friction).
     """
 
-    format: int | str = Field(default=format_of("calibration"), description="Format of the file and its version.")
+    format: str = Field(description="Format of the file and its version.")
     title: Printable = Field(min_length=1, max_length=200, description="What it is of.")
     covariance: list[list[float]] = Field(max_length=5, description="Of the covered parameters, in their order.")
     source: CalibrationSource

@@ -20,8 +20,6 @@ from pneutouch.studio.question import Question
 
 _MOST_EXPORTED = 64 * 1024
 _EXPORT_KEYS = {KEY, "version", "base", "values"}
-_FORMER = "pneutouch_studio"
-"""Key of the format, a number, in designs that were exported earlier."""
 
 _ENDINGS = "a 3MF that pneutouch build wrote, a design file (.toml), or an exported design (.json)"
 
@@ -81,12 +79,10 @@ def _from_3mf(path: Path, bases: Bases, library: Library) -> Content:
 
 def _from_export(path: Path, bases: Bases, library: Library) -> Content:
     content = _json(path)
-    key = _FORMER if _FORMER in content else KEY
-    if key not in content:
+    if KEY not in content:
         remedy = "give a file that Export wrote on this page"
         raise InputError("not a design that was exported here", file=path, remedy=remedy)
-    check_format("exported-design", content, path, key)
-    content[KEY] = content.pop(key)
+    check_format("exported-design", content, path)
     if set(content) != _EXPORT_KEYS or not isinstance(content["version"], str):
         raise InputError(f"an exported design has the keys {', '.join(sorted(_EXPORT_KEYS))}", file=path)
     question = Question.of({"base": content["base"], "values": content["values"]})

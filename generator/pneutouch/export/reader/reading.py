@@ -12,9 +12,6 @@ from typing import Any, NamedTuple
 FORMAT = "pneutouch/reader/1"
 """Format of the table and its version, which is raised where a reader of the one before would misread it."""
 
-FORMER = 1
-"""The same format as earlier tables state it."""
-
 CELSIUS = 273.15
 
 NOISES = 5.0
@@ -65,8 +62,8 @@ class ForceReader:
 
     def __init__(self, table: dict[str, Any]) -> None:
         """Raises ValueError for a table of another format than this module reads."""
-        if table.get("format", FORMAT) not in (FORMAT, FORMER):
-            raise ValueError(f"format {table['format']!r:.40}: this module reads format {FORMAT}")
+        if table.get("format") != FORMAT:
+            raise ValueError(f"format {table.get('format')!r:.40}: this module reads format {FORMAT}")
         grid, box = table["grid"], table["box"]
         self._rows: list[float] = grid["driving_pressure_kPa"]
         self._rise: list[list[float]] = grid["pressure_rise_kPa"]
