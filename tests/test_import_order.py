@@ -98,7 +98,7 @@ def test_files_and_functions_stay_short():
     long = []
     for path in PACKAGE.rglob("*.py"):
         text = path.read_text()
-        if text.count("\n") > 300:
+        if text.count("\n") > 400:
             long.append(f"{path}: {text.count(chr(10))} lines")
         for node in ast.walk(ast.parse(text)):
             if isinstance(node, ast.FunctionDef) and node.end_lineno - node.lineno > 60:
