@@ -42,12 +42,12 @@ class DrivingResult(show.Shown):
 
     @property
     def reached(self) -> bool:
-        """Whether every task has a driving pressure."""
+        """True if every task has a driving pressure."""
         return None not in self.driving_pressures_kPa
 
     @property
     def driving_pressure_kPa(self) -> float | None:
-        """That of the first task, kPa; None where no pressure does it."""
+        """Driving pressure of the first task, kPa; None if no pressure does it."""
         return self.driving_pressures_kPa[0]
 
     @property

@@ -1,4 +1,4 @@
-"""What can be named: designs, calibrations, materials, printers and gauges."""
+"""Names of the designs, calibrations, materials, printers and gauges that a user can give."""
 
 from typing import Any
 

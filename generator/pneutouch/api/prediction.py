@@ -111,7 +111,7 @@ class PredictedState(show.Shown):
 
 
 class Prediction(show.Shown):
-    """What a model states of a design at its driving pressures."""
+    """Prediction of a design by one model at its driving pressures."""
 
     def __init__(self, evaluation: Evaluation) -> None:
         self.evaluation = evaluation

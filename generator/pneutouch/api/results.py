@@ -23,7 +23,7 @@ class CheckResult(show.Shown):
 
     @property
     def passed(self) -> bool:
-        """Whether no rule is broken."""
+        """True if no rule is broken."""
         return all(finding.severity != "error" for finding in self.findings)
 
     def to_dict(self) -> dict[str, Any]:

@@ -40,7 +40,7 @@ class Selection(show.Shown):
 
     @property
     def met(self) -> bool:
-        """Whether a design meets the target."""
+        """True if a design meets the target."""
         return bool(self.designs)
 
     def to_dict(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""How objects show themselves: at most ten lines of text, or a table with a picture in a notebook."""
+"""Text and pictures of objects in a notebook: at most ten lines of text, or a table with a picture."""
 
 from __future__ import annotations
 

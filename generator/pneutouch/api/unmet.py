@@ -1,4 +1,4 @@
-"""Why a selection has no design, in short lines from its document."""
+"""Reasons why a selection found no design, in short lines made from its document."""
 
 from __future__ import annotations
 

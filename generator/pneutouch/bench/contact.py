@@ -59,7 +59,7 @@ class ContactOnset(NamedTuple):
 
 
 def baseline(blocks: Blocks, start: int, end: int) -> Baseline:
-    """What force and pressure are over blocks ``start`` to ``end`` (at least one)."""
+    """Mean and scatter of force and pressure without contact over blocks ``start`` to ``end`` (at least one)."""
     time = blocks.time[start:end]
     centred = time - time.mean()
     means, slopes, between, within = [], [], [], []
@@ -146,7 +146,8 @@ def onsets(
 
 
 def _presses(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign: int, onset: float) -> bool:
-    """Whether a hold presses, by the mean of its later half, although no single block of the loading shows it."""
+    """True if a hold presses, judged by the mean of its later half, although no single block of the loading shows
+    it."""
     at = slice((one.hold[0] + one.hold[1]) // 2, one.hold[1])
     force = sign * (blocks.force[at] - base.mean[0])
     count = min(force.size, base.end - base.start)

@@ -184,7 +184,7 @@ def _binned(place: Array, values: Array, grid: Array) -> Array:
 
 
 def _still(curve: MeasuredCurve, sensitivity_kPa_per_N: float | None) -> dict[str, float]:
-    """What the channels do without contact; the resolution follows where the run has a sensitivity."""
+    """Scatter and drift of the channels without contact; the resolution too, if the run has a sensitivity."""
     if curve.run.kind == "loop":
         # Its rests are too short for noise and drift: the wall still recovers.
         return {}

@@ -54,7 +54,7 @@ _LAST = re.compile(r"(.*?)(?:[\s_,:;/.-]+|\bin\s+)([^\s_,:;/]+)")
 
 
 class HeaderMeaning(NamedTuple):
-    """What a header states: the channel that its words name, and the channel and the unit of its unit; "" each unknown.
+    """Meaning of a header: the channel that its words name, and the channel and the unit of its unit; "" if unknown.
 
     ``odd``: it states a unit, or another quantity, which no channel has."""
 
@@ -72,12 +72,12 @@ class HeaderMeaning(NamedTuple):
 
     @property
     def certain(self) -> bool:
-        """Whether words and unit name the same channel."""
+        """True if words and unit name the same channel."""
         return bool(self.channel) and self.word == self.kind
 
 
 def meaning_of(name: str, unit: str = "") -> HeaderMeaning:
-    """What a header means, such as "Load [N]", "P_kPa", "Kraft (N)"; ``unit`` is that of a row of units."""
+    """Meaning of a header such as "Load [N]", "P_kPa" or "Kraft (N)"; ``unit`` is that of a row of units."""
     label, stated = (name, unit) if unit.strip() else _parted(name)
     known = unit_of(stated) if stated else None
     if known is None and not unit.strip() and unit_of(name.strip()):

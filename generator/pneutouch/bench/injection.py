@@ -74,8 +74,8 @@ def dead_volume_of_cap(volume: Array, pressure: Array, ambient: float) -> Mean:
 
 
 class Leak(NamedTuple):
-    """How fast a closed line loses pressure: rate and its standard error (MPa/s, positive where pressure is lost), its
-    95 % interval, and the time constant in s of an exponential decay (infinite where nothing is lost)."""
+    """Leak of a closed line: rate and its standard error (MPa/s, positive for a loss of pressure), its 95 % interval,
+    and the time constant in s of an exponential decay (infinite without a loss)."""
 
     rate: float
     error: float

@@ -40,7 +40,7 @@ class Estimate:
     over: str
 
     def holds(self, truth: float) -> bool:
-        """Whether the interval holds a value."""
+        """True if the interval holds a value."""
         return self.low is not None and self.high is not None and self.low <= truth <= self.high
 
 

@@ -24,7 +24,7 @@ UNIT_NEAR = 1.8
 """Factor within which another unit must bring a reading to the prediction: our choice, below half of `FAR`."""
 
 RESET_KPA, RESET_SHARE = 1.0, 0.1
-"""How far the pressure before contact may be from the driving pressure: our choice, a regulator's scatter."""
+"""Largest distance of the pressure before contact from the driving pressure: our choice, a regulator's scatter."""
 
 BEYOND = 10.0
 """Factor above the prediction of force or rise from which no sensor is the reason: our choice, three times `FAR`.
@@ -37,7 +37,7 @@ ABSOLUTE = (0.6, 1.1)
 """Excess before contact, in standard atmospheres, that looks like an absolute pressure: up to 4 km above the sea."""
 
 SWAP_MARGIN = math.log(2.0)
-"""How much nearer to the prediction the swapped reading must be (log of a factor) at no driving pressure."""
+"""Margin (log of a factor) by which the swapped reading must be nearer to the prediction at no driving pressure."""
 
 _RESTS = 0.05
 """Share of the greatest force or rise by which points may be negative: noise about the origin."""
@@ -46,7 +46,7 @@ _MINUS = {
     1: " (in `columns` a minus before the name turns the sign)",
     -1: " (in `columns` leave out the minus before the name)",
 }
-"""What `workflows.characterize.parse_columns` takes in place of a sign, by the sign that is wrong."""
+"""Replacements of a wrong sign that `workflows.characterize.parse_columns` takes, by the sign."""
 
 _HOLD_FAR = 50.0
 _WHY = "another resin (runs.resin) or design (design), a smaller plate, or a wrong calibration?"

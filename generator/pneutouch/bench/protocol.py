@@ -1,4 +1,5 @@
-"""How a sensor is characterized: the paper's protocols (section 3, Supplements C and D) as movements of the plate."""
+"""Protocols for the characterization of a sensor, the paper's (section 3, Supplements C and D), as movements of the
+plate."""
 
 from __future__ import annotations
 
@@ -33,7 +34,7 @@ CYCLES = 3
 
 @dataclass(frozen=True, slots=True)
 class RunProtocol:
-    """What one run does. Lengths mm, times s, speed mm/s.
+    """Movements of the plate in one run. Lengths mm, times s, speed mm/s.
 
     Attributes:
         kind: The kind of run.

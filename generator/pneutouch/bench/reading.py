@@ -150,7 +150,7 @@ def _clipped(
 
 
 def _short(blocks: Blocks, beyond: Flags) -> Flags:
-    """Which of the flagged blocks, (n,), are in parts so short that no plate makes them."""
+    """Those of the flagged blocks, (n,), that are in parts too short to come from the plate."""
     most = max(SPIKE * blocks.rate / blocks.size, FEW)
     short: Flags = np.zeros(beyond.size, bool)
     for start, end in _runs(beyond):

@@ -1,4 +1,4 @@
-"""Where the plate is clear, where it goes in, where it stays: a run cut into its indentations by its position."""
+"""Indentations of a run, found from the position alone: clear of the sensor, going in, staying."""
 
 from typing import NamedTuple
 
@@ -136,7 +136,7 @@ def _turns(place: Array, least: float) -> list[tuple[int, bool]]:
 
 
 def _stay(place: Array, low: float, noise: float) -> tuple[int, int]:
-    """Where the plate stays at the deep end of an excursion."""
+    """Blocks for which the plate stays at the deep end of an excursion: the first, and the one after the last."""
     top = float(place.max())
     level = float(np.median(place[place >= top - max(NEAR * (top - low), NOISE * noise)]))
     at = np.flatnonzero(np.abs(place - level) <= max(STAY * (top - low), NOISE * noise))
@@ -147,7 +147,7 @@ def _stay(place: Array, low: float, noise: float) -> tuple[int, int]:
 
 
 def _clear(place: Array, low: float, top: float, noise: float) -> tuple[int, int]:
-    """Where the plate is at its clear end before it goes in."""
+    """Blocks for which the plate is at its clear end before it goes in, first and last."""
     at = np.flatnonzero(place <= low + max(STAY * (top - low), NOISE * noise))
     if at.size < FEW:
         at = np.flatnonzero(place <= low + WIDE * (top - low))

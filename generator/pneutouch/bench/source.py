@@ -15,7 +15,7 @@ from pneutouch.tables.unit_words import UNITS
 
 _ANY = FileFormat()
 _PLAIN = {"delimiter": ",", "decimal": ".", "encoding": "utf-8"}
-"""How a text file is written of which nothing need be stated."""
+"""Layout of a text file for which a campaign file needs to say nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class MeasuredFile:
 
     @property
     def content(self) -> dict[str, dict[str, Any]]:
-        """What was found and stated, as the tables [format] and [columns] of a campaign file.
+        """Layout and columns that were found or given, as the tables [format] and [columns] of a campaign file.
 
         Where the header is need not be stated, because the columns' names state it."""
         used = {key: getattr(self.layout.format, key) for key in _PLAIN}
@@ -166,7 +166,7 @@ def _problem(key: str, names: Sequence[str]) -> str:
 
 
 def _called(layout: TableLayout, place: int) -> str:
-    """How a campaign file names a column: by its name, by its number where it has none or several have that name."""
+    """Name of a column in a campaign file: its own name, or its number if it has none or shares it with another."""
     name = layout.all_names[place]
     return name if name and layout.all_names.count(name) == 1 else f"#{place + 1 - (layout.clock is not None)}"
 

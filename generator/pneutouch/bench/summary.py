@@ -28,7 +28,7 @@ _POOL: dict[Pooled, Callable[[Sequence[Array]], Estimate]] = {
 
 @dataclass(frozen=True, order=True, slots=True)
 class GroupKey:
-    """What the runs of a group have in common: resin, mean age in days (0 where fresh), driving pressure in kPa."""
+    """Properties that all runs of a group share: resin, mean age in days (0 if fresh), driving pressure in kPa."""
 
     resin: str
     age_days: float

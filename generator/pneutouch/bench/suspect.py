@@ -36,7 +36,8 @@ _SIGNIFICANT = 4.0
 
 
 def untrusted(blocks: Blocks, indent: MeasuredIndentation, before: float) -> str | None:
-    """Why an indentation cannot be used: a channel clipped before contact or while read, or half of it missing."""
+    """Reason why an indentation cannot be used: a channel clipped before contact or while read, or half of it missing;
+    None if it can."""
     lost = 0.0
     for warning in blocks.warnings:
         if warning.used:

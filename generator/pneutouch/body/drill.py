@@ -77,7 +77,7 @@ def _faces(rings: RevolvedRings, bores: tuple[Bore, ...]) -> dict[int, list[int]
 
 
 def _holds(rings: RevolvedRings, k: int, bore: Bore, height: float) -> bool:
-    """Whether strip ``k`` is flat, at ``height``, and wide enough around a bore."""
+    """True if strip ``k`` is flat, at ``height``, and wide enough around a bore."""
     one, other = (rings.rings[index] for index in rings.pairs[k])
     if abs(one.height - height) > _SAME or abs(other.height - height) > _SAME:
         return False

@@ -44,7 +44,7 @@ class Body:
         return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])
 
     def is_closed(self) -> bool:
-        """Whether every edge is shared by exactly two triangles, in opposite directions."""
+        """True if every edge is shared by exactly two triangles, in opposite directions."""
         return is_closed(self.triangles, len(self.vertices))
 
     def welded(self) -> Body:

@@ -1,4 +1,4 @@
-"""What lies inside a solid, from its exact shapes and no mesh: points anywhere, and whole level sections.
+"""Points inside a solid and its level sections, computed from its exact shapes without a mesh.
 
 Faces are half-open (`pneutouch.meridian.crossings`): where two bodies meet, a point belongs to one of them.
 """
@@ -44,7 +44,7 @@ class _Tool:
 
 
 def _inside(tool: _Tool, points: Array) -> Flags:
-    """Whether points (n, 3) in mm lie inside the shape of a tool, (n,)."""
+    """True for the points (n, 3) in mm inside the shape of a tool, (n,)."""
     shape = tool.shape
     if isinstance(shape, Bore):
         near = (points[:, 0] - shape.x) ** 2 + (points[:, 1] - shape.y) ** 2 < shape.radius**2
@@ -71,7 +71,7 @@ class SolidSection:
         self.high: Array = np.max([tool.high for tool in boxes], axis=0)
 
     def contains(self, points: Array) -> Flags:
-        """Whether points (n, 3) in mm lie inside, (n,)."""
+        """True for the points (n, 3) in mm inside the solid, (n,)."""
         inside = _inside(self._base, points)
         for tool in self._adds:
             inside |= _inside(tool, points)

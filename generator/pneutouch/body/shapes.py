@@ -16,7 +16,7 @@ X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """Where a shape stands: its own z axis runs along ``axis`` and its x axis along ``across`` (unit, orthogonal)."""
+    """Position of a shape: its own z axis runs along ``axis`` and its x axis along ``across`` (unit, orthogonal)."""
 
     origin: Vector = (0.0, 0.0, 0.0)
     axis: Vector = Z
@@ -40,7 +40,7 @@ class Frame:
 
 
 class Shape(Protocol):
-    """What a solid requires of its shapes; lengths in mm."""
+    """Interface of the shapes that a solid is made of; lengths in mm."""
 
     def volume(self) -> float:
         """Exact volume, mm3."""
@@ -186,7 +186,7 @@ def _under(piece: Segment) -> float:
 
 
 def _inside(points: Array, outline: list[Point]) -> Flags:
-    """Whether points (n, 2) lie inside a polygon, by crossings of a ray."""
+    """True for the points (n, 2) inside a polygon, by crossings of a ray."""
     odd = np.zeros(len(points), bool)
     x, y = points.T
     for (x0, y0), (x1, y1) in zip(outline, [*outline[1:], outline[0]], strict=True):

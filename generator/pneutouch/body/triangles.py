@@ -12,7 +12,7 @@ def enclosed_volume(vertices: Array, triangles: Indices) -> float:
 
 
 def is_closed(triangles: Indices, count: int) -> bool:
-    """Whether every edge between ``count`` vertices is shared by exactly two triangles, in opposite directions."""
+    """True if every edge between ``count`` vertices is shared by exactly two triangles, in opposite directions."""
     edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     key, back = edges[:, 0] * count + edges[:, 1], edges[:, 1] * count + edges[:, 0]
     return len(distinct(key)) == len(key) and bool(np.array_equal(np.sort(key), np.sort(back)))

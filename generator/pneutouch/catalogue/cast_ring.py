@@ -1,4 +1,4 @@
-"""Whether a design can have a ring that its flange is cast around."""
+"""Check that a design can have a ring that its flange is cast around."""
 
 from pneutouch.errors import InputError, shown
 from pneutouch.spec.cast_ring import PerforatedRing

@@ -33,7 +33,8 @@ def examples() -> dict[str, Example]:
 
 
 def example_remedy(name: str) -> str | None:
-    """How the example of a name is had, which was given where a file is taken; None where there is none."""
+    """Command that copies the example of this name, given when a file was expected; None if there is no such
+    example."""
     name = name.removesuffix(".toml")
     example = examples().get(name)
     if example is None:

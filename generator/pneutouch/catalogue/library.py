@@ -158,5 +158,5 @@ class Library:
 
 
 def is_specimen(content: dict[str, Any]) -> bool:
-    """Whether the content of a design file is a specimen's: it has a [block] table."""
+    """True if the content of a design file is that of a specimen: it has a [block] table."""
     return "block" in content

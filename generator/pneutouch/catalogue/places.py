@@ -1,4 +1,4 @@
-"""Where files live: the user's folder, and the shipped one."""
+"""Folders of the files: the user's, and the shipped one."""
 
 import os
 from pathlib import Path
@@ -32,5 +32,5 @@ def user_folder() -> Path:
 
 
 def _is_checkout(folder: Path) -> bool:
-    """Whether a folder is a checkout of the program: this one's, or another one's where the program is installed."""
+    """True if a folder is a checkout of the program: this one, or another one if the program is installed."""
     return (folder / "generator/pneutouch/catalogue" / Path(__file__).name).is_file()

@@ -1,4 +1,4 @@
-"""Which profiles make a material, and the refusal where one that was named does not."""
+"""Profiles that can make a material, and the refusal of a named one that cannot."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def makers(material: Material, library: Library) -> dict[str, Printer]:
 
 
 def casting_missing(printer: Printer, material: Material) -> bool:
-    """Whether a profile would cast a material whose file has no table [casting]."""
+    """True if a profile could cast a material but the material's file has no table [casting]."""
     return printer.is_casting and not material.is_cast and set(material.base_resins) <= set(printer.resins)
 
 
@@ -62,6 +62,6 @@ def made_by(material: Material, library: Library, setting: str) -> str:
 
 
 def own_profile(material: Material) -> str:
-    """What to do about a material that no profile runs."""
+    """Remedy for a material that no profile can make."""
     resins = ", ".join(material.base_resins)
     return f"add {resins} to the resins of a profile of your own: pneutouch new NAME --from PROFILE"

@@ -189,7 +189,7 @@ def _calibration(design: DesignFile, where: str, library: Library) -> SensorCali
 
 
 def check_scene(scene: ResolvedDesign, library: Library | None = None) -> None:
-    """What must hold between the parts of a scene. Raises InputError that names ``scene.where`` and the key.
+    """Check the rules between the parts of a scene. Raises InputError that names ``scene.where`` and the key.
 
     With the ``library`` that its names were found in, it states which profiles make a material as well.
     """

@@ -1,4 +1,4 @@
-"""What no interval holds: an error that all runs share, such as a gauge that reads too much."""
+"""Errors that all runs share and that no interval holds, such as a gauge that reads too much."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ GAIN = 0.01
 
 
 def gain_shifts(fit: CalibrationFit) -> tuple[Array, Array]:
-    """How the estimates move, (k,) coordinates each, where force and where pressure read 1 % more than they are; 0 on a
+    """Shifts of the estimates, (k,) coordinates each, if the force and if the pressure were read 1 % too high; 0 on a
     bound.
 
     The gauge reads the driving pressure too.

@@ -1,4 +1,4 @@
-"""How well the fitted model meets the data: residuals by run, and what the model misses in every run alike."""
+"""Goodness of the fit: residuals by run, and deviations that every run shares."""
 
 from dataclasses import dataclass
 
@@ -76,7 +76,8 @@ def residuals(fit: CalibrationFit) -> tuple[RunResiduals, ...]:
 
 
 def misses(fit: CalibrationFit) -> list[SystematicDeviation]:
-    """Where the mean residual of a pressure's runs is more than their scatter explains: the model is not the sensor.
+    """Stretches of travel where the runs at a driving pressure deviate by more than their scatter: the model is not the
+    sensor.
 
     The scatter is pooled over pressures and travels, in shares of full scale; without repeated runs only the stated
     errors are there to compare with.

@@ -55,12 +55,12 @@ class Identifiability:
 
     @property
     def clear(self) -> bool:
-        """Whether the data determine every parameter."""
+        """True if the data determine every parameter."""
         return not self.unseen and not self.ambiguities
 
 
 def identify(fit: CalibrationFit) -> Identifiability:
-    """What the data of a fit leave open, from the small eigenvalues of their information in unit scale."""
+    """Parameters that the data of a fit leave open, from the small eigenvalues of their information in unit scale."""
     fitted = np.array(fit.parameters.fitted)
     seen = np.abs(fit.solution.jacobian).max(axis=0) > 0
     places = np.flatnonzero(seen)

@@ -46,7 +46,7 @@ class Covariance:
 
     @property
     def clustered(self) -> bool:
-        """Whether the scatter between runs is in it."""
+        """True if it includes the scatter between runs."""
         return bool(np.isfinite(self.freedom))
 
 
@@ -83,7 +83,7 @@ def information(jacobian: Array) -> Array:
 
 
 def scatter(clusters: Array, part: WeightedRows, normal: Array) -> RunScatter:
-    """How the slopes scatter between runs whose points move together.
+    """Scatter of the slopes between runs whose points move together.
 
     Cluster-robust with the leverage correction of Bell and McCaffrey (Survey Methodology 28, 2002, 169-181): a run's
     residuals are too small by what it pulls the fit towards itself. ``normal``, (j, j), is the information of all runs

@@ -1,4 +1,4 @@
-"""How far the runs of a fit are from the fitted model as a whole, and whether it is a model of the sensor at all."""
+"""Misfit of the model to the runs as a whole, and the test that it is a model of the sensor at all."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,13 +30,13 @@ class ModelMisfit:
 
     @property
     def doubtful(self) -> bool:
-        """Whether the model describes the runs poorly."""
+        """True if the model describes the runs poorly."""
         return max(self.shares) > DOUBTFUL or self.chi_squared > DOUBTFUL_CHI
 
     @property
     def contradicted(self) -> bool:
-        """Whether the model with what was fitted does not describe the sensor: it is off by more than the greatest
-        discrepancy that a fit considers (`LARGEST`), or by more than that and the scatter explain."""
+        """True if the fitted model does not describe the sensor: it is off by more than the greatest discrepancy that a
+        fit considers (`LARGEST`), or by more than that and the scatter explain."""
         return max(self.shares) > LARGEST or self.chi_squared > CONTRADICTED_CHI
 
     @property

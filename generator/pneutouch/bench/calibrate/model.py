@@ -43,7 +43,8 @@ class FittedContact:
 
     @classmethod
     def of(cls, sensor: Sensor, chosen: CalibrationParameters, full: Array) -> "FittedContact | None":
-        """That of a sensor with all parameters at their coordinates ``full``, (5,); None for the atlas's own plate."""
+        """Contact of a sensor with all parameters at their coordinates ``full``, (5,); None for the atlas's own
+        plate."""
         if not chosen.frictions:
             return None
         modulus, wall = (float(np.exp(full[k])) for k in (MODULUS, WALL))
@@ -51,7 +52,7 @@ class FittedContact:
         return cls(centre, chosen.frictions)
 
     def distance(self, other: "FittedContact") -> float:
-        """How far another one's sensor is: the greatest of its changes of ln modulus, ln wall and ln gas volume."""
+        """Distance to another one's sensor: the greatest change of ln modulus, ln wall and ln gas volume."""
         pairs = [
             (
                 one.wall.shear_modulus,

@@ -54,7 +54,7 @@ def fit_notes(
 
 
 def _counted(fit: CalibrationFit) -> list[str]:
-    """What the intervals include in addition to the scatter."""
+    """Sources that the intervals include in addition to the scatter."""
     used = np.unique(fit.points.channels[fit.solution.use])
     sizes = ", ".join(f"{(fit.sizes[c]):.1%} of the {CHANNELS[c]}" for c in used)
     parts = [f"the intervals include the model discrepancy ({sizes})"]

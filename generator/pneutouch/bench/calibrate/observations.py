@@ -125,7 +125,7 @@ class ObservationPoints(NamedTuple):
 
     @property
     def use(self) -> Flags:
-        """Which of them are points, (N,)."""
+        """Points that can be used, (N,)."""
         return np.concatenate([self.there.ravel(), self.there.ravel(), self.known.ravel()])
 
     @property

@@ -1,4 +1,4 @@
-"""What the fitted model leaves out of the curves: factors on force and pressure by driving pressure.
+"""Correction of the fitted model by its error in the curves: factors on force and pressure by driving pressure.
 
 The sensitivity of a soft dome hardly depends on modulus, wall and dead volume, so no fit of them takes the model's
 error in it away. What the runs show of that error is corrected where it was measured, and between."""

@@ -25,7 +25,7 @@ _MOST_LOST = 0.5
 
 @dataclass(frozen=True, slots=True)
 class LeastSquaresSolution:
-    """Where the sum of squares is least; (k,) fitted coordinates, N values.
+    """Least squares solution: the point with the least sum of squares; (k,) fitted coordinates, N values.
 
     Attributes:
         at: Coordinates of the fitted parameters.
@@ -72,7 +72,7 @@ class LeastSquaresProblem:
         return residual, ((scaled[1:] - scaled[0]) / step[:, None]).T, values[0], known
 
     def lost(self, use: Flags, known: Flags) -> bool:
-        """Whether too many points of a run in ``use`` are not ``known``."""
+        """True if too many points of a run in ``use`` are not ``known``."""
         clusters = self.model.points.clusters
         before, after = (
             np.bincount(clusters[use]),

@@ -48,7 +48,7 @@ class PressCurve:
         return float(self.indentation[-1])
 
     def covers(self, depth: float) -> bool:
-        """Whether a plate travel lies within the range."""
+        """True if a plate travel lies within the range."""
         return depth <= self.reach * (1 + _ROUNDING)
 
     def at(self, travel: Array) -> tuple[Array, Array]:

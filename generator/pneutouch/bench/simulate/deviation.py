@@ -1,4 +1,4 @@
-"""How a simulated sensor deviates from its model, so that a calibration does not meet the model that it fits."""
+"""Deviations of a simulated sensor from its model, so that a calibration does not meet the very model that it fits."""
 
 from dataclasses import dataclass, replace
 

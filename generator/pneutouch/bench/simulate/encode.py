@@ -8,7 +8,7 @@ from pneutouch.arrays import Array
 from pneutouch.errors import InputError
 
 LEAK_SECONDS = 600.0
-"""How long a leak run lasts: our choice, as long as the relaxation run."""
+"""Duration of a leak run, s: our choice, as long as the relaxation run."""
 
 MARK = "# simulated by pneutouch"
 """First line of every file."""

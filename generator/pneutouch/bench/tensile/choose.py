@@ -34,7 +34,7 @@ LAST = LawForm("ogden", 6)
 """Tried where none of `FORMS` is good enough: six constants, of which few curves determine all."""
 
 _NEAR_BEST = 0.01
-"""Where none is good enough, the law with fewest constants within this of the least misfit is taken."""
+"""If no law is good enough, the one with fewest constants within this of the least misfit is taken."""
 
 _MOST_SLACK, _SLACK_STEPS = 0.08, 81
 _LEAST_SLACK = 0.002
@@ -75,7 +75,7 @@ class LawChoice:
 
     @property
     def good(self) -> bool:
-        """Whether the law taken is within `MISFIT` of the data."""
+        """True if the law taken is within `MISFIT` of the data."""
         return self.law.misfit <= MISFIT
 
 
@@ -129,7 +129,7 @@ def _taken(fits: Sequence[LawFit], usable: Sequence[int]) -> int:
 
 
 def _refused(fit: LawFit, largest: float) -> str | None:
-    """Why a fitted law cannot be taken, or None."""
+    """Reason why a fitted law cannot be taken, or None."""
     if not fit.determined:
         return "the data do not determine all of its constants"
     try:

@@ -1,4 +1,4 @@
-"""What the columns of a tensile file are: stretch, strain or travel, and stress or force, by their names."""
+"""Columns of a tensile file recognised by their names: stretch, strain or travel, and stress or force."""
 
 import re
 from collections.abc import Sequence

@@ -65,7 +65,7 @@ class LawFit:
 
     @property
     def determined(self) -> bool:
-        """Whether the data determine every constant: none is less than its uncertainty."""
+        """True if the data determine every constant: none is smaller than its uncertainty."""
         return all(abs(value) > error for value, error in zip(self.constants, self.errors, strict=True))
 
     def stress(self, stretch: Array) -> Array:

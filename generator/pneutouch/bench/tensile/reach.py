@@ -1,4 +1,4 @@
-"""How far a wall is stretched: the range that a law has to be fitted over.
+"""Stretches that a wall reaches: the range over which a law has to be fitted.
 
 Measured with the solid (neo-Hookean) on the shipped domes paper-dome, fingertip-dome and soft-pad, walls of 0.012 to
 0.6 MPa, plate to three quarters of the inner radius, from no driving pressure to 0.8 of the limit point, and on every

@@ -20,7 +20,7 @@ LEAST_POINTS = 8
 """Points of a curve: two for each constant of the laws of four, our choice."""
 
 LEAST_STRETCH = 1.2
-"""Where a curve must reach at least: a shorter one gives a modulus and no law."""
+"""Stretch that a curve must reach: a shorter curve gives a modulus and no law."""
 
 MODULI = (0.002, STIFFEST_ELASTOMER_MPA)
 """MPa: outside these the numbers are in other units. The softest silicone gels have about 0.005, printed elastomers up
@@ -214,7 +214,7 @@ def _plausible(curve: TensionCurve) -> None:
 
 
 def _other_unit(modulus: float) -> str:
-    """Which unit the numbers may be in, in words."""
+    """Guess in words of the unit that the numbers are in."""
     if modulus > MODULI[1]:
         return ": are the numbers in kPa and named MPa?"
     return ": are the numbers in MPa and named kPa?" if modulus > 0.0 else ""

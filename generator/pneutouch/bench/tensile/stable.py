@@ -1,4 +1,4 @@
-"""Whether a law is stable over the states that a fit covers: Drucker's condition in tension, shear and two directions.
+"""Stability of a law over the states that a fit covers: Drucker's condition in tension, shear and two directions.
 
 An incompressible solid is stable where more strain takes more stress in every direction: the second derivatives of its
 energy by the logarithms of two principal stretches are positive definite (Drucker 1964; Ogden, Non-linear Elastic
