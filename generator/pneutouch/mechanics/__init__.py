@@ -1,4 +1,4 @@
-"""How a sensor behaves: laws, gas, the membrane theory, and curves turned into figures."""
+"""Mechanics of a sensor: laws, gas, the membrane theory, and curves turned into figures."""
 
 from pneutouch.mechanics.models import MODEL_CHOICES
 from pneutouch.mechanics.predict import predict

@@ -31,15 +31,15 @@ from pneutouch.mechanics.solid.events import CREASE, DETAIL, PathPoint, crossing
 from pneutouch.units import KPA
 
 _BULGE, _RING_FROM, _RING_ROUND = 0.0107, 0.6, 0.04
-"""How far a wall comes outwards next to its base in R0 times wall ratio, from which depth on (R0), and how far inside
-its edge the solid's ring begins (R0): `meets_ring`."""
+"""Bulge of a wall outwards next to its base in R0 times wall ratio, the depth from which it counts (R0), and the
+distance inside its edge at which the solid's ring begins (R0): `meets_ring`."""
 
 _BUCKLES = "the wall buckles inward under the plate, or its gas no longer holds it"
 _DETAIL = {EDGE: DETAIL["plate_rim"], GAUGE: DETAIL["gauge_range"], BREAK: DETAIL["break"], BUCKLING: _BUCKLES}
 
 
 def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
-    """Why the atlas does not cover a sensor, or None where it does. Its box is in `atlas.recipe.Recipe`.
+    """Reason why the atlas does not cover a sensor, or None if it does. Its box is in `atlas.recipe.Recipe`.
 
     A ring that clamps the flange does not put a sensor outside: the atlas answers without it (`meets_ring`).
     """
@@ -66,7 +66,7 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
 
 
 def resin_outside_atlas(wall: WallMaterial, ambient_pressure: float) -> str | None:
-    """Why the atlas covers no dome of a resin, or None where it does; ``ambient_pressure`` in MPa."""
+    """Reason why the atlas covers no dome of a resin, or None if it covers some; ``ambient_pressure`` in MPa."""
     recipe = shipped().recipe
     # A fitted law has a neo-Hookean modulus next to it, which finds designs; the solid then confirms them by the law.
     own_law = wall.law is not None and wall.largest_stretch is None
@@ -77,7 +77,7 @@ def resin_outside_atlas(wall: WallMaterial, ambient_pressure: float) -> str | No
 
 
 def meets_ring(sensor: Sensor) -> bool:
-    """Whether the wall can come to the ring that clamps its flange, which the solid has and the atlas has not.
+    """True if the wall can come to the ring that clamps its flange, which the solid has and the atlas has not.
 
     The wall comes farthest outwards without driving pressure: next to its base by at most 0.0107 R0^2/t0 at the
     atlas's greatest depth, by none at 0.6 R0 (solid, walls from 0.065 to 0.33 R0, ambient pressure 0.3 mu). The ring
@@ -93,7 +93,7 @@ def meets_ring(sensor: Sensor) -> bool:
 
 
 class AnswerLimitation(NamedTuple):
-    """Why a result is not to be used by `auto`, and whether it is no result at all (fatal)."""
+    """Reason why `auto` must not use a result; ``fatal`` if it is no result at all."""
 
     why: str
     fatal: bool
@@ -167,7 +167,7 @@ def _state(
 
 
 def _events(depth: Array, field: dict[str, Array], end: int, range_end: float) -> list[Event]:
-    """What ends the range, and the warnings before it."""
+    """Event that ends the range, and the warnings before it."""
     happened = [] if end == DEPTH else [Event(ENDS[end], range_end, True, _DETAIL.get(end, ENDS[end]))]
     points = [PathPoint(float(x), float(y)) for x, y in zip(depth, field["fold"], strict=True)]
     pairs = zip([points[0], *points], points, strict=False)

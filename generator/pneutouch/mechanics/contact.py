@@ -56,7 +56,7 @@ def press(sensor: Sensor, gas: TrappedGas, apex: Array, indentation: Array, clos
 
 @dataclass(frozen=True, slots=True)
 class _Closure:
-    """What both closures start from; heights broadcast against the gas's driving pressures."""
+    """Common part of both closures; heights broadcast against the gas's driving pressures."""
 
     sensor: Sensor
     gas: TrappedGas

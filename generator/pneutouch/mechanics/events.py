@@ -77,7 +77,7 @@ def range_end(happened: list[Event], depth: float) -> float:
 
 
 def _crossing(indentation: Array, margin: Array) -> float:
-    """Where the margin turns positive, by linear interpolation between the steps."""
+    """Indentation at which the margin turns positive, by linear interpolation between the steps."""
     after = int(np.argmax(margin > 0)) if margin[0] <= 0 else 1 + int(np.argmax(margin[1:] > 0))
     before, here = margin[after - 1], margin[after]
     if before > 0 or here == before:

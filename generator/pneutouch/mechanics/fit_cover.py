@@ -1,4 +1,4 @@
-"""Which sensors a calibration covers: those that the atlas, which every fit is made with, answers for."""
+"""Sensors that a calibration covers: those that the atlas, with which every fit is made, has answers for."""
 
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.contact_correction import plate_alone
@@ -9,7 +9,7 @@ _DEPTH = 0.75
 
 
 def outside_fit(sensor: Sensor) -> str | None:
-    """Why no fit to measured runs covers a sensor, or None where one does.
+    """Reason why no fit to measured runs covers a sensor, or None if one does.
 
     Friction and objects are the solid's correction of the atlas (`contact_correction`).
     """

@@ -1,4 +1,4 @@
-"""What a pressure gauge makes of a pressure: range, noise, steps and rate, as the mechanics takes them."""
+"""Reading of a pressure gauge: its range, noise, steps and rate as the mechanics uses them."""
 
 import math
 from dataclasses import dataclass
@@ -64,7 +64,7 @@ class GaugeReading:
 
     @property
     def limited_by(self) -> str:
-        """What the threshold follows from."""
+        """Property of the gauge that sets the threshold, in words."""
         if self.noise is None:
             return "not known: the gauge's noise is not stated"
         return "gauge noise" if self.noise >= (self.step or 0.0) / math.sqrt(12.0) else "gauge resolution"

@@ -173,7 +173,7 @@ def _press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAxisPress:
 
 
 def _symmetric(sensor: Sensor) -> bool:
-    """Whether a bar lies across the middle of the dome and stays there: two planes of symmetry."""
+    """True if a bar lies across the middle of the dome and stays there: two planes of symmetry."""
     test = sensor.protocol
     return test.body is not None and test.body.lying and not test.offset and not test.shear
 

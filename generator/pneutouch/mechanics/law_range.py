@@ -1,4 +1,5 @@
-"""Where a wall is stretched further than its law was fitted: a limit of the inflation, and an event of the press."""
+"""Range of the law: stretches of the wall beyond those of its fit are a limit of the inflation and an event of the
+press."""
 
 from pneutouch.mechanics.events import Event
 from pneutouch.mechanics.limits import LAW_RANGE

@@ -1,4 +1,4 @@
-"""How far a sensor may be driven: limit point, break strain of the resin, range of the gauge."""
+"""Limits of the driving pressure of a sensor: limit point, break strain of the resin, range of the gauge."""
 
 from dataclasses import dataclass
 

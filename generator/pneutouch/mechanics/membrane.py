@@ -16,7 +16,7 @@ from pneutouch.units import KPA
 
 
 def error_against_exact_membrane(sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
-    """What the assumption of constant curvature costs in state I: relative errors, the greatest for the heights."""
+    """Error by the assumption of constant curvature in state I: relative errors, the greatest for the heights."""
     limit_pressure, limit_height = limit_point_errors()
     scale = sensor.dome.inner_radius / (sensor.wall.shear_modulus * sensor.dome.wall_thickness)
     heights = height_errors(driving_pressures * scale)

@@ -87,7 +87,7 @@ def models_for(sensor: Sensor, tolerance: float) -> ModelSequence:
 
 
 def _outside(model: str, sensor: Sensor) -> str | None:
-    """Why a sensor lies outside a model's validity, or None."""
+    """Reason why a sensor lies outside a model's validity, or None."""
     if model == "atlas":
         from pneutouch.mechanics.atlas_states import outside_atlas
 
@@ -111,7 +111,7 @@ def usual_model(sensor: Sensor) -> str:
 
 
 def outside_harmonic(sensor: Sensor) -> str | None:
-    """Why the model with harmonics does not cover a sensor, or None where it does."""
+    """Reason why the model with harmonics does not cover a sensor, or None if it does."""
     if sensor.dome.flange is not None:
         return "the flange is held as printed, and the wall's contact with its top is axisymmetric"
     return None

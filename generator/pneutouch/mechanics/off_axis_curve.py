@@ -1,4 +1,4 @@
-"""What a prediction has of contact that is not axisymmetric, and of an object that moves sideways after pressing."""
+"""Records of contact that is not axisymmetric, and of an object that moves sideways after pressing, in a prediction."""
 
 from __future__ import annotations
 
@@ -69,8 +69,9 @@ class ShearCurve:
 
 
 class OffAxisRecord(TypedDict):
-    """What contact off the axis adds to a curve: the harmonics it took, what the last raise of their order changed
-    (greatest of sensitivity, force, pressure rise and a shear's sideways force), and lists as long as the curve's."""
+    """Additions of contact off the axis to a curve: the number of harmonics, the change by the last raise of their
+    order (greatest of sensitivity, force, pressure rise and a shear's sideways force), and lists as long as the
+    curve's."""
 
     harmonics: int
     last_change_percent: float
@@ -91,8 +92,8 @@ class RangeCurve:
 
 @dataclass(frozen=True, slots=True)
 class OffAxisCurve:
-    """What contact off the axis adds to a loading curve (N, N mm; see `harmonic.press.OffAxisState`), the order of its
-    harmonics, and the share by which the last raise of the order changed sensitivity, force or pressure rise.
+    """Additions of contact off the axis to a loading curve (N, N mm; see `harmonic.press.OffAxisState`), the order of
+    its harmonics, and the share by which the last raise of the order changed sensitivity, force or pressure rise.
     ``to_end`` is the curve between its points, to the very end of its range."""
 
     order: int

@@ -16,7 +16,7 @@ _SAME = 1e-6
 
 
 def is_paper_sensor(sensor: Sensor) -> bool:
-    """Whether dome, gas, plate and depth are the paper's, in any resin and clamp, so that its Table S1 applies."""
+    """True if dome, gas, plate and depth are the paper's, in any resin and clamp, so that its Table S1 applies."""
     dome, gas, protocol = sensor.dome, sensor.gas, sensor.protocol
     pairs = [
         (dome.inner_radius, PAPER_RADIUS),

@@ -148,7 +148,7 @@ def predict(
 
 
 def contact_words(protocol: IndentationProtocol) -> str:
-    """What presses the sensor, in words."""
+    """Object that presses the sensor, in words."""
     if protocol.body is None and not protocol.friction and not protocol.off_axis:
         return _PLATE
     body = "flat plate" if protocol.body is None else protocol.body.label
@@ -164,7 +164,7 @@ def contact_words(protocol: IndentationProtocol) -> str:
 
 
 def _edge(protocol: IndentationProtocol) -> str:
-    """How the solid ends what presses the sensor."""
+    """Edge that the solid gives to the pressing object, in words."""
     if protocol.body is not None:
         return "beyond its edge, or flanks of 60 degrees, the object turns up as a parabola; there the range ends"
     if protocol.plate_rim is not None:

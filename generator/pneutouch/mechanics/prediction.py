@@ -85,7 +85,7 @@ class LimitsRecord(TypedDict):
 
 
 class SensorRecord(TypedDict):
-    """What a prediction states of the sensor as a whole."""
+    """Predictions for the sensor as a whole, apart from its states."""
 
     design: str
     model: str
@@ -158,7 +158,8 @@ class SensorState:
 
     @property
     def off_axis(self) -> tuple[Event, ...]:
-        """Where the axisymmetric path loses its stability; what is computed beyond is of that path all the same."""
+        """Events in which the axisymmetric path loses its stability; states beyond them are still computed on that
+        path."""
         return tuple(event for event in self.events if event.kind in (SWAY, LOBES))
 
     def corrected(self, correction: ResponseCorrection) -> SensorState:
@@ -222,7 +223,7 @@ class InflationCurve:
 
 @dataclass(frozen=True, slots=True)
 class ModelResult:
-    """What a model computes: the limit point (None where the pressure has no maximum), the limits and the states."""
+    """Results of a model: the limit point (None if the pressure has no maximum), the limits and the states."""
 
     limit_point: LimitPoint | None
     limits: Limits

@@ -93,7 +93,8 @@ class Rating:
         return tenths_below(self.pressure / KPA)
 
     def severity(self, pressure: float) -> Literal["error", "warning"] | None:
-        """What a driving pressure (MPa) is: an error above the nominal limit, a warning above the rated pressure."""
+        """Severity of a driving pressure (MPa): an error above the nominal limit, a warning above the rated pressure,
+        else None."""
         if pressure > self.nominal.nominal:
             return "error"
         return "warning" if pressure > self.pressure else None
@@ -107,7 +108,7 @@ class Rating:
 
     @property
     def basis(self) -> str:
-        """What the rated pressure follows from, in words."""
+        """Basis of the rated pressure, in words."""
         limit = self.limit
         if limit.low == limit.nominal:
             return f"{RATED_SHARE:.0%} of the {limit.name}, {limit.nominal / KPA:.1f} kPa"
@@ -125,7 +126,7 @@ class Rating:
 
     @property
     def remedy(self) -> str | None:
-        """What would raise the rated pressure, in words; None where the modulus is not what lowers it."""
+        """Advice that would raise the rated pressure, in words; None if it is not the modulus that lowers it."""
         if self.measured < _WORTH * self.pressure:
             return None
         measured_kPa = tenths_below(self.measured / KPA)

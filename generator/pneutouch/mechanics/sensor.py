@@ -85,7 +85,7 @@ class IndentationProtocol:
 
     @property
     def off_axis(self) -> str | None:
-        """How the contact is not central, in words; None where it is."""
+        """Deviation of the contact from the centre, in words; None for central contact."""
         if self.offset:
             return f"the object stands {self.offset:g} mm off the axis"
         if self.body is not None and self.body.lying:
@@ -96,7 +96,7 @@ class IndentationProtocol:
 
     @property
     def other_contact(self) -> str | None:
-        """What is not the contact that membrane and atlas cover, a plate without friction; None where it is that."""
+        """Contact other than the frictionless plate of membrane and atlas, in words; None for that plate."""
         if self.off_axis is not None:
             return self.off_axis
         if self.body is not None:
@@ -128,7 +128,7 @@ class ResponseCorrection:
         return force, rise
 
     def sensitivity_factor(self, driving_pressure: float) -> float:
-        """What both make of the slope of pressure over force at a driving pressure, MPa."""
+        """Factor by which both change the slope of pressure over force at a driving pressure, MPa."""
         force, rise = self.at(driving_pressure)
         return rise / force
 

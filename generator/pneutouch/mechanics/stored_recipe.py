@@ -9,7 +9,7 @@ from typing import Any, Self
 
 @dataclass(frozen=True)
 class StoredRecipe:
-    """What a table is made from: numbers, and tuples of them."""
+    """Recipe of a stored table: numbers, and tuples of them."""
 
     def text(self) -> str:
         """The recipe as JSON."""

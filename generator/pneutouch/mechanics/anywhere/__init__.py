@@ -1,4 +1,4 @@
-"""What the reading of a sensor does when contact is not central, tabulated once in dimensionless form.
+"""Errors of a sensor's reading under contact off the centre, tabulated once in dimensionless form.
 
 `recipe` states the presses that the table is made from, `table` interpolates in it, `conditions` makes its variables
 from sensors, `reading` the errors of a force that is read by the central calibration. The table is built outside the

@@ -31,7 +31,7 @@ def state_conditions(sensor: Sensor, states: Sequence[SensorState], limit_pressu
 
 
 def covered(domes: DomeConditions) -> Flags:
-    """Which of n domes lie inside the table."""
+    """True for those of n domes that lie inside the table."""
     inside = np.ones(domes.share.shape, dtype=bool)
     for values, nodes in _axes(domes):
         inside &= (values >= nodes[0] * (1 - _SLACK)) & (values <= nodes[-1] * (1 + _SLACK))
@@ -39,7 +39,7 @@ def covered(domes: DomeConditions) -> Flags:
 
 
 def outside(sensor: Sensor, domes: DomeConditions) -> str | None:
-    """Why the table does not cover a sensor in some of its states, or None where it covers all."""
+    """Reason why the table does not cover a sensor in some of its states, or None if it covers all."""
     dome, wall = sensor.dome, sensor.wall
     reasons = [
         (sensor.protocol.other_contact is not None, str(sensor.protocol.other_contact)),

@@ -1,4 +1,4 @@
-"""How far a force is off that is read by the central calibration, where contact is not central."""
+"""Error of a force that is read by the central calibration while the contact is off the centre."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pneutouch.mechanics.anywhere.conditions import covered
 from pneutouch.mechanics.anywhere.table import ContactPlaces, DomeConditions, PlaceTable, shipped
 
 SMALLEST_BALL, FARTHEST, STEEPEST_TILT = 0.3, 0.6, float(np.radians(20.0))
-"""What an unknown contact is assumed to be: a ball of this radius in R0 at the least, its axis at most this far off the
-dome's in R0, and a plate that leans by this angle at most."""
+"""Assumptions on an unknown contact: a ball of at least this radius in R0, its axis at most this far off the dome's in
+R0, and a plate that leans by at most this angle."""
 
 TABLE_ERROR = 0.05
 """Greatest error of the logarithm of the force found in presses that the table was not made from

@@ -92,7 +92,7 @@ class PlaceTable:
     def _off_axis(
         self, domes: DomeConditions, places: ContactPlaces, names: tuple[str, str], weights: NodeWeights
     ) -> Array:
-        """What a lean changes, (n, m, levels), from the tables of balls and of edges; (n, m, 1) of highest levels.
+        """Changes by a lean, (n, m, levels), from the tables of balls and of edges; (n, m, 1) for the highest levels.
 
         The scene with a negative lean is the mirrored one: the lean enters by its square. A range by an edge mostly
         ends where the wall has come to the end of its nose, on the side of the offset: there it enters by its size.

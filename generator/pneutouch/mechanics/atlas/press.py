@@ -53,7 +53,7 @@ class SensorBatch:
 
     @property
     def flat_radius(self) -> Array:
-        """How far the plate is flat, in R0."""
+        """Radius over which the plate is flat, in R0."""
         radius = self.plate_radius / self.inner_radius
         return flat_radius(radius, rim_radius(radius, longest_outer_edge(self.wall_ratio)))
 
@@ -85,7 +85,7 @@ class AtlasSolution(NamedTuple):
 
     @property
     def ok(self) -> Flags:
-        """Where the solution is a state of the sensor."""
+        """True where the solution is a state of the sensor."""
         return self.converged & self.point.supported & ~self.point.folded
 
 

@@ -1,4 +1,4 @@
-"""What the atlas is made from: where the solid is solved, and how its answers are stored."""
+"""Recipe of the atlas: the presses for which the solid is solved, and the form in which its answers are stored."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ STRETCHES = tuple(f"stretch_{face}_{part}" for face in ("inner", "outer") for pa
 """The greatest stretch by face and third of the arc, each smooth where the greatest of all has kinks."""
 
 STORED = (*STRETCHES, "contact_radius", "von_mises", "fold", "inner_apex")
-"""What is tabulated."""
+"""Quantities that are tabulated."""
 
 
 def parts(name: str) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from pneutouch.mechanics.response import FigureArrays, lines
 from pneutouch.units import KPA
 
 ENDS = ("depth", "plate edge", "gauge range", "break strain", "inward buckling", "outside the atlas")
-"""What may end a range; in a `AtlasResponse` by number. The first is no event: the whole travel was used."""
+"""Ends of a range, by number in an `AtlasResponse`. The first is no event: the whole travel was used."""
 DEPTH, EDGE, GAUGE, BREAK, BUCKLING, OUTSIDE = range(len(ENDS))
 
 NEAR = 0.03
@@ -63,7 +63,8 @@ class AtlasResponse(NamedTuple):
 
 
 def inside(batch: SensorBatch, atlas: Atlas) -> Flags:
-    """Whether the atlas covers sensors: wall, depth, stiffness of the gas, no suction; what is negative or NaN is none.
+    """True for sensors that the atlas covers: wall, depth, stiffness of the gas, no suction; negative values and NaN
+    are never covered.
 
     A dead volume may be negative as a deviation of a small one; half of the unloaded cavity must be left.
     """
@@ -167,7 +168,7 @@ def _read_off(press: AtlasPress, track: PressTrack, end: Array, ends: Index, goo
 
 
 def _near(press: AtlasPress, track: PressTrack) -> Flags:
-    """Whether a press would buckle within NEAR of travel beyond its end, gone on straight."""
+    """True if a press, continued straight beyond its end, would buckle within NEAR of travel."""
     margin = np.where(track.margin[:, -1] > 0, track.margin[:, -1], 1.0)
     rate = track.point.by_height[:, -1] / margin / press.reach
     nu, height = track.nu[:, -1] + NEAR * rate, track.height[:, -1] - NEAR
@@ -175,7 +176,7 @@ def _near(press: AtlasPress, track: PressTrack) -> Flags:
 
 
 def _margins(press: AtlasPress, track: PressTrack) -> Array:
-    """What turns positive where a range ends, in the order of `ENDS` from EDGE to BREAK; (3, n, m)."""
+    """Margins that turn positive at the end of a range, in the order of `ENDS` from EDGE to BREAK; (3, n, m)."""
     batch = press.batch
     gauge = (track.point.pressure - (batch.gauge_limit / batch.shear_modulus)[:, None]) / press.limit[:, None]
     stretch, radius = press.several(_FIELDS, track)

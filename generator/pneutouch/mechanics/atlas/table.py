@@ -108,7 +108,7 @@ class AtlasSlices:
         return np.lib.stride_tricks.sliding_window_view(self.potential, size, axis=(1, 2))
 
     def folded(self, k: Index, nu: Array, height: Array) -> Flags:
-        """Whether the wall has buckled before volumes nu and plate heights, (n,)."""
+        """True if the wall has buckled before volumes nu and plate heights, (n,)."""
         depth = self.rest_apex[k] - height
         deep = depth > self.fold_from[k]
         if not deep.any():

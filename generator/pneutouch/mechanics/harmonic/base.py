@@ -14,7 +14,7 @@ from pneutouch.mechanics.solid.terms import TermState
 
 
 class HarmonicBase:
-    """What both faces of the wall lie down on; an `EnergyTerm` of coefficients (n_nodes, columns)."""
+    """Base that both faces of the wall can lie down on; an `EnergyTerm` of coefficients (n_nodes, columns)."""
 
     noise = 0.0
 
@@ -41,7 +41,7 @@ class HarmonicBase:
         )
 
     def load(self, x: Array) -> BaseLoad:
-        """What the outer wall puts on the base at coefficients x."""
+        """Load of the outer wall on the base at coefficients x."""
         met = self._outer.meet(x)
         if met is None:
             return BaseLoad()

@@ -141,7 +141,7 @@ class SurfaceFriction(FrictionStep):
         return SurfacePoints(clipped(trial, cap), cap, touch.slope, slip, touching & ~sliding, sliding)
 
     def turn(self, points: FrictionPoints) -> Array:
-        """What is left of the springs of sliding points across their slip."""
+        """Share of the springs of sliding points that is left across their slip."""
         trial = self.stiffness * points.travel
         return np.divide(points.cap, trial, out=np.zeros_like(trial), where=points.sliding)
 
@@ -156,8 +156,8 @@ class SurfaceFriction(FrictionStep):
         return np.asarray(np.matmul(np.swapaxes(frame, -1, -2), np.matmul(held, frame)))
 
     def sliding_form(self, load: Array, touch: ContactEvaluation, direction: Array) -> Array | None:
-        """What the symmetric derivative leaves out, (..., 3, 3), or None: the traction of sliding points (their
-        ``direction`` (..., 2) is not zero) follows the normal one, and that of all, ``load``, turns with the surface.
+        """Unsymmetric part of the derivative, (..., 3, 3), or None: the traction of sliding points (their ``direction``
+        (..., 2) is not zero) follows the normal one, and that of all, ``load``, turns with the surface.
         """
         touching = touch.traction > 0.0
         bent = bool((touch.curve.any(axis=(-1, -2)) & touching).any())

@@ -36,7 +36,7 @@ class SlidObject(Surface):
 
     @property
     def along(self) -> float:
-        """How far it has moved in x."""
+        """Distance that it has moved in x."""
         return self.sense * self.travel
 
     @property
@@ -46,7 +46,7 @@ class SlidObject(Surface):
 
     @property
     def span(self) -> tuple[float, float]:
-        """That of the body."""
+        """Radii between which the underside is the body's own, see `RigidObject.span`."""
         return self.body.span
 
     def at(self, height: float) -> SlidObject:
@@ -96,7 +96,7 @@ class SurfaceFrictionFollower(FrictionFollower):
 
     @property
     def given_up(self) -> str | None:
-        """Why no further solves are tried where one fails, or None."""
+        """Reason why no further solves are tried after a failure, or None."""
         if self._failed < MOST_FAILED:
             return None
         return f"solves failed again and again, in {self._failed} Newton steps together"
@@ -141,7 +141,7 @@ class SurfaceFrictionFollower(FrictionFollower):
         return PointTractions(normal, np.where(touching[..., None], trial, 0.0))
 
     def _places(self, x: Array) -> Array:
-        """Where the points of the wall now are, (x, y) from the object, (n_edges, n_points, n_angles, 2)."""
+        """Positions of the points of the wall now, (x, y) from the object, (n_edges, n_points, n_angles, 2)."""
         along = self._plate.at(self.here.height).along if isinstance(self._plate, SlidObject) else 0.0
         return self._contact.points(x)[..., :Z] - [along, 0.0]
 

@@ -107,7 +107,7 @@ class SurfaceLinearContact(LinearContact):
         return self.status(still if self.foreseen is None or self.held else self.foreseen)
 
     def status(self, at: PointTractions) -> SurfaceStatus:
-        """Which points touch, stick and slide, and where to."""
+        """State of the points: those that touch, stick and slide, and the directions in which they slide."""
         touching, cap, size = at.normal > 0.0, self._cap(at.normal), lengths(at.trial)
         bearing = cap > 0.0 if self.held else touching
         sliding = bearing & (size > cap)

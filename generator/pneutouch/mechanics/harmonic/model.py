@@ -64,7 +64,7 @@ class HarmonicModel(SolidModel):
         self.noise = float(np.linalg.norm(self.pattern.vector([idle, np.zeros((len(mesh.inner), tables[1].shape[1]))])))
 
     def base_load(self, x: Array) -> BaseLoad:
-        """What the outer wall puts on its base at coefficients x (n_nodes, columns)."""
+        """Load of the outer wall on its base at coefficients x (n_nodes, columns)."""
         return BaseLoad() if self.harmonic_base is None else self.harmonic_base.load(x)
 
     def lowest(self, x: Array, edges: Index, above: float = -np.inf) -> float:

@@ -84,7 +84,7 @@ def _columns(harmonics: Harmonics) -> list[Index]:
 
 
 def _separate(rows: Array, parts: list[Index]) -> bool:
-    """Whether each component depends on the coefficients of that component alone."""
+    """True if each component depends on the coefficients of that component alone."""
     alone = np.zeros(rows.shape[1:], dtype=bool)
     for component, part in enumerate(parts):
         alone[component, part] = True

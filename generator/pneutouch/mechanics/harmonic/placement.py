@@ -1,4 +1,4 @@
-"""How an object stands to the dome's axis, and where it first touches the dome."""
+"""Placement of an object on the dome's axis or off it, and the point at which it first touches the dome."""
 
 from __future__ import annotations
 

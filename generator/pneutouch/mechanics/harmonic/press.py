@@ -154,7 +154,7 @@ class OffAxisPress:
         return replace(pressed, shear=self._shear(follower, pressed)) if self._travel else pressed
 
     def _shear(self, follower: PathFollower, pressed: OffAxisPath) -> ShearPath:
-        """What follows a press where the object moves sideways."""
+        """Path of the object moving sideways after a press."""
         assert isinstance(follower, SurfaceFrictionFollower)
         return shear(follower, self._travel, self._free.pressure) if pressed.complete else not_sheared()
 
@@ -199,7 +199,7 @@ class OffAxisPress:
         return OffAxisFollower(model, self._gas, self.surface, start)
 
     def _ended(self, events: list[SolidEvent]) -> bool:
-        """Whether the inner wall is on a base that is not there."""
+        """True if an event ends the press: the inner wall lies on a base that is not there."""
         return self._solid.base is None and any(e.kind == "floor" for e in events)
 
     def _finish(

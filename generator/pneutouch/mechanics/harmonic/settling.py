@@ -27,8 +27,8 @@ _ROUNDS = 12
 
 @dataclass(frozen=True)
 class Foreseen:
-    """Which points are expected to touch, and the tractions that act on the curvature of the object there; of the
-    shape of the points of contact."""
+    """Points that are expected to touch, and the tractions that act on the curvature of the object there; of the shape
+    of the points of contact."""
 
     touching: Flags
     traction: Array
@@ -93,11 +93,11 @@ class _ContactModel:
         return replace(newton, step=step), here
 
     def _pull(self, active: Flags, traction: Array) -> Array:
-        """What wall and filling pull where the tractions of a set of points balance them (size,)."""
+        """Forces by which wall and filling pull if the tractions of a set of points balance them (size,)."""
         return np.asarray(-self._push(self._contact.force(np.where(active, traction, 0.0), self._touch.slope)))
 
     def _lower(self, step: Array, ahead: Array, pull: Array) -> bool:
-        """Whether the model is lower at the end of a step than at the state itself."""
+        """True if the model is lower at the end of a step than at the state itself."""
         contact = self._contact
         pressed = np.maximum(ahead, 0.0) ** 2 - np.maximum(self._here, 0.0) ** 2
         change = 0.5 * float(step @ (self._state.inner + pull))

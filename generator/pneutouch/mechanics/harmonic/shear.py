@@ -116,7 +116,7 @@ class _ShearRecorder:
         return self._object.at(state.height).along * self._solid.length
 
     def state(self, state: PlateState) -> ShearState:
-        """What is reported at one converged state."""
+        """Reported figures of one converged state."""
         contact, touch, friction = self._solid.contact, state.state.touch, state.friction
         assert touch is not None and friction is not None and isinstance(contact, HarmonicContact)
         length, mu = self._solid.length, self._solid.mu
@@ -133,7 +133,7 @@ class _ShearRecorder:
         )
 
     def beyond_edge(self, state: PlateState) -> bool:
-        """Whether the contact has come to the edge of the object."""
+        """True if the contact has come to the edge of the object."""
         contact, touch = self._solid.contact, state.state.touch
         assert touch is not None and isinstance(contact, HarmonicContact)
         place = contact.points(state.state.x)[touch.traction > 0.0]

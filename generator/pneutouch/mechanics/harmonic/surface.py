@@ -81,7 +81,7 @@ class ProfiledObject(Surface):
 
     @property
     def span(self) -> tuple[float, float]:
-        """That of the section."""
+        """Radii between which the underside is the section's own, see `RigidObject.span`."""
         return self.body.span
 
     def at(self, height: float) -> Self:

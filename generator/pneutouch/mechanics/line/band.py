@@ -17,7 +17,7 @@ TOLERANCE = 0.05
 """Deviation of the gain from that of a slow change that the narrower band allows."""
 
 LINE, GAS, WALL = "line", "heat exchange of the gas", "relaxation of the wall"
-"""What can end the narrower band."""
+"""Effects that can end the narrower band."""
 
 _SLOWEST = 1.0e-4
 """Hz: a change over some hours."""
@@ -119,7 +119,7 @@ def _leaves(dynamics: SensorDynamics, grid: Array, excess: Callable[[Array], Arr
 
 
 def _limit(dynamics: SensorDynamics, frequency: float) -> str:
-    """Which effect alone moves the gain most at a frequency."""
+    """Name of the effect that by itself moves the gain most at a frequency."""
     elastic = replace(dynamics, excess=(), times=())
     alone = {
         LINE: replace(elastic, isothermal=True),

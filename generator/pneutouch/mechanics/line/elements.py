@@ -29,8 +29,7 @@ _SMALL = 0.05
 
 
 class LineEnd(NamedTuple):
-    """What lies behind a place of a line: its admittance (mm3/(MPa s)), and the pressure at the far end over that
-    here."""
+    """Rest of a line beyond a place: its admittance (mm3/(MPa s)), and the pressure at the far end over that here."""
 
     admittance: Complex
     transfer: Complex

@@ -94,7 +94,7 @@ def _leaving(dynamics: SensorDynamics) -> float:
 
 
 def _reaches(time: Array, reading: Array, share: float) -> float:
-    """When the response first reaches a share of its final value."""
+    """Time at which the response first reaches a share of its final value."""
     k = int(np.argmax(reading >= share))
     if k == 0:
         return float(time[-1])

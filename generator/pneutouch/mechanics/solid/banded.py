@@ -21,8 +21,8 @@ class BlockEntries(NamedTuple):
 
 
 class AssemblyPattern:
-    """Where block entries go: blocks (n_blocks, d, d) with dof tables (n_blocks, d), -1 for a fixed dof, or other
-    blocks for the vectors of which the table serves, with their ``forms``.
+    """Places of block entries in a band matrix: blocks (n_blocks, d, d) with dof tables (n_blocks, d), -1 for a fixed
+    dof, or other blocks for the vectors of which the table serves, with their ``forms``.
 
     Several block families share one flat vector, in the order given.  Entries of one place are summed by `bincount`:
     as fast as a product with a sparse 0/1 matrix, whose package costs a tenth of SciPy's import.
@@ -111,7 +111,7 @@ def solve_definite(band: Array, b: Array) -> Array | None:
 
 
 def is_definite(band: Array) -> bool:
-    """Whether the matrix is positive definite, by Cholesky."""
+    """True if the matrix is positive definite, by Cholesky."""
     return int(lapack.dpbtrf(band, lower=1)[1]) == 0
 
 

@@ -20,7 +20,7 @@ _POINTS = 3
 
 
 class _Body(Protocol):
-    """What a `SolidModel` is to its base: this file cannot import it, for it imports this file."""
+    """Part of a `SolidModel` that its base uses: this file cannot import the model, which imports this file."""
 
     mesh: SolidMesh
     length: float
@@ -39,7 +39,7 @@ class _Body(Protocol):
 
 @dataclass(frozen=True)
 class BaseLoad:
-    """What the outer wall puts on what it lies on: force along the axis (mu R0^2), greatest traction (mu, per area at
+    """Load of the outer wall on what it lies on: force along the axis (mu R0^2), greatest traction (mu, per area at
     rest) and greatest penetration (R0); all 0 without contact."""
 
     force: float = 0.0
@@ -95,7 +95,7 @@ class BaseContact:
         return [None if met is None else (face.hessian(met), face.around(met)) for face, met in meetings]
 
     def load(self, x: Array) -> BaseLoad:
-        """What the outer wall puts on the base at positions x (n_nodes, 2)."""
+        """Load of the outer wall on the base at positions x (n_nodes, 2)."""
         face, meeting = self.outer, self.outer.meet(x)
         if meeting is None:
             return BaseLoad()

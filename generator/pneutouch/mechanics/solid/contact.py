@@ -25,7 +25,7 @@ def rim_radius(radius: Array, longest: Array, rim: float | None = None) -> Array
 
 
 def flat_radius(radius: Array, rim: Array) -> Array:
-    """How far a plate is flat: its rim begins half the rim's radius inside its edge."""
+    """Radius over which a plate is flat: its rim begins half the rim's radius inside its edge."""
     return np.maximum(radius - 0.5 * rim, 0.5 * radius)
 
 

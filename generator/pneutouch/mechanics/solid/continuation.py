@@ -120,7 +120,7 @@ class PathFollower:
 
     @property
     def given_up(self) -> str | None:
-        """Why no further solves are tried where one fails, or None."""
+        """Reason why no further solves are tried after a failure, or None."""
         return None
 
     def feed(self, supply: Supply) -> None:

@@ -128,7 +128,7 @@ def _limit_point(path: list[PlateState]) -> PathJump | None:
 
 
 def _turns_back(path: list[PlateState]) -> bool:
-    """Whether the last three states run into a limit point.
+    """True if the last three states run into a limit point.
 
     Near one the wall's speed grows with the inverse root of the distance that is left: its inverse square falls evenly
     to nothing (Seydel 2010, Practical Bifurcation and Stability Analysis, sec. 2.2, doi:10.1007/978-1-4419-1740-9).
@@ -149,7 +149,7 @@ def _speed(state: PlateState) -> float:
 
 
 def _stays_away(here: PlateState, other: PlateState) -> bool:
-    """Whether the wall stays in another equilibrium of lower energy once the plate is moved back: a jump."""
+    """True if the wall stays in another equilibrium of lower energy once the plate is moved back: a jump."""
     back = minimise(here.scene, other.state.x)
     if isinstance(back, NewtonFailure):
         return False

@@ -79,7 +79,7 @@ def strain_operator(nodes: Array, cells: Index, points: Array) -> tuple[Array, A
 
 @dataclass(frozen=True)
 class IntegrationScheme:
-    """How a cell is integrated: `gauss` points a side, and the modes on which J is averaged.
+    """Integration of a cell: `gauss` points a side, and the modes on which J is averaged.
 
     pressure: 1 constant, 3 linear (1, xi, eta), 4 bilinear.  With 2 x 2 points and 4 modes J is taken point by point:
     uniformly reduced integration.

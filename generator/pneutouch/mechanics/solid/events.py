@@ -70,7 +70,8 @@ class PathPoint(NamedTuple):
 
 
 def crossing(a: PathPoint, b: PathPoint, level: float) -> float | None:
-    """Where y rises through a level between two points, on the Hermite cubic if slopes are known, else on a line.
+    """Place at which y rises through a level between two points, on the Hermite cubic if slopes are known, else on a
+    line.
 
     A point compared with itself: its x where the level is already passed, else None.
     """

@@ -1,4 +1,4 @@
-"""Where a plate or another rigid object first touches an inflated dome."""
+"""First point of contact of a plate or another rigid object with an inflated dome."""
 
 from typing import NamedTuple
 

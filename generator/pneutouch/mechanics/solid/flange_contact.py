@@ -19,7 +19,7 @@ _ROOT = 1.0e-14
 
 
 class _Body(Protocol):
-    """What a `SolidModel` is to its flange: this file cannot import it, for it imports this file."""
+    """Part of a `SolidModel` that its flange uses: this file cannot import the model, which imports this file."""
 
     mesh: SolidMesh
     rest: Array
@@ -96,7 +96,7 @@ class FlangeContact:
         return TermState(energy, solid.folded(-np.einsum("eq,eqi->ei", load, by_gap)), fold_blocks=blocks)
 
     def load(self, x: Array) -> BaseLoad:
-        """What the wall puts on the flange at positions x (n_nodes, 2)."""
+        """Load of the wall on the flange at positions x (n_nodes, 2)."""
         met = self._meet(x)
         if met is None:
             return BaseLoad()

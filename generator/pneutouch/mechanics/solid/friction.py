@@ -125,8 +125,8 @@ class FrictionStep:
         return self.contact.blocks([(RADIAL, RADIAL, share)])[:, RADIAL, RADIAL]
 
     def slide(self, traction: Array, touch: ContactEvaluation, sign: Array) -> Array | None:
-        """What the symmetric stiffness leaves out, (n_edges, 2 n, 2 n), or None: the traction of sliding points
-        (``sign``, else 0) follows the normal one, and its direction follows the surface."""
+        """Unsymmetric part of the stiffness, (n_edges, 2 n, 2 n), or None: the traction of sliding points (``sign``,
+        else 0) follows the normal one, and its direction follows the surface."""
         slope = touch.slope
         if not slope.any():
             by_z = self.rate(sign, slope) * self.contact.stiffness

@@ -86,7 +86,7 @@ class LinearContact:
         return self.status(still)
 
     def status(self, at: PointTractions) -> PointStatus:
-        """Which points touch, stick and slide."""
+        """State of the points: those that touch, stick and slide."""
         touching = at.normal > 0.0
         if self.kept is not None:
             return PointStatus(touching, touching, np.where(touching, self.kept, 0.0))

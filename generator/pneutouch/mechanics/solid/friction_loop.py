@@ -42,7 +42,7 @@ class FrictionLoop:
 
     @property
     def lost_share(self) -> float:
-        """What the plate does not get back, over what it put in."""
+        """Work that the plate does not get back, over the work that it did."""
         return (self.loading.work + self.unloading.work) / self.loading.work
 
     def hysteresis(self) -> tuple[float, float]:

@@ -135,7 +135,7 @@ def approach(gap: Array, closing: Array) -> Array:
 
 
 def _known(rest: Array, place: Array) -> Array:
-    """Where points rest, or else are."""
+    """Places of points at rest; for points that have none, their places now."""
     return np.where(np.isnan(rest), place, rest)
 
 

@@ -1,4 +1,5 @@
-"""Which points touch, stick and slide in the linear model of a step with friction, found one point after another.
+"""State of the points (touching, sticking, sliding) in the linear model of a step with friction, found one point after
+another.
 
 The tractions are continuous and linear in pieces. From the start the residual of the model shrinks evenly along a
 straight line in every piece; where the line leaves a piece, one point touches, leaves, sticks or slides, and the

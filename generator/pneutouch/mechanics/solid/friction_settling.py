@@ -43,8 +43,8 @@ _WHOLE = np.array([0.0, 1.0])
 
 @dataclass(frozen=True)
 class _Place:
-    """Where the rounds have come to: trailing unknowns and tractions there. The residual but for the contact's is a
-    share of that without a move, less the force of ``balanced``."""
+    """Current place of the rounds: trailing unknowns and tractions there. The residual but for the contact's is a share
+    of that without a move, less the force of ``balanced``."""
 
     unknowns: Array
     at: PointTractions

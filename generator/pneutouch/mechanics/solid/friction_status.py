@@ -1,4 +1,5 @@
-"""Which points of the wall touch, stick and slide in the linear model of a step with friction, and their tractions."""
+"""State of the wall's points (touching, sticking, sliding) in the linear model of a step with friction, and their
+tractions."""
 
 from __future__ import annotations
 
@@ -48,7 +49,7 @@ class PointTractions:
     trial: Array
 
     def towards(self, other: PointTractions, share: float | Array) -> PointTractions:
-        """What they are at a share of the change to others, or at shares (n,), along a first axis."""
+        """Tractions at a share of the change to others, or at shares (n,), along a first axis."""
         return PointTractions(_between(self.normal, other.normal, share), _between(self.trial, other.trial, share))
 
 

@@ -55,7 +55,7 @@ class ContactSystem:
         return np.asarray(out[:-1, :-1] - gas * np.multiply.outer(out[:-1, -1], out[-1, :-1]))
 
     def definite(self, blocks: Array) -> bool:
-        """Whether K with symmetric blocks is positive definite; False also where that is not known."""
+        """True if K with symmetric blocks is positive definite; False also if that is not known."""
         # Leading unknowns were eliminated only where their own part is definite.
         return self.sides.solve_definite(self.fore.rest, blocks, self._rest, self.first) is not None
 

@@ -9,7 +9,7 @@ from pneutouch.mechanics.solid.model import SolidModel
 
 
 class OneSidedBlocks:
-    """Where blocks (n_edges, 2 n, 2 n) of the outer wall stand in LAPACK's layouts for general banded matrices and for
+    """Places of blocks (n_edges, 2 n, 2 n) of the outer wall in LAPACK's layouts for general banded matrices and for
     symmetric ones, of all unknowns or of those from ``first`` on, where the blocks before are zero."""
 
     def __init__(self, solid: SolidModel) -> None:

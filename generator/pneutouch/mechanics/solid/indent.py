@@ -42,7 +42,7 @@ _ROUNDING = 1.0e-9
 
 @dataclass(frozen=True)
 class PressSettings:
-    """How a dome is pressed: depth and plate diameter in mm (None: endless), ambient in MPa, dead volume in mm^3.
+    """Settings of a press: depth and plate diameter in mm (None: endless), ambient in MPa, dead volume in mm^3.
 
     steps:       equal plate steps at which states are returned.
     gauge_range: gauge pressure (MPa) beyond which the pressure sensor clips.
@@ -181,7 +181,7 @@ def shut_in(solid: SolidModel, free: FreeState, press: PressSettings) -> Gas:
 
 
 def _ended(events: list[SolidEvent], solid: SolidModel) -> bool:
-    """Whether the inner wall is on a base that is not there."""
+    """True if an event ends the press: the inner wall lies on a base that is not there."""
     return solid.base is None and any(e.kind == "floor" for e in events)
 
 
@@ -266,7 +266,8 @@ class _Recorder:
         return [SolidEvent(kind, where, detail[kind]) for kind, where in places.items() if where is not None]
 
     def losses(self, path: list[PlateState], waves: int) -> list[SolidEvent]:
-        """Where the axisymmetric path loses stability to displacements of up to so many waves around the axis."""
+        """Events in which the axisymmetric path loses stability to displacements of up to so many waves around the
+        axis."""
         lost = axisymmetry_losses(self._solid, path, waves) if waves else []
         kinds = ["sway" if loss.waves == 1 else "lobes" for loss in lost]
         return [

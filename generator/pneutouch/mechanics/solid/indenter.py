@@ -256,7 +256,7 @@ def _on_arc(r: float, radius: float, slope: float) -> tuple[float, float]:
 
 
 def _end(r: float, radius: float, slope: float) -> UndersidePiece:
-    """Where `_arc` ends with a slope and the underside turns up."""
+    """Piece of the underside at the end of `_arc`, from where it has a given slope and turns up."""
     return _turned_up(*_on_arc(r, radius, slope), slope, radius)
 
 

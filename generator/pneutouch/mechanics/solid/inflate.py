@@ -165,7 +165,7 @@ def inflate(
 def _ended(
     path: list[FreeState], limit: FreeState | None, goal: float | None, past: float, largest: float
 ) -> str | None:
-    """Why a volume path is done, or None."""
+    """Reason why a volume path is finished, or None."""
     last = path[-1]
     if goal is not None and abs(last.pressure) >= abs(goal) and len(path) > 1:
         return "the driving pressure came first"

@@ -94,7 +94,7 @@ class SolidModel:
         self.supports: tuple[EnergyTerm, ...] = tuple(part for part in (self.base, self.fold) if part is not None)
 
     def base_load(self, x: Array) -> BaseLoad:
-        """What the outer wall puts on its base and on its own flange at positions x (n_nodes, 2)."""
+        """Load of the outer wall on its base and on its own flange at positions x (n_nodes, 2)."""
         loads = [part.load(x) for part in (self.base, self.fold) if part is not None]
         return sum(loads, BaseLoad())
 

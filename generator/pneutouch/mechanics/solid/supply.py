@@ -1,4 +1,5 @@
-"""What fills the cavity, as a potential of its volume: p = -potential', stiffness c = potential'' (a rank-one term).
+"""Supplies that fill the cavity, as a potential of its volume: p = -potential', stiffness c = potential'' (a rank-one
+term).
 
 All three are nondimensional: volumes in R0^3, pressures in mu.
 """

@@ -1,4 +1,4 @@
-"""Where the axisymmetric path under the plate stops being stable: sway (one wave around the axis) and lobes (more)."""
+"""Loss of stability of the axisymmetric path under the plate: sway (one wave around the axis) and lobes (more)."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def softest_mode(harmonic: HarmonicSolid, state: SolverState, n: int) -> tuple[f
 
 
 def axisymmetry_losses(solid: SolidModel, path: list[PlateState], most: int = MOST_WAVES) -> list[AxisymmetryLoss]:
-    """Where a path, from first contact down, loses stability to one wave around the axis, and where to 2 to ``most``.
+    """Losses of stability of a path, from first contact down: to one wave around the axis, and to 2 to ``most`` waves.
 
     States are checked at every quarter of R0 of plate travel, and the last. Where stability is lost between two of
     them, the states between are searched by halves, and the place is located by solving for states between neighbours.
@@ -105,7 +105,7 @@ def _located(harmonic: HarmonicSolid, n: int, path: list[PlateState]) -> float:
 
 
 def free_loss(solid: SolidModel, run: Inflation, most: int = MOST_WAVES) -> FreeLoss | None:
-    """Where a dome that is filled or emptied loses stability to 1 to ``most`` waves first; None where it does not."""
+    """First loss of stability of a dome that is filled or emptied, to 1 to ``most`` waves; None if there is none."""
     harmonic, waves = HarmonicSolid(solid), tuple(range(1, most + 1))
     for before, after in zip(run.states, run.states[1:], strict=False):
         lost = unstable_waves(harmonic, after.unit, waves)
@@ -160,8 +160,8 @@ def _root(
 
 
 def _zero(values: dict[float, float]) -> float:
-    """Where a quantity known at places is zero, from the three places where it is nearest zero; nan where two of its
-    values are equal."""
+    """Place at which a quantity is zero, from the three places at which it is nearest zero; nan if two of its values
+    are equal."""
     near = sorted(values.items(), key=lambda pair: abs(pair[1]))[:3]
     places, at = np.array([pair[0] for pair in near]), np.array([pair[1] for pair in near])
     total = 0.0

@@ -25,7 +25,8 @@ class TermState:
 
 
 class EnergyTerm(Protocol):
-    """What adds to the total energy of wall, filling and plate: the base below the wall, friction of one step.
+    """Interface of an addition to the total energy of wall, filling and plate: the base below the wall, friction of one
+    step.
 
     ``noise`` is the force that rounding leaves in its gradient.
     """

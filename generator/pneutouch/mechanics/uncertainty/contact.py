@@ -40,7 +40,7 @@ _SAME_END = 1e-6
 
 @dataclass(frozen=True)
 class FrictionSpread:
-    """What an unknown coefficient does to n sensors.
+    """Effect of an unknown coefficient of friction on n sensors.
 
     Attributes:
         standard: Standard uncertainties of the logarithm of the figures, (figures, n); NaN where no equilibrium was
@@ -73,7 +73,7 @@ class ContactShift:
         return np.asarray(here + 0.5 * t * (more - less) + 0.5 * t**2 * (more - 2.0 * here + less))
 
     def row(self, row: int) -> "ContactShift":
-        """That of one sensor."""
+        """Shift of one sensor."""
         return ContactShift(self.half, self.nodes[:, :, row : row + 1])
 
 
@@ -122,7 +122,7 @@ class ContactModel:
 
     @cached_property
     def friction(self) -> FrictionSpread | None:
-        """What the unknown coefficient does; None without friction."""
+        """Effect of the unknown coefficient; None without friction."""
         stated = self.sensor.protocol.friction
         if self.fitted_spread is not None:
             return self._fitted(min(stated, GRIPS), self.fitted_spread)
@@ -149,7 +149,7 @@ class ContactModel:
         return FrictionSpread(np.sqrt(variance), slope / far, origin)
 
     def _fitted(self, value: float, spread: float) -> FrictionSpread:
-        """That of a fitted coefficient: the difference over its standard uncertainty, within 0 and grip."""
+        """Spread by a fitted coefficient: the difference over its standard uncertainty, within 0 and grip."""
         ends = max(value - spread, 0.0), min(value + spread, GRIPS)
         down, up = (self._change(self.sensor.replace(friction=np.inf if x >= GRIPS else x)) for x in ends)
         slope = (up - down) / max(ends[1] - ends[0], 1e-9)
@@ -162,8 +162,8 @@ class ContactModel:
         return solved_at(self.sensor, self.pressures, self.states, self.least)
 
     def _change(self, sensor: Sensor) -> Array:
-        """How the logarithms of another sensor under its contact differ, less what they do under the plate, (figures,
-        n); NaN beyond the highest driving pressure that the solid can solve it at."""
+        """Change of the logarithms of another sensor's figures under its contact, less the change under the plate,
+        (figures, n); NaN beyond the highest driving pressure at which the solid can solve it."""
         at, solved = self._solved
         for count in range(at.size, 0, -1):
             rows = np.unique([0, count - 1])
@@ -180,7 +180,6 @@ class ContactModel:
         return between(np.array(self.pressures), at[rows], changes)
 
     def _to_the_depth(self, solved: Array, changes: Array) -> bool:
-        """Whether no event ends the range: where one does, it does so at a travel that jumps from pressure to
-        pressure."""
+        """True if no event ends the range: an event does so at a travel that jumps from pressure to pressure."""
         ends = np.abs([*(solved[_RANGE] - np.log(self.sensor.protocol.depth)), *changes[_RANGE]])
         return bool((ends < _SAME_END).all())

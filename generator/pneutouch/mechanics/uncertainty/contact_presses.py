@@ -1,4 +1,4 @@
-"""What the solid has of a sensor under its contact, at the few driving pressures that suffice."""
+"""Answers of the solid for a sensor under its contact, at the few driving pressures that suffice."""
 
 from collections.abc import Sequence
 from functools import lru_cache

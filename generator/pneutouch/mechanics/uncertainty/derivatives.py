@@ -1,4 +1,5 @@
-"""How the figures of many sensors move with their inputs: local derivatives, and what the inputs' whole spread does."""
+"""Sensitivity of the figures of many sensors to their inputs: local derivatives, and the effect of the inputs' whole
+spread."""
 
 from __future__ import annotations
 

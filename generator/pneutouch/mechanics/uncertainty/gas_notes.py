@@ -1,4 +1,4 @@
-"""What the air does to a sealed sensor: temperature, and speed of the press. Computed at the sensor's own states."""
+"""Effects of the air on a sealed sensor: temperature, and speed of the press. Computed at the sensor's own states."""
 
 from typing import NamedTuple
 

@@ -13,7 +13,7 @@ from pneutouch.mechanics.uncertainty.source import DEAD, FIGURES, INPUTS
 from pneutouch.units import KPA
 
 _MARGIN = 0.001
-"""How far inside the surveyed data (`AtlasRecipe.beyond`) the neighbourhood of the box stays, in R0."""
+"""Distance by which the neighbourhood of the box stays inside the surveyed data (`AtlasRecipe.beyond`), in R0."""
 
 SOFTEST = 6.0
 """Greatest ambient pressure over modulus for which derivatives are taken from the tables. The gas is no coordinate of
@@ -71,7 +71,7 @@ def joined(batches: list[SensorBatch]) -> SensorBatch:
 
 
 def unit_step(batch: SensorBatch) -> Array:
-    """What a step of one means for each input, (inputs, n): its own size; of the dead volume all the gas, mm3."""
+    """Size of a step of one in each input, (inputs, n): the input itself; for the dead volume all the gas, mm3."""
     steps = np.ones((len(INPUTS), len(batch)))
     steps[DEAD] = REST_VOLUME * batch.inner_radius**3 + np.maximum(batch.dead_volume, 0.0)
     return steps

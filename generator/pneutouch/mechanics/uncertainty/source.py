@@ -22,7 +22,8 @@ FIGURES = (
 """The predicted figures, in the order of every array over figures."""
 
 INPUTS = ("shear_modulus", "wall_thickness", "inner_radius", "dead_volume", "ambient_pressure", "driving_pressure")
-"""What a source may act on through the model, in the order of every array over inputs; names of `SensorBatch`."""
+"""Inputs that a source may act on through the model, in the order of every array over inputs; names of
+`SensorBatch`."""
 
 FIGURE = "figure"
 """Acts on the predicted figure itself, as a relative error."""
@@ -131,7 +132,7 @@ class UncertaintySource:
 
 
 def counting(size: int, *, only: tuple[int, ...] = (), without: tuple[int, ...] = ()) -> Flags:
-    """Which figures count, (figures, size): all, or ``only`` these, or all ``without`` these."""
+    """Figures that count, (figures, size): all, or ``only`` these, or all ``without`` these."""
     flags = np.full((len(FIGURES), size), not only)
     flags[list(only)] = True
     flags[list(without)] = False

@@ -1,1 +1,1 @@
-"""What the resin's relaxation and its ageing do to a sensor. Nothing loads here: only the runs need the atlas."""
+"""Effects of the resin's relaxation and of its ageing on a sensor. Nothing loads here: only the runs need the atlas."""

@@ -33,7 +33,7 @@ _RAMP_STEPS, _LOOP_STEPS = 20, 24
 percentage points, with friction too (`tests/mechanics/viscous/test_by_solid.py`)."""
 
 _CUTS = 5
-"""How often a step that finds no equilibrium is halved."""
+"""Number of times that a step without an equilibrium is halved."""
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ _NO_TRAVEL = 1.0e-9
 
 
 class ViscousPath(NamedTuple):
-    """Where n domes went, (n, m) each; nondimensional by the relaxed modulus.
+    """Paths of n domes, (n, m) each; nondimensional by the relaxed modulus.
 
     elastic_force, elastic_pressure: of the relaxed dome at the same volume and plate height. known: the state and all
     before it were found. folded: the wall buckled, or its gas no longer held it; what is lost otherwise lies outside
@@ -57,7 +57,7 @@ class Memory:
         return decay, weight, weight.sum(axis=1)
 
     def left(self, decay: Array) -> Array:
-        """What the past still adds to pressure and force, (2, n)."""
+        """Remaining contribution of the past to pressure and force, (2, n)."""
         return np.asarray((self._held * decay).sum(axis=2))
 
     def add(self, decay: Array, weight: Array, change: Array) -> None:

@@ -1,4 +1,4 @@
-"""Whether a resin's relaxation and its ageing are known."""
+"""Check that a resin's relaxation and its ageing are known."""
 
 from pneutouch.errors import InputError
 from pneutouch.mechanics.sensor import Sensor
@@ -13,11 +13,11 @@ AGED = (
     "Shore A 80, where the scale is compressed, it grows steep. Hardness is read in seconds and is applied to the "
     "relaxed modulus; what light and air harden may be a skin, and is taken as the whole wall"
 )
-"""What the step from hardness to modulus assumes."""
+"""Assumption of the step from hardness to modulus."""
 
 
 def unknown(sensor: Sensor, material: Material, model: str) -> str | None:
-    """Why relaxation and hysteresis cannot be predicted, or None where they can.
+    """Reason why relaxation and hysteresis cannot be predicted, or None if they can.
 
     The solid follows a contact that the atlas does not cover, unless it is off the axis or the wall has a law of its
     own, whose constants are not scaled.
@@ -36,7 +36,7 @@ def unknown(sensor: Sensor, material: Material, model: str) -> str | None:
 
 
 def ageing_unknown(material: Material) -> str | None:
-    """Why a year's change of the modulus is not known, or None where it is."""
+    """Reason why a year's change of the modulus is not known, or None if it is."""
     if material.shore_a is None or material.shore_a_one_year is None:
         return f"the hardness of {material.title} after a year is not known"
     if material.law is not None:

@@ -37,7 +37,8 @@ class RelaxationRun:
     ended: str | None = None
 
     def drop(self, values: Array) -> tuple[float, float]:
-        """What a value loses from 1 s to the end, and a decade (least squares over log10 t from 1 s), over that at 1 s.
+        """Loss of a value from 1 s to the end, and loss per decade (least squares over log10 t from 1 s), over the
+        value at 1 s.
 
         Raises ValueError where the run does not reach from 1 s onwards.
         """
@@ -188,7 +189,7 @@ def _with_units(press: AtlasPress, path: ViscousPath) -> tuple[Array, Array]:
 
 
 def _sound(press: AtlasPress, path: ViscousPath, i: int) -> tuple[int, str | None]:
-    """How many states of a run are known and within the gauge's range, and why no more."""
+    """Number of states of a run that are known and within the gauge's range, and the reason why there are no more."""
     clipped = path.pressure[i] > press.batch.gauge_limit[i] / press.batch.shear_modulus[i]
     sound = path.known[i] & ~clipped
     if sound.all():

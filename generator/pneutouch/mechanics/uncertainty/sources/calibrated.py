@@ -114,7 +114,7 @@ def _parameters(batch: SensorBatch, calibration: SensorCalibration) -> Uncertain
 
 
 def _outside(batch: SensorBatch, calibration: SensorCalibration) -> Flags:
-    """Which of n sensors are at driving pressures beyond those of the calibration's curves."""
+    """True for those of n sensors at driving pressures beyond those of the calibration's curves."""
     pressures_kPa, at_kPa = calibration.source.driving_pressures_kPa, batch.driving_pressure / KPA
     return np.asarray((at_kPa < min(pressures_kPa) / _BEYOND) | (at_kPa > max(pressures_kPa) * _BEYOND))
 

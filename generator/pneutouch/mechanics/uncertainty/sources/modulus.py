@@ -68,7 +68,7 @@ def modulus_sources(material: Material, validated: Flags) -> list[UncertaintySou
 
 
 def _mixing_fraction(modulus: Quantity, size: int) -> UncertaintySource:
-    """How far an assumed mixing curve may be off; see `pneutouch.catalogue.mixture.Mixing.band_at`."""
+    """Possible error of an assumed mixing curve; see `pneutouch.catalogue.mixture.Mixing.band_at`."""
     return UncertaintySource(
         "mixing fraction",
         "shear_modulus",
@@ -151,7 +151,7 @@ AGEING = ("ageing", "ageing of the modulus")
 
 
 def ageing_sources(material: Material, size: int, remaining: float = 1.0) -> list[UncertaintySource]:
-    """What a year in light and air does: to the modulus by the hardness, to the sensitivity as it was measured.
+    """Effects of a year in light and air: on the modulus by the hardness, on the sensitivity as it was measured.
 
     ``remaining`` is the share of the year that lies ahead; what has passed is in the values already.
 
