@@ -191,7 +191,7 @@ class SensorCalibration(Table):
         return max(0.0, 1.0 - self.source.age_days / 365.0)
 
     def misfit(self, material: object, inner_radius_mm: float, wall_thickness_mm: float) -> str | None:
-        """Why the calibration does not hold for a membrane, or None where it does.
+        """Reason why the calibration does not hold for a membrane, or None if it does.
 
         Another resin has another modulus. Another radius or wall is another print, whose deviations from its drawing
         are its own, and the model's error was found at this shape alone.

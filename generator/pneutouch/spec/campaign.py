@@ -31,7 +31,7 @@ Encoding = Literal[
 """Encodings that can be stated; of these utf-8, the three of UTF-16 and cp1252 are found by themselves."""
 
 RunKind = Literal["steps", "saturation", "loop", "relaxation", "leak", "injection"]
-"""What a run is; see `bench.protocol`. Leak and injection need no plate."""
+"""Kind of a run; see `bench.protocol`. Leak and injection need no plate."""
 
 AS_DESIGNED = "as-designed"
 """In place of a resin's name: the membrane as the design has it, which may be a mix that no file names."""
@@ -97,7 +97,7 @@ def merged_columns(under: ColumnMap, over: ColumnMap | None) -> ColumnMap:
 
 
 def merged_format(under: FileFormat, over: FileFormat | None) -> FileFormat:
-    """What ``under`` states of the files, what ``over`` states in its place."""
+    """File format ``under`` with the values of ``over`` in place of its own."""
     both = [one.model_dump(exclude_none=True) for one in (under, over) if one is not None]
     return FileFormat.model_validate({key: value for one in both for key, value in one.items()})
 
@@ -144,7 +144,7 @@ class CampaignRun(Table):
 
     @property
     def label(self) -> str:
-        """How the run is called in tables and messages."""
+        """Name of the run in tables and messages."""
         return f"{self.sensor}, {self.driving_pressure_kPa:g} kPa, {self.kind}, run {self.run}"
 
 

@@ -1,4 +1,4 @@
-"""How a resin that is cast is mixed, poured and cured: what its vendor's sheet states."""
+"""Mixing, pouring and curing of a resin that is cast, as its vendor's sheet gives them."""
 
 from __future__ import annotations
 

@@ -187,19 +187,19 @@ class ContactTable(Table):
 
     @property
     def is_lying(self) -> bool:
-        """Whether the object is straight across the plane of symmetry."""
+        """True if the object is straight across the plane of symmetry."""
         return self.object in LYING
 
     @property
     def place(self) -> str:
-        """Where the object presses, how it leans and how it moves then, in words; empty where it is central, level and
-        comes straight down."""
+        """Place at which the object presses, its lean and its movement then, in words; empty if it is central, level
+        and comes straight down."""
         moved = [f"then moved {self.shear_mm:g} mm sideways"] if self.shear_mm else []
         return ", ".join([*([self._stand] if self._stand else []), *moved])
 
     @property
     def _stand(self) -> str:
-        """Where the object presses and how it leans, in words; empty where it is central and level."""
+        """Place at which the object presses, and its lean, in words; empty if it is central and level."""
         parts = [f"{self.offset_mm:g} mm off the axis"] if self.offset_mm else []
         parts += [f"leaning by {self.tilt_deg:g}°"] if self.tilt_deg else []
         parts += ["across the middle of the dome"] if self.is_lying and not self.offset_mm else []
@@ -207,22 +207,22 @@ class ContactTable(Table):
 
     @property
     def kind_of_place(self) -> str:
-        """Whether contact is central, in words before the noun."""
+        """Adjective for the place of contact, in words before the noun."""
         return "off-axis" if self._stand else "central"
 
     @property
     def where(self) -> str:
-        """Where to press, in words after the object."""
+        """Place to press, in words after the object."""
         return self._stand or "centrally"
 
     @property
     def is_plate(self) -> bool:
-        """Whether a flat plate presses the sensor."""
+        """True if a flat plate presses the sensor."""
         return self.object == "plate"
 
     @property
     def is_atlas_plate(self) -> bool:
-        """Whether it is the contact of membrane and atlas: a central plate with its usual rim, without friction."""
+        """True for the contact of membrane and atlas: a central plate with its usual rim, without friction."""
         return self.is_plate and self.plate_rim_mm is None and not self.friction and not self.off_axis
 
     @property

@@ -18,7 +18,7 @@ from pneutouch.spec.fields import Table, table_of
 from pneutouch.spec.read import read_toml
 
 COUPON_NAMES = ("puck", "dumbbell", "gauge", "leak-cap", "volume-plug")
-"""What there are tables of: the coupons, as the command line calls them as well."""
+"""Names of the coupons that have a table, which are also their names on the command line."""
 
 LEAST_READINGS = 2
 
@@ -137,7 +137,7 @@ class GaugeSize(Table):
 
     @property
     def sound(self) -> bool | None:
-        """Whether it came out; None where nothing is stated."""
+        """True if it came out; None if nothing is stated."""
         return True if self.measured_mm else self.came_out
 
 

@@ -1,4 +1,4 @@
-"""What is wrong with a value that pydantic refuses, and what would be right."""
+"""Explanation of a value that pydantic refuses: the problem, and what would be right."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -43,7 +43,7 @@ def explained(model: type[BaseModel], detail: Any, where: str) -> InputError:
 
 
 def _unlike(detail: Any, owner: type[BaseModel] | None, path: list[str]) -> tuple[str, str | None]:
-    """What a value must be that is of another kind or beyond its bounds, and how it is written, where that is known."""
+    """Problem with a value of another kind or beyond its bounds, and the right way to write it if that is known."""
     kind, right = _expected(detail), _right(owner, path)
     if detail["type"] == "model_type" and (form := table_form(owner, path[-1])):
         kind = f"{kind}such as {form}, "
@@ -63,7 +63,8 @@ def _unlike(detail: Any, owner: type[BaseModel] | None, path: list[str]) -> tupl
 
 
 def _is_sentence(right: str) -> bool:
-    """Whether what is right is the help of a field without bounds, which is a sentence of its own."""
+    """True if the description of the right value is the help of a field without bounds, which is a sentence of its
+    own."""
     return right[:1].isupper() or right.startswith("one ")
 
 
@@ -89,7 +90,7 @@ def _label(steps: Iterable[int | str]) -> str:
 
 
 def _addition(owner: type[BaseModel] | None, path: list[str]) -> str:
-    """What to add where a key is missing: a table in its form, and what it is."""
+    """Lines to add for a missing key: a table in its form, and its meaning."""
     right, form = _right(owner, path) or f"a table [{'.'.join(path)}]", table_form(owner, path[-1])
     if form and owner is not None and entries_of(owner, path[-1]) is not None:
         form = f"[{form}]"
@@ -128,7 +129,7 @@ _OF_LISTS = ("list_type", "too_short", "too_long")
 
 
 def _expected_list(detail: Any, owner: type[BaseModel] | None, path: list[str]) -> tuple[str, str | None]:
-    """What a list must be, and how what was given is written as one, where that is known."""
+    """Problem with a value in place of a list, and the same written as a list if that is known."""
     table = owner if owner is not None and path[-1] in owner.model_fields else None
     within = next((k for k, step in enumerate(reversed(detail["loc"])) if not isinstance(step, int)), 0)
     held = None if table is None else entries_of(table, path[-1], within)
@@ -147,14 +148,14 @@ def _expected_list(detail: Any, owner: type[BaseModel] | None, path: list[str]) 
 
 
 def _is_entry(table: type[BaseModel], key: str, value: Any) -> bool:
-    """Whether a list ``key`` of this one value would be right, as far as its declaration states."""
+    """True if a list ``key`` of this one value would be right, as far as its declaration says."""
     known = declaration(table, key)
     low, high = (-math.inf if known.low is None else known.low), (math.inf if known.high is None else known.high)
     return is_one_of_list(table, key, value) and (isinstance(value, str) or low <= value <= high)
 
 
 _ANY = "a valid value"
-"""What is right where no declaration states it."""
+"""Description of the right value if no declaration has one."""
 
 
 def _right(owner: type[BaseModel] | None, path: list[str]) -> str:
@@ -165,7 +166,7 @@ def _right(owner: type[BaseModel] | None, path: list[str]) -> str:
 
 
 def is_one_of_list(table: type[BaseModel], key: str, value: Any) -> bool:
-    """Whether a value is a number or a text, and ``key`` a list of these that one entry is enough for."""
+    """True if a value is a number or a text, and ``key`` a list of these for which one entry is enough."""
     if any(getattr(bound, "min_length", 0) > 1 for bound in table.model_fields[key].metadata):
         return False
     if isinstance(value, str):

@@ -1,4 +1,4 @@
-"""How a parameter is declared: once, with unit, bounds, default and help.
+"""Declaration of a parameter: once, with unit, bounds, default and help.
 
 The command line, the commented design file, the datasheet's table and the error messages read the
 declaration; nothing repeats it.
@@ -33,7 +33,7 @@ class Declaration:
 
     @property
     def right(self) -> str:
-        """What would be right, in words: ``a number from 1 to 100 mm``."""
+        """Description of a right value, in words: ``a number from 1 to 100 mm``."""
         if self.low is not None:
             unit = f" {self.unit}" if self.unit else ""
             return f"from {self.low:g} to {self.high:g}{unit}"
@@ -41,7 +41,7 @@ class Declaration:
 
 
 class EntryError(ValueError):
-    """What is wrong with one entry of a list: its ``index`` and ``value``."""
+    """Problem with one entry of a list: its ``index`` and ``value``."""
 
     def __init__(self, problem: str, index: int, value: Any) -> None:
         super().__init__(problem)
@@ -106,7 +106,7 @@ def table_of(model: type[BaseModel], key: str) -> type[BaseModel] | None:
 
 
 def entries_of(model: type[BaseModel], key: str, within: int = 0) -> str | None:
-    """What the list ``key`` holds: numbers, names, texts, tables or lists; None where it is no list.
+    """Kind of the entries of the list ``key``: numbers, names, texts, tables or lists; None if it is no list.
 
     ``within`` counts the lists around the one that is meant: 1 for a list in the list ``key``.
     """

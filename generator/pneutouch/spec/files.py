@@ -51,7 +51,7 @@ def check_plain(path: Path, kind: str) -> int:
 
 
 def is_file(path: Path) -> bool:
-    """Whether there is a file of this name; False, too, for a name that no file can have."""
+    """True if there is a file of this name; False, too, for a name that no file can have."""
     try:
         return path.is_file()
     except (OSError, ValueError):
@@ -59,7 +59,7 @@ def is_file(path: Path) -> bool:
 
 
 def exists(path: Path) -> bool:
-    """Whether there is anything of this name; False, too, for a name that no file can have."""
+    """True if there is anything of this name; False, too, for a name that no file can have."""
     try:
         return path.exists()
     except (OSError, ValueError):

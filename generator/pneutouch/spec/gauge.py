@@ -8,11 +8,11 @@ from pneutouch.spec.fields import Table, declaration
 from pneutouch.spec.quantity import Quantity
 
 Reference = Literal["gauge", "absolute"]
-"""What a gauge reads against: the air around it, or a vacuum."""
+"""Reference pressure of a gauge: the air around it, or a vacuum."""
 
 Output = Literal["count", "V", "share of supply", "compensated"]
-"""What a gauge gives out: a digital count, a voltage, a voltage as share of its supply; or numbers that its driver
-turns into a pressure with constants stored in each part."""
+"""Output of a gauge: a digital count, a voltage, a voltage as share of its supply; or numbers that its driver turns
+into a pressure with constants stored in each part."""
 
 Interface = Literal["analog", "I2C", "SPI"]
 
@@ -124,7 +124,7 @@ class Gauge(Table):
 
     @property
     def is_absolute(self) -> bool:
-        """Whether it reads ambient plus gauge pressure."""
+        """True if it reads ambient plus gauge pressure."""
         return self.reference == "absolute"
 
     def gauge_pressures_kPa(self, ambient_kPa: float) -> tuple[float, float]:

@@ -79,12 +79,12 @@ class Grade(Table):
 
     @property
     def is_constant(self) -> bool:
-        """Whether the fraction is the same everywhere."""
+        """True if the fraction is the same everywhere."""
         return len(set(self.fractions)) == 1
 
     @property
     def label(self) -> str:
-        """How the mix is called: ``TangoPlus + 20 % VeroClear``, ``TangoPlus + 0 to 30 % VeroClear``."""
+        """Name of the mix: ``TangoPlus + 20 % VeroClear``, ``TangoPlus + 0 to 30 % VeroClear``."""
         pole, rim = 100 * self.fractions[0], 100 * self.fractions[-1]
         share = f"{pole:.3g}" if self.is_constant else f"{pole:.3g} to {rim:.3g}"
         return f"{self.from_} + {share} % {self.to}"

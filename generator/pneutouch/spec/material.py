@@ -15,7 +15,7 @@ from pneutouch.spec.relaxation import Relaxation
 
 
 class PaperMeasurements(Table):
-    """What the paper measured on its own sensor (R0 9.25 mm, t0 1.5 mm) in this material, Table S1."""
+    """Measurements of the paper on its own sensor (R0 9.25 mm, t0 1.5 mm) in this material, Table S1."""
 
     sensitivity_0kPa_kPa_per_N: Quantity = Field(description="Sensitivity without driving pressure.")
     sensitivity_22kPa_kPa_per_N: Quantity = Field(description="Sensitivity at a driving pressure of 22 kPa.")
@@ -52,7 +52,7 @@ class HyperelasticLaw(Table):
 
 
 _MIX_SUM = 1e-6
-"""How far from one the volume fractions of a mix may add up."""
+"""Largest difference from one of the sum of the volume fractions of a mix."""
 
 
 class Mix(Table):
@@ -127,7 +127,7 @@ densest metal."""
 def density_problem(
     density_g_per_cm3: float, kind: MaterialKind = "elastomer", thousandfold: str = "is it in kg/m3?"
 ) -> str | None:
-    """What is wrong with the density of a material of this kind, in words; None where nothing is.
+    """Problem with the density of a material of this kind, in words; None for a plausible density.
 
     ``thousandfold`` is the question where a thousandth of it would be right.
     """
@@ -140,7 +140,7 @@ def density_problem(
 
 
 def elastomer_modulus_problem(modulus_MPa: float) -> str | None:
-    """What is wrong with the shear modulus of an elastomer, in words; None where nothing is."""
+    """Problem with the shear modulus of an elastomer, in words; None for a plausible modulus."""
     if modulus_MPa <= STIFFEST_ELASTOMER_MPA:
         return None
     most = f"{STIFFEST_ELASTOMER_MPA:g} MPa to which walls are modelled here"
@@ -253,7 +253,7 @@ class Material(Table):
 
     @property
     def is_cast(self) -> bool:
-        """Whether it is mixed by hand and cast in a mould."""
+        """True if it is mixed by hand and cast in a mould."""
         return self.casting is not None
 
     @property
@@ -273,7 +273,7 @@ class Material(Table):
 
     @property
     def is_digital(self) -> bool:
-        """Whether the printer mixes it from more than one base resin."""
+        """True if the printer mixes it from more than one base resin."""
         return len(self.base_resins) > 1
 
     @property

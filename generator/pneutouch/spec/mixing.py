@@ -75,7 +75,7 @@ class MixingCurveNames(Table):
 
 
 class MixingCurve(Table):
-    """How stiff a mix of two base resins is; one file a pair, ``SOFT+STIFF.toml``."""
+    """Stiffness of the mixes of two base resins; one file a pair, ``SOFT+STIFF.toml``."""
 
     title: str = Field(description="Name of the pair.")
     soft: str = Field(min_length=1, description="Soft base resin.")
@@ -128,7 +128,7 @@ class MixingCurve(Table):
 
     @property
     def is_assumed(self) -> bool:
-        """Whether some fraction is not known but placed between ``fraction_low`` and ``fraction_high``."""
+        """True if some fraction is not known but placed between ``fraction_low`` and ``fraction_high``."""
         return any(point.low < point.high for point in self.points)
 
     def through(self, key: str) -> list[float]:

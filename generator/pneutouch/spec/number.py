@@ -11,7 +11,7 @@ _NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 
 
 def is_finite(value: object) -> bool:
-    """Whether a value is a number that a float holds. ``math.isfinite`` raises for whole numbers beyond that."""
+    """True if a value is a number that a float holds. ``math.isfinite`` raises for whole numbers beyond that."""
     if isinstance(value, bool) or not isinstance(value, float | int):
         return False
     return abs(value) <= sys.float_info.max

@@ -13,7 +13,7 @@ Source = Annotated[str, Field(min_length=8)]
 
 
 class Part(Table):
-    """What every part has."""
+    """Fields that every part has."""
 
     title: str = Field(description="Name of the part.")
     code: str = Field(description="Short form for part numbers.")
@@ -89,7 +89,7 @@ Port = Barb | Thread | Luer | PushIn
 
 
 class Seat(Part):
-    """What every seat has."""
+    """Fields that every seat has."""
 
     least_flange_mm: Length = Field(description="Smallest flange width and thickness.")
     flange_over_wall: Length = Field(description="Flange width and thickness over the wall thickness.")
@@ -138,7 +138,7 @@ AnySeat = GluedFlange | ClampedFlange | OnePiece | CastRing
 
 
 class Mount(Part):
-    """What every mount has. The port points away from the dome (rear) or sideways."""
+    """Fields that every mount has. The port points away from the dome (rear) or sideways."""
 
     port_side: Literal["rear", "side"] = Field(
         description="Where the port points: away from the dome (rear) or sideways (side)."

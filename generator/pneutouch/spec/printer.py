@@ -17,7 +17,7 @@ HOLE_UNDERSIZE_MM = (-0.5, 1.0)
 wider by it vanish or meet."""
 
 Process = Literal["polyjet", "filament", "resin", "casting"]
-"""How bodies are made; "resin" is stereolithography, which prints moulds."""
+"""Process by which bodies are made; "resin" is stereolithography, which prints moulds."""
 
 CAST_STEP_MM = 0.02
 """Step of the mesh of a cast body, which copies its mould: no process sets one."""
@@ -80,7 +80,7 @@ class Resolution(Table):
 
 
 class VoxelPrint(Table):
-    """What the machine's voxel print utility takes: a stack of PNG slices on the raster of ``resolution``."""
+    """Input of the machine's voxel print utility: a stack of PNG slices on the raster of ``resolution``."""
 
     colours: int = Field(ge=1, le=8, description="Most colours of a stack, the background not counted.")
     least_slices: int = Field(ge=1, description="Fewest slices of a stack.")
@@ -175,7 +175,7 @@ class Printer(Table):
 
     @property
     def is_casting(self) -> bool:
-        """Whether it stands for casting in a mould, not for a machine."""
+        """True if it stands for casting in a mould, not for a machine."""
         return self.process == "casting"
 
     @property

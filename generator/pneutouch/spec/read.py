@@ -113,5 +113,5 @@ def assignments(changes: Changes) -> list[str]:
 
 
 def _is_bare(value: Any) -> bool:
-    """Whether a text reads as itself without quotes."""
+    """True if a text reads as itself without quotes."""
     return isinstance(value, str) and value == value.strip() and _bare_list(value) == value

@@ -43,7 +43,7 @@ class Scan(Table):
 
 
 class Layer(Table):
-    """What every [[layer]] has."""
+    """Fields that every [[layer]] has."""
 
     kind: str = Field(description="Kind of pattern.")
     name: Printable | None = Field(default=None, min_length=1, max_length=40, description="Name of the pattern.")

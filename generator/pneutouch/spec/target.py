@@ -96,7 +96,7 @@ class TargetFigures(Table):
 
     @property
     def is_for_a_grade(self) -> bool:
-        """Whether it requires the search of graded membranes."""
+        """True if it needs the search of graded membranes."""
         return self.widest_range or self.same_sensitivity_at_kPa is not None
 
 

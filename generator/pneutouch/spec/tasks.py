@@ -56,7 +56,7 @@ class DrivingTask(Table):
 
 
 _DELIMITERS = (",", ";", "\t")
-"""What separates the cells of a CSV file: that which its header has most of."""
+"""Separators of the cells of a CSV file: the one that its header has most of is taken."""
 
 _DECIMAL_COMMA = re.compile(r"[+-]?(\d+,\d*|,\d+)([eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")

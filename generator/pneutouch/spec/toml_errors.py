@@ -1,4 +1,4 @@
-"""What is wrong with a TOML file, in plain words, with the line and a caret under the place."""
+"""Explanation of an error in a TOML file, in plain words, with the line and a caret under the place."""
 
 import re
 import tomllib

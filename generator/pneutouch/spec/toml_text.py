@@ -25,7 +25,7 @@ def toml_text(content: Mapping[str, Any]) -> str:
 
 
 def toml_content(text: str) -> dict[str, Any]:
-    """What TOML reads from a text. Raises ValueError, of which TOMLDecodeError is one, and RecursionError."""
+    """Content that TOML reads from a text. Raises ValueError, of which TOMLDecodeError is one, and RecursionError."""
     if _LONG_KEY.search(text):
         raise ValueError("a key of more than 32 parts with points between")
     content = tomllib.loads(text)
