@@ -62,7 +62,7 @@ class Assembly:
         return "one piece" if grown else name
 
     def stands_up(self, name: str) -> bool:
-        """Whether a body is printed as it stands in the design frame; else it is turned over."""
+        """True if a body is printed as it stands in the design frame; else it is turned over."""
         down = self.scene.design.print.orientation == "dome-down"
         return not (down and self.job(name) == self.job("membrane"))
 
@@ -124,7 +124,7 @@ class Assembly:
 
     @property
     def dead_volume_note(self) -> str:
-        """What belongs next to a stated dead volume of none behind a tube, as in the paper's theory; else empty."""
+        """Note on a stated dead volume of zero behind a tube, as in the paper's theory; else empty."""
         pneumatics = self.scene.design.pneumatics
         if pneumatics.dead_volume_mL != 0 or pneumatics.tube_length_mm == 0:
             return ""

@@ -15,7 +15,7 @@ from pneutouch.spec.part import ClampedFlange, OnePiece
 PLUG_SHOULDER = "shoulder"
 
 _UNDER_PORT = 0.3
-"""How far in mm below a side port's passage the plug gets thinner."""
+"""Distance in mm below a side port's passage at which the plug gets thinner."""
 
 
 def rigid_solids(scene: ResolvedDesign, layout: Layout) -> tuple[Solid, ...]:

@@ -1,4 +1,4 @@
-"""Which glue joins which pair of surfaces; silicone takes silicone's own alone."""
+"""Glues by the pair of surfaces that they join; silicone takes silicone's own alone."""
 
 from typing import Literal, NamedTuple
 
@@ -7,7 +7,7 @@ from pneutouch.spec.part import CastRing, GluedFlange
 from pneutouch.spec.printer import Printer
 
 GlueSurface = Literal["silicone", "photopolymer", "thermoplastic"]
-"""What a glue wets, by the process that made it."""
+"""Surface that a glue wets, by the process that made it."""
 
 _SURFACES: dict[str, GlueSurface] = {
     "casting": "silicone",

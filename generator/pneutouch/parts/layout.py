@@ -1,4 +1,4 @@
-"""Where everything lies: the radii and heights that the bodies and the drawing share.
+"""Layout of the sensor: the radii and heights that the bodies and the drawing share.
 
 The base plane is z = 0 and the dome points up. The membrane's rim goes on below the base plane as a
 flange; the seat holds it there, so the dome is clamped at z = 0.
@@ -151,7 +151,7 @@ def _flange(scene: ResolvedDesign, wall: float) -> tuple[float, float]:
 
 
 def _flange_draft(scene: ResolvedDesign, thickness: float) -> float:
-    """How far the sides of a cast flange lean over its thickness; printed ones stand upright."""
+    """Lean of the sides of a cast flange over its thickness; printed ones stand upright."""
     if not scene.printer.is_casting:
         return 0.0
     return thickness * math.tan(math.radians(scene.design.mould.draft_deg))

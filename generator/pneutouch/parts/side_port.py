@@ -8,7 +8,7 @@ from pneutouch.parts.layout import Layout
 from pneutouch.parts.trace import trace
 
 _PAST = 1.0
-"""How far in mm a shape reaches past a face that it opens, so that no two faces coincide."""
+"""Distance in mm by which a shape reaches past a face that it opens, so that no two faces coincide."""
 
 
 def side_boss(layout: Layout) -> list[Feature]:

@@ -1,4 +1,4 @@
-"""Whether a layout has space for its parts: refused before anything is drawn, with the lengths that do not fit."""
+"""Check that a layout has space for its parts: refused before anything is drawn, with the lengths that do not fit."""
 
 import math
 
@@ -9,7 +9,7 @@ from pneutouch.parts.layout import HEAD_GAP, Layout, finger_radius
 from pneutouch.spec.part import BoltCircle, OnePiece, RobotFlange, Sleeve
 
 Lengths = dict[str, tuple[float, float]]
-"""What, with the radius that there is and the one that is needed, mm."""
+"""Name of a length, the radius that there is and the one that is needed, mm."""
 
 
 def check_space(scene: ResolvedDesign, layout: Layout) -> None:

@@ -37,13 +37,13 @@ class Nominal:
 
 @dataclass(frozen=True, slots=True)
 class CouponContext:
-    """What a coupon is drawn for: a material, and the scene of a design where it belongs to one."""
+    """Subject of a coupon: a material, and the scene of a design if the coupon belongs to one."""
 
     material: Material
     scene: ResolvedDesign | None = None
 
     def layout(self) -> Layout:
-        """Where everything of the design lies. Raises InputError where a part of the design has no space."""
+        """Layout of the design. Raises InputError if a part of the design has no space."""
         return lay_out(self.design())
 
     def design(self) -> ResolvedDesign:

@@ -43,7 +43,7 @@ class GaugeRow:
 
     @property
     def end(self) -> float:
-        """Where the last feature ends, mm."""
+        """End of the last feature, mm."""
         place, size = self.places()[-1]
         return place + 0.5 * size
 

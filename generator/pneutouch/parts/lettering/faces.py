@@ -10,7 +10,7 @@ from pneutouch.parts import Assembly
 from pneutouch.spec.part import ClampedFlange
 
 _STEP = 0.01
-"""How far in mm from a face its section is taken."""
+"""Distance in mm from a face at which its section is taken."""
 
 _TURNS = 24
 """Angles round a face at which a label is tried."""
@@ -33,7 +33,7 @@ class RingFace:
 
 @dataclass(frozen=True, slots=True)
 class LabelPosition:
-    """Where a label goes: capitals ``height`` mm tall, centred ``radius`` mm from the axis, foot towards the axis."""
+    """Position of a label: capitals ``height`` mm tall, centred ``radius`` mm from the axis, foot towards the axis."""
 
     face: RingFace
     height: float

@@ -66,7 +66,7 @@ def narrowest(shape: Any) -> float:
 
 
 def is_clear(characters: str, height: float, least: float) -> bool:
-    """Whether the strokes of glyphs, and what they enclose, are nowhere narrower than ``least`` mm."""
+    """True if the strokes of glyphs, and the spaces that they enclose, are nowhere narrower than ``least`` mm."""
     return all(
         narrowest(shape) >= least - _FINEST
         for character in sorted(set(characters))

@@ -19,7 +19,7 @@ _SAFETY = 1.2
 """Marks are drawn larger than the printer's recommended detail by this factor."""
 
 _PAST = 0.25
-"""How far in mm a tool reaches past the face it cuts or grows from, so that no two faces coincide."""
+"""Distance in mm by which a tool reaches past the face it cuts or grows from, so that no two faces coincide."""
 
 _LEAST_LAND = 0.6
 """Wall in mm kept next to a groove: the vendor's smallest feature (objet.com Tips and Tricks)."""
@@ -27,7 +27,7 @@ _LEAST_LAND = 0.6
 
 @dataclass(frozen=True)
 class Mark:
-    """What was put on a body.
+    """Label or tally that was put on a body.
 
     Attributes:
         kind: text, tally or none.
@@ -91,7 +91,7 @@ class Marker:
         return _combined(body, (shape, ends[0], ends[1]), raised), mark
 
     def _spot(self, assembly: Assembly, solid: Solid, body: Body) -> LabelPosition | None:
-        """Where the widest label of the tray fits on a geometry: all copies carry theirs at one place."""
+        """Position at which the widest label of the tray fits on a geometry: all copies carry theirs at one place."""
         key = (shape_of(solid), assembly.layout)
         if key not in self._spots:
             wall = self._printer.smallest.wall(solid.material.kind).recommended
@@ -147,7 +147,7 @@ class Marker:
 
 
 def shape_of(solid: Solid) -> Any:
-    """What the mesh of a solid follows from, its resin apart: equal keys, equal geometry."""
+    """Key of the mesh of a solid, its resin apart: equal keys, equal geometry."""
     return solid.name, solid.base, solid.bores, solid.adds, solid.cuts
 
 

@@ -54,7 +54,7 @@ class MouldAssembly:
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many of each part are printed, by name: a core and a ring for each cavity."""
+        """Number of each printed part, by name: a core and a ring for each cavity."""
         cavities = self.size.shape.cavities
         return {solid.name: cavities if repeated(solid) else 1 for solid in self.solids}
 
@@ -95,7 +95,7 @@ class MouldAssembly:
 
 
 def repeated(part: Solid | Body) -> bool:
-    """Whether every cavity has such a part of its own."""
+    """True if every cavity has such a part of its own."""
     return part.name in ("mould-ring", "mould-core", RING)
 
 
@@ -119,7 +119,7 @@ def mould_of(scene: ResolvedDesign, layout: Layout | None = None) -> MouldAssemb
 
 
 def shape_of(scene: ResolvedDesign) -> MouldShape:
-    """What a scene states of its mould."""
+    """Shape of the mould as a scene describes it."""
     stated, casting = scene.design.mould, scene.membrane_material.casting
     assert scene.mould_printer is not None
     shrinkage = stated.shrinkage_percent

@@ -1,4 +1,4 @@
-"""How long a mould takes to fill, and its air to leave, by the silicone's viscosity.
+"""Times in which a mould fills, and its air leaves, by the silicone's viscosity.
 
 Slow flow of a Newtonian liquid: the pour channel by Hagen and Poiseuille (pipe of varying radius, 8 mu L / (pi r^4)
 integrated along it), the dome's wall by the flow between parallel faces (12 mu ds / (w h^3), its width w taken as the

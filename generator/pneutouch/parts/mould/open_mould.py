@@ -13,7 +13,7 @@ WALL, FLOOR = 2.5, 2.5
 """Wall around the cavity and floor under it, mm: own choice."""
 
 _PAST = 1.0
-"""How far in mm the cut reaches past the open top, so that no two faces coincide."""
+"""Distance in mm by which the cut reaches past the open top, so that no two faces coincide."""
 
 
 def open_mould(coupon: Solid, material: Material, factor: float) -> Solid:

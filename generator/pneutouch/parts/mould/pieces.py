@@ -17,7 +17,7 @@ LEDGE_HEIGHT = 6.0
 """Height in mm of the ledges that clips hold: own choice."""
 
 _PAST = 1.0
-"""How far in mm a tool reaches past an open face, so that no two faces coincide."""
+"""Distance in mm by which a tool reaches past an open face, so that no two faces coincide."""
 
 _HANDLE_DEPTH = 8.0
 """Depth in mm of the core's screw hole, by which it is drawn: own choice."""
@@ -94,7 +94,7 @@ def base(size: MouldSize, material: Material) -> Solid:
 
 
 def pocket_meridian(size: MouldSize, past: float) -> Meridian:
-    """What is cut from the cap for one cavity, from ``past`` mm below its face up."""
+    """Section of the pocket that is cut from the cap for one cavity, from ``past`` mm below its face up."""
     faces, low = size.faces, size.cap_low - past
     corner = _corner(size.seat_radius, FILLET)
     return Meridian(
@@ -109,7 +109,7 @@ def pocket_meridian(size: MouldSize, past: float) -> Meridian:
 
 
 def channels(size: MouldSize, past: float = 0.0) -> tuple[Turned, ...]:
-    """What fills the pour channel with its funnel, the first, and the vents; they widen towards the cavity.
+    """Bodies of the pour channel with its funnel, the first, and of the vents; they widen towards the cavity.
 
     They reach ``past`` mm beyond the foot's faces.
     """
@@ -144,7 +144,7 @@ def _cones(points: list[Point]) -> Meridian:
 
 
 def silicone(size: MouldSize, material: Material) -> Solid:
-    """What fills the first cavity."""
+    """Solid of the silicone in the first cavity."""
     outline = size.faces.meridian
     if size.insert is not None:
         return size.insert.enclosed("silicone", material, outline)
@@ -152,7 +152,7 @@ def silicone(size: MouldSize, material: Material) -> Solid:
 
 
 def screw_places(size: MouldSize) -> tuple[tuple[float, float], ...]:
-    """Where screws stand: between the cavities, at every corner of the plates and at every second place within."""
+    """Places of the screws: between the cavities, at every corner of the plates and at every second place within."""
     if size.shape.fastener != "screws":
         return ()
     columns, rows, half = size.columns, size.rows, 0.5 * size.pitch

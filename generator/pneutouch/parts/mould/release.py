@@ -1,4 +1,4 @@
-"""How far a cured membrane must stretch to leave its core."""
+"""Stretch that a cured membrane needs to leave its core."""
 
 from dataclasses import dataclass
 

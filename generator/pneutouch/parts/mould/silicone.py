@@ -1,4 +1,4 @@
-"""How much silicone a batch takes, and how it divides into its parts by mass."""
+"""Mass of silicone in a batch, and its division into the parts that are mixed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FILM = 0.5
 
 LOSS_SHARE = 0.15
 LEAST_LOSS_ML = 2.0
-"""What stays on cup, stirrer and syringe: this share, and at least so much; own choice, measure yours."""
+"""Loss on cup, stirrer and syringe: this share, and at least so much; our choice, measure yours."""
 
 
 @dataclass(frozen=True)
@@ -35,12 +35,12 @@ class SiliconeBatch:
 
     @cached_property
     def filled_mL(self) -> float:
-        """What the mould takes: cavities, channels and overflow."""
+        """Volume that the mould takes: cavities, channels and overflow."""
         return self.cavities * (self.cavity_mL + self.channels_mL + self.overflow_mL)
 
     @property
     def loss_mL(self) -> float:
-        """What is not recovered: `LOSS_SHARE` of the filling, at least `LEAST_LOSS_ML`."""
+        """Volume that is lost: `LOSS_SHARE` of the filling, at least `LEAST_LOSS_ML`."""
         return max(LOSS_SHARE * self.filled_mL, LEAST_LOSS_ML)
 
     @property

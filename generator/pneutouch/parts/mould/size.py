@@ -1,4 +1,4 @@
-"""Where everything of a mould lies: radii, heights and the places of its cavities. Lengths in mm.
+"""Layout of a mould: radii, heights and the places of its cavities. Lengths in mm.
 
 The frame is the design's, the first cavity's axis being z and the membrane's base plane z = 0. It is poured turned
 over, with the flange's underside up: air leaves there, and neither a vent nor a parting line meets the sensing face.
@@ -29,7 +29,7 @@ FILLET = 1.0
 """Radius in mm of the fillet at the bottom of the cap's seat: own choice."""
 
 PROUD = 0.3
-"""How far in mm the core's foot stands out of the cap, so that the base presses the foot: own choice."""
+"""Height in mm by which the core's foot stands out of the cap, so that the base presses the foot: our choice."""
 
 SHOULDER = 2.5
 """Width in mm on which the base presses the foot: own choice."""
@@ -43,7 +43,8 @@ CORNER = 3.0
 
 @dataclass(frozen=True, slots=True)
 class MouldShape:
-    """What a design states of its mould; lengths in mm, ``draft`` in rad, ``shrinkage`` a share of the length."""
+    """Shape of a mould as a design describes it; lengths in mm, ``draft`` in rad, ``shrinkage`` a share of the
+    length."""
 
     cavities: int
     wall: float

@@ -1,4 +1,4 @@
-"""Whether a mould's details have space: channels within the flange, fillets within its thickness."""
+"""Check that a mould has space for its details: channels within the flange, fillets within its thickness."""
 
 import math
 

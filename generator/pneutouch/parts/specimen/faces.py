@@ -166,7 +166,7 @@ def _shifted(index: Indices, starts: Indices) -> Indices:
 
 
 def _holds(outline: Array, line: Array) -> bool:
-    """Whether a loop lies in an outline: by the middle of its first edge, which may touch in corners alone."""
+    """True if a loop lies in an outline, by the middle of its first edge; the two may touch in corners alone."""
     x, y = 0.5 * (line[0] + line[1])
     (x0, y0), (x1, y1) = outline.T, np.roll(outline, -1, axis=0).T
     level = np.where(y1 == y0, 1.0, y1 - y0)

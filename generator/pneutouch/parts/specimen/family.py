@@ -1,4 +1,4 @@
-"""What a family of patterns is given and gives back."""
+"""Input and output of a family of patterns."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -74,7 +74,7 @@ class PatternFamily:
 
 
 def along(layer: Layer, context: PatternContext) -> tuple[float, float]:
-    """Where a layer begins and ends along the path, mm."""
+    """Beginning and end of a layer along the path, mm."""
     end = context.block.high[0] if layer.end_mm is None else layer.end_mm
     return round(layer.start_mm, DECIMALS), round(end, DECIMALS)
 

@@ -43,7 +43,7 @@ class Mesh:
         return enclosed_volume(self.vertices, self.triangles)
 
     def is_closed(self) -> bool:
-        """Whether every edge is shared by exactly two triangles, before and after vertices are merged in float32."""
+        """True if every edge is shared by exactly two triangles, before and after vertices are merged in float32."""
         vertices, triangles = welded(self.vertices, self.triangles)
         return is_closed(self.triangles, len(self.vertices)) and is_closed(triangles, len(vertices))
 

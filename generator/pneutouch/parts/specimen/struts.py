@@ -142,7 +142,7 @@ def _octant(lattice: Lattice) -> Mesh:
 
 
 def _sound(lattice: Lattice, piece: Mesh) -> bool:
-    """Whether every vertex lies on a strut, and the octant with its mirror images is closed."""
+    """True if every vertex lies on a strut, and the octant with its mirror images is closed."""
     reach = 1.01 * widen(lattice.sides) * lattice.radius / (0.5 * lattice.cell)
     if (lattice.distance(piece.vertices) > reach).any():
         return False
@@ -203,7 +203,7 @@ def fill(lattice: Lattice, box: Box, piece: Mesh | None = None) -> Mesh:
 
 
 def _cut(mesh: Mesh, box: Box) -> Mesh:
-    """What of a mesh lies in a box that its low sides are flush with."""
+    """Part of a mesh inside a box that its low sides are flush with."""
     from manifold3d import Manifold, Mesh64
 
     size = np.array(box.high) - np.array(box.low)
