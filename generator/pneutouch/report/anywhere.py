@@ -86,7 +86,7 @@ def _edges(ax: Any, curves: ErrorCurves) -> None:
 
 
 def _named(ax: Any, curves: ErrorCurves, name: str) -> None:
-    """What presses, next to the curve of the lowest driving pressure."""
+    """Write the name of the pressing object next to the curve of the lowest driving pressure."""
     errors_percent = curves.errors_percent[0]
     known = np.flatnonzero(np.isfinite(errors_percent))
     if known.size:

@@ -67,7 +67,7 @@ def uncertainty_section(sheet: SheetData) -> dict[str, Any]:
 
 
 def _summary(covered: dict[str, UncertaintyRecord]) -> list[str]:
-    """What to measure first, one line for driving pressures with the same result."""
+    """Advice on the first thing to measure, one line for driving pressures with the same result."""
     labels_of: dict[str, list[str]] = {}
     for label, document in covered.items():
         labels_of.setdefault(document["summary"], []).append(label)

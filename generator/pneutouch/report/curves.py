@@ -223,13 +223,13 @@ _OFF = 0.03
 
 
 def _holds(curve: ResinCurve, pressures_kPa: Array, sensitivities_kPa_per_N: Array) -> bool:
-    """Whether a curve runs through points."""
+    """True if a curve runs through points."""
     at = np.interp(pressures_kPa, curve.driving_pressure_kPa, curve.sensitivity_kPa_per_N)
     return bool((np.abs(at - sensitivities_kPa_per_N) <= _OFF * sensitivities_kPa_per_N).all())
 
 
 def drawn_by(curves: dict[str, ResinCurve]) -> str:
-    """Which model drew which resins, in words."""
+    """Models that drew the curves, with their resins, in words."""
     models = sorted({curve.model for curve in curves.values()})
     if not models:
         return "no curve of a resin was computed"

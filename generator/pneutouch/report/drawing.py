@@ -38,7 +38,7 @@ def section_drawing(assembly: Assembly, body: Array | None = None) -> dict[str, 
 
 
 _OBJECT = 0.6
-"""How much of an object is drawn above the dimensions, over the dome's radius."""
+"""Height of an object that is drawn above the dimensions, over the dome's radius."""
 
 _WIDE, _NARROW = 112.0, 68.0
 """Widths of section and plan in mm: together the width of a page."""
@@ -76,7 +76,7 @@ class _Section:
         _finish(self.ax, "Section A-A", xs, (self.low - 7.5 * self.unit, high))
 
     def _body(self, body: Array, high: float) -> None:
-        """What presses the dome, in the dashes of a neighbouring part; cut off where the drawing ends."""
+        """Draw the pressing object in the dashes of a neighbouring part, cut off at the end of the drawing."""
         wide = self.layout.plate_radius
         shown = (body[:, 1] <= high) & (np.abs(body[:, 0]) <= wide)
         self.ax.plot(np.where(shown, body[:, 0], np.nan), body[:, 1], color=INK, lw=THIN, ls=NEIGHBOUR)

@@ -1,4 +1,4 @@
-"""Where a run was read: the channels over time with what was found in them."""
+"""Evidence of the reading of a run: the channels over time with the parts that were found in them."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _mark(ax: Axes, curve: MeasuredCurve) -> None:
 
 
 def _marked(curve: MeasuredCurve) -> list[SuspectInterval]:
-    """What is marked: a note is of all the run, and would hide it."""
+    """Intervals to mark: a note applies to all the run, and would hide it."""
     return [interval for interval in curve.warnings if interval.kind != "note"]
 
 

@@ -24,7 +24,7 @@ def _breakable(code: str) -> str:
 
 
 def gauge_volume(sheet: SheetData) -> str:
-    """What the gauge adds to the dead volume, in words; nothing where the design names none."""
+    """Volume that the gauge adds to the dead volume, in words; empty if the design names no gauge."""
     gauge = sheet.scene.gauge
     if gauge is None:
         return ""

@@ -1,4 +1,4 @@
-"""What a datasheet adds for a graded membrane: two pictures, and the constant mixes it is compared with."""
+"""Additions to a datasheet for a graded membrane: two pictures, and the constant mixes it is compared with."""
 
 from pneutouch.evaluation.chart_data import ComparedMembrane
 from pneutouch.evaluation.sheet_data import SheetData

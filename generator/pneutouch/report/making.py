@@ -1,4 +1,4 @@
-"""How to make a sensor, step by step: printed or cast, cleaned, joined and mounted."""
+"""Instructions to make a sensor, step by step: printed or cast, cleaned, joined and mounted."""
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.sheet_data import SheetData, SiliconePour
@@ -9,7 +9,7 @@ from pneutouch.units import ML
 
 
 def making(scene: ResolvedDesign, pour: SiliconePour | None = None) -> list[str]:
-    """How to make, clean and assemble a sensor, in order; ``pour`` where its membrane is cast."""
+    """Steps to make, clean and assemble a sensor, in order; ``pour`` if its membrane is cast."""
     grown = isinstance(scene.seat, OnePiece)
     lines = _printed(scene, grown) if pour is None else casting_steps(scene, pour)
     if isinstance(scene.seat, CastRing):
@@ -40,7 +40,7 @@ def body_rows(sheet: SheetData) -> list[list[str]]:
 
 
 def _printed(scene: ResolvedDesign, grown: bool) -> list[str]:
-    """How to print and clean a membrane."""
+    """Steps to print and clean a membrane."""
     lines = [_print_membrane(scene, grown)]
     if scene.membrane_material.is_digital:
         pair = " + ".join(scene.membrane_material.base_resins)
@@ -56,7 +56,7 @@ def _printed(scene: ResolvedDesign, grown: bool) -> list[str]:
 
 
 def casting_steps(scene: ResolvedDesign, pour: SiliconePour) -> list[str]:
-    """How to cast a membrane: release, weigh, mix, degas, pour, cure and demould."""
+    """Steps to cast a membrane: release, weigh, mix, degas, pour, cure and demould."""
     silicone = scene.membrane_material
     casting = silicone.casting
     assert casting is not None
@@ -110,7 +110,7 @@ def _print_membrane(scene: ResolvedDesign, grown: bool) -> str:
 
 
 def _assembly(scene: ResolvedDesign) -> list[str]:
-    """How membrane and rigid bodies go together, for each kind of seat."""
+    """Steps to join membrane and rigid bodies, for each kind of seat."""
     seat, fit = scene.seat, f"Fit: {scene.fit_clearance:.2f} mm a side"
     if isinstance(seat, ClampedFlange):
         return [
@@ -141,7 +141,7 @@ def _assembly(scene: ResolvedDesign) -> list[str]:
 
 
 def _perforated_ring(scene: ResolvedDesign) -> str:
-    """How to make the ring that a flange is cast around."""
+    """Steps to make the ring that a flange is cast around."""
     cavities = scene.design.mould.cavities
     number = "" if cavities == 1 else f"; make {cavities}, one for each cavity"
     return (

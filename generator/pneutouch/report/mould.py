@@ -68,7 +68,7 @@ CAPTION = (
 
 
 def mould_rows(mould: MouldAssembly) -> list[list[str]]:
-    """What the mould is and takes, as rows of name and text."""
+    """Description of the mould and its silicone, as rows of name and text."""
     size, shape, batch = mould.size, mould.size.shape, silicone_batch(mould)
     release = release_of(mould.membrane, size)
     parts = ", ".join(f"{count} x {name.removeprefix('mould-')}" for name, count in mould.counts.items())

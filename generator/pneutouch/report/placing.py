@@ -1,5 +1,5 @@
-"""Where the labels of a chart stand: right of the axes as near to their curves as their height allows, and inside where
-no curve, marker or other label is."""
+"""Placing of the labels of a chart: right of the axes as near to their curves as their height allows, and inside at a
+place free of curves, markers and other labels."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.text import Annotation
 
 AT_SIDE, CORNER, NEAR = "_at_side", "_corner", "_near"
-"""What an annotation is marked as, by its `set_label`, for `settle` to move it."""
+"""Marks of an annotation, given by its `set_label`, by which `settle` moves it."""
 
 _STEP = 1.2
 """Distance of the points that a curve is tested at, in pixels of the figure (points)."""
@@ -195,13 +195,13 @@ def _leader(point: tuple[float, float], box: LabelBox, away: float) -> Array:
 
 
 def _crossed(point: tuple[float, float], box: LabelBox, away: float, taken: list[LabelBox]) -> int:
-    """How many labels the line from a point to a label's box would run over."""
+    """Number of labels that the line from a point to a label's box would run over."""
     line = _leader(point, box, away)
     return sum(bool(((line > b[:2]) & (line < b[2:])).all(axis=1).any()) for b in taken)
 
 
 def _blocked(box: LabelBox, curves: Array, taken: list[LabelBox]) -> float:
-    """How much lies under a box: points of curves, and more for each label."""
+    """Penalty for a box by what lies under it: points of curves, and more for each label."""
     left, low, right, high = box[0] - _SPARE, box[1] - _SPARE, box[2] + _SPARE, box[3] + _SPARE
     hit = (curves[:, 0] > left) & (curves[:, 0] < right) & (curves[:, 1] > low) & (curves[:, 1] < high)
     others = sum(left < b[2] and b[0] < right and low < b[3] and b[1] < high for b in taken)

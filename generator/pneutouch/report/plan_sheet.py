@@ -83,7 +83,7 @@ def _head(plan: dict[str, Any]) -> list[str]:
 
 
 def _object(plan: dict[str, Any]) -> str:
-    """What presses the sensor."""
+    """Object that presses the sensor, in words."""
     return f"{plan['contact']['label']}" if "contact" in plan else f"plate {plan['plate_diameter_mm']:g} mm"
 
 

@@ -17,7 +17,7 @@ def port_note(scene: ResolvedDesign) -> str:
 
 
 def port_steps(scene: ResolvedDesign) -> str:
-    """How to clean and connect the port."""
+    """Steps to clean and connect the port."""
     port, tube = scene.port, scene.tube
     size = f"{tube.outer_diameter:g} x {tube.inner_diameter:g} mm"
     if isinstance(port, Barb):

@@ -55,7 +55,7 @@ class PressedFigure(NamedTuple):
 
 
 def pressed_figure(view: PressedView) -> PressedFigure:
-    """What a page shows of the pressed dome."""
+    """Picture of the pressed dome as a page shows it."""
     bodies = _bodies(view)
     with figure(86, 13) as drawn:
         _scale(drawn, drawn.add_subplot(), view)
@@ -64,7 +64,7 @@ def pressed_figure(view: PressedView) -> PressedFigure:
 
 
 def caption(view: PressedView) -> str:
-    """What the picture shows."""
+    """Caption of the picture."""
     moved = f" and moved {view.travel:g} mm sideways" if view.travel else ""
     return (
         f"The outer surface at {view.driving_pressure_kPa:g} kPa driving pressure, pressed {view.indentation:.2f} mm"

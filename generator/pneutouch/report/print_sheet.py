@@ -61,7 +61,7 @@ distance between mesh and exact surface {1e3 * deviation:.1f} µm.
 
 
 def _calibrated(scene: ResolvedDesign) -> str:
-    """What the figures of a calibrated design are of; nothing of the print follows from a calibration."""
+    """Note on the sensor that a calibrated design stands for; nothing of the print follows from a calibration."""
     if scene.calibration is None:
         return ""
     source = scene.calibration.source

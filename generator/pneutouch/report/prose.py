@@ -144,14 +144,14 @@ def _rigid(contact: ContactTable, name: str, shape: str = "") -> str:
 
 
 def presser(scene: ResolvedDesign) -> str:
-    """What presses the sensor, in words."""
+    """Object that presses the sensor, in words."""
     contact = scene.design.contact
     size = f" of {scene.design.indentation.plate_diameter_mm:g} mm" if contact.is_plate else ""
     return f"rigid {contact.label}{size}"
 
 
 def limits_of_use(scene: ResolvedDesign) -> str:
-    """What the sensor and its figures are for."""
+    """Note on the use of the sensor and of its figures, and its limits."""
     contact = scene.design.contact
     body = "flat rigid body" if contact.is_plate else presser(scene)
     hold = f" ({contact.hold})" if contact.friction else ""
@@ -159,7 +159,7 @@ def limits_of_use(scene: ResolvedDesign) -> str:
 
 
 def method(scene: ResolvedDesign) -> tuple[str, ...]:
-    """How to measure what the sheet predicts, after the paper's section 3-B and Supplement C."""
+    """Method to measure the predicted figures, after the paper's section 3-B and Supplement C."""
     indentation = scene.design.indentation
     step = scene.design.depth_mm / indentation.steps
     return (
@@ -173,7 +173,7 @@ def method(scene: ResolvedDesign) -> tuple[str, ...]:
 
 
 def status(scene: ResolvedDesign) -> str:
-    """What the figures rest on: the design alone, or the runs of one specimen, measured or simulated."""
+    """Status of the figures: from the design alone, or from the runs of one specimen, measured or simulated."""
     calibration = scene.calibration
     if calibration is None:
         return "Predicted. No unit has been built or tested."

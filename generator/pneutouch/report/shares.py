@@ -1,4 +1,4 @@
-"""What makes a sensitivity uncertain: the sources' shares of its variance, as bars."""
+"""Shares of the sources of uncertainty in the variance of a sensitivity, as bars."""
 
 from pneutouch.report.style import ACCENT, BOLD, INK, MUTED, figure, svg
 

@@ -158,7 +158,7 @@ def _ratings(sheet: SheetData) -> list[list[str]]:
 
 
 def _rating_note(sheet: SheetData) -> str:
-    """What would raise the rated pressure; empty where it does not follow from the modulus."""
+    """Advice that would raise the rated pressure; empty if it does not follow from the modulus."""
     rating = sheet.rating
     return (
         ""
@@ -246,7 +246,7 @@ def _limits(sheet: SheetData) -> list[list[str]]:
 
 
 def _sources(sheet: SheetData) -> list[list[str]]:
-    """Where the resin's numbers come from: quantity, value, source."""
+    """Sources of the resin's numbers: quantity, value, source."""
     m = sheet.scene.membrane_material
     entries = [
         ("Shear modulus, MPa", m.shear_modulus_MPa),

@@ -1,4 +1,4 @@
-"""How fast the sensor reads, in rows of a datasheet."""
+"""Speed of the sensor's reading, in rows of a datasheet."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""How figures look: one font, one line width family, readable in grayscale, the same bytes every time."""
+"""Style of all figures: one font, one line width family, readable in grayscale, the same bytes every time."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _SETTINGS = Path(__file__).with_name("figures.mplstyle")
 
 
 _SVG_DPI = 72.0
-"""What matplotlib draws an SVG at."""
+"""Resolution at which matplotlib draws an SVG."""
 
 
 @contextmanager

@@ -34,7 +34,7 @@ class SweptAxis:
 
     @property
     def numeric(self) -> bool:
-        """Whether the values are numbers that have a place on an axis; infinity, a surface that grips, has none."""
+        """True if the values are numbers that have a place on an axis; infinity, a surface that grips, has none."""
         return all(isinstance(value, int | float) and math.isfinite(value) for value in self.values)
 
     @property

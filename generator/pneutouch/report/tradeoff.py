@@ -85,7 +85,8 @@ def _window(ax: Axes, tradeoff: TradeOff) -> None:
 
 
 def _gauge(ax: Axes, tradeoff: TradeOff) -> None:
-    """Where the cavity pressure reaches the end of the pressure sensor's range: no design is beyond."""
+    """Draw the line at which the cavity pressure reaches the end of the pressure sensor's range: no design is
+    beyond."""
     low, high = ax.get_xlim()
     label = f"end of the gauge's range: force × sensitivity = {tradeoff.gauge_kPa:g} kPa"
     edge = [tradeoff.gauge_kPa / low, tradeoff.gauge_kPa / high]

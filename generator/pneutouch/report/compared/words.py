@@ -68,7 +68,7 @@ def _difference(one: DifferenceRecord | None) -> tuple[str, str, str]:
 
 
 def verdict(exceeds: bool | None) -> str:
-    """Whether a difference exceeds its uncertainty, in a word."""
+    """Verdict, in a word, on a difference against its uncertainty."""
     return "not known" if exceeds is None else "exceeds" if exceeds else "within"
 
 

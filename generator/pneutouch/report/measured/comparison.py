@@ -1,4 +1,4 @@
-"""What the measured datasheet is made from: groups of runs, each compared with its prediction."""
+"""Content of the measured datasheet: groups of runs, each compared with its prediction."""
 
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What each figure means, in one line; formulas and sources are in docs/howto/measuring.md."""
+"""Meaning of each figure, in one line; formulas and sources are in docs/howto/measuring.md."""
 
 from pneutouch.bench.figure import FIGURES
 

@@ -47,7 +47,7 @@ def dates(measured: CampaignReport) -> str:
 
 
 def verdict(measured: CampaignReport) -> dict[str, Any]:
-    """Whether the target is met, requirement by requirement, and how many runs gave nothing."""
+    """Verdict on the target, requirement by requirement, and the number of runs that gave nothing."""
     return {
         "word": _whole(measured.verdicts),
         "rows": [[v.what, v.required, v.measured, word_of(v.passed, _WORDS)] for v in measured.verdicts],
@@ -126,7 +126,8 @@ def _extent(measured: CampaignReport, key: str, name: str, unit: str) -> Tile | 
 
 
 def _against(measured: CampaignReport) -> list[Tile]:
-    """How far the measured sensitivities are off the predicted, and in how many groups the intervals overlap."""
+    """Differences of the measured sensitivities from the predicted, and the number of groups whose intervals
+    overlap."""
     pairs = [(b, e, b.predicted[_SENSITIVITY]) for b, e in _with(measured, _SENSITIVITY) if _SENSITIVITY in b.predicted]
     off = [(gap, b) for b, e, p in pairs if (gap := difference(e.value, p[0])) is not None]
     if not off:

@@ -80,14 +80,14 @@ class Panel:
         return _tone(self.campaign_pressures_kPa.index(comparison.group.key.driving_pressure_kPa))
 
     def spots(self, comparison: GroupComparison, curve: MeasuredCurve) -> dict[str, Any]:
-        """How the points of a run are drawn."""
+        """Style in which the points of a run are drawn."""
         color, _ = self.tone(comparison)
         young = comparison.group.key.age_days == self.ages[0]
         marker = MARKERS[self.sensors.index(curve.run.sensor) % len(MARKERS)]
         return {"ls": "", "marker": marker, "ms": 2.6, "mew": 0.5, "mec": color, "mfc": color if young else "white"}
 
     def has(self, kind: str) -> bool:
-        """Whether there are runs of a kind."""
+        """True if there are runs of a kind."""
         return any(comparison.group.of_kind(kind) for comparison in self.comparisons)
 
 

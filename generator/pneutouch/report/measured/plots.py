@@ -26,7 +26,7 @@ _MOST_TICKS = 5
 
 
 class _Axes(NamedTuple):
-    """What is drawn over what: of a run, of a state, and the figure whose band the state's curve has."""
+    """Axes of a plot: of a run, of a state, and the figure whose band the state's curve has."""
 
     measured: Callable[[MeasuredCurve], tuple[Array, Array]]
     predicted: Callable[[SensorState], tuple[Array, Array]]

@@ -1,4 +1,4 @@
-"""What time and direction do: hysteresis loops, relaxation, ageing."""
+"""Effects of time and direction: hysteresis loops, relaxation, ageing."""
 
 from __future__ import annotations
 

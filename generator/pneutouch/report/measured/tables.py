@@ -17,7 +17,7 @@ MOST_SPECIMENS = 120
 """Rows of the specimen table that are printed."""
 
 _SHAPES = dict(zip(MARKERS, ("circle", "square", "triangle", "diamond", "triangle down", "plus", "cross"), strict=True))
-"""What the markers of the plots are called."""
+"""Names of the markers of the plots."""
 
 _NAMES = [figure.name for figure in FIGURES]
 
@@ -137,5 +137,5 @@ def failures(measured: CampaignReport) -> tuple[list[Row], str]:
 
 
 def questions(measured: CampaignReport) -> tuple[list[Row], str]:
-    """What looks wrong and was not changed."""
+    """Parts of the data that look wrong and were not changed."""
     return cut([list(pair) for pair in measured.questions], MOST)

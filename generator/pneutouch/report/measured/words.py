@@ -50,7 +50,7 @@ def difference(measured: float, predicted: float) -> float | None:
 
 
 def overlap(measured: Bounds, predicted: Bounds) -> bool | None:
-    """Whether a measured interval and a predicted band share a value; None without the band.
+    """True if a measured interval and a predicted band share a value; None without the band.
 
     A measured value without an interval counts as itself.
     """
