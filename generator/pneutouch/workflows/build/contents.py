@@ -1,4 +1,4 @@
-"""What the files of a build are, in words."""
+"""Description of the files of a build, in words."""
 
 from collections.abc import Iterable
 from fnmatch import fnmatchcase

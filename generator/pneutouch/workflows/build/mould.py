@@ -24,7 +24,7 @@ _GAP, _BORDER = 5.0, 5.0
 """Space in mm between parts on a plate and at its border: own choice."""
 
 _APART = 1.2
-"""How far parts stand apart in the exploded view, over the height of each."""
+"""Distance of the parts in the exploded view, over the height of each."""
 
 
 def mould_files(mould: MouldAssembly) -> tuple[dict[str, bytes], dict[str, str]]:

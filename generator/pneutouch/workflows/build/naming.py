@@ -1,4 +1,4 @@
-"""What a build is called where no name is given."""
+"""Name of a build if none is given."""
 
 from pneutouch.catalogue import DesignSource
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION

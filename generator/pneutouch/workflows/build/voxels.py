@@ -33,7 +33,7 @@ _SLICE = re.compile(r".*_[0-9]+\.png")
 
 @dataclass(frozen=True)
 class VoxelPlan:
-    """What a stack will be, before it is made: the job, its mode, and the findings on it."""
+    """Plan of a stack before it is made: the job, its mode, and the findings on it."""
 
     assembly: Assembly
     job: VoxelJob

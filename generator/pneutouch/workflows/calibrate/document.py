@@ -24,7 +24,7 @@ from pneutouch.workflows.calibrate.record import (
 
 
 def fit_document(fitted: CalibrationFit) -> FitRecord:
-    """What was fitted to how much, and the goodness of the fit."""
+    """Record of the fit: its parameters, its data and its goodness."""
     seen = fitted.observations
     return {
         "runs": len(seen.curves),
@@ -92,7 +92,7 @@ def _goodness(fitted: CalibrationFit) -> GoodnessRecord:
 
 
 def response_records(gap: ResponseGap) -> list[ResponseRecord]:
-    """What the fitted model leaves out of the curves, by driving pressure."""
+    """Records of the part of the curves that the fitted model leaves out, by driving pressure."""
     correction = gap.correction
     return [
         {
@@ -118,7 +118,7 @@ def miss_record(miss: SystematicDeviation) -> MissRecord:
 
 
 def residual_record(run: RunResiduals) -> ResidualRecord:
-    """How far a run is from the fitted model."""
+    """Record of the distance of a run from the fitted model."""
     return {
         "run": run.label,
         "driving_pressure_kPa": _number(run.driving_pressure_kPa),

@@ -37,7 +37,7 @@ _NAME_LIMIT = 100
 
 @dataclass(frozen=True, slots=True)
 class CampaignSource:
-    """Where the runs of a calibration are from: SHA-256 of the files, who measured, and the mean age of the print."""
+    """Source of the runs of a calibration: SHA-256 of the files, the laboratory, and the mean age of the print."""
 
     digest: str
     lab: str = ""

@@ -69,17 +69,17 @@ class Calibration:
 
     @cached_property
     def gap(self) -> ResponseGap | None:
-        """What the fitted model leaves out of the curves; None without curves."""
+        """Part of the curves that the fitted model leaves out; None without curves."""
         return response_gap(self.fit)
 
     @cached_property
     def misfit(self) -> ModelMisfit:
-        """How far the runs are from the fitted model as a whole."""
+        """Distance of the runs from the fitted model as a whole."""
         return misfit(self.fit, self.residuals)
 
     @property
     def warnings(self) -> list[str]:
-        """What makes the calibration doubtful: a model that does not describe the runs."""
+        """Reasons to doubt the calibration: a model that does not describe the runs."""
         if not self.misfit.doubtful:
             return []
         return [

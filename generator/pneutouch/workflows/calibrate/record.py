@@ -4,7 +4,7 @@ from typing import Any, TypedDict
 
 
 class PriorRecord(TypedDict):
-    """What was known of a parameter before, and whether it counted."""
+    """Prior of a parameter, and whether it counted."""
 
     counted: bool
     standard_deviation: float
@@ -33,7 +33,7 @@ class CorrelationRecord(TypedDict):
 
 
 class GoodnessRecord(TypedDict):
-    """How well the fitted model meets the runs."""
+    """Goodness of the fit of the model to the runs."""
 
     chi_squared: float
     degrees_of_freedom: int
@@ -110,7 +110,7 @@ class HeldOutRecord(TypedDict):
 
 
 class FitRecord(TypedDict):
-    """What was fitted to how much, and the goodness of the fit."""
+    """Record of a fit: its parameters, its data and its goodness."""
 
     runs: int
     injections: int

@@ -207,7 +207,7 @@ def _named(design: str | DesignSource) -> str:
 
 
 def _source(data: Path, loaded: CampaignData, sensor: str, observations: Observations) -> CampaignSource:
-    """Where the runs are from; the digest is over the campaign file and the files of the runs that were used."""
+    """Source of the runs; the digest is over the campaign file and the files of the runs that were used."""
     labels = {injection.label for injection in observations.injections}
     used = [curve.run for curve in observations.curves]
     used += [run for run, _, _ in loaded.injections if run.sensor == sensor and run.label in labels]

@@ -1,4 +1,4 @@
-"""What ``characterize`` prints: every figure measured and predicted, and everything that is doubtful."""
+"""Document that ``characterize`` prints: every figure measured and predicted, and everything that is doubtful."""
 
 from typing import Any
 

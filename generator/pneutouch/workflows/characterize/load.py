@@ -30,12 +30,13 @@ _MEGABYTE = 1e6
 _LONGEST = 60
 
 _NEAR_KPA, _NEAR_SHARE = 1.0, 0.1
-"""How far a pressure read before contact may be from one of the design's to be taken for it: a reset's scatter."""
+"""Largest distance of a pressure read before contact from the one of the design's that it is taken for: a reset's
+scatter."""
 
 
 @dataclass(frozen=True)
 class CampaignData:
-    """What a campaign's files hold.
+    """Content of a campaign's files.
 
     Attributes:
         campaign: The campaign; of a single file one that holds it alone.

@@ -38,7 +38,7 @@ class StatePrediction:
         return None if self.evaluation is None else self.evaluation.prediction.states[self.place]
 
     def expected(self) -> ExpectedRun | None:
-        """What the files should read at the end of the range; None where nothing is known."""
+        """Readings that the files should show at the end of the range; None if nothing is known of them."""
         state = self.state
         if state is None or state.figures is None:
             return None

@@ -1,4 +1,4 @@
-"""How files are read where a command or a function states it, in place of [columns] and [format] of a campaign."""
+"""Options of a command or a function for the reading of files, in place of [columns] and [format] of a campaign."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -68,7 +68,8 @@ def _with_stated(columns: ColumnMap, written: FileFormat, reading: Reading, file
 
 
 def read_as(sources: Mapping[str, MeasuredFile], runs: int) -> list[dict[str, Any]]:
-    """What was found by the look of the files: those read alike, and the tables of a campaign file that state it.
+    """Layouts that were found by looking at the files: files read alike together, with the tables of a campaign file
+    for them.
 
     ``whole_campaign``: the tables hold for all of its ``runs``; else they belong to the runs of these files.
     """
@@ -95,7 +96,7 @@ def same_failures(failures: Iterable[Sequence[str]]) -> list[tuple[str, str]]:
 
 
 def reading_text(read_as: Sequence[Mapping[str, Any]]) -> str:
-    """How files were read whose columns or format were found by their look, as the lines to keep."""
+    """Lines for a campaign file that keep the columns and formats which were found by looking at the files."""
     blocks = []
     for entry in read_as:
         files, whole = entry["files"], entry["whole_campaign"]

@@ -41,8 +41,8 @@ EVIDENCE = ("doubtful", "all", "none")
 
 @dataclass(frozen=True)
 class CharacterizationResult:
-    """What became of a campaign: the sheet's content, the folder written, the traces of the runs by file, how the files
-    were read (`reading.read_as`), the design as a command takes it, and the files with their columns."""
+    """Result of a characterization: the sheet's content, the folder written, the traces of the runs by file, the
+    layouts of the files (`reading.read_as`), the design as a command takes it, and the files with their columns."""
 
     measured: CampaignReport
     traces: Mapping[str, Trace]
@@ -53,7 +53,7 @@ class CharacterizationResult:
 
     @property
     def fitted(self) -> bool:
-        """Whether a sensor of the campaign can be fitted: the model of the fit covers its design."""
+        """True if a sensor of the campaign can be fitted: the model of the fit covers its design."""
         scene = self.measured.scene
         try:
             check_fitted(scene, sensor_of(assemble(scene)))
@@ -68,12 +68,12 @@ class CharacterizationResult:
 
     @property
     def failed(self) -> bool:
-        """Whether a file is not used."""
+        """True if a file is not used."""
         return bool(self.measured.failures)
 
     @property
     def missed(self) -> bool:
-        """Whether a requirement of the target was not shown to be met."""
+        """True if a requirement of the target was not shown to be met."""
         return any(verdict.passed is not True for verdict in self.measured.verdicts)
 
 

@@ -91,5 +91,5 @@ def injections(loaded: CampaignData, scene: ResolvedDesign) -> tuple[tuple[Injec
 
 
 def _when(run: CampaignRun) -> str:
-    """What distinguishes runs of one sensor and kind."""
+    """Difference between runs of one sensor and kind, in words."""
     return f"{run.driving_pressure_kPa:g} kPa, run {run.run}" + (f", {run.age_days:g} d" if run.age_days else "")

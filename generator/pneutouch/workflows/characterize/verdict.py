@@ -1,4 +1,4 @@
-"""What was measured against a target, and one age against another."""
+"""Verdicts on measured figures: against a target, and of one age against another."""
 
 from collections.abc import Callable, Sequence
 from itertools import groupby
@@ -70,7 +70,8 @@ def _interval(estimate: Estimate) -> str:
 
 
 def _passed(estimate: Estimate, low: float, high: float) -> bool | None:
-    """Whether the whole interval lies inside; None where it lies on both sides, or there is none."""
+    """True if the whole interval lies inside, False if it lies outside; None if it lies on both sides, or there is
+    none."""
     if estimate.low is None or estimate.high is None:
         return None
     if low <= estimate.low and estimate.high <= high:

@@ -39,7 +39,7 @@ def manifest_of(folder: Path) -> dict[str, Any]:
 
 
 _MISFORMED = (KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError, RecursionError, csv.Error)
-"""What content of another form raises where it is used: whoever changed a file can change its hash in the manifest."""
+"""Exceptions that content of another form raises in use: whoever changed a file can change its hash in the manifest."""
 
 
 @contextmanager

@@ -24,7 +24,7 @@ from pneutouch.workflows.compare.measured import MeasuredColumn, measured_column
 from pneutouch.workflows.compare.predicted import Depths, PredictedColumn, of_build, of_design
 
 Compared = str | DesignSource
-"""What may be compared: a design (name, file or source), a build's folder, a folder of results."""
+"""Things that may be compared: a design (name, file or source), a build's folder, a folder of results."""
 
 _Column: TypeAlias = PredictedColumn | MeasuredColumn
 

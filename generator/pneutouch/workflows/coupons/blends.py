@@ -24,7 +24,7 @@ class CouponMix:
 
     @property
     def about(self) -> str:
-        """How its pieces are called: ``TangoPlus+VeroClear-15``."""
+        """Name of its pieces: ``TangoPlus+VeroClear-15``."""
         return f"{self.pair}-{100 * self.fraction:g}"
 
 
@@ -37,7 +37,7 @@ def resins_of(pair: str, *, file: str | None = None, key: str) -> tuple[str, str
 
 
 def blends(pair: str, library: Library) -> list[CouponMix]:
-    """What is printed of a pair, to where its mixing curve ends or is as stiff as a membrane may be.
+    """Mixes of a pair to print, up to the end of its mixing curve or to the stiffness that a membrane may have.
 
     Raises InputError where there is no curve."""
     soft, stiff = resins_of(pair, key="mixing")

@@ -1,4 +1,4 @@
-"""Which coupons are requested, each on its machine and in its material."""
+"""Order of coupons: those that the user asked for, each on its machine and in its material."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -26,7 +26,7 @@ MIXED_COPIES = 2
 
 @dataclass(frozen=True)
 class CouponOptions:
-    """What the user requested; what is None is chosen."""
+    """Options of the user; None leaves the choice to the program."""
 
     profile: str | None = None
     materials: Sequence[str] = ()
@@ -55,16 +55,16 @@ class CouponItem:
 
     @property
     def material(self) -> Material:
-        """What it is of."""
+        """Material that the coupon is of."""
         return self.context.material
 
     @property
     def printed(self) -> Material:
-        """What is printed: the coupon's material, or that of the mould that it is cast in."""
+        """Material that is printed: the coupon's, or that of the mould in which it is cast."""
         return self.mould or self.material
 
     def solids(self) -> tuple[Solid, ...]:
-        """What is printed: the coupon, or the open mould that it is cast in."""
+        """Solids to print: the coupon, or the open mould in which it is cast."""
         drawn, casting = self.coupon.draw(self.context), self.material.casting
         if self.mould is None or casting is None:
             return drawn
@@ -73,7 +73,7 @@ class CouponItem:
 
     @property
     def nominals(self) -> tuple[Nominal, ...]:
-        """What is measured on it; of a mixed puck the hardness alone, for a mixing curve has no density."""
+        """Quantities to measure on it; of a mixed puck the hardness alone, for a mixing curve has no density."""
         listed = self.coupon.nominals(self.context)
         return listed if self.blend is None or self.coupon.name != MIXED[0] else listed[:1]
 

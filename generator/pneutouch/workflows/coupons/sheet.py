@@ -20,7 +20,7 @@ _MIXES = (
     "by "
     "droplet from voxel slices of the same fractions."
 )
-"""How a machine that takes catalogue materials alone gets a mix."""
+"""Instruction to get a mix from a machine that takes catalogue materials alone."""
 
 
 def sheet(order: CouponOrder, trays: Mapping[str, tuple[CouponPiece, ...]]) -> str:
@@ -65,7 +65,7 @@ def _printing(name: str, pieces: tuple[CouponPiece, ...], order: CouponOrder) ->
 
 
 def _casting(items: list[CouponItem]) -> list[str]:
-    """How the coupons are cast in the moulds that are printed, and what to weigh."""
+    """Steps to cast the coupons in the printed moulds, and the silicone to weigh."""
     if not items:
         return []
     lines = ["The pieces above are open moulds; cast the coupons in them before you measure:"]

@@ -1,4 +1,4 @@
-"""What to change of a design whose driving pressure alone does not reach a required figure."""
+"""Changes of a design whose driving pressure alone does not reach a required figure."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ class TaskAnswer:
 
     @property
     def reached(self) -> bool:
-        """Whether a driving pressure does it."""
+        """True if a driving pressure does it."""
         return bool(self.solutions)
 
 
@@ -73,7 +73,7 @@ class DrivingSchedule:
 
     @property
     def reached(self) -> bool:
-        """Whether every task has a driving pressure."""
+        """True if every task has a driving pressure."""
         return all(answer.reached for answer in self.answers)
 
 

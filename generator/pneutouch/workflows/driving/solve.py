@@ -99,12 +99,13 @@ def possible(curves: ReachCurves, figure: str, value: float) -> PressureBand | N
 
 
 def _excess(curves: ReachCurves, figure: str, value: float) -> Array:
-    """How far the value lies outside the interval, in ln (n,); NaN where one of them is not known."""
+    """Distance by which the value lies outside the interval, in ln (n,); NaN if one of them is not known."""
     return np.asarray(np.abs(np.log(curves.values(figure) / value)) - curves.widths(figure))
 
 
 def _crossing(pressures: Array, excess: Array, inside: int, outside: int) -> float:
-    """Where the excess is zero between two states; the state inside where the other is none or has no figure."""
+    """Pressure at which the excess is zero between two states; the state inside if the other is none or has no
+    figure."""
     if not 0 <= outside < len(pressures) or np.isnan(excess[outside]):
         return float(pressures[inside])
     share = excess[inside] / (excess[inside] - excess[outside])

@@ -1,4 +1,4 @@
-"""What a fit found, as data and as files."""
+"""Result of a fit, as data and as files."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def _notes(fitted: FittedMaterial, small: float) -> list[str]:
 
 
 def _uncast(fitted: FittedMaterial) -> list[str]:
-    """What a material that no profile makes needs before it can be cast."""
+    """Data that a material which no profile makes needs before it can be cast."""
     if _material(fitted).is_cast or _profile(fitted) is not None:
         return []
     return [

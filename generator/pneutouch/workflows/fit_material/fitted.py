@@ -13,8 +13,8 @@ from pneutouch.bench.tensile.read import SpecimenSize
 
 @dataclass(frozen=True, slots=True)
 class MaterialFacts:
-    """What a fit does not find: ``like`` is a known material whose other numbers are kept, ``density`` in g/cm3,
-    ``shore_a`` readings of hardness, ``lab`` who measured."""
+    """Facts of a material that a fit does not find: ``like`` is a known material whose other numbers are kept,
+    ``density`` in g/cm3, ``shore_a`` readings of hardness, ``lab`` who measured."""
 
     like: str | None = None
     density: float | None = None
@@ -27,7 +27,7 @@ _NO_SIZE, _NO_FACTS = SpecimenSize(), MaterialFacts()
 
 @dataclass(frozen=True, slots=True)
 class FitOptions:
-    """What to fit and how.
+    """Options of a fit: its data and its method.
 
     Attributes:
         data: Tensile files, one a specimen; of a puck one file.
@@ -50,7 +50,7 @@ class FitOptions:
 
 @dataclass(frozen=True, slots=True)
 class FittedMaterial:
-    """What a fit found.
+    """Result of a fit.
 
     Attributes:
         options: As given.

@@ -71,7 +71,8 @@ def _check_ours(path: Path) -> None:
 
 
 def _base(fitted: FittedMaterial, library: Library) -> dict[str, Any]:
-    """What is known of the material: of the one it is like, of a shipped one of its name, else what a file needs."""
+    """Known numbers of the material: of the one it is like, of a shipped one of its name, else those that a file
+    needs."""
     name, facts = fitted.options.name, fitted.options.facts
     known = library.paths("materials")
     like = facts.like or (name if name in known and known[name] != fitted.path else None)
@@ -137,7 +138,7 @@ def _slack(fitted: FittedMaterial) -> str:
 
 
 def _test(fitted: FittedMaterial) -> str:
-    """What was tested, in words."""
+    """Description of the test, in words."""
     names = ", ".join(file_name(path.name) for path in fitted.options.data)
     puck = fitted.options.puck
     if puck is not None:

@@ -1,1 +1,1 @@
-"""How to measure a printed sensor, and what to expect."""
+"""Plan of the measurement of a printed sensor, with the expected figures."""

@@ -1,4 +1,4 @@
-"""What a planned campaign must read if the prediction holds, and where the rig cannot follow."""
+"""Readings of a planned campaign if the prediction holds, and the places where the rig cannot follow."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ _LEAK_SHARE = 0.01
 
 @dataclass(frozen=True)
 class PlanViolation:
-    """Where the plan exceeds the rig or the sensor."""
+    """Part of the plan that exceeds the rig or the sensor."""
 
     rule: str
     message: str
@@ -67,7 +67,7 @@ def points(curve: PressCurve, depths: tuple[float, ...]) -> list[dict[str, float
 def curve_warnings(
     resin: str, rating: Rating, curve: PressCurve, tests: Mapping[str, RunProtocol], rig: Rig
 ) -> list[PlanViolation]:
-    """What the kinds of run at one driving pressure would pass; ``tests`` are their protocols by kind."""
+    """Limits that the kinds of run at one driving pressure would pass; ``tests`` are their protocols by kind."""
     driving_kPa = curve.driving / KPA
     depths = tuple(sorted({depth for test in tests.values() for depth in test.depths}))
     expected = points(curve, depths)
@@ -123,7 +123,7 @@ def curve_warnings(
 
 
 def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[PlanViolation]:
-    """Whether the stage reaches the deepest step from its clearance."""
+    """Warning if the stage does not reach the deepest step from its clearance."""
     need = max(depths) + CLEARANCE
     if need <= rig.travel_mm:
         return []

@@ -213,7 +213,7 @@ def _warnings(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests
 
 
 def _expected(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests, rig: Rig) -> dict[str, Any]:
-    """What one resin must read: at every depth of every kind, after injected air, and the leak it may have."""
+    """Readings expected of one resin: at every depth of every kind, after injected air, and the leak it may have."""
     depths = tuple(sorted({depth for test, _ in tests.values() for depth in test.depths}))
     states = [
         {

@@ -27,7 +27,8 @@ def _step(action: str, value: float | None, unit: str, seconds: float) -> StepRe
 
 
 def steps_of(test: RunProtocol, pressure_kPa: float, rig: Rig) -> list[StepRecord]:
-    """What rig and hand do in one run with a plate; travels count from first contact, below zero the plate is clear."""
+    """Steps of rig and hand in one run with a plate; travels count from first contact, below zero the plate is
+    clear."""
     steps = [_step("record", rig.rate_Hz, "Hz", 0.0)]
     for k, depth in enumerate(test.depths):
         if test.reset:
@@ -46,7 +47,7 @@ def steps_of(test: RunProtocol, pressure_kPa: float, rig: Rig) -> list[StepRecor
 
 
 def leak_steps(pressure_kPa: float, rig: Rig) -> list[StepRecord]:
-    """What is done in one leak run: the line is filled, closed and left alone."""
+    """Steps of one leak run: the line is filled, closed and left alone."""
     return [
         _step("set_pressure", pressure_kPa, "kPa", FILL),
         _step("record", rig.rate_Hz, "Hz", 0.0),
@@ -55,7 +56,7 @@ def leak_steps(pressure_kPa: float, rig: Rig) -> list[StepRecord]:
 
 
 def injection_steps(volume_mL: float) -> list[StepRecord]:
-    """What is done in one injection run: ``volume_mL`` in five equal parts, each read after it has settled."""
+    """Steps of one injection run: ``volume_mL`` in five equal parts, each read after it has settled."""
     steps = [_step("vent", 0.0, "kPa", SETTLE)]
     for share in (0.2, 0.4, 0.6, 0.8, 1.0):
         steps += [

@@ -29,7 +29,7 @@ BEFORE = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Load:
-    """What presses the sensor over time: up to ``peak`` (N, or mm of travel with ``travel``; None: half of the range).
+    """Load on the sensor over time, up to ``peak`` (N, or mm of travel with ``travel``; None: half of the range).
 
     ``frequency`` in Hz of a sine that goes from no load to the peak and back; None: a step at a tenth of the record.
     ``duration`` in s; None: 1 s, or ten cycles.

@@ -41,7 +41,7 @@ _SMALL_LOAD = 0.02
 
 @dataclass(frozen=True)
 class GaugeSamples:
-    """What the gauge gives: times (s), gauge pressures (MPa), and how many lay beyond its range."""
+    """Samples of the gauge: times (s), gauge pressures (MPa), and the number beyond its range."""
 
     time: Array
     reading: Array
@@ -194,7 +194,8 @@ def _signal(
 
 
 def _sampled(evaluation: Evaluation, driving: float, time: Array, rise: Array, seed: int) -> GaugeSamples | None:
-    """What the design's gauge reads of a signal: its rate, its noise and its steps as far as they are known."""
+    """Readings of the design's gauge from a signal: with its rate, its noise and its steps as far as they are known;
+    None without a gauge."""
     gauge = evaluation.scene.gauge
     if gauge is None or gauge.rate_Hz is None:
         return None

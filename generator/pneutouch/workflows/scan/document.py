@@ -166,7 +166,7 @@ def _detection(run: ScanRun, seen: AnalysedSignal, row: BarRow, detection: Detec
 
 
 def _notes(bars: Sequence[BarRow], radius: float) -> list[str]:
-    """What the patch makes of the patterns' pitches."""
+    """Notes on the patch: its effect on the patterns' pitches."""
     near = sorted({row.pitch for row in bars if row.pitch < 4.0 * radius})
     if not near:
         return []

@@ -1,4 +1,4 @@
-"""Which dome distinguishes two patterns of a specimen: candidates over radius, wall, resin and driving pressure."""
+"""Domes that distinguish two patterns of a specimen: candidates over radius, wall, resin and driving pressure."""
 
 import re
 from dataclasses import dataclass, replace

@@ -33,7 +33,7 @@ _WALL_SHARE = 0.15
 
 
 def setting_changes(target: Target, library: Library) -> dict[str, Any]:
-    """What a target changes in its base design, by ``table.key``.
+    """Changes of a target to its base design, by ``table.key``.
 
     Raises InputError for what the search finds itself.
     """
@@ -122,13 +122,13 @@ def requested_pair(target: Target, where: str, printer: Printer, library: Librar
 
 
 def prints(scene: ResolvedDesign, material: Any) -> bool:
-    """Whether the membrane's printer runs a resin, together with the connector's where both grow in one print."""
+    """True if the membrane's printer runs a resin, together with the connector's if both grow in one print."""
     with_it = (scene.connector_material,) if isinstance(scene.seat, OnePiece) else ()
     return scene.printer.mode_for(material, *with_it) is not None
 
 
 def with_connector(scene: ResolvedDesign) -> str:
-    """What is added to "cannot run it" where a resin is printed together with the connector."""
+    """Addition to "cannot run it" for a resin that is printed together with the connector."""
     return f" with {scene.connector_material.label}" if isinstance(scene.seat, OnePiece) else ""
 
 

@@ -33,7 +33,7 @@ def sensitivity_uncertainties(
     pool = next(iter(known.values())).pool if known else ()
 
     def sources_of(resin: CandidateResin, batch: SensorBatch) -> list[UncertaintySource]:
-        """What makes the designs of one resin uncertain."""
+        """Sources of uncertainty of the designs of one resin."""
         return sources(
             batch,
             resin.material,

@@ -65,7 +65,8 @@ def dead_volume(scene: ResolvedDesign, sensor: Sensor) -> Callable[[Array], Arra
 
 
 def base_around(scene: ResolvedDesign, radius: float, wall: float) -> RigidBase | None:
-    """What the wall of a dome of inner radius and wall (mm) can lie down on: the scene's connector as drawn for it.
+    """Base that the wall of a dome of inner radius and wall (mm) can lie down on: the scene's connector as drawn for
+    it.
 
     None where the wall passes through; a plane where the connector cannot be drawn.
     """

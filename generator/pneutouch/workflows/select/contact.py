@@ -31,18 +31,19 @@ from pneutouch.spec.read import Changes
 from pneutouch.workflows.select.passing import source_of
 
 AssignmentsOf = Callable[[Candidate], list[str]]
-"""What turns the base into a candidate, as ``table.key=value``."""
+"""Changes that turn the base into a candidate, as ``table.key=value``."""
 
 
 def other_contact(sensor: Sensor) -> str | None:
-    """Why the search with the atlas alone does not do, None where it does: what presses, or the missing base."""
+    """Reason why the search with the atlas alone is not enough: the pressing object, or the missing base; None if it
+    is."""
     if sensor.protocol.other_contact is not None:
         return sensor.protocol.other_contact
     return "the wall passes through its base plane" if sensor.dome.base is None else None
 
 
 def contact_text(scene: ResolvedDesign) -> str:
-    """What presses the sensor of a base, in words."""
+    """Object that presses the sensor of a base, in words."""
     contact = scene.design.contact
     rim = "" if contact.plate_rim_mm is None else f" with a rim of {contact.plate_rim_mm:g} mm radius"
     base = "" if contact.base else ", the wall passing through its base"
@@ -55,7 +56,7 @@ def without_plate(problem: SelectionProblem, sensor: Sensor) -> SelectionProblem
 
 
 def contact_notes(selection: ContactSelection, scene: ResolvedDesign) -> list[str]:
-    """What is stated of an answer by the solid, line by line."""
+    """Notes on an answer by the solid, line by line."""
     settled = f"{selection.rounds} rounds, {selection.solves} candidates solved"
     return [
         f"contact: {contact_text(scene)}",

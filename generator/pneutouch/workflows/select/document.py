@@ -52,7 +52,7 @@ def document(selection: SelectionRun) -> dict[str, Any]:
 
 
 def _contact(selection: SelectionRun) -> dict[str, Any]:
-    """What presses the sensor and how the solid was searched with; nothing for what the atlas covers."""
+    """Pressing object and search with the solid, as data; empty for a contact that the atlas covers."""
     search = selection.by_solid
     if search is None:
         return {}
@@ -128,7 +128,7 @@ def _how(choice: Candidate) -> dict[str, Any]:
 
 
 def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:
-    """What a requirement would have to be for the best design without it."""
+    """Value that a requirement would need for the best design without it."""
     pool, lines = dropped.best.pool, dropped.best.pool.response.lines
     if dropped.requirement == "sensitivity":
         return (

@@ -96,14 +96,14 @@ def _with(target: Target, gauge: str | None) -> Target:
 
 
 def _below_driving(part: _Part, target: Target) -> str | None:
-    """Why a gauge cannot read the required driving pressure; None where it can."""
+    """Reason why a gauge cannot read the required driving pressure; None if it can."""
     driving_kPa = target.target.driving_pressure_kPa or 0.0
     below = part.reading.limit <= driving_kPa * KPA
     return f"{part.reach}, not above the driving pressure of {driving_kPa:g} kPa" if below else None
 
 
 def _not_covered(part: _Part, run: SelectionRun, written: int | None) -> str | None:
-    """Why a gauge does not cover the designs selected with it; None where it does."""
+    """Reason why a gauge does not cover the designs selected with it; None if it does."""
     designs = run.answer.designs[: written or 1]
     if not designs:
         return f"{part.reach}, with which no design meets the target"

@@ -71,7 +71,7 @@ class GradedSelectionRun:
 
     @property
     def passes(self) -> bool:
-        """Whether a grade meets the target and passes ``check``."""
+        """True if a grade meets the target and passes ``check``."""
         return self.search.met and self.rejected is None
 
     @property
@@ -90,11 +90,11 @@ class GradedSelectionRun:
         return self.pair.grade(self.search.best.pole, self.search.best.rim)
 
     def meets(self, trial: GradeTrial) -> bool:
-        """Whether a membrane keeps every tolerance and limit."""
+        """True if a membrane keeps every tolerance and limit."""
         return max(shares(self.grade_target, trial).values()) <= 1.0
 
     def assignments(self) -> list[str]:
-        """What turns the base design into the graded one, as ``table.key=value``."""
+        """Changes that turn the base design into the graded one, as ``table.key=value``."""
         pressures_kPa = sorted({0.0, *(round(p / KPA, 6) for p in self.grade_target.pressures)})
         values = {
             "membrane.material": grade_text(self.grade),
@@ -105,7 +105,7 @@ class GradedSelectionRun:
         return [f"{key}={value}" for key, value in values.items()] + assignments(self.changes)
 
     def rejection(self, library: Library) -> str | None:
-        """Why ``check`` rejects the best grade, None where it passes."""
+        """Reason why ``check`` rejects the best grade, None if it passes."""
         why = judge(source_of(self.base, self.assignments()), library, predicted=True).reason
         return None if why is None else ": ".join(part for part in why if part)
 
@@ -287,7 +287,7 @@ def _nearest(
 
 
 def _atlas_covers(problem: SelectionProblem, pair: ResinPair, sensor: Sensor) -> bool:
-    """Whether the atlas answers for the constant mixes of a pair."""
+    """True if the atlas answers for the constant mixes of a pair."""
     middle, recipe = problem.resins[0].material, shipped().recipe
     soft = float(pair.law.modulus_at(np.array(0.0)))
     return (

@@ -62,7 +62,7 @@ def _known(values: tuple[float, ...]) -> list[float | None]:
 
 
 def missed(selection: GradedSelectionRun) -> list[str]:
-    """What the best grade misses, and how far it can be moved at this size, in words."""
+    """Requirements that the best grade misses, and the range over which it can be moved at this size, in words."""
     grade_target, best = selection.grade_target, selection.search.best
     values = ", ".join(f"{value:.3f}" for value in best.sensitivity_kPa_per_N)
     texts = {
@@ -93,7 +93,7 @@ def missed(selection: GradedSelectionRun) -> list[str]:
 
 
 def rated_warning(selection: GradedSelectionRun) -> str | None:
-    """What is driven above the rated pressure, in words; None where nothing is."""
+    """Warning of a driving pressure above the rated one, in words; None if there is none."""
     best, highest = selection.search.best, max(selection.grade_target.pressures)
     if best.note or highest <= best.rated:
         return None

@@ -1,4 +1,4 @@
-"""Whether a design that was found passes ``check``, and the design file that it becomes."""
+"""Check of a design that was found, and the design file that it becomes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class RejectedDesign:
 
 
 class Judgement(NamedTuple):
-    """What ``check`` makes of a design.
+    """Judgement of ``check`` on a design.
 
     reason: the first broken rule (None where the design cannot be drawn or predicted) and why; None where it passes.
     evaluation: the design as the solid predicts it; None where the print rules alone looked at it.

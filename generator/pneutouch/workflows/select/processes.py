@@ -101,7 +101,7 @@ def _profile(process: str, usual: str, resins: list[str] | None, library: Librar
 
 
 def _unmade(process: str, resins: list[str] | None, library: Library) -> str:
-    """Why no profile of a process makes the resins named: also which file does not state how it is cast."""
+    """Reason why no profile of a process makes the resins named, with the file that lacks their casting."""
     printers = [one for one in library.readable("printers", Printer).values() if one.process == process]
     for name in resins or ():
         material: Material = library.load("materials", name, key="given.materials")

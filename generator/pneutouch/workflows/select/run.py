@@ -79,7 +79,7 @@ class SelectionRun:
     gauges: tuple[GaugeTrial, ...] = ()
 
     def assignments(self, choice: Candidate) -> list[str]:
-        """What turns the base design into a choice, as ``table.key=value``."""
+        """Changes that turn the base design into a choice, as ``table.key=value``."""
         pool = choice.pool
         radius, pressure_kPa = float(pool.radius[0]), float(pool.pressure[0]) / KPA
         pressures = sorted({0.0, round(pressure_kPa, 6)})

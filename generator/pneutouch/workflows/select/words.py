@@ -14,7 +14,7 @@ _FEW = 9.95
 
 
 def headline(selection: SelectionRun) -> str:
-    """How many designs there are, or that there are none."""
+    """Number of designs found, in words, or that there are none."""
     answer = selection.answer
     if answer.designs:
         return f"{len(answer.designs)} designs of {answer.candidates} candidates, on {selection.base.where}"
@@ -24,12 +24,12 @@ def headline(selection: SelectionRun) -> str:
 
 
 def search_notes(selection: SelectionRun) -> list[str]:
-    """What presses the sensor and how the solid was searched with; empty for what the atlas covers."""
+    """Notes on the pressing object and on the search with the solid; empty for a contact that the atlas covers."""
     return [] if selection.by_solid is None else contact_notes(selection.by_solid, selection.base)
 
 
 def missed_text(selection: SelectionRun, nearest: Candidate) -> str:
-    """What the nearest design misses, in percent of what is required."""
+    """Requirements that the nearest design misses, in percent of the required value."""
     parts = []
     for name, percent in missed_percent(selection.problem, nearest).items():
         allowed = f" ({100 * selection.problem.tolerance:g} % is allowed)" if name == "sensitivity" else ""

@@ -1,1 +1,1 @@
-"""What a 3MF or a voxel stack holds."""
+"""Content of a 3MF or of a voxel stack."""

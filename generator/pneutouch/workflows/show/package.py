@@ -1,4 +1,4 @@
-"""What a 3MF holds, as data."""
+"""Content of a 3MF, as data."""
 
 from pathlib import Path
 from typing import Any

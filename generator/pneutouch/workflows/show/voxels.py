@@ -1,4 +1,4 @@
-"""What a voxel stack holds, as data and as a picture."""
+"""Content of a voxel stack, as data and as a picture."""
 
 from pathlib import Path
 from typing import Any

@@ -7,7 +7,8 @@ from pneutouch.spec.files import read_bytes
 
 
 def named_design(design: str | DesignSource, library: Library) -> tuple[str, dict[str, bytes]]:
-    """How a campaign names its design; and, where that was given by a path, its copy for the campaign's folder."""
+    """Name of the design in a campaign; for a design that was given by a path also its copy for the campaign's
+    folder."""
     if isinstance(design, DesignSource):
         return design.name, {}
     plain, calibration = split_calibration(design, library)

@@ -18,7 +18,7 @@ REPEATED = ("steps", "saturation")
 
 @dataclass(frozen=True)
 class SimulationOptions:
-    """What shall be simulated. Pressures in kPa (None: the design's), rate in Hz, ages in days; ``model`` USUAL for the
+    """Options of a simulation. Pressures in kPa (None: the design's), rate in Hz, ages in days; ``model`` USUAL for the
     solid, or harmonic off the axis.
 
     ``planned`` are the runs of a plan; specimens, pressures, runs and kinds then follow from them.

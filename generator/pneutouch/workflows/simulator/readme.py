@@ -1,4 +1,4 @@
-"""What lies in a folder of a simulator's model, in ten lines."""
+"""Content of a folder of a simulator's model, in ten lines."""
 
 from pneutouch.export.simulator.model import SimulatedSensor
 

@@ -23,7 +23,7 @@ from pneutouch.units import KPA
 from pneutouch.workflows.simulator.readme import readme
 
 SIMULATORS = {"mujoco": mjcf_files, "urdf": urdf_files}
-"""What writes the files of a simulator's model, by the name of its format."""
+"""Writers of the files of a simulator's model, by the name of its format."""
 
 STEPS = 80
 """Steps of a press: the spline through them is within 1 % of the model from a fiftieth of the range on."""

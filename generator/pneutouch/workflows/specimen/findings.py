@@ -73,7 +73,7 @@ def _joint(drawn: SpecimenBodies) -> Joint:
 
 
 def _rounding(drawn: SpecimenBodies, finding: Finding) -> bool:
-    """Whether an overlap is the kernel's rounding on coincident facets: the faces are the same by construction."""
+    """True if an overlap is the kernel's rounding on coincident facets: the faces are the same by construction."""
     excess = finding.excess
     if finding.rule != "contact faces" or excess is None or excess.unit != "mm3":
         return False

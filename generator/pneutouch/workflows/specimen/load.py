@@ -41,7 +41,7 @@ class ResolvedSpecimen:
 
     @property
     def context(self) -> PatternContext:
-        """What patterns are drawn in."""
+        """Surroundings in which patterns are drawn."""
         speed = self.specimen.scan.speed_mm_per_s
         return PatternContext(self.block, self.printer, self.matrix, self.inclusion, speed, self.tolerance, self.where)
 

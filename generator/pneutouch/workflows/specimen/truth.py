@@ -1,4 +1,4 @@
-"""What is true of a specimen's patterns, as data: the ground truth that a scan is compared with."""
+"""True patterns of a specimen, as data: the ground truth that a scan is compared with."""
 
 from typing import Any
 

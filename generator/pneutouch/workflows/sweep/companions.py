@@ -1,4 +1,4 @@
-"""What stands next to a dataset: its table as CSV, and its pictures."""
+"""Files next to a dataset: its table as CSV, and its pictures."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from pneutouch.workflows.sweep.plan import PRESSURES, Settings, SweepAxis, Sweep
 from pneutouch.workflows.sweep.swept_field import takes_flags, takes_infinity
 
 KEYS = ("design", "model", "closure", "clamp", "set", "grid", "point")
-"""What a sweep file may hold."""
+"""Keys that a sweep file may hold."""
 
 _RANGE = {"from", "to", "count"}
 

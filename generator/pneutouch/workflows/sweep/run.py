@@ -36,7 +36,7 @@ class SweepResult:
 
 @dataclass(frozen=True, slots=True)
 class ComputeResources:
-    """Where a sweep is computed: ``workers`` processes here (None: one a core), or the cluster of ``scheduler``."""
+    """Computers of a sweep: ``workers`` processes here (None: one a core), or the cluster of ``scheduler``."""
 
     workers: int | None = None
     scheduler: str | None = None
@@ -88,7 +88,7 @@ def _fitting(records: dict[int, Record], study: SweepStudy) -> dict[int, Record]
 
 
 def _is_there(study: SweepStudy, out: Path, *, fresh: bool, resumed: bool) -> bool:
-    """Whether ``out`` is this sweep's dataset already. Raises InputError where it is something to be kept."""
+    """True if ``out`` is this sweep's dataset already. Raises InputError if it is something to be kept."""
     if not out.exists():
         return False
     stored = stored_fingerprint(out)

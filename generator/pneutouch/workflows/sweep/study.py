@@ -103,7 +103,7 @@ def _model(plan: SweepPlan, base: DesignFile) -> str:
 
 
 def _off_axis(value: Any) -> bool:
-    """Whether an offset, a tilt or an object puts the contact off the axis."""
+    """True if an offset, a tilt or an object puts the contact off the axis."""
     return value in LYING if isinstance(value, str) else bool(value)
 
 
@@ -165,7 +165,7 @@ def _stride(shape: tuple[int, ...], k: int) -> int:
 
 
 def _common_fault(plan: SweepPlan, indices: Iterable[int], library: Library) -> InputError | None:
-    """Why none of the points is possible: the first error, or None where one point is possible."""
+    """Reason why none of the points is possible: the first error, or None if one point is possible."""
     first = None
     for index in indices:
         fault = _fault(plan, index, library)
@@ -176,7 +176,7 @@ def _common_fault(plan: SweepPlan, indices: Iterable[int], library: Library) -> 
 
 
 def _fault(plan: SweepPlan, index: int, library: Library) -> InputError | None:
-    """Why a point is not a design, or None."""
+    """Reason why a point is not a design, or None."""
     try:
         load_scene(plan.design, plan.overrides(index), library)
     except InputError as error:

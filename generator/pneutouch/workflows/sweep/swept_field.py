@@ -16,18 +16,18 @@ def _field(key: str) -> FieldInfo | None:
 
 
 def takes_flags(key: str) -> bool:
-    """Whether the field is true or false."""
+    """True if the field is true or false."""
     field = _field(key)
     return field is not None and field.annotation is bool
 
 
 def takes_infinity(key: str) -> bool:
-    """Whether the field's number may be infinite."""
+    """True if the field's number may be infinite."""
     field = _field(key)
     return field is not None and any(getattr(entry, "allow_inf_nan", False) for entry in field.metadata)
 
 
 def takes_words(key: str) -> bool:
-    """Whether the field is one of a few words, or true or false."""
+    """True if the field is one of a few words, or true or false."""
     field = _field(key)
     return field is not None and (field.annotation is bool or get_origin(field.annotation) is Literal)

@@ -125,10 +125,10 @@ POINT: tuple[SweepVariable, ...] = (
 
 
 def state_values(state: Document) -> dict[str, Any]:
-    """What a dataset keeps of a state of a prediction, its uncertainty included."""
+    """Values of a state of a prediction that a dataset keeps, its uncertainty included."""
     return {variable.name: variable.read(state) for variable in STATE}
 
 
 def point_values(prediction: Document) -> dict[str, Any]:
-    """What a dataset keeps of a prediction, apart from its states."""
+    """Values of a prediction that a dataset keeps, apart from its states."""
     return {variable.name: variable.read(prediction) for variable in POINT}

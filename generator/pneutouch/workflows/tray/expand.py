@@ -34,7 +34,7 @@ class TrayVariant:
 
 @dataclass(frozen=True)
 class TrayPiece:
-    """What of a value is printed as one: a body, or the bodies of an assembly grown in one print."""
+    """Part of a value that is printed as one: a body, or the bodies of an assembly grown in one print."""
 
     value: TrayVariant
     solids: tuple[Solid, ...]

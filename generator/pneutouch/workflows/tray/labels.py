@@ -128,7 +128,7 @@ def _mark(row: dict[str, Any]) -> str:
 
 
 def _marks(layout: TrayLayout) -> list[str]:
-    """How each kind of mark that is on the tray is read."""
+    """Legend of the kinds of mark that are on the tray."""
     marks = [mark for part in layout.parts for mark in part.marks]
     kinds = {mark.kind for mark in marks}
     lines = []

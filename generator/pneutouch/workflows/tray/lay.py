@@ -104,7 +104,7 @@ class TrayLayout:
 
     @property
     def resin_note(self) -> str:
-        """How often the resin is changed, in words."""
+        """Number of changes of the resin, in words."""
         if len(self.jobs) == 1:
             return "one job, no resin change"
         count = changes([frozenset(job.resins) for job in self.jobs])
@@ -151,7 +151,7 @@ def fill(job: TrayJob, printer: Printer) -> dict[str, float]:
 
 
 def outline(bodies: Sequence[Body]) -> Any:
-    """What bodies cover seen from above, as a CrossSection."""
+    """Outline of bodies seen from above, as a CrossSection."""
     from manifold3d import CrossSection, OpType
 
     return CrossSection.batch_boolean([body.manifold().project() for body in bodies], OpType.Add)

@@ -1,4 +1,4 @@
-"""What a tray must hold: from a tray file or from the flags of the command line."""
+"""Order of a tray, from a tray file or from the flags of the command line."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -29,7 +29,7 @@ class TrayOrder:
 
 
 def is_tray_file(path: Path) -> bool:
-    """Whether a path is a TOML file with the tables of a tray; designs have none, and a missing file neither."""
+    """True if a path is a TOML file with the tables of a tray; designs have none, and a missing file neither."""
     return path.suffix == ".toml" and is_file(path) and not {"tray", "entry"}.isdisjoint(read_toml(path))
 
 

@@ -39,7 +39,7 @@ def jobs(materials: Sequence[tuple[Material, ...]], printer: Printer, where: str
 
 
 def changes(loads: Sequence[frozenset[str]]) -> int:
-    """How many resins are changed from job to job, the first job's not counted."""
+    """Number of resins that are changed from job to job, the first job's not counted."""
     return sum(len(after - before) for before, after in pairwise(loads))
 
 

@@ -49,7 +49,7 @@ def write_tray(layout: TrayLayout, folder: Path, progress: StepReport = lambda s
 
 
 def document(layout: TrayLayout, folder: Path) -> dict[str, Any]:
-    """What ``pneutouch tray --json`` prints."""
+    """Document that ``pneutouch tray --json`` prints."""
     return {
         "tray": layout.order.name,
         "folder": str(folder),
