@@ -57,6 +57,23 @@ def test_every_public_name_is_documented():
     assert not wrong, "\n".join(wrong)
 
 
+def texts(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Every string that stands alone, with its line: docstrings, and the descriptions below names."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+            yield node.lineno, node.value.value.strip()
+
+
+def test_a_docstring_names_a_thing_or_an_action():
+    wrong = [
+        f"{path}:{line}: {text.splitlines()[0]}"
+        for path, tree in trees(PACKAGE)
+        for line, text in texts(tree)
+        if text.split(maxsplit=1)[0].rstrip(",:") in {"What", "Whether", "Where", "How", "That", "Which"}
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
 def test_every_quantity_that_the_interface_takes_is_named_with_its_unit():
     wrong = [f"{path}: {name}" for path, tree in trees(PACKAGE / "api") for name in without_unit(tree)]
     assert not wrong, "\n".join(wrong)

@@ -1,4 +1,4 @@
-"""What can go wrong, in fields, so that a program can act on it and a message can be composed from it.
+"""Errors of the program, in fields, so that a program can act on them and a message can be composed from them.
 
 Every error carries the exit code of the command line: 1 a rule or a target is not met, 2 the input is
 wrong, 3 a computation could not be completed. To raise one, give the problem and what is known about it::

@@ -10,7 +10,7 @@ from pathlib import Path
 from types import FrameType
 
 STOPS = (signal.SIGINT, signal.SIGTERM)
-"""What a user or a system sends to end a command."""
+"""Signals by which a user or a system ends a command."""
 
 
 @contextlib.contextmanager

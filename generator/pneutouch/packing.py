@@ -68,7 +68,7 @@ def in_rows(sizes: Sequence[tuple[float, float]], area: PackingArea) -> list[Pac
 def _oriented(
     sizes: Sequence[tuple[float, float]], area: PackingArea, flat: bool
 ) -> tuple[int, float, list[PackedPosition | None]]:
-    """How many were placed, the depth taken, and the places; ``flat`` puts the longer sides along the row."""
+    """Number of rectangles placed, the depth taken, and the places; ``flat`` puts the longer sides along the row."""
     boxes = [_box(size, area, flat) for size in sizes]
     order = sorted(range(len(sizes)), key=lambda k: (-boxes[k][1], -boxes[k][0], k))
     depth, places = _rows(boxes, order, area, fill_gaps=True)

@@ -29,7 +29,7 @@ def measured_text(document: dict[str, Any]) -> str:
 
 
 def _warnings(runs: list[dict[str, Any]]) -> list[str]:
-    """How many parts of the records were left out, and how many are noted but used."""
+    """Counts of the parts of the records that were left out, and of those that are noted but used."""
     every = [warning for run in runs for warning in run["warnings"] if warning["kind"] != "note"]
     left = sum(not warning["used"] for warning in every)
     if not every:

@@ -56,7 +56,7 @@ COMMANDS: dict[str, dict[str, CommandEntry]] = {
 """The commands in the order of the help; a command's module loads when it is used."""
 
 CHANGES = "pneutouch.changes"
-"""Where the context of a command keeps which fields --set changes."""
+"""Key in the context of a command under which it keeps the fields that --set changes."""
 
 _USAGE_ERROR: Any = typer.BadParameter.__bases__[0]
 """Base of Typer's errors on words: it comes with Typer or from Click, by Typer's version."""
@@ -143,7 +143,7 @@ def _leave_out_file(error: PneutouchError, changed: Sequence[str]) -> None:
 
 
 def option(command: Any, parameter: str) -> str | None:
-    """What ``command`` calls a parameter of the library, such as --noise for noise_kPa; None where it has none."""
+    """Name that ``command`` gives a parameter of the library, such as --noise for noise_kPa; None if it has none."""
     known = {str(one.name).strip("_"): one for one in (command.params if command else ())}
     if "." in parameter:
         return f"--set {parameter}" if "set" in known else None

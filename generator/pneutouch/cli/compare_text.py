@@ -1,4 +1,4 @@
-"""What ``compare`` prints for people."""
+"""Output of ``compare`` for people."""
 
 from pneutouch.cli.table import table_text
 from pneutouch.evaluation.comparison_record import ColumnRecord, ComparisonRecord, RowRecord
@@ -6,7 +6,7 @@ from pneutouch.report.compared import words
 
 
 def comparison_text(document: ComparisonRecord) -> str:
-    """What differs, every figure with its interval, what exceeds its uncertainty, and what is assumed."""
+    """Differences, every figure with its interval, those that exceed their uncertainty, and the assumptions."""
     labels = words.labels(document)
     lines = [f"{one['label']}: {one['kind']}{_from(one)}" for one in document["compared"]]
     lines += words.marks(document)

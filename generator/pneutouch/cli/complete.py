@@ -1,4 +1,4 @@
-"""What completes names and keys after a tab: files of the library are listed and none is read, so it takes no time."""
+"""Completion of names and keys after a tab: files of the library are listed and none is read, so it takes no time."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""What was measured on coupons, as text for people."""
+"""Measurements of coupons, as text for people."""
 
 from typing import Any
 

@@ -125,7 +125,7 @@ def _unreached(required: str, task: dict[str, Any]) -> list[str]:
 
 
 def _legend(document: dict[str, Any]) -> list[str]:
-    """What the columns mean, and what they rest on."""
+    """Meaning of the columns, and the basis of their numbers."""
     gas = f"dead volume {document['dead_volume_mL']:.3f} mL"
     leak = document["leak"]
     lines = [

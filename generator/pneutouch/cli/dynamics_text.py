@@ -1,4 +1,4 @@
-"""How fast a sensor reads, as text for people."""
+"""Speed of a sensor's reading, as text for people."""
 
 from __future__ import annotations
 

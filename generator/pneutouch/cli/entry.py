@@ -25,7 +25,7 @@ def invoked(words: list[str]) -> int:
 
 
 def _about(error: Any) -> str:
-    """What is wrong with the words of a command line, and where its options are listed."""
+    """Problem with the words of a command line, and the command that lists its options."""
     message = re.sub(r"'(-[^' ]*)'", r"\1", error.format_message()).replace("'", '"').rstrip(".")
     message = re.sub(r"Input should be (a )?(valid )?", r"must be \1", message).split(", unable to parse")[0]
     message = message.replace("a integer", "a whole number")

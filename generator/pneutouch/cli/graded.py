@@ -71,7 +71,7 @@ def graded_table(selection: GradedSelectionRun) -> tuple[list[str], list[list[st
 
 
 def graded_lines(selection: GradedSelectionRun) -> list[str]:
-    """Whether a grade meets the target, what is missed, what it costs and what was left out."""
+    """Verdict on a grade against the target: its misses, its cost and the parts that were left out."""
     from pneutouch.workflows.select.graded_document import missed, rated_warning
 
     sensor = selection.sensor

@@ -1,4 +1,4 @@
-"""What comes after a copy of a printer profile, a gauge or a material: numbers to put in, and the next command."""
+"""Lines after a copy of a printer profile, a gauge or a material: numbers to put in, and the next command."""
 
 from pathlib import Path
 

@@ -9,7 +9,7 @@ from pneutouch.cli.terminal import echo, notify
 
 
 class DesignPlace(NamedTuple):
-    """Where a design that was found is to be saved, and whether over a file."""
+    """Place where a design that was found is to be saved, and whether that replaces a file."""
 
     name: str
     folder: Path

@@ -1,4 +1,4 @@
-"""What a command is doing: a bar on a terminal, one line a stage elsewhere, on stderr both."""
+"""Progress of a command: a bar on a terminal, one line a stage elsewhere, on stderr both."""
 
 import contextlib
 import sys

@@ -1,4 +1,4 @@
-"""What ``pneutouch export-reader`` prints of a reader."""
+"""Output of ``pneutouch export-reader`` for people."""
 
 from collections.abc import Mapping
 from typing import Any

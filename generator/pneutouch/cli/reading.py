@@ -50,7 +50,7 @@ def reading_words(columns: Sequence[str] | None, fields: Mapping[str, Any]) -> l
 
 
 def reading_text(read_as: Sequence[Mapping[str, Any]]) -> str:
-    """How files were read whose columns or format were found by their look, as the lines to keep."""
+    """Lines for a campaign file that keep the columns and formats which were found by looking at the files."""
     from pneutouch.workflows.characterize.reading import reading_text as text
 
     return text(read_as)

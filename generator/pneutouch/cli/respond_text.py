@@ -8,7 +8,7 @@ _HEAD = ["kPa", "data", "slow kPa", "greatest kPa", "last kPa", "resonance Hz", 
 
 
 def respond_text(document: dict[str, Any]) -> str:
-    """What is read of the load in every state."""
+    """Readings of the load in every state."""
     unit = "N" if "peak_N" in document else "mm"
     sine = document["sine_Hz"]
     what = "step" if sine is None else f"sine of {sine:g} Hz"

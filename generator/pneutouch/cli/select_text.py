@@ -48,7 +48,7 @@ def _other(selection: SelectionRun, choice: Candidate, rank: int) -> str:
 
 
 def _place(choice: Candidate) -> str:
-    """What an unknown place of contact adds to the uncertainty."""
+    """Addition of an unknown place of contact to the uncertainty, in words."""
     return "not known" if choice.place is None else f"{100 * choice.place:.0f} %"
 
 

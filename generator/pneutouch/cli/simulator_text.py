@@ -1,4 +1,4 @@
-"""What ``pneutouch export-reader --simulator`` prints of a model."""
+"""Output of ``pneutouch export-reader --simulator`` for people."""
 
 from collections.abc import Mapping
 from typing import Any

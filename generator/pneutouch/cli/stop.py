@@ -45,13 +45,13 @@ class StopSignals:
 
     @property
     def line(self) -> str:
-        """What stopped the command, and what the library adds to it."""
+        """Signal that stopped the command, and the addition of the library to it."""
         by = "stopped by Ctrl-C" if self.received == signal.SIGINT else "stopped by SIGTERM"
         return "; ".join([by, *self.notes])
 
 
 def _loads_library(frame: FrameType | None) -> bool:
-    """Whether a compiled library is being loaded; manifold3d ends the process where Python raises in the middle."""
+    """True while a compiled library is being loaded; manifold3d ends the process if Python raises in the middle."""
     while frame is not None:
         if isinstance(frame.f_locals.get("self"), ExtensionFileLoader):
             return True

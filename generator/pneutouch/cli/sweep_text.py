@@ -1,4 +1,4 @@
-"""What ``sweep`` prints for people: the first rows of its table."""
+"""Output of ``sweep`` for people: the first rows of its table."""
 
 from pathlib import Path
 from typing import Any

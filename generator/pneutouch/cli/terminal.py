@@ -1,4 +1,4 @@
-"""What people read: text wrapped to their terminal, severities in colour there, and streams that may be closed.
+"""Output to people: text wrapped to their terminal, severities in colour there, and streams that may be closed.
 
 In a pipe a line stays whole, so that ``grep`` finds it, and nothing is coloured unless FORCE_COLOR requires it.
 """

@@ -1,4 +1,4 @@
-"""What the commands print for people: plain text tables that fit a terminal."""
+"""Output of the commands for people: plain text tables that fit a terminal."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def prediction_text(document: PredictionRecord) -> str:
 
 
 def _anywhere(contact: dict[str, Any] | None) -> list[str]:
-    """How far a force is off that is read by the central calibration, where place and object are unknown."""
+    """Errors of a force that is read by the central calibration if place and object are unknown."""
     if contact is None:
         return []
     if "unknown" in contact:
@@ -62,7 +62,7 @@ def _anywhere(contact: dict[str, Any] | None) -> list[str]:
 
 
 def _calibrated(calibration: dict[str, Any] | None) -> list[str]:
-    """Which specimen the figures are of, and whether it was measured."""
+    """Specimen that the figures stand for, measured or simulated."""
     if calibration is None:
         return []
     made = f"{SIMULATED}: " if calibration["simulated"] else ""
@@ -108,7 +108,7 @@ def _state_table(states: list[UncertainStateRecord]) -> str:
 
 
 def _off_axis(states: list[UncertainStateRecord]) -> list[str]:
-    """Where the axisymmetric path is unstable, one line an event."""
+    """Events in which the axisymmetric path is unstable, one line each."""
     return [
         f"warning: {event['kind']} at {event['indentation_mm']:.2f} mm and {state['driving_pressure_kPa']:g} kPa: "
         f"{event['message']}"
@@ -119,7 +119,7 @@ def _off_axis(states: list[UncertainStateRecord]) -> list[str]:
 
 
 def _sheared(states: list[UncertainStateRecord]) -> list[str]:
-    """What an object that moves sideways after pressing meets, one line a driving pressure."""
+    """Figures of an object that moves sideways after pressing, one line a driving pressure."""
     lines = []
     for state in states:
         sheared = state.get("off_axis", {}).get("shear")
@@ -144,7 +144,7 @@ def _interval(uncertainty: UncertaintyRecord | SampleRecord | None) -> str:
 
 
 def _uncertainty(states: list[UncertainStateRecord]) -> list[str]:
-    """What to measure first, at the highest driving pressure; or why nothing is known."""
+    """Advice on the first thing to measure, at the highest driving pressure; or the reason why nothing is known."""
     last = states[-1]
     if "unknown" in last["uncertainty"]:
         return [f"uncertainty not known: {last['uncertainty']['unknown']}"]

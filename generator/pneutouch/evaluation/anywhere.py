@@ -1,4 +1,4 @@
-"""What the reading of a design does when contact is not central: from the shipped table, for sheet and prediction."""
+"""Reading of a design under contact off the centre: from the shipped table, for sheet and prediction."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def contact_chart(prediction: SensorPrediction, sensor: Sensor) -> ContactChart 
 
 
 def place_unknown(prediction: SensorPrediction, sensor: Sensor, states: Sequence[SensorState]) -> str | None:
-    """Why the shipped table does not cover a sensor in its states; None where it does."""
+    """Reason why the shipped table does not cover a sensor in its states; None if it does."""
     point = prediction.limits.limit_point
     if point is None:
         return "the pressure of the dome has no maximum"
@@ -151,6 +151,6 @@ def _at_travels(
 
 
 def _free_offset(sensor: Sensor, states: Sequence[SensorState]) -> float:
-    """How far a plate may stand off the axis before the contact reaches its edge, mm."""
+    """Offset of a plate from the axis at which the contact reaches its edge, mm."""
     widest = max(float(np.interp(s.range_end, s.indentation, s.contact_radius)) for s in states)
     return max(sensor.protocol.plate_radius - widest, 0.0)

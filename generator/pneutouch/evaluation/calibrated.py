@@ -1,4 +1,4 @@
-"""What a calibration makes of a design's sensor: its parameters, its correction, its error."""
+"""Effect of a calibration on a design's sensor: its parameters, its correction, its error."""
 
 import math
 
@@ -74,7 +74,7 @@ def check_options(scene: ResolvedDesign, model: str, clamp: str) -> None:
 
 
 def assumption(scene: ResolvedDesign) -> str:
-    """What a prediction by a calibration is of, in one sentence."""
+    """Sensor that a prediction by a calibration stands for, in one sentence."""
     calibration = scene.calibration
     assert calibration is not None
     source, response = calibration.source, calibration.response
@@ -94,7 +94,7 @@ def assumption(scene: ResolvedDesign) -> str:
 
 
 def unmeasured(scene: ResolvedDesign, depth: float) -> list[str]:
-    """What of a prediction to ``depth`` (mm) its calibration did not measure, one sentence each."""
+    """Parts of a prediction to ``depth`` (mm) that its calibration did not measure, one sentence each."""
     calibration, notes = scene.calibration, []
     assert calibration is not None
     source, plate_mm = calibration.source, scene.design.indentation.plate_diameter_mm

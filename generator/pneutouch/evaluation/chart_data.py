@@ -118,7 +118,7 @@ class ContactRow(NamedTuple):
 
 @dataclass(frozen=True)
 class ContactChart:
-    """What the reading does when contact is not central, at one or two driving pressures.
+    """Curves of the reading under contact off the centre, at one or two driving pressures.
 
     Attributes:
         driving_pressures_kPa: The lowest and the highest of the design, kPa.

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 def air(evaluation: Evaluation) -> GasNotes:
-    """What temperature and speed do to the sealed air, one entry a state."""
+    """Effects of temperature and speed on the sealed air, one entry a state."""
     pressures = [state.driving_pressure for state in evaluation.prediction.states]
     return gas_notes(batch_of(plate_alone(evaluation.sensor), pressures))
 

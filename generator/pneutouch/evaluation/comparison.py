@@ -229,7 +229,7 @@ def _difference(
 
 
 def _notes(sensors: Sequence[ComparedSensor], pressures_kPa: Sequence[float], inputs: Mapping[str, Any]) -> list[str]:
-    """What is assumed, and what was left out."""
+    """Assumptions, and parts that were left out."""
     notes = []
     predicted = [s for s in sensors if s.resin is not None]
     if len(predicted) > 1 and sensors[0].resin is not None:

@@ -1,4 +1,4 @@
-"""What the uncertainty of a sensor under another contact than a plate without friction rests on, in words."""
+"""Basis of the uncertainty of a sensor under another contact than a plate without friction, in words."""
 
 from __future__ import annotations
 

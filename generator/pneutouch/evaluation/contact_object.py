@@ -52,7 +52,7 @@ _MAKE = {
 
 
 def rigid_base(assembly: Assembly) -> RigidBase | None:
-    """What the wall of a design can lie down on, from the connector's faces; None where it passes through."""
+    """Base that the wall of a design can lie down on, from the connector's faces; None if it passes through."""
     layout, seat = assembly.layout, assembly.scene.seat
     if not assembly.scene.design.contact.base:
         return None

@@ -13,7 +13,7 @@ _OF_RESIN = ("published modulus", "mixing fraction", "ageing of the modulus", "a
 
 @dataclass(frozen=True, slots=True)
 class SourceEffect:
-    """What one standard uncertainty of a source does to the logarithm of a figure, with its sign."""
+    """Effect of one standard uncertainty of a source on the logarithm of a figure, with its sign."""
 
     name: str
     origin: str

@@ -1,4 +1,4 @@
-"""How fast a sensor reads: its gas line as drawn, and the figures of every state."""
+"""Speed of a sensor's reading: its gas line as drawn, and the figures of every state."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ GAP = "gap"
 """The piece of an air path that is a volume next to the cavity, not a duct."""
 
 GAUGE_RATE = "sampling of the gauge"
-"""What limits the bandwidth, next to those of `mechanics.line.band`."""
+"""Limit of the bandwidth by the gauge, next to those of `mechanics.line.band`."""
 
 _SAME = 1e-6
 """Relative difference of dead volumes below which they are one."""
@@ -54,7 +54,7 @@ class DynamicState:
 
 @dataclass(frozen=True, slots=True)
 class SensorBandwidth:
-    """What limits a sensor over time.
+    """Limits of a sensor over time.
 
     Attributes:
         pieces: The air's path as drawn.
@@ -187,7 +187,7 @@ def _state_document(state: DynamicState, rate_Hz: float | None) -> dict[str, Any
 
 
 def speed_data(figures: SensorBandwidth) -> SpeedData:
-    """What a datasheet shows of it: every driving pressure in the first series of relaxation data."""
+    """Speed as a datasheet shows it: every driving pressure in the first series of relaxation data."""
     first = {state.driving_pressure: state for state in reversed(figures.states)}
     rows = []
     for state in (first[pressure] for pressure in sorted(first)):

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 # The print rules and the uncertainty load where they are used: figures alone need neither.
 
 CLAMPS = ("base", "flange")
-"""Where the solid is held."""
+"""Clamps: the faces at which the solid is held."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class Evaluation:
 
     @cached_property
     def estimates(self) -> tuple[JobEstimate, ...]:
-        """What each print job takes: resin, support, layers, time."""
+        """Estimates of each print job: resin, support, layers, time."""
         from pneutouch.evaluation.subject import made_of
         from pneutouch.printability.estimate import estimate
 
@@ -139,7 +139,7 @@ class Evaluation:
 
     @cached_property
     def bandwidth(self) -> SensorBandwidth:
-        """How fast the sensor reads; see docs/background/dynamics.md."""
+        """Speed of the sensor's reading; see docs/background/dynamics.md."""
         from pneutouch.evaluation.dynamics import sensor_bandwidth
 
         return sensor_bandwidth(self.assembly, self.sensor, self.prediction)

@@ -1,4 +1,4 @@
-"""Whether parameters of a design's sensor can be fitted to measured runs."""
+"""Check that parameters of a design's sensor can be fitted to measured runs."""
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError

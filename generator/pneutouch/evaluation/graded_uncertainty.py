@@ -10,9 +10,9 @@ of the even wall of the same mean modulus, -0.47 too.
 from pneutouch.mechanics import Sensor
 
 GAP, STEEP_GAP = 0.2, 0.45
-"""How far the derivatives d ln sensitivity / d ln modulus and wall of the even wall were found from those of the graded
-solid, with the paper's sensor: with one end 6 times as stiff as the other, either one, and with the rim 13 times as
-stiff as the pole (`tests/evaluation/test_graded_uncertainty.py`)."""
+"""Distance of the derivatives d ln sensitivity / d ln modulus and wall of the even wall from those of the graded solid,
+for the paper's sensor: with one end 6 times as stiff as the other, either one, and with the rim 13 times as stiff as
+the pole (`tests/evaluation/test_graded_uncertainty.py`)."""
 
 _NOTE = (
     "the wall is graded: the figures are the solid's, their relative uncertainty is that of an even wall of its mean "

@@ -1,4 +1,4 @@
-"""How much silicone to weigh for a cast membrane."""
+"""Silicone to weigh for a cast membrane."""
 
 from pneutouch.evaluation.sheet_data import SiliconePour
 from pneutouch.parts import Assembly

@@ -1,4 +1,4 @@
-"""How far a reader is from the model that it was made from, at states that its grid does not hold."""
+"""Error of a reader against the model that it was made from, at states that its grid does not hold."""
 
 from __future__ import annotations
 

@@ -118,7 +118,7 @@ def _noise_kPa(evaluation: Evaluation, grid: ReaderGrid) -> float:
 
 
 def _margin(grid: ReaderGrid) -> float:
-    """How far a driving pressure may be below the box, MPa, so that the table moves by `_DRIFT_SHARE` at most."""
+    """Distance of a driving pressure below the box, MPa, over which the table moves by `_DRIFT_SHARE` at most."""
     first = grid.computed
     step = float(grid.driving_pressure[1] - grid.driving_pressure[0])
     moved = np.interp(grid.rise[first], grid.rise[first + 1], grid.force[first + 1]) - grid.force[first]

@@ -57,7 +57,7 @@ def force_uncertainty(evaluation: Evaluation, grid: ReaderGrid) -> Array | None:
 
 
 def why_unknown(evaluation: Evaluation, grid: ReaderGrid) -> str | None:
-    """Why the uncertainty of the force is unknown, or None where it is known."""
+    """Reason why the uncertainty of the force is unknown, or None if it is known."""
     other = evaluation.sensor.protocol.other_contact
     if other is not None:
         return f"computed for a central plate without friction alone; here {other}"

@@ -88,7 +88,7 @@ def resins_of(
 
 
 def resin_of(scene: ResolvedDesign) -> str:
-    """How a campaign calls the membrane of a design: its resin, or as designed where it is a mix."""
+    """Name that a campaign gives the membrane of a design: its resin, or "as designed" for a mix."""
     chosen = scene.design.membrane.material
     return chosen if isinstance(chosen, str) else AS_DESIGNED
 

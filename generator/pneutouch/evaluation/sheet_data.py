@@ -116,7 +116,7 @@ class DetectableForce(NamedTuple):
 
 
 class SheetGauge(NamedTuple):
-    """What the gauge reads (gauge pressures, kPa) and detects.
+    """Readings of the gauge (gauge pressures, kPa) and its threshold.
 
     Attributes:
         title: Its name.
@@ -139,8 +139,7 @@ class SheetGauge(NamedTuple):
 
 
 class SpeedState(NamedTuple):
-    """How fast a sensor reads at a driving pressure (MPa): Hz and s, None where there is none
-    (docs/background/dynamics.md)."""
+    """Speed of a sensor at a driving pressure (MPa): Hz and s, None without a limit (docs/background/dynamics.md)."""
 
     driving_pressure: float
     resonance: float | None
@@ -154,7 +153,7 @@ class SpeedState(NamedTuple):
 
 
 class SpeedData(NamedTuple):
-    """How fast a sensor reads, by driving pressure; ``rate_Hz`` of the gauge is None where it is unknown."""
+    """Speed of a sensor by driving pressure; ``rate_Hz`` of the gauge is None if it is unknown."""
 
     states: tuple[SpeedState, ...]
     rate_Hz: float | None
@@ -163,7 +162,7 @@ class SpeedData(NamedTuple):
 
 @dataclass(frozen=True)
 class SiliconePour:
-    """What is weighed for one filling: all parts together and each of them, g; ``note`` states what it is made of."""
+    """Masses to weigh for one filling: all parts together and each of them, g; ``note`` names the basis of the mass."""
 
     volume_mL: float
     mass_g: float

@@ -104,7 +104,7 @@ def wetted(assembly: Assembly) -> tuple[WettedSurface, ...]:
 
 
 def _outer_wall(assembly: Assembly) -> Callable[[Array], Flags]:
-    """Whether surface points (n, 3) lie on the dome's outer wall: what touches the world must not be matte."""
+    """Test of surface points (n, 3): True on the dome's outer wall, which touches the world and must not be matte."""
     radius, slack = assembly.layout.outer_radius, 2 * assembly.scene.mesh_tolerance
 
     def on_wall(points: Array) -> Flags:

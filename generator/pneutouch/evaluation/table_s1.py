@@ -1,4 +1,4 @@
-"""What is known of each model's error in sensitivity: the paper's sensor in each resin against its Table S1.
+"""Known errors of each model in sensitivity: the paper's sensor in each resin against its Table S1.
 
 The solid's errors are computed once and shipped (``make chart`` writes the file, a test recomputes cells of it):
 computing them again would double the time of every prediction. The membrane's cost nothing and are computed here.
@@ -56,7 +56,8 @@ def _errors(sensor: Sensor, truth: tuple[float, float], model: str, closure: str
 
 
 def fingerprint(material: Material) -> str:
-    """What the solid's error on the paper's sensor follows from: the resin's mechanics and its measurements."""
+    """Fingerprint of the inputs of the solid's error on the paper's sensor: the resin's mechanics and its
+    measurements."""
     sensor = material_sensor(material)
     facts = [
         sensor.wall.shear_modulus,
@@ -69,7 +70,7 @@ def fingerprint(material: Material) -> str:
 
 
 def is_near_paper(sensor: Sensor) -> bool:
-    """Whether a sensor is near enough to the paper's that its error applies."""
+    """True if a sensor is near enough to the paper's that its error applies."""
     low, high = NEAR_WALL
     cavity = 2 / 3 * np.pi * sensor.dome.inner_radius**3
     close = low <= sensor.dome.wall_thickness / sensor.dome.inner_radius <= high

@@ -51,7 +51,7 @@ class SensorBudget:
 
 
 def unknown(sensor: Sensor, model: str) -> str | None:
-    """Why the uncertainty of a model's prediction is unknown, or None where it is known.
+    """Reason why the uncertainty of a model's prediction is unknown, or None if it is known.
 
     The atlas must cover the sensor under a plate without friction; what another contact changes is the solid's.
     """
@@ -65,7 +65,7 @@ def unknown(sensor: Sensor, model: str) -> str | None:
 
 
 def _softer_unknown(sensor: Sensor) -> str | None:
-    """Why the derivatives of a wall too soft for the atlas itself are unknown, or None where they are known."""
+    """Reason why the derivatives of a wall too soft for the atlas itself are unknown, or None if they are known."""
     from pneutouch.mechanics.atlas_states import outside_atlas
     from pneutouch.mechanics.uncertainty.neighbours import softer_walls
 
@@ -74,7 +74,7 @@ def _softer_unknown(sensor: Sensor) -> str | None:
 
 
 def _soft_note(sensor: Sensor) -> str:
-    """What the derivatives of a wall are that is softer than those that the atlas answers for."""
+    """Note on the derivatives of a wall that is softer than those that the atlas answers for."""
     gas = sensor.gas.ambient_pressure / sensor.wall.shear_modulus
     return (
         f"the ambient pressure is {gas:.3g} times the modulus, more than the atlas answers for: the figures are the "

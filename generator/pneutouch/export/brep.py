@@ -150,7 +150,7 @@ def _line(start: Vector, end: Vector) -> TopoDS_Edge:
 
 
 def _place(frame: Frame) -> TopLoc_Location:
-    """Where a frame stands in the design frame."""
+    """Position of a frame in the design frame."""
     from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt, gp_Trsf
     from OCP.TopLoc import TopLoc_Location
 

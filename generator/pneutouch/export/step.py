@@ -23,7 +23,7 @@ _SWITCHES = {"write.surfacecurve.mode": 1, "write.precision.mode": 0, "write.ste
 
 @uninterrupted()
 def step_obstacle() -> str | None:
-    """Why no STEP file can be written, in words; None where CadQuery's kernel is there."""
+    """Reason why no STEP file can be written, in words; None if CadQuery's kernel is there."""
     try:
         import OCP  # noqa: F401
     except ModuleNotFoundError as error:

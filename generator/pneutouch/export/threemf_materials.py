@@ -51,5 +51,5 @@ class Materials:
 
 
 def is_composite(material: Material) -> bool:
-    """Whether a material is written as a composite: mixed from several resins in known fractions."""
+    """True if a material is written as a composite: mixed from several resins in known fractions."""
     return material.is_digital and material.mix is not None

@@ -35,7 +35,7 @@ _END_64, _END_64_SIZE = b"PK\x06\x06", 56
 _LOCATOR_64, _LOCATOR_64_SIZE = b"PK\x06\x07", 20
 _MOST_DIRECTORY = MOST_PARTS * 1024
 _DAMAGE = (zipfile.BadZipFile, zlib.error, struct.error, EOFError, OSError, ValueError, OverflowError, RuntimeError)
-"""What zipfile raises for archives with wrong bytes in them, found by changing bytes at random."""
+"""Exceptions that zipfile raises for archives with wrong bytes in them, found by changing bytes at random."""
 
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 
@@ -132,8 +132,7 @@ Name = tuple[str, str]
 
 
 class Components:
-    """Which object refers to which, over all parts: a few references can stand for more objects than any reader
-    holds."""
+    """References between objects, over all parts: a few of them can stand for more objects than any reader holds."""
 
     def __init__(self, where: str) -> None:
         self.where, self.object = where, ("", "")

@@ -55,7 +55,7 @@ class StoredBody:
 
 @dataclass(frozen=True)
 class Package:
-    """What a 3MF holds. ``metadata`` has our own entries by their bare names; ``recipe`` is JSON text, ours alone."""
+    """Content of a 3MF. ``metadata`` has our own entries by their bare names; ``recipe`` is JSON text, ours alone."""
 
     path: Path
     bodies: tuple[StoredBody, ...]

@@ -1,4 +1,4 @@
-"""What the 3D view of a page shows: meshes with a normal and a colour at every corner, as a short text."""
+"""Meshes of the 3D view of a page, with a normal and a colour at every corner, as a short text."""
 
 import base64
 import json

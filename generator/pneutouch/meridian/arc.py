@@ -1,4 +1,4 @@
-"""Where on the arc of the dome a point of its wall lies."""
+"""Place of a point of the wall on the arc of the dome."""
 
 import numpy as np
 

@@ -62,7 +62,7 @@ def crossings(parts: Sequence[RisingPiece], level: float) -> list[float]:
 
 
 def encloses(parts: Sequence[RisingPiece], along: Array, level: Array) -> Flags:
-    """Whether points (along, level), arrays (n,) in mm, lie inside the outline."""
+    """True for points (along, level), arrays (n,) in mm, inside the outline."""
     inside = np.zeros(len(along), bool)
     for part in parts:
         at = part.at(level)

@@ -40,7 +40,7 @@ class Meridian:
 
     @property
     def is_ring(self) -> bool:
-        """Whether the loop closes away from the axis (the solid has a hole along it)."""
+        """True if the loop closes away from the axis (the solid has a hole along it)."""
         return math.dist(self.start, self.end) <= _CLOSED
 
     def volume(self) -> float:

@@ -39,7 +39,7 @@ def _installed(library: str) -> str | None:
 
 
 def entry(content: bytes) -> dict[str, Any]:
-    """What a manifest states of a file."""
+    """Entry of a file in a manifest."""
     return {"sha256": digest(content), "bytes": len(content)}
 
 

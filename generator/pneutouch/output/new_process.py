@@ -1,4 +1,4 @@
-"""What a new design starts from where its process or its resin is given: a profile that runs it, a seat, pressures."""
+"""Start of a new design of a given process or resin: a profile that runs it, a seat, pressures."""
 
 from typing import Any, get_args
 
@@ -24,7 +24,7 @@ modulus is known to a factor of two."""
 
 
 def process_values(process: str | None, material: str | None, library: Library) -> dict[str, dict[str, Any]]:
-    """What differs from the defaults, by table and key. Raises InputError where no profile fits."""
+    """Values that differ from the defaults, by table and key. Raises InputError if no profile fits."""
     if process is not None and process not in PROCESSES:
         raise InputError(f"unknown.{nearest(process, PROCESSES)}", key="process", value=process)
     default = DesignFile()
@@ -48,7 +48,8 @@ def process_values(process: str | None, material: str | None, library: Library) 
 def profile_note(
     values: dict[str, dict[str, Any]], library: Library, *, process: str | None, material: str | None
 ) -> str:
-    """Which profile, and where none was given which resin, `process_values` took, with other profiles of that resin."""
+    """Note on the profile, and on the resin if none was given, that `process_values` took, with other profiles of that
+    resin."""
     profile, chosen = str(values["print"]["profile"]), str(values["membrane"]["material"])
     resin: Material = library.load("materials", chosen)
     printers = library.readable("printers", Printer)

@@ -78,7 +78,7 @@ OPTIONAL = ("calibration", "gauge", "mould_printer", "mould_material")
 
 
 def scene_parts(scene: ResolvedDesign) -> dict[str, Any]:
-    """What a scene is made of, by field; without the optional parts that it does not have."""
+    """Parts of a scene, by field; without the optional parts that it does not have."""
     parts = {key: getattr(scene, key) for key in scene_kinds()}
     return {key: part for key, part in parts.items() if part is not None or key not in OPTIONAL}
 

@@ -167,7 +167,7 @@ def stored_versions(package: Package) -> dict[str, Any]:
 
 
 def other_versions(package: Package, recipe: BuildRecipe) -> list[str]:
-    """What made a 3MF and is of another version here, in words: ``pneutouch 0.1 (here 0.2)``."""
+    """Programs that made a 3MF and are of another version here, in words: ``pneutouch 0.1 (here 0.2)``."""
     made = {**stored_versions(package), "pneutouch": recipe.version}
     return [
         f"{name} {str(made[name])[:40]} (here {here})"

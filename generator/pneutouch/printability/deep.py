@@ -13,7 +13,7 @@ from pneutouch.units import UM
 
 _SOURCE = "measured with pymeshlab (MeshLab's filters), independently of the meshes' maker"
 _FINER = 10.0
-"""How much finer the mesh is that stands for the exact solid."""
+"""Factor by which the mesh that stands for the exact solid is finer."""
 _SLIVER = 1.0
 """Least angle of a triangle in degrees below which slicers and solvers lose precision (own, unverified)."""
 _MANY = 0.1

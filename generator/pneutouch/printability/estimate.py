@@ -1,4 +1,4 @@
-"""What a print takes: resin, support, layers and time, each with the assumption it rests on.
+"""Estimates of a print: resin, support, layers and time, each with its assumption.
 
 Estimates for planning, from the same cubes that the rules look at; a slicer is more exact.
 """
@@ -80,7 +80,7 @@ class JobEstimate:
 
 
 def estimate(subject: PrintSubject) -> list[JobEstimate]:
-    """What each job takes, in order of the subject's items; jobs with a mesh that is no solid are left out."""
+    """Estimate of each job, in order of the subject's items; jobs with a mesh that is no solid are left out."""
     return [_estimate(job) for job in PrintView(subject).jobs if job.sound]
 
 
@@ -106,7 +106,7 @@ def _estimate(job: PrintJob) -> JobEstimate:
 
 
 def _cast(job: PrintJob) -> JobEstimate:
-    """What a casting takes: the body alone, and the time of its cure; mould, overflow and loss come on top."""
+    """Estimate of a casting: the body alone, and the time of its cure; mould, overflow and loss come on top."""
     first = job.parts[0].item
     x, y, z = (float(length) for length in job.bounds[1] - job.bounds[0])
     items, seconds = tuple(_item(part) for part in job.parts), None

@@ -12,7 +12,7 @@ Severity = Literal["error", "warning", "note"]
 
 @dataclass(frozen=True, slots=True)
 class Excess:
-    """How far off: what was measured and the limit it stands against, both in ``unit`` ("" for a ratio or a count)."""
+    """Measured value and the limit that it breaks, both in ``unit`` ("" for a ratio or a count)."""
 
     measured: float
     limit: float

@@ -1,4 +1,4 @@
-"""What the rules look at: bodies as they will be printed, whatever they are, and where they must meet.
+"""Subject of the rules: bodies as they will be printed, whatever they are, and the places where they must meet.
 
 A sensor's bodies become a subject like this::
 

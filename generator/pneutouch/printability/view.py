@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 
 
 class WettedSurface(NamedTuple):
-    """What a silicone is poured against: the body's name, its material's label and the process it is printed by."""
+    """Surface that a silicone is poured against: the body's name, its material's label and the process it is printed
+    by."""
 
     body: str
     material: str
@@ -46,7 +47,7 @@ class GluedSeat(NamedTuple):
 
 @dataclass(frozen=True)
 class SensorContext:
-    """What the rules on the sensor's working need: its prediction, the mechanics' view of it, and its rating.
+    """Data for the rules on the sensor's working: its prediction, the mechanics' view of it, and its rating.
 
     ``membrane`` is the name of the item whose wall the sensor presses; ``calibrated``: the sensor is a printed one.
     ``gauge`` is the one that the design names; None stands for the paper's. ``wetted``: what a cast membrane cures
@@ -97,7 +98,7 @@ class PrintPart:
 
     @cached_property
     def sound(self) -> bool:
-        """Whether the mesh bounds a solid, without which nothing else can be measured on it."""
+        """True if the mesh bounds a solid, without which nothing else can be measured on it."""
         return self.item.body.is_closed() and not self.manifold.is_empty() and self.manifold.volume() > 0
 
     @cached_property
@@ -136,14 +137,14 @@ class PrintPart:
         return [place for place in places if not self._filled(place)]
 
     def _filled(self, place: ThinPlace) -> bool:
-        """Whether a place is an opening that the item's insert fills, which no tool has to make."""
+        """True if a place is an opening that the item's insert fills, which no tool has to make."""
         insert = self.item.insert
         if insert is None or place.kind not in OPENINGS:
             return False
         return bool(insert.distance(np.array([place.where]))[0] <= 0.5 * place.size + self.surface.chord_error[0])
 
     def slack(self, size: float, turn: float) -> float:
-        """How far a measured size (mm) may be off, mm, between curves whose faces turn by ``turn`` (radians).
+        """Possible error of a measured size (mm), mm, between curves whose faces turn by ``turn`` (radians).
 
         A chord may miss the axis by half that turn, and without the exact solid the mesh may be off as well.
         """
@@ -178,7 +179,7 @@ class PrintJob:
 
     @property
     def sound(self) -> bool:
-        """Whether every part is a solid."""
+        """True if every part is a solid."""
         return all(part.sound for part in self.parts)
 
     @cached_property
@@ -220,7 +221,7 @@ class PrintJob:
         return parts_shells + [replace(shell, body=self.nearest(shell.where).name) for shell in joined]
 
     def in_hollow(self, where: Point3) -> bool:
-        """Whether a point lies in the box of a closed hollow."""
+        """True if a point lies in the box of a closed hollow."""
         return any(bool(((where >= h.bounds[0]) & (where <= h.bounds[1])).all()) for h in self.hollows)
 
     def nearest(self, where: Point3) -> PrintPart:

@@ -1,4 +1,4 @@
-"""What the keys of written documents mean: one key, one meaning, unless a record has its own."""
+"""Meaning of the keys of written documents: one key, one meaning, unless a record has its own."""
 
 import tomllib
 from functools import cache

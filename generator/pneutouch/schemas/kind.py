@@ -1,4 +1,4 @@
-"""What the program states of one kind of document: its form, its title, where it lies, and how its schema is made."""
+"""Kind of a document: its form, its title, its place, and the function that makes its schema."""
 
 from collections.abc import Callable
 from typing import Any, Literal, NamedTuple

@@ -63,7 +63,7 @@ class Candidate:
 
     @property
     def ends_with(self) -> str:
-        """What ends the range of force."""
+        """Event that ends the range of force, or the depth."""
         return ENDS[int(self.pool.response.ends[0])] if self.contact is None else self.contact.ends_with
 
     @property
@@ -161,8 +161,8 @@ def shortlist(
 def _least_moved(
     problem: SelectionProblem, pool: CandidatePool, weights: tuple[float, float], fits: Flags
 ) -> Array | None:
-    """What an unknown place of contact costs candidates, (n,), in margins as the ranking has them; None where the
-    target does not count it. Those that the table does not cover come last."""
+    """Cost of an unknown place of contact to candidates, (n,), in margins as the ranking has them; None if the target
+    does not count it. Candidates that the table does not cover come last."""
     if not problem.anywhere:
         return None
     known = np.full(fits.shape, np.nan)
@@ -177,7 +177,7 @@ def places(problem: SelectionProblem, pool: CandidatePool) -> Array:
 
 
 def differ(pool: CandidatePool, a: int, b: int) -> bool:
-    """Whether two candidates of one resin differ enough to count as two."""
+    """True if two candidates of one resin differ enough to count as two."""
     ratio = (pool.wall[a] / pool.radius[a]) / (pool.wall[b] / pool.radius[b])
     high, low = max(pool.pressure[a], pool.pressure[b]), min(pool.pressure[a], pool.pressure[b])
     return bool(max(ratio, 1 / ratio) >= _APART or high > _APART * low + 1e-3)
@@ -226,7 +226,7 @@ def _judged(
 
 
 def costs(weights: tuple[float, float], expanded: Array, span: tuple[Array, Array], least: Array) -> Array:
-    """What the ranking sorts by, (n,): from uncertainties, sensitivities at none and rated pressure, least margins."""
+    """Key of the ranking, (n,): from uncertainties, sensitivities at none and rated pressure, least margins."""
     with np.errstate(invalid="ignore", divide="ignore"):
         moves = np.abs(np.log(span[1] / span[0]))
     return np.asarray(

@@ -21,8 +21,9 @@ _SAME = 1e-9
 
 
 def places(batch: SensorBatch, response: AtlasResponse) -> Array:
-    """Where sensors lie among others, (n, 4): logarithm of the wall ratio, driving pressure over that of the limit
-    point, logarithms of the inner radius and of the ambient pressure over the shear modulus; each over its `_LENGTHS`.
+    """Coordinates of sensors, (n, 4), by which neighbours are found: logarithm of the wall ratio, driving pressure over
+    that of the limit point, logarithms of the inner radius and of the ambient pressure over the shear modulus; each
+    over its `_LENGTHS`.
     """
     columns = [
         np.log(batch.wall_ratio),
@@ -34,7 +35,8 @@ def places(batch: SensorBatch, response: AtlasResponse) -> Array:
 
 
 def figures_of(response: AtlasResponse) -> Array:
-    """What is corrected, (n, 5): sensitivity, stiffness, force and travel at the end of the range, stretch above 1."""
+    """Figures that are corrected, (n, 5): sensitivity, stiffness, force and travel at the end of the range, stretch
+    above 1."""
     lines = response.lines
     columns = [
         lines.sensitivity_kPa_per_N,

@@ -12,7 +12,7 @@ from pneutouch.mechanics.response import FigureArrays
 
 
 class ContactFigures(NamedTuple):
-    """How a candidate was found under a contact that the atlas does not cover; its figures are the solid's.
+    """Record of a candidate under a contact that the atlas does not cover; its figures are the solid's.
 
     ends_with: what ends its range. plate_kPa_per_N: sensitivity by the atlas, under the plate without friction.
     rounds: searches that were made until it was found.
@@ -24,7 +24,7 @@ class ContactFigures(NamedTuple):
 
 
 def ending(state: SensorState) -> str:
-    """What ends the range of a state: an event, or the depth."""
+    """End of the range of a state: an event, or the depth."""
     return next((event.kind for event in state.events if event.ends_range), ENDS[DEPTH])
 
 

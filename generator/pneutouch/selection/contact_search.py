@@ -35,7 +35,8 @@ _ANYWHERE = 2
 _FEW = 2
 """Up to so many resins each is followed at several candidates, as without this contact; of more, at its best."""
 _PROBED, _WITHOUT_FIT = 3, 4
-"""Where no candidate fits by the corrected atlas: resins whose nearest is solved all the same, and for how many rounds.
+"""Number of resins whose nearest candidate is solved although none fits by the corrected atlas, and for how many
+rounds.
 """
 
 
@@ -163,7 +164,7 @@ class _Run:
     def _rows(
         self, group: _Group, problem: SelectionProblem, pool: CandidatePool, margin_of: dict[str, Array], rows_of: Flags
     ) -> Index:
-        """What fits: the best anywhere, later what is nearest to the last; else what breaks the least."""
+        """Candidates that fit: the best anywhere, later those nearest to the last; else those that break the least."""
         fits = rows_of & np.all([margin >= 0.0 for margin in margin_of.values()], axis=0)
         if not fits.any():
             return np.array([np.where(rows_of, np.min(list(margin_of.values()), axis=0), -np.inf).argmax()])

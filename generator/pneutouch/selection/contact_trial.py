@@ -70,12 +70,12 @@ class ContactTrial:
 
     @property
     def settled(self) -> bool:
-        """Whether it keeps everything, and the sensitivity within a quarter of the tolerance."""
+        """True if it keeps everything, and the sensitivity within a quarter of the tolerance."""
         return self.worst >= 0.0 and self.margins.get("sensitivity", 1.0) >= 1.0 - _SETTLED
 
     @property
     def off_target_alone(self) -> bool:
-        """Whether it keeps everything but the sensitivity."""
+        """True if it keeps everything but the sensitivity."""
         rest = [margin for name, margin in self.margins.items() if name != "sensitivity"]
         return min(rest, default=UNSOLVED) >= 0.0 and self.worst < 0.0
 

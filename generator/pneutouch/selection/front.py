@@ -16,7 +16,7 @@ _FINER = (6, 24)
 """Parts that each cell of the scan is cut into, along wall ratio and radius, to interpolate in it."""
 _LEVELS = 48
 _STEPS = (0.35, 0.12)
-"""How far each closer look goes from the best so far, in steps of the scan along the wall ratio."""
+"""Width of each closer look around the best so far, in steps of the scan along the wall ratio."""
 _ALONG_RADIUS = 0.5
 """The same along the radius, over that along the wall ratio."""
 _REQUIREMENTS = ("sensitivity", "force range", "stiffness")

@@ -29,7 +29,7 @@ _MISSED = 1.0e3
 
 @dataclass(frozen=True)
 class GradeTarget:
-    """What a grade shall do: sensitivity (kPa/N) at each pressure (MPa) within a share, the same at all within another.
+    """Aims of a grade: sensitivity (kPa/N) at each pressure (MPa) within a share, the same at all within another.
 
     force: what the range must reach (N); None where it need not. widest: whether it shall reach as far as it can.
     """
@@ -82,7 +82,7 @@ TrialReport = Callable[[GradeTrial, int, int], None]
 
 
 def shares(target: GradeTarget, trial: GradeTrial) -> dict[str, float]:
-    """What of each tolerance or limit a trial uses up: at most 1 where it is kept."""
+    """Share of each tolerance or limit that a trial uses up: at most 1 if it is kept."""
     values = np.array(trial.sensitivity_kPa_per_N)
     if not np.isfinite(values).all() or values.min() <= 0.0:
         return {"no figures": _MISSED}
@@ -96,7 +96,8 @@ def shares(target: GradeTarget, trial: GradeTrial) -> dict[str, float]:
 
 
 def cost(target: GradeTarget, trial: GradeTrial, spare: float = 1.0) -> float:
-    """What the search minimizes: the worst share of the aims; for the widest range, less with force once all are met.
+    """Cost that the search minimizes: the worst share of the aims; for the widest range, less with force once all are
+    met.
 
     ``spare`` is the share of every tolerance that may be used up for the widest range.
     """

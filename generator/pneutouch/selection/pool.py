@@ -13,7 +13,8 @@ from pneutouch.selection.problem import SelectionProblem
 from pneutouch.selection.rated import rated
 
 REQUIREMENTS = ("sensitivity", "force range", "stiffness", "outer diameter", "footprint", "rated pressure")
-"""What a user requires and may drop; the rated pressure stands for the driving pressure that must not be above it."""
+"""Requirements of a user, who may drop any; the rated pressure stands for the driving pressure that must not be above
+it."""
 
 
 class CandidatePool(NamedTuple):

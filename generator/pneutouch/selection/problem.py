@@ -18,7 +18,7 @@ _SMALLEST, _LARGEST = 2.0, 60.0
 _HALVINGS = 14
 """Of a radius of at most 60 mm: 4 um are left."""
 _ROUNDED = 0.01
-"""What a wall may gain by being rounded, mm."""
+"""Largest change of a wall by rounding, mm."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ LimitUncertainty = Callable[[CandidateResin, SensorBatch], Array]
 
 @dataclass(frozen=True)
 class SelectionProblem:
-    """What is required of a sensor and what is settled; None where free. depth_share: plate travel over R0.
+    """Requirements on a sensor and the settled parameters; None for a free one. depth_share: plate travel over R0.
 
     plate_share: the plate's radius over R0 where it is larger than ``plate_radius``, for a plate that goes with the
     dome. connector: of domes of inner radius and wall (n,), mm; None where no connector matters. limit_spread: where

@@ -32,8 +32,8 @@ _DIGITS = 6
 
 
 class Answers:
-    """What the atlas answers at once, for the designs ``bases``. The last design is kept: its intervals are requested
-    next."""
+    """Answers of the atlas, given at once for the designs ``bases``. The last design is kept: its intervals are asked
+    for next."""
 
     def __init__(self, bases: Mapping[str, str], library: Library) -> None:
         self._bases, self._library = bases, library

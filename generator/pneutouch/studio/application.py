@@ -47,13 +47,13 @@ class Studio:
         self._one, self._waiting = asyncio.Lock(), 0
 
     async def form(self, request: Request) -> Response:
-        """What the page is built from."""
+        """Content that the page is built from."""
         form = await run_in_threadpool(form_document, self._library)
         known = {"designs": designs_document(self._bases), "first": self._first, "version": __version__}
         return JSONResponse({**form, **known})
 
     async def target_form(self, request: Request) -> Response:
-        """What the form of a target is built from."""
+        """Content that the form of a target is built from."""
         return JSONResponse(await run_in_threadpool(target_form_document, self._library, self._bases))
 
     async def at_once(self, answer: QuickAnswer, request: Request) -> Response:
@@ -102,7 +102,7 @@ def application(bases: dict[str, str], first: str, port: int, token: str) -> App
         return respond(known, request)
 
     async def echo(request: Request) -> Response:
-        """What was sent, as it is: the measure of what the page and the network take."""
+        """Echo of the request as it is: it measures the time that the page and the network take."""
         return Response(await request.body(), media_type="application/json")
 
     routes = [

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pneutouch.workflows.select.run import SelectionRun
 
 FigureRow = tuple[str, str, str]
-"""What a figure is, the figure with its unit, and what is added to it."""
+"""Name of a figure, the figure with its unit, and an addition to it."""
 
 
 def candidate_card(selection: SelectionRun, choice: Candidate, rank: int | None = None) -> dict[str, Any]:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class CandidateStates:
-    """What turns designs that were found into states of the page and commands that save them under a free name."""
+    """Maker of page states from designs that were found, and of the commands that save them under a free name."""
 
     def __init__(self, question: Question, bases: Mapping[str, str], library: Library, target: Target) -> None:
         self._bases, self._library, self._target, self._name = bases, library, target, free_name()

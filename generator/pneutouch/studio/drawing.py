@@ -1,4 +1,4 @@
-"""What the page draws of a design: the section through its bodies, its dimensions, and meshes for the view."""
+"""Drawing of a design on the page: the section through its bodies, its dimensions, and meshes for the view."""
 
 import base64
 from typing import Any

@@ -1,4 +1,4 @@
-"""Who may talk to the studio: this machine's browser that was given the address, and no page of another site."""
+"""Guard of the studio: it answers this machine's browser that was given the address, and no page of another site."""
 
 import secrets
 from collections.abc import Awaitable, Callable, MutableMapping
@@ -115,7 +115,7 @@ class Guard:
         return cookie is not None and secrets.compare_digest(cookie.value.encode(), self._key.encode())
 
     def _opens(self, given: str) -> bool:
-        """Whether this is the token; it is used up with that."""
+        """True if this is the token, which is then used up."""
         if not self._token or not secrets.compare_digest(given.encode(), self._token.encode()):
             return False
         self._token = ""

@@ -1,4 +1,4 @@
-"""What takes longer than an answer: one job at a time, in a process that can be ended, with a folder for its files."""
+"""Jobs that take longer than an answer: one at a time, in a process that can be ended, with a folder for its files."""
 
 import asyncio
 import contextlib
@@ -42,7 +42,7 @@ class Job:
 
     @property
     def runs(self) -> bool:
-        """Whether it has not ended; one that was cancelled may take a moment to."""
+        """True if it has not ended; one that was cancelled may take a moment to."""
         return self.state == "running" or (self.process is not None and self.process.returncode is None)
 
     def document(self) -> Content:

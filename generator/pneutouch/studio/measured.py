@@ -1,4 +1,4 @@
-"""What the page shows of a campaign: files with their columns, figures compared with the predicted ones, curves."""
+"""Campaign as the page shows it: files with their columns, figures compared with the predicted ones, curves."""
 
 from typing import Any
 

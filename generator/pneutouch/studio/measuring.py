@@ -40,8 +40,8 @@ _CHECK, _READ = "finding columns, files", "reading runs, MB"
 
 @dataclass(frozen=True)
 class _Given:
-    """What a job was given: the campaign's folder (relative to the working folder), its files, whether a campaign file
-    came with them, the page's design (None: the campaign's) and how files are read."""
+    """Input of a job: the campaign's folder (relative to the working folder), its files, whether a campaign file came
+    with them, the page's design (None: the campaign's) and the options for reading files."""
 
     data: Path
     files: list[str]
@@ -126,7 +126,7 @@ def _answer(campaign: Campaign, runs: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def characterize(arguments: Mapping[str, Any], folder: Path, report: Report) -> dict[str, Any]:
-    """What the command ``characterize`` does with the campaign; the measured sheet and its files go into ``folder``.
+    """Run the command ``characterize`` on the campaign; the measured sheet and its files go into ``folder``.
 
     ``document`` is what it prints as JSON, without the folder. Raises InputError as it does.
     """
@@ -170,7 +170,7 @@ def _sensors(campaign: Campaign) -> list[dict[str, Any]]:
 
 
 def calibrate(arguments: Mapping[str, Any], folder: Path, report: Report) -> dict[str, Any]:
-    """What the command ``calibrate`` does with the campaign; its files go into ``folder``.
+    """Run the command ``calibrate`` on the campaign; its files go into ``folder``.
 
     Without ``save`` the calibration goes there as well, and nothing into the user's folder. ``document`` is what it
     prints as JSON, ``opens`` the design with a saved calibration as the page opens it. Raises InputError as it

@@ -53,7 +53,7 @@ def calibrate_words(
 
 
 def _saving(question: Question | None, arguments: Mapping[str, Any]) -> str:
-    """How a changed design is saved first."""
+    """Instruction to save a changed design first."""
     assert question is not None
     changes = [("from", arguments["bases"][question.base])]
     changes += [("set", f"{key}={text}") for key, text in question.values.items() if text is not None]

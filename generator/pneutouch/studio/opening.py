@@ -108,7 +108,7 @@ def _content(name: str, question: Question, notes: list[str]) -> Content:
 
 
 def _other_parts(scene: ResolvedDesign, here: ResolvedDesign) -> list[str]:
-    """What a recipe has under a name that stands for something else here."""
+    """Parts of a recipe whose name stands for something else here."""
     parts = [key for key in scene_kinds() if key != "design" and _data(scene, key) != _data(here, key)]
     return [f"its {key.replace('_', ' ')} is not the one of this name here, which the page takes" for key in parts]
 

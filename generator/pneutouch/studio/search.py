@@ -95,7 +95,7 @@ def _cards(run: SelectionRun, page: CandidateStates) -> list[dict[str, Any]]:
 
 
 def _nothing_to_drop(run: SelectionRun) -> list[str]:
-    """What is stated where no design meets the target and none fits without one of its requirements."""
+    """Lines for a target that no design meets, if none fits without one of its requirements either."""
     answer = run.answer
     return [] if answer.designs or run.rejected or answer.dropped else words.dropped_lines(run)
 

@@ -13,7 +13,8 @@ NUMBER = {
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
 
 _TEXT = 1.5
-"""How many cells of numbers outweigh a cell of text: our choice. A table has a column of remarks or dates at most."""
+"""Number of cells of numbers that outweigh a cell of text: our choice. A table has a column of remarks or dates at
+most."""
 
 
 def cells(line: str, delimiter: str) -> list[str]:
@@ -29,12 +30,12 @@ def cells(line: str, delimiter: str) -> list[str]:
 
 
 def blank(line: str, delimiter: str) -> bool:
-    """Whether a line counts as empty: one of spaces and tabs alone, but not of delimiters."""
+    """True if a line counts as empty: one of spaces and tabs alone, but not of delimiters."""
     return not line.strip(" \r\t" if delimiter != "\t" else " \r")
 
 
 def score(row: Sequence[str], decimal: str) -> float:
-    """How much a row looks like one of numbers: above 0 where it does."""
+    """Score of a row as one of numbers: above 0 if it looks like one."""
     filled = [cell for cell in row if cell]
     numbers = sum(NUMBER[decimal].fullmatch(cell) is not None for cell in filled)
     return numbers - _TEXT * (len(filled) - numbers)

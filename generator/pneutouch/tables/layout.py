@@ -1,4 +1,4 @@
-"""How a table is written in a file: what the user states, and what the reader uses."""
+"""Layout of a table in a file: given by the user, and used by the reader."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ DECIMALS = {".": "points", ",": "commas"}
 
 @dataclass(frozen=True, slots=True)
 class TableFormat:
-    """How a file is written; None is found from the file.
+    """Format of a file; None is found from the file.
 
     Attributes:
         delimiter: Between the cells of a text file; one of `NAMES`.
@@ -34,7 +34,7 @@ class TableFormat:
 
 @dataclass(frozen=True, slots=True)
 class TableLayout:
-    """Where a file's table is and how it is written.
+    """Place and format of the table in a file.
 
     Attributes:
         names: Of the columns, as in the header; a table without header has #1, #2 and so on.

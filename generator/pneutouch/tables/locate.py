@@ -1,4 +1,4 @@
-"""Where the table is in the rows of a file: its header, a row of units, and the first numbers."""
+"""Place of the table in the rows of a file: its header, a row of units, and the first numbers."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -77,7 +77,7 @@ def fewest(names: Sequence[str], rows: Sequence[Sequence[str]], decimal: str) ->
 
 
 def comment(line: str) -> bool:
-    """Whether a line before the header is a comment."""
+    """True if a line before the header is a comment."""
     return line.lstrip().startswith(_COMMENT)
 
 
@@ -107,7 +107,7 @@ def _above(rows: Sequence[Sequence[str]], first: int, width: int) -> tuple[int |
 
 
 def _fits(row: Sequence[str], width: int) -> bool:
-    """Whether a row may be the header of rows of so many cells: one may be missing, or be left over and empty."""
+    """True if a row may be the header of rows of so many cells: one may be missing, or be left over and empty."""
     return len(row) in (width, width - 1) or (len(row) == width + 1 and row[-1].lower() in ("", _REMARK))
 
 

@@ -42,7 +42,7 @@ _KINDS = {
 
 
 def layout_of(path: Path, given: TableFormat = _ANY, known: Sequence[str] = ()) -> TableLayout:
-    """Where a file's table is and how it is written, what ``given`` leaves open found from the file.
+    """Place and format of the table in a file; parts that ``given`` leaves open are found from the file.
 
     ``known`` are columns that, where a row names them all, make it the header. Raises InputError for a file that cannot
     be read, and for what its content leaves open."""

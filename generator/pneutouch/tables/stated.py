@@ -1,4 +1,4 @@
-"""What text files of some makers state about themselves: LabVIEW measurement files and MTS's exports.
+"""Headers in which text files of some makers describe themselves: LabVIEW measurement files and MTS's exports.
 
 Sources: NI, Specification for the LabVIEW Measurement File (.lvm), ni.com/tutorial/4139; MTS Series 793 Application
 manual, MultiPurpose TestWare, page 136, How to parse the MPT specimen data file.
@@ -28,7 +28,7 @@ def stated_format(lines: Sequence[str], given: TableFormat) -> TableFormat:
 
 
 def is_lvm(lines: Sequence[str]) -> bool:
-    """Whether these are the first lines of a LabVIEW measurement file."""
+    """True if these are the first lines of a LabVIEW measurement file."""
     return bool(lines) and lines[0].startswith(_LVM)
 
 

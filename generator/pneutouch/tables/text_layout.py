@@ -1,4 +1,4 @@
-"""How a text file of numbers is written: encoding, delimiter, decimal mark and the rows before the header."""
+"""Format of a text file of numbers: encoding, delimiter, decimal mark and the rows before the header."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -72,7 +72,7 @@ class Detection:
 
     @property
     def detected(self) -> bool:
-        """Whether noise alone would show as much in no more than ``level`` of records."""
+        """True if noise alone would show as much in no more than ``level`` of records."""
         return self.p_value <= self.level
 
 
@@ -143,7 +143,7 @@ def _detect(
 
 
 def least_duration(frequency: float) -> float:
-    """How long a record must be to test a frequency in Hz, s: ``CYCLES`` cycles between two e-folding times."""
+    """Duration of a record that can test a frequency in Hz, s: ``CYCLES`` cycles between two e-folding times."""
     return 2 * float(MORSE.e_folding(np.float64(frequency))) + CYCLES / frequency
 
 

@@ -28,7 +28,7 @@ class Scalogram:
 
     @property
     def inside(self) -> Flags:
-        """Where the record's ends do not reach, (k, n): an e-folding time or more from both."""
+        """True where the record's ends do not reach, (k, n): an e-folding time or more from both."""
         edge = self.wavelet.e_folding(self.frequency)[:, None]
         both = (self.time - self.time[0] >= edge) & (self.time[-1] - self.time >= edge)
         return np.asarray(both, bool)

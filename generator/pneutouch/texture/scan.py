@@ -40,7 +40,7 @@ _NEWTON = 6
 
 @dataclass(frozen=True, slots=True)
 class ScanPath:
-    """How the sensor is moved: mm from ``start`` to ``end`` at ``speed`` mm/s, held at a "height" or a "force"."""
+    """Movement of the sensor: mm from ``start`` to ``end`` at ``speed`` mm/s, held at a "height" or a "force"."""
 
     start: float
     end: float

@@ -1,4 +1,4 @@
-"""Which driving pressure shows a pattern, and which dome separates two patterns: many domes at once, by the atlas."""
+"""Driving pressure that shows a pattern, and dome that separates two patterns: many domes at once, by the atlas."""
 
 import math
 from typing import NamedTuple
@@ -66,7 +66,7 @@ class Separation(NamedTuple):
 
 
 def noise_amplitude(frequency: float, noise: float = NOISE, rate: float = RATE) -> float:
-    """What white noise (MPa rms a sample) reads as at a voice (Hz), MPa: mean of |W|, whose parts are Gaussian."""
+    """Reading of white noise (MPa rms a sample) at a voice (Hz), MPa: mean of |W|, whose parts are Gaussian."""
     ratio = np.linspace(0.02, 2.0, 400)
     power = float(np.sum(MORSE.response(ratio) ** 2)) * float(ratio[1] - ratio[0])
     return noise * math.sqrt(power * frequency / rate) * math.sqrt(math.pi) / 2.0

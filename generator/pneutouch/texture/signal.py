@@ -17,13 +17,14 @@ _PASSED = 1.6
 """Highest frequency passed over the highest target frequency: the Morse response (3, 60) is 2e-5 of its peak there."""
 
 _STOP_DB = 100.0
-"""What folds back, and the ripple of what passes, in dB below it: 1e-5 of the amplitude."""
+"""Level of the part that folds back, and of the ripple of the part that passes, in dB below it: 1e-5 of the
+amplitude."""
 
 MOST = 1e6 * KPA
 """Greatest pressure that is taken for one, MPa: a million kPa."""
 
 _OFF = 0.25
-"""How far, in steps, a time may lie off the even grid: what rounding in a file does, and no lost sample."""
+"""Distance, in steps, of a time from the even grid that rounding in a file explains, and no lost sample."""
 
 
 @dataclass(frozen=True, slots=True)

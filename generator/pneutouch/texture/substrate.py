@@ -34,7 +34,7 @@ FIRST_ZERO = 3.8317
 
 
 def patch_filter(k: Array, radius: Array | float) -> Array:
-    """What a uniform disc leaves of a pattern: 2 J1(k rho)/(k rho); physics.md 4.2."""
+    """Share of a pattern that a uniform disc leaves: 2 J1(k rho)/(k rho); physics.md 4.2."""
     from scipy.special import j1
 
     x = np.maximum(k * radius, 1e-9)
@@ -208,5 +208,5 @@ class Substrate:
 
 
 def _meet(one: BarRow, other: BarRow) -> bool:
-    """Whether two rows share a part of the path, or are one."""
+    """True if two rows share a part of the path, or are one."""
     return bool(one.edges.min() < other.edges.max() and other.edges.min() < one.edges.max())

@@ -1,4 +1,4 @@
-"""How an Arduino reads a gauge: over the bus or with its converter, as far as that is known."""
+"""Reading of a gauge by an Arduino: over the bus or with its converter, as far as that is known."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ and temperature of 24 bits (drivers Linux abp2030pa and ESPHome honeywellabp2)."
 
 
 def arduino_gauge(gauge: Gauge) -> dict[str, Any] | str:
-    """What the sketch takes of a gauge, kPa and its output; or why there is no sketch, in words."""
+    """Data of a gauge for the sketch, kPa and its output; or the reason why there is no sketch, in words."""
     if gauge.is_absolute:
         return f"no sketch: the {gauge.title} is absolute, and its reading less a barometer's is the gauge pressure"
     if gauge.transfer.at_low is None or gauge.transfer.at_high is None:

@@ -26,7 +26,7 @@ QUIET = 0.001
 
 
 class Status(IntEnum):
-    """What a reading is worth. With OK and ABOVE_RATING it has a force; with any other the force is NaN."""
+    """Status of a reading. With OK and ABOVE_RATING it has a force; with any other the force is NaN."""
 
     OK = 0
     ABOVE_RATING = 1

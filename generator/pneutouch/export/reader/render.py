@@ -31,7 +31,7 @@ WORDS = {
     Status.BEYOND_RANGE: "the force is beyond the box",
     Status.UNSTEADY_TARE: "the readings of the tare scatter: something moves; tare again",
 }
-"""What each status means."""
+"""Meaning of each status."""
 
 _PARTS = ("format", "grid", "gas", "box", "rating", "gauge", "zero", "conditions")
 
@@ -60,7 +60,7 @@ def reader_files(record: Mapping[str, Any], name: str, gauge: Gauge | None = Non
 
 
 def sketch_note(gauge: Gauge | None) -> str | None:
-    """Why there is no sketch, or None where there is one."""
+    """Reason why there is no sketch, or None if there is one."""
     known = NO_GAUGE if gauge is None else arduino_gauge(gauge)
     return known if isinstance(known, str) else None
 

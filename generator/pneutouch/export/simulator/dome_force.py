@@ -24,7 +24,7 @@ _LOADERS = (
     (mujoco.MjModel, staticmethod, ("from_xml_path", "from_xml_string")),
     (mujoco.MjSpec, lambda method: method, ("compile", "recompile", "to_xml")),
 )
-"""What compiles a model, with how it is bound to its class."""
+"""Functions that compile a model, with the words that bind it to its class."""
 
 
 class DomeForce:

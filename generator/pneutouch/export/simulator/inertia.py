@@ -32,7 +32,7 @@ class RigidInertia:
         return RigidInertia(mass, centre, self.about_origin + other.about_origin)
 
     def without(self, part: RigidInertia) -> RigidInertia:
-        """What is left where a part of it moves on its own."""
+        """Inertia that is left when a part of it moves on its own."""
         return self + RigidInertia(-part.mass, part.centre, -part.about_origin)
 
 

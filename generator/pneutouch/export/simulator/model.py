@@ -1,4 +1,4 @@
-"""What a simulator needs of a sensor, in metres, kilograms and newtons; pressures in kPa as everywhere."""
+"""Sensor as a simulator needs it, in metres, kilograms and newtons; pressures in kPa as everywhere."""
 
 from __future__ import annotations
 

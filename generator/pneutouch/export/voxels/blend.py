@@ -1,4 +1,4 @@
-"""What a body is jetted from at every voxel: one base resin, or a share of a second one."""
+"""Blends of a body at every voxel: one base resin, or a share of a second one."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -57,7 +57,7 @@ def _even(fraction: float) -> Share:
 
 
 def _assumed(name: str, resins: tuple[str, ...], library: Library, where: str) -> tuple[float, str]:
-    """Where on a mixing curve a digital material lies, and why."""
+    """Place of a digital material on a mixing curve, and the reason for it."""
     curve_name = f"{resins[0]}+{resins[1]}"
     if curve_name in library.paths("mixing"):
         curve: MixingCurve = library.load("mixing", curve_name)

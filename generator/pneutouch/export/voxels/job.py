@@ -1,4 +1,4 @@
-"""What a stack is made from: the bodies of one print job, their blends, the raster and the seed."""
+"""Input of a stack: the bodies of one print job, their blends, the raster and the seed."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field

@@ -15,7 +15,8 @@ from pneutouch.arrays import Flags, Singles
 Item = TypeVar("Item")
 
 LEAST_REACH, MOST_REACH = 0.12, 0.4
-"""How far in mm from a skin voxel its share may go, and two voxels at least: less than a wall; our choice."""
+"""Distance in mm from a skin voxel over which its share may go, and two voxels at least: less than a wall; our
+choice."""
 
 
 def interior(below: Flags | None, here: Flags, above: Flags | None) -> Flags:
@@ -32,7 +33,7 @@ def interior(below: Flags | None, here: Flags, above: Flags | None) -> Flags:
 
 
 def reach_for(most: float, pitch: tuple[float, float, float]) -> float:
-    """How far in mm the share of a skin voxel goes where the share is ``most`` at most.
+    """Distance in mm over which the share of a skin voxel goes if the share is ``most`` at most.
 
     Far enough that an edge, where the shares of two faces come together, is not filled beyond one.
     """
@@ -57,7 +58,7 @@ class RecentLayers(Generic[Item]):
 
 
 class SkinCompensation:
-    """What is added to the share of every interior voxel, so that the body keeps the share of its skin.
+    """Addition to the share of every interior voxel, so that the body keeps the share of its skin.
 
     The share requested in a skin voxel goes in equal parts to the interior voxels of the box of ``reach`` mm around it:
     the sum over the body is kept, and so is that of any region much larger than the reach. What has no interior near is
@@ -75,11 +76,11 @@ class SkinCompensation:
 
     @property
     def ahead(self) -> int:
-        """How many layers to each side are looked at."""
+        """Number of layers to each side that are looked at."""
         return 2 * self._up
 
     def layer(self, number: int) -> Singles | None:
-        """What is added in a layer, (rows, columns); for the interior alone it has a meaning."""
+        """Addition in a layer, (rows, columns); it has a meaning for the interior alone."""
         return _sum(self._given(k) for k in self._around(number))
 
     def _around(self, number: int) -> range:

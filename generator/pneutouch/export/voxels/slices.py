@@ -22,7 +22,7 @@ FULL = 0.5
 
 @dataclass
 class VoxelCounts:
-    """What a body became: voxels, skin voxels, the sums of the second resin's share requested and realised.
+    """Voxel counts of a body: voxels, skin voxels, the sums of the second resin's share asked for and realised.
 
     ``given`` is what was left for the dither: the skin's share made up for beneath it, less what did not fit because
     the interior was full. ``worst`` is the greatest difference of the given and the realised fraction over the body's
@@ -150,7 +150,7 @@ class _Mixed:
         return inner, np.where(inner, np.float32(0), share)
 
     def stiff(self, number: int, tally: VoxelCounts) -> Flags:
-        """Where the second resin goes in a layer of the body."""
+        """Voxels of the second resin in a layer of the body."""
         parts, here, more = self._parts(number), self.here(number), self._made_up.layer(number)
         assert parts is not None and here is not None
         inner, share = parts

@@ -149,8 +149,7 @@ def _lines(manifold: Any, surface: SurfaceMesh, middles: Array, directions: Arra
 
 
 def continues(manifold: Any, surface: SurfaceMesh, chords: Chords) -> Flags:
-    """Whether the place goes on along its axis, (n,): at both ends as narrow a width further on, or
-    ended before that.
+    """True if the place goes on along its axis, (n,): at both ends as narrow a width further on, or ended before that.
 
     A pin does, to its tip; a web between two holes widens at both ends.
     """

@@ -24,7 +24,7 @@ _GRID = 3
 """Points on each triangle, see `Body.surface_points`."""
 
 _REACH = 0.5
-"""How far in mm that window reaches past the flange, within the land of `parts.mould.size.LAND`."""
+"""Distance in mm by which that window reaches past the flange, within the land of `parts.mould.size.LAND`."""
 
 _SIDES = 256
 """Of the window that the void is taken from; it lies in the ring, clear of the gap at the ring's outside."""
@@ -74,7 +74,8 @@ def overlaps(closed: Sequence[Body]) -> dict[tuple[str, str], float]:
 
 
 def cavity_match(size: MouldSize, closed: Sequence[Body], tolerance: float) -> CavityMatch:
-    """What the closed mould leaves in its first cavity, channels plugged, less the membrane, and the reverse."""
+    """Difference between the first cavity of the closed mould, channels plugged, and the membrane, in both
+    directions."""
     from manifold3d import Manifold, OpType
 
     plugs = [_manifold(tool, tolerance) for tool in channels(size)]
@@ -113,7 +114,7 @@ def undercuts(size: MouldSize, bodies: Sequence[Body], tolerance: float) -> list
 
 
 def _starts(size: MouldSize, body: Body, tolerance: float) -> list[tuple[Array, Array, bool]]:
-    """Where rays start, the points of the faces, and whether the silicone there leaves backwards, out of the funnel."""
+    """Starts of rays, the points of the faces, and whether the silicone there leaves backwards, out of the funnel."""
     points = body.surface_points(_GRID)
     count = len(points) // len(body.triangles)
     a, b, c = np.moveaxis(body.corners, 1, 0)

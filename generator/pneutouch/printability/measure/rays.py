@@ -13,8 +13,8 @@ _SELF = 1e-7
 
 @dataclass(frozen=True)
 class Neighbours:
-    """What lies next before and next behind the middle of each line: distances (n, 2), mm, inf where nothing, and faces
-    (n, 2), -1 where nothing."""
+    """Nearest faces before and behind the middle of each line: distances (n, 2), mm, inf for none, and faces (n, 2), -1
+    for none."""
 
     distances: Array
     faces: Indices

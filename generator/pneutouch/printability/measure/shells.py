@@ -29,7 +29,7 @@ class Hollow:
         return x, y, z
 
     def alike(self, other: Hollow) -> bool:
-        """Whether both are one and the same."""
+        """True if both are one and the same."""
         return bool(np.allclose(self.bounds, other.bounds, atol=1e-6))
 
 

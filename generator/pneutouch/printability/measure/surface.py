@@ -86,7 +86,7 @@ class SurfaceMesh:
 
     @cached_property
     def creases(self) -> Flags:
-        """Which edges are drawn ones, (e,)."""
+        """Edges that belong to the drawing, not to the mesh alone, (e,)."""
         edges, turn = self.edges, np.abs(self.edges.turn)
         drawn: Flags = turn >= CREASE
         rows = np.flatnonzero(drawn & (turn <= _OCTAGON))
@@ -132,8 +132,8 @@ class SurfaceMesh:
 
     @cached_property
     def chord_error(self) -> tuple[float, int]:
-        """What the mesh leaves of its curves, mm, and the edge where: the sagitta that a tenth of the length of a face
-        group's curved edges exceeds, in the worst group. Single edges between faces of two curves do not count."""
+        """Error of the mesh against its curves, mm, and the edge with it: the sagitta that a tenth of the length of a
+        face group's curved edges exceeds, in the worst group. Single edges between faces of two curves do not count."""
         edges, sagittas = self.edges, self.sagittas
         curved = np.flatnonzero(sagittas > 1e-9)
         if not len(curved):

@@ -94,7 +94,7 @@ def _is_round(manifold: Any, surface: SurfaceMesh, short: Chords, side: Side) ->
 
 
 def _slope(surface: SurfaceMesh, some: Chords) -> Array:
-    """How fast each chord's faces part, mm per mm, (n,); 0 where they are parallel within the normals' accuracy."""
+    """Rate at which each chord's faces part, mm per mm, (n,); 0 if they are parallel within the normals' accuracy."""
     near = surface.smooth_normals(some.near, some.start)
     far = surface.smooth_normals(some.far, some.start + some.length[:, None] * some.direction)
     angle = np.arccos(np.clip(-np.einsum("ij,ij->i", near, far), -1, 1))

@@ -1,4 +1,4 @@
-"""Whether support can be reached and washed out: hollows behind necks, corners out of sight, long thin channels."""
+"""Removal of support: hollows behind necks, corners out of sight and long thin channels cannot be washed out."""
 
 import numpy as np
 
@@ -91,7 +91,7 @@ def _hidden(job: PrintJob) -> list[Finding]:
 
 
 def _escapes(job: PrintJob, cells: Indices) -> Flags:
-    """Whether a straight line leads from the middle of a cube to the outside, (n,)."""
+    """True if a straight line leads from the middle of a cube to the outside, (n,)."""
     index = np.arange(_DIRECTIONS) + 0.5
     height, turn = 1 - 2 * index / _DIRECTIONS, np.pi * (1 + 5**0.5) * index
     ring = np.sqrt(1 - height**2)

@@ -1,4 +1,4 @@
-"""Whether the dome is free to move: its predicted shapes against the rigid bodies around it."""
+"""Freedom of the dome to move: its predicted shapes against the rigid bodies around it."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Whether the glue of a flange bonds membrane and connector."""
+"""Bond of a flange's glue to membrane and connector."""
 
 from pneutouch.parts.glue import GLUES, glues_for
 from pneutouch.printability.finding import Finding

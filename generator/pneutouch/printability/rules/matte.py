@@ -1,4 +1,4 @@
-"""Whether support touches the face that senses: it leaves it matte and rough."""
+"""Support on the face that senses, which it would leave matte and rough."""
 
 import numpy as np
 

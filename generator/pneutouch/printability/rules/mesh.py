@@ -1,4 +1,4 @@
-"""Whether the mesh is a solid, and as fine as the machine: no coarser, and not much finer."""
+"""Mesh of a part: a solid, and as fine as the machine: no coarser, and not much finer."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What a mix does if another mixing curve of its pair is true: its fraction is exact, its modulus assumed."""
+"""Behaviour of a mix if another mixing curve of its pair is true: its fraction is exact, its modulus assumed."""
 
 from pneutouch.mechanics.curve_outcome import CurveOutcome
 from pneutouch.printability.finding import Finding

@@ -1,4 +1,4 @@
-"""Whether a mould fills before its silicone sets: pour channel and vents against the viscosity and the pot life."""
+"""Filling of a mould before its silicone sets: pour channel and vents against the viscosity and the pot life."""
 
 from pneutouch.parts.mould import MouldAssembly
 from pneutouch.parts.mould.filling import SYRINGE_KPA, MouldFilling, filling

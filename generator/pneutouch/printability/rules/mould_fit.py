@@ -1,4 +1,5 @@
-"""Whether a mould closes and opens: its void is the membrane, parts stay apart, nothing is undercut, walls are even."""
+"""Fit of a mould that closes and opens: its void is the membrane, parts stay apart, nothing is undercut, walls are
+even."""
 
 from pneutouch.parts.mould import MouldAssembly
 from pneutouch.printability.finding import Excess, Finding

@@ -1,4 +1,4 @@
-"""Whether the cured membrane leaves its core: the strain that it needs against its elongation at break."""
+"""Release of the cured membrane from its core: the strain that it needs against its elongation at break."""
 
 from pneutouch.parts.mould import MouldAssembly
 from pneutouch.parts.mould.release import SAFETY, release_of

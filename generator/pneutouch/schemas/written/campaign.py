@@ -25,7 +25,7 @@ _KIND: Schema = {"enum": list(RunKind.__args__)}  # type: ignore[attr-defined]
 
 
 def plan() -> Schema:
-    """What ``plan.json`` holds and ``pneutouch plan --json`` prints."""
+    """Schema of ``plan.json`` and of the output of ``pneutouch plan --json``."""
     rig = model_schema(Rig)["properties"]
     rig = {key: {k: v for k, v in field.items() if k != "default"} for key, field in rig.items()}
     warning = {
@@ -125,7 +125,7 @@ def _planned_run() -> Schema:
 
 
 def figures() -> Schema:
-    """What ``figures.json`` holds and ``pneutouch characterize --json`` prints."""
+    """Schema of ``figures.json`` and of the output of ``pneutouch characterize --json``."""
     injection = {"sensor": TEXT, "figure": TEXT, "value": NUMBER, "standard_error": or_null(NUMBER), "unit": TEXT}
     change = ("sensitivity_change_percent", "low", "high", "published_change_one_year_percent")
     ageing = {"resin": TEXT, "driving_pressure_kPa": NUMBER, "age": TEXT, **dict.fromkeys(change, or_null(NUMBER))}

@@ -8,7 +8,7 @@ _ANYTHING: Schema = {"type": "object"}
 
 
 def manifest() -> Schema:
-    """What ``manifest.json`` holds."""
+    """Schema of ``manifest.json``."""
     listed = record("A file.", {"sha256": _DIGEST, "bytes": WHOLE})
     body: dict[str, Schema] = {
         "tolerance_mm": NUMBER,

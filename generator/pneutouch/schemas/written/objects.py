@@ -23,7 +23,7 @@ _SHARE: Schema = {"type": "number", "minimum": 0, "maximum": 1}
 
 
 def specimen() -> Schema:
-    """What ``specimen.json`` of a texture specimen's build holds."""
+    """Schema of ``specimen.json`` of a texture specimen's build."""
     sides = {"length_mm": NUMBER, "width_mm": NUMBER, "height_mm": NUMBER, "volume_mm3": NUMBER}
     path = {"speed_mm_per_s": NUMBER, "axis": choice("x"), "surface_z_mm": NUMBER}
     layer = {
@@ -53,7 +53,7 @@ def specimen() -> Schema:
 
 
 def stack() -> Schema:
-    """What ``stack.json`` of a voxel stack holds."""
+    """Schema of ``stack.json`` of a voxel stack."""
     resin = record("A base resin.", {"rgba": _COLOUR, "voxels": WHOLE, "volume_mm3": NUMBER})
     dither = {"method": TEXT, "seed": WHOLE, "cube_mm": NUMBER, "least_share_of_a_cube": NUMBER}
     keys = {
@@ -103,7 +103,7 @@ def _body() -> Schema:
 
 
 def exported_design() -> Schema:
-    """What the page's **Export** saves and **Open** reads."""
+    """Schema of the file that **Export** on the page saves and **Open** reads."""
     value: Schema = {"type": ["string", "null"]}
     keys = {
         "version": TEXT,

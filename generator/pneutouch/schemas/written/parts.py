@@ -5,7 +5,7 @@ from pneutouch.spec.contact import SIZES, ContactTable
 
 
 def contact(notes: bool = False) -> Schema:
-    """What presses the sensor, where that is no frictionless plate."""
+    """Schema of the pressing object, given if that is no frictionless plate."""
     sizes = {key: NUMBER for keys in SIZES.values() for key in keys}
     corners = {"type": "array", "items": NUMBERS}
     more: dict[str, Schema] = {"notes": TEXTS, "rounds": NUMBER, "solves": NUMBER} if notes else {}

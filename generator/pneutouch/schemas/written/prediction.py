@@ -13,7 +13,7 @@ _KNOWN = {"RatingRecord": RatingRecord, "UncertaintyRecord": UncertaintyRecord}
 
 
 def prediction() -> Schema:
-    """What ``pneutouch predict --json`` prints, and ``prediction.json`` holds in part."""
+    """Schema of the output of ``pneutouch predict --json``; ``prediction.json`` holds a part of it."""
     points = ("driving_pressure_kPa", "apex_height_inner_mm", "apex_height_outer_mm", "cavity_volume_mL")
     limit_keys = ("driving_pressure_kPa", "apex_height_inner_mm", "apex_height_outer_mm")
     instead: dict[str, Schema] = {

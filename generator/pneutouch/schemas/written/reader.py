@@ -7,6 +7,6 @@ from pneutouch.schemas.shape import Schema
 
 
 def reader() -> Schema:
-    """What ``reader.json`` holds."""
+    """Schema of ``reader.json``."""
     schema: Schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     return schema

@@ -13,10 +13,10 @@ def _with_folder(schema: Schema) -> Schema:
 
 
 def comparison() -> Schema:
-    """What ``comparison.json`` holds and ``pneutouch compare --json`` prints."""
+    """Schema of ``comparison.json`` and of the output of ``pneutouch compare --json``."""
     return _with_folder(typed(ComparisonRecord, {}))
 
 
 def calibration_report() -> Schema:
-    """What ``calibration.json`` holds in part and ``pneutouch calibrate --json`` prints."""
+    """Schema of the output of ``pneutouch calibrate --json``; ``calibration.json`` holds a part of it."""
     return typed(OutcomeRecord, {})

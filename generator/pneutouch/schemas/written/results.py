@@ -27,7 +27,7 @@ _LIMITS = {"range_end_mm": NUMBER, "range_ends_by": or_null(TEXT)}
 
 
 def fit() -> Schema:
-    """What ``fit.json`` holds and ``pneutouch fit-material --json`` prints."""
+    """Schema of ``fit.json`` and of the output of ``pneutouch fit-material --json``."""
     specimen = {
         "data": TEXT,
         "points": described_by("Number of points.", WHOLE),
@@ -65,7 +65,7 @@ def _law(**more: Schema) -> Schema:
 
 
 def response() -> Schema:
-    """What ``response.json`` holds and ``pneutouch respond --json`` prints."""
+    """Schema of ``response.json`` and of the output of ``pneutouch respond --json``."""
     band = ("first_resonance_Hz", "resonance_gain", "bandwidth_3_dB_Hz", "within_5_percent_Hz")
     numbers = ("driving_pressure_kPa", "slow_pressure_rise_kPa", "greatest_reading_kPa", "last_reading_kPa")
     state = {
@@ -99,7 +99,7 @@ def response() -> Schema:
 
 
 def scan() -> Schema:
-    """What ``scan.json`` holds and ``pneutouch scan --json`` prints."""
+    """Schema of ``scan.json`` and of the output of ``pneutouch scan --json``."""
     numbers = ("pitch_mm", "width_mm", "height_mm", "depth_mm", "from_mm", "to_mm", "frequency_Hz")
     pattern = {
         "name": TEXT,
@@ -168,7 +168,7 @@ def _detection() -> Schema:
 
 
 def truth() -> Schema:
-    """What ``truth.json`` of ``pneutouch simulate`` holds."""
+    """Schema of ``truth.json`` of ``pneutouch simulate``."""
     figures = mapping({"type": ["number", "string", "null"]})
     specimen = {
         "resin": TEXT,

@@ -23,7 +23,7 @@ _NUMBERS_OR_NULL = items(or_null(NUMBER))
 
 
 def selection() -> Schema:
-    """What ``pneutouch select --json`` prints."""
+    """Schema of the output of ``pneutouch select --json``."""
     plain = _answer({})
     by_process = {key: one for key, one in plain["properties"].items() if key != "written"}
     processes = {
