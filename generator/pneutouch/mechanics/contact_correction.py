@@ -18,7 +18,7 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA
 
 GRIPS = 2.0
-"""From this coefficient on the contact is taken as one that grips: beyond it the sensitivity of the paper's sensor in
+"""Coefficient from which on the contact is taken as one that grips: beyond it the sensitivity of the paper's sensor in
 its resins changes by less than 0.5 % (`tests/mechanics/test_contact_correction.py`)."""
 
 NODES = (0.0, 0.1, 0.25, 0.45, 0.7, 1.0, 1.4, GRIPS)

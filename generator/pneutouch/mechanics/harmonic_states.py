@@ -28,7 +28,7 @@ ORDERS = (4, 6, 8, 12)
 """Orders of the harmonics, raised until the figures settle."""
 
 EVEN_ORDERS = (*ORDERS, 16, 24)
-"""The same where only even harmonics are not zero: they are half as many."""
+"""Orders of the harmonics if only even ones are not zero: they are half as many."""
 
 _READ = 56
 """Equal steps of a range at which its curve is read between the solved states."""

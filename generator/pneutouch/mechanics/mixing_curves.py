@@ -1,4 +1,4 @@
-"""A sensor in a mix of two resins by every mixing curve of the pair: what it does if another curve is true."""
+"""A sensor in a mix of two resins by every mixing curve of the pair, to show the effect of another curve."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _outcome(
 
 
 def _predicted(sensor: Sensor, pressures: list[float], like: SensorPrediction) -> SensorPrediction | None:
-    """The prediction at as many of the pressures as can be solved; None where there are none."""
+    """The prediction at as many of the pressures as can be solved; None if none can."""
     for count in range(len(pressures), 0, -1):
         try:
             return predict("", sensor, pressures[:count], model=like.model, closure=like.closure or "variational")

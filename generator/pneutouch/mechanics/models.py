@@ -1,4 +1,5 @@
-"""The models, cheapest first: what the error of each is, where it holds, and the cheapest one that is good enough."""
+"""The models, cheapest first: the error of each, its validity, and the choice of the cheapest one that is good
+enough."""
 
 from dataclasses import dataclass
 from typing import TypedDict
@@ -14,7 +15,7 @@ MODELS = ("membrane", "atlas", "solid")
 MODEL_CHOICES = (*MODELS, "harmonic", "auto")
 
 USUAL = "usual"
-"""The model where none is named: harmonic for contact off the axis, else the solid."""
+"""The model if none is named: harmonic for contact off the axis, else the solid."""
 
 DEFAULT_TOLERANCE = 0.02
 
@@ -43,8 +44,8 @@ NUMERICAL = {
     "atlas": DISCRETISATION["sensitivity_discretisation_relative"] + TABULATION,
     "solid": DISCRETISATION["sensitivity_discretisation_relative"],
 }
-"""Stated relative error in sensitivity of each model as a numerical answer: how far from the exact solution of its
-equations, or for the membrane from the solid's. What the equations leave out comes on top, for every model."""
+"""Relative error in sensitivity of each model as a numerical answer: its distance from the exact solution of its
+equations, or for the membrane from the solid's. Effects that the equations leave out come on top, for every model."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +57,8 @@ class ModelSequence:
 
 
 def stated_error(model: str, sensor: Sensor) -> float:
-    """`NUMERICAL` of a model on a sensor: that of the solid is larger under an object that is no plate, and so is that
-    of harmonic under any."""
+    """`NUMERICAL` of a model on a sensor: larger for the solid under an object that is no plate, and for harmonic under
+    any."""
     if model == "harmonic":
         return OBJECT_DISCRETISATION
     return OBJECT_DISCRETISATION if model == "solid" and sensor.protocol.body is not None else NUMERICAL[model]
@@ -106,7 +107,7 @@ def _outside(model: str, sensor: Sensor) -> str | None:
 
 
 def usual_model(sensor: Sensor) -> str:
-    """The model of a sensor where none is named."""
+    """The model of a sensor if none is named."""
     return "solid" if sensor.protocol.off_axis is None else "harmonic"
 
 

@@ -11,7 +11,7 @@ MOST_CELLS = 192
 
 
 def object_cells(sensor: Sensor) -> int | None:
-    """Cells along the arc that follow the object that presses a sensor; None where the default does, as for a plate."""
+    """Cells along the arc that follow the object pressing a sensor; None if the default does, as for a plate."""
     if sensor.protocol.body is None:
         return None
     dome, smallest = sensor.dome, sensor.protocol.body.smallest

@@ -41,7 +41,7 @@ class ShearCurve:
     ended: str | None
 
     def scaled(self, force: float, rise: float) -> ShearCurve:
-        """With all forces and the pressure rise times factors."""
+        """The curve with all forces and the pressure rise times factors."""
         return replace(
             self,
             force=force * self.force,
@@ -104,7 +104,7 @@ class OffAxisCurve:
     shear: ShearCurve | None = None
 
     def scaled(self, force: float, rise: float) -> OffAxisCurve:
-        """With all forces and the pressure rise times factors."""
+        """The curve with all forces and the pressure rise times factors."""
         sheared = None if self.shear is None else self.shear.scaled(force, rise)
         to_end = replace(self.to_end, force=force * self.to_end.force, rise=rise * self.to_end.rise)
         sideways, moment = force * self.sideways, force * self.moment

@@ -175,7 +175,7 @@ def _edge(protocol: IndentationProtocol) -> str:
 def _answer(
     sensor: Sensor, pressures: Array, model: str, closure: str, tolerance: float
 ) -> tuple[str, ModelResult, str | None]:
-    """The model that answered, its answer, and why it was taken where it was not requested by name."""
+    """The model that answered, its answer, and the reason for it if the user did not name the model."""
     if model != "auto":
         result, limitation = _result(model, sensor, pressures, closure)
         if limitation is not None and limitation.fatal:

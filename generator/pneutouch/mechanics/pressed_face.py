@@ -47,7 +47,7 @@ class PressedFace:
         return len(self.areas) - 1
 
     def scaled(self, force: float) -> PressedFace:
-        """With all forces times a factor."""
+        """The face with all forces times a factor."""
         return self if force == 1.0 else replace(self, forces=force * self.forces)
 
     def rows(self) -> Array:

@@ -63,7 +63,7 @@ class RatingRecord(TypedDict):
 
 @dataclass(frozen=True, slots=True)
 class Rating:
-    """The rated pressure of a sensor and what it follows from.
+    """The rated pressure of a sensor and its basis.
 
     Attributes:
         pressure: The rated pressure, MPa.
@@ -136,7 +136,7 @@ class Rating:
         )
 
     def remedy_for(self, pressure: float) -> str | None:
-        """The remedy where it lets the sensor be driven at a pressure (MPa); None where only less pressure does."""
+        """The remedy if it lets the sensor be driven at a pressure (MPa); None if only less pressure does."""
         return self.remedy if self.measured >= pressure else None
 
     def document(self, driving_pressures: list[float]) -> RatingRecord:

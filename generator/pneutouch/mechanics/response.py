@@ -1,4 +1,4 @@
-"""From a curve to figures: predicted and measured curves go through the same few functions.
+"""Figures from a curve: predicted and measured curves go through the same few functions.
 
 A curve is three arrays of one length: indentation (mm), contact force (N), pressure rise (kPa). Definitions
 follow the paper where it gives one (sensitivity, section 3-B; stiffness dF/d(delta), section 4-A), else

@@ -1,4 +1,4 @@
-"""The gas of an inflated, untouched sensor: what fills it, what a leak and the temperature do to it.
+"""The gas of an inflated, untouched sensor: the filling, and the effects of a leak and of the temperature.
 
 Ideal gas at one temperature behind a wall that yields: the cavity's volume follows the pressure along the free
 inflation of the dome. Lengths mm, pressures MPa.

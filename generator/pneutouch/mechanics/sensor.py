@@ -17,9 +17,9 @@ _PLANE = RigidBase()
 
 @dataclass(frozen=True, slots=True)
 class Dome:
-    """The unloaded membrane. ``flange`` is the width and thickness of the flange where the solid is clamped as printed;
-    without it the wall is clamped at the base plane, as in the paper. ``base`` is what the wall lies down on next to
-    its clamp, and inside; without it the wall passes through its base plane."""
+    """The unloaded membrane. ``flange`` is the width and thickness of the flange if the solid is clamped as printed;
+    without it the wall is clamped at the base plane, as in the paper. ``base`` is the body that the wall can lie down
+    on next to its clamp, and inside; without it the wall passes through."""
 
     inner_radius: float
     wall_thickness: float

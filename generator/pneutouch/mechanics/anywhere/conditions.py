@@ -1,4 +1,4 @@
-"""The table's variables of sensors, and what the table does not cover."""
+"""The table's variables of sensors, and the limits of the table."""
 
 from __future__ import annotations
 
@@ -18,14 +18,15 @@ _SLACK = 1e-9
 
 
 def batch_conditions(batch: SensorBatch, limit_pressure: Array, cavity_volume: Array) -> DomeConditions:
-    """Of n sensors with their limit pressures (MPa) and the cavity volumes at their driving pressures (mm3)."""
+    """Conditions of n sensors with their limit pressures (MPa) and the cavity volumes at their driving pressures
+    (mm3)."""
     volume = (cavity_volume + batch.dead_volume) / batch.inner_radius**3
     gas = (batch.driving_pressure + batch.ambient_pressure) / batch.shear_modulus / volume
     return DomeConditions(batch.wall_ratio, batch.driving_pressure / limit_pressure, gas)
 
 
 def state_conditions(sensor: Sensor, states: Sequence[SensorState], limit_pressure: float) -> DomeConditions:
-    """Of one sensor in n predicted states; its limit pressure in MPa."""
+    """Conditions of one sensor in n predicted states; its limit pressure in MPa."""
     driving, cavity = (np.array([getattr(s, name) for s in states]) for name in ("driving_pressure", "cavity_volume"))
     return batch_conditions(batch_of(sensor, driving), np.full(driving.size, limit_pressure), cavity)
 

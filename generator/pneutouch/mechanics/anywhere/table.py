@@ -47,7 +47,7 @@ class PlaceTable:
         self.recipe, self._tables = recipe, {name: np.asarray(table, dtype=float) for name, table in tables.items()}
 
     def logs(self, domes: DomeConditions, places: ContactPlaces) -> Array:
-        """At every level of the recipe, (n, m, levels); beyond the nodes as at the last ones."""
+        """Logarithms at every level of the recipe, (n, m, levels); beyond the nodes as at the last ones."""
         r = self.recipe
         central = np.pad(self._of_central(domes, "central"), _PLATE_FIRST)
         if not places.lying:

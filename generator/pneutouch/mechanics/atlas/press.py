@@ -69,7 +69,7 @@ class PressTrack(NamedTuple):
     ok: Flags
 
     def each(self, change: Callable[[Any], Any]) -> PressTrack:
-        """The same of changed arrays."""
+        """The track with every array changed."""
         return PressTrack(
             change(self.nu), change(self.height), self.point.each(change), change(self.margin), change(self.ok)
         )

@@ -106,7 +106,7 @@ def flattened(name: str, values: Array) -> Array:
 
 
 def unflattened(name: str, values: Array) -> Array:
-    """A field from its table; what is immense is cut at eighteen."""
+    """A field from its table; immense values are cut at eighteen."""
     if name not in _SATURATING:
         return values
     share = np.clip(values, 0.0, _MOST)

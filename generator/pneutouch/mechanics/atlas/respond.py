@@ -87,7 +87,8 @@ def inside(batch: SensorBatch, atlas: Atlas) -> Flags:
 
 
 def _harmless(batch: SensorBatch, good: Flags, atlas: Atlas) -> SensorBatch:
-    """The batch with a plain sensor in place of what is none, so that no NaN or overflow reaches the others' loops."""
+    """The batch with a plain sensor in place of impossible ones, so that no NaN or overflow reaches the others'
+    loops."""
     plain = SensorBatch(
         *(np.array(x) for x in (1.0, atlas.recipe.thickest, 1.0, 0.0, 0.0, 0.0, 0.1, np.inf, np.inf, np.inf))
     )

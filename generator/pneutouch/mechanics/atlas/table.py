@@ -35,7 +35,7 @@ class AtlasPoint(NamedTuple):
     folded: Flags
 
     def each(self, change: Callable[[Any], Any]) -> AtlasPoint:
-        """The same of changed arrays."""
+        """The point with every array changed."""
         return AtlasPoint(*map(change, self))
 
 
@@ -150,7 +150,7 @@ class Atlas:
         self._grid = axes(recipe)
 
     def boxed(self, recipe: AtlasRecipe) -> Atlas:
-        """The same tables with the box of another recipe; its coordinates must be the same."""
+        """These tables with the box of another recipe; its coordinates must be the same."""
         return Atlas(self._tables, recipe)
 
     def slices(self, wall_ratio: Array, names: tuple[str, ...] = FIELDS) -> AtlasSlices:

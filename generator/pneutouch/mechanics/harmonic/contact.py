@@ -69,7 +69,7 @@ class HarmonicContact(Contact):
         return form
 
     def form_blocks(self, form: Array) -> Array:
-        """Such a derivative by the coefficients of the edges, (n_edges, n columns, n columns)."""
+        """A derivative by the positions as one by the coefficients of the edges, (n_edges, n columns, n columns)."""
         return self._operator.stiffness(self.weight[..., None, None] * form)
 
     def load_forces(self, load: Array) -> Array:

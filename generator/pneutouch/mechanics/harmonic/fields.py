@@ -65,7 +65,7 @@ class Harmonics:
         return self._rows(angles, np.cos, np.sin)
 
     def slopes(self, angles: Array) -> Array:
-        """The same for the derivatives of the components by the angle."""
+        """Rows by which coefficients give the derivatives of the components by the angle."""
 
         def falling(x: Array) -> Array:
             return np.asarray(-np.sin(x))
@@ -73,7 +73,8 @@ class Harmonics:
         return self._rows(angles, falling, np.cos, by_order=True)
 
     def turned(self, angles: Array) -> Array:
-        """The same for the derivative of the position by the angle, in components: the base vectors turn with it."""
+        """Rows by which coefficients give the derivative of the position by the angle, in components: the base vectors
+        turn with it."""
         out, values = self.slopes(angles), self.values(angles)
         out[:, RADIAL] -= values[:, AROUND]
         out[:, AROUND] += values[:, RADIAL]

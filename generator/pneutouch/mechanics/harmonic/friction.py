@@ -129,7 +129,7 @@ class SurfaceFriction(FrictionStep):
         return np.asarray(np.einsum("...ij,...j->...i", tangents(slope), self.contact.points(move)))
 
     def cap(self, traction: Array, slope: Array) -> Array:
-        """Largest tangential traction under given vertical tractions per area at rest; none where there is none."""
+        """Largest tangential traction under given vertical tractions per area at rest; 0 without contact."""
         return self.coefficient * np.maximum(traction, 0.0) * secants(slope)
 
     def at(self, x: Array, touch: ContactEvaluation) -> SurfacePoints:
@@ -191,7 +191,7 @@ class SurfaceFrictionTerm(FrictionTerm):
     step: SurfaceFriction
 
     def energy(self, x: Array) -> float:
-        """Energy stored in the springs, and traction times slip beyond what they bear."""
+        """Energy stored in the springs, and traction times slip beyond their largest load."""
         trial = self.step.stiffness * self.step.slip(x, self.held.slope)
         bears = clipped(trial, self.held.cap)
         work = np.einsum("...i,...i->...", bears, trial - 0.5 * bears)

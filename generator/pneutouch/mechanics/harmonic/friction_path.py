@@ -50,7 +50,7 @@ class SlidObject(Surface):
         return self.body.span
 
     def at(self, height: float) -> SlidObject:
-        """The same body after another travel."""
+        """This body after another travel."""
         return replace(self, travel=height)
 
     def distance(self, x: Array, y: Array) -> Array:
@@ -146,11 +146,11 @@ class SurfaceFrictionFollower(FrictionFollower):
         return self._contact.points(x)[..., :Z] - [along, 0.0]
 
     def _signs(self) -> None:
-        """Directions of slip are not kept: that of a point that comes to touch is not that of its neighbour."""
+        """Forget the directions of slip: a point that comes to touch does not take its neighbour's."""
         return
 
     def _ahead(self, height: float) -> Array:
-        """The same at a place of the path ahead, or where points will touch before it, as in the solid."""
+        """Positions at a place of the path ahead, or those at which points will touch before it, as in the solid."""
         here, travel = self.here, height - self.here.height
         place = self._places(here.state.x)
         touch = here.state.touch

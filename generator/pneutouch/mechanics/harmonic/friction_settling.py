@@ -35,8 +35,8 @@ from pneutouch.mechanics.solid.friction_system import ContactSystem
 
 @dataclass(frozen=True)
 class SurfaceStatus(PointStatus):
-    """The status of points in space: ``sign`` is the direction of sliding, (..., 2), zero where a point does not slide;
-    turn: what is left of its spring across that."""
+    """The status of points in space: ``sign`` is the direction of sliding, (..., 2), zero for a point that does not
+    slide; turn: share of its spring that is left across that direction."""
 
     turn: Array
 
@@ -170,7 +170,7 @@ class SurfaceFrictionSolver(FrictionSolver):
     foreseen: PointTractions | None = None
 
     def direction(self, here: HeldState, kept: Array | None = None) -> Array:
-        """As that of `FrictionSolver`, from the tractions that are foreseen."""
+        """Direction as in `FrictionSolver`, from the foreseen tractions."""
         # Without harmonics the steps are the solid's, and with them the last digits of its figures.
         if here.state.x.shape[1] == 2:
             return super().direction(here, kept)
@@ -179,7 +179,8 @@ class SurfaceFrictionSolver(FrictionSolver):
         return step
 
     def _search(self, here: HeldState, step: Array, slope: float) -> HeldState | None:
-        """As that of `FrictionSolver`; the foreseen tractions go as far towards those of the model as the positions."""
+        """Search as in `FrictionSolver`; the foreseen tractions go as far towards those of the model as the
+        positions."""
         moved = super()._search(here, step, slope)
         if moved is not None and here.state.x.shape[1] > 2:
             move, gone = self.solid.expand(step), moved.state.x - here.state.x

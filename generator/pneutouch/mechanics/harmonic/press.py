@@ -69,7 +69,7 @@ class OffAxisState:
 @dataclass(frozen=True)
 class OffAxisPath:
     """States at the steps of the protocol, all solved states, and events, as `indent.IndentationPath` has them, with
-    harmonics to ``order``; ``shear``: what follows the press where the object then moves sideways."""
+    harmonics to ``order``; ``shear``: the path of an object that moves sideways after the press."""
 
     order: int
     states: list[OffAxisState]

@@ -35,7 +35,7 @@ class Foreseen:
 
 
 class ContactNewton:
-    """Newton steps to one state, for `newton.minimise`, from what is foreseen of its contact."""
+    """Newton steps to one state, for `newton.minimise`, from a guess of its contact."""
 
     def __init__(self, foreseen: Foreseen | None = None) -> None:
         self._foreseen = foreseen

@@ -45,7 +45,7 @@ class Surface(ABC):
 
     @abstractmethod
     def at(self, height: float) -> Surface:
-        """The same body at another height."""
+        """This body at another height."""
 
     def underside(self, r: Array) -> tuple[Array, Array, Array]:
         """Height of the section in the plane of symmetry at x = r and its first two derivatives."""
@@ -85,7 +85,7 @@ class ProfiledObject(Surface):
         return self.body.span
 
     def at(self, height: float) -> Self:
-        """The same object at another height."""
+        """This object at another height."""
         return replace(self, body=self.body.at(height))
 
 

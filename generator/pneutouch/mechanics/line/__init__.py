@@ -1,1 +1,1 @@
-"""The gas line from the cavity to the gauge as a transmission line, and what it does to a reading over time."""
+"""The gas line from the cavity to the gauge as a transmission line, and its effect on a reading over time."""

@@ -14,7 +14,7 @@ HALF_POWER = 0.5**0.5
 """The gain at -3 dB; its inverse is that at +3 dB."""
 
 TOLERANCE = 0.05
-"""Deviation of the gain from that of a slow change that the narrower band allows."""
+"""Deviation of the gain from that of a slow change that limits the narrower band."""
 
 LINE, GAS, WALL = "line", "heat exchange of the gas", "relaxation of the wall"
 """Effects that can end the narrower band."""
@@ -26,7 +26,7 @@ _BEYOND = 4.0
 """The highest frequency looked at, in half-wave resonances of the ducts, which bound the first resonance."""
 
 _NO_DUCT = 1.0e4
-"""Hz: looked at where there is no duct at all."""
+"""Frequency in Hz up to which a line without any duct is looked at."""
 
 _POINTS_A_DECADE = 60
 _ROUNDING = 1e-10
@@ -38,7 +38,7 @@ _CLOSE = 1e-7
 
 @dataclass(frozen=True, slots=True)
 class BandFigures:
-    """Frequencies in Hz; None where there is none up to ``highest``.
+    """Frequencies in Hz; None if there is none up to ``highest``.
 
     Attributes:
         resonance: The first maximum of the gain at the gauge, a wall as stiff as it is at once.
@@ -87,7 +87,7 @@ def _one(dynamics: SensorDynamics, frequency: float) -> float:
 
 
 def _first(where: Flags) -> int | None:
-    """The first index that holds; None where none does."""
+    """The first index that holds; None if none does."""
     return int(np.argmax(where)) if where.any() else None
 
 

@@ -31,7 +31,7 @@ class GasLine:
         return sum(element.length for element in self.elements if isinstance(element, Duct))
 
     def seen(self, s: Complex) -> LineEnd:
-        """Its admittance at the cavity, and the pressure at the gauge over that in the cavity, at s (n,)."""
+        """Admittance of the line at the cavity, and the pressure at the gauge over that in the cavity, at s (n,)."""
         end = LineEnd(np.zeros_like(s), np.ones_like(s))
         ducts = [element for element in self.elements if isinstance(element, Duct)]
         rows = list(profiles(ducts, s, self.air))

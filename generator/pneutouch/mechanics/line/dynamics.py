@@ -80,13 +80,14 @@ class SensorDynamics:
         return value
 
     def at_once(self) -> SensorDynamics:
-        """The same with a wall that does not relax, as stiff as this one is at first; its slow reading is its own."""
+        """This sensor with a wall that does not relax, as stiff as this one is at first; its slow reading is its
+        own."""
         stiff = self.stiffening + sum(self.excess)
         return replace(self, excess=(), times=(), stiffening=stiff)
 
     @property
     def fast_wall(self) -> float:
-        """The reading over the slow one for what is quick for the wall and slow for the gas."""
+        """The reading over the slow one for a change that is quick for the wall and slow for the gas."""
         slow, fast = self.gas_share, self.at_once().gas_share
         return 1.0 if np.isinf(slow) else (1.0 + slow) / (1.0 + fast)
 

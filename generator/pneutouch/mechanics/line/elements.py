@@ -75,7 +75,8 @@ class Duct:
 
 
 def profiles(ducts: Sequence[Duct], s: Complex, air: AirState) -> Complex:
-    """Of ducts (k,) at s (n,): I2/I0 of momentum and of heat, (k, 2, n), at once because a call costs the most."""
+    """Ratios I2/I0 of momentum and of heat of ducts (k,) at s (n,), (k, 2, n), at once because a call costs the
+    most."""
     across = np.array([duct.radius for duct in ducts])[:, None, None]
     diffusivity = np.array([air.kinematic_viscosity, air.thermal_diffusivity])[:, None]
     return second_over_zeroth(across * np.sqrt(np.asarray(s, dtype=complex) / diffusivity))

@@ -17,7 +17,8 @@ from pneutouch.mechanics.line.band import gain_at, highest_frequency
 from pneutouch.mechanics.line.dynamics import SensorDynamics
 
 _DAMPING = 14.0
-"""a T: what wraps around has 1e-6 of its size, and rounding grows to 1e-10."""
+"""Damping of the inverse transform, a T: the part that wraps around has 1e-6 of its size, and rounding grows to
+1e-10."""
 
 _STEPS = 2048
 """Samples of a step response."""
@@ -28,7 +29,7 @@ _PERIODS = 12.0
 
 @dataclass(frozen=True, slots=True)
 class StepFigures:
-    """Of the pressure at the gauge after a step, the wall as stiff as it is at once.
+    """Figures of the pressure at the gauge after a step, the wall as stiff as it is at once.
 
     Attributes:
         delay: From the step to half of the final value, s.
@@ -86,7 +87,7 @@ def step_response(dynamics: SensorDynamics, duration: float) -> tuple[Array, Arr
 
 
 def _leaving(dynamics: SensorDynamics) -> float:
-    """Hz, where the line takes the gain off what gas and wall alone make of it, by a tenth."""
+    """Frequency in Hz at which the line changes the gain by a tenth from that of gas and wall alone."""
     top = highest_frequency(dynamics)
     grid = np.geomspace(1e-5 * top, top, 200)
     off = np.abs(gain_at(dynamics, grid) / gain_at(replace(dynamics, lumped=True), grid) - 1.0) > 0.1

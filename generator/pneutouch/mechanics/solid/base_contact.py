@@ -89,7 +89,7 @@ class BaseContact:
         )
 
     def waves(self, x: Array) -> list[tuple[Array, Array] | None]:
-        """Of the inner and the outer face at positions x: second derivative by edge positions (n_edges, 2 n, 2 n), and
+        """Second derivatives on the inner and the outer face at positions x: by edge positions (n_edges, 2 n, 2 n), and
         by displacements around the axis (n_edges, n, n), by which a point moves outwards, too; None off the base."""
         meetings = [(face, face.meet(x)) for face in (self.inner, self.outer)]
         return [None if met is None else (face.hessian(met), face.around(met)) for face, met in meetings]

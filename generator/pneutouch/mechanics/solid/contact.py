@@ -48,7 +48,7 @@ class Plate:
         return self.height + 0.5 * beyond**2 / self.rim, beyond / self.rim, np.where(beyond > 0.0, 1.0 / self.rim, 0.0)
 
     def at(self, height: float) -> Plate:
-        """The same plate at another height."""
+        """This plate at another height."""
         return Plate(height, self.radius, self.rim)
 
 

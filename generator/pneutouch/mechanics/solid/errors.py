@@ -17,7 +17,7 @@ class NoConvergenceError(ComputationError):
 
 
 class UnreachableLoadError(BeyondLimitError):
-    """A driving pressure beyond what the dome can carry.
+    """A driving pressure beyond the one that the dome can carry.
 
     pressure: the requested one.  limit: the largest pressure that has an equilibrium; both gauge, MPa.
     """

@@ -41,7 +41,7 @@ DETAIL = {
 }
 
 OBJECT_DETAIL = {**DETAIL, "separation": "the wall leaves the object inside the contact"}
-"""The same under another object than a plate."""
+"""Descriptions of the events under another object than a plate."""
 
 
 @dataclass(frozen=True)

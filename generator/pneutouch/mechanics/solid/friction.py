@@ -80,7 +80,7 @@ class FrictionStep:
         return np.asarray((r + slope * z) / np.hypot(1.0, slope))
 
     def cap(self, traction: Array, slope: Array) -> Array:
-        """Largest tangential traction under given vertical tractions per area at rest; none where there is none."""
+        """Largest tangential traction under given vertical tractions per area at rest; 0 without contact."""
         out = np.zeros_like(traction)
         np.multiply(self.coefficient, traction * np.hypot(1.0, slope), out=out, where=traction > 0.0)
         return out
@@ -170,7 +170,7 @@ class FrictionTerm:
         self.noise = solid.contact.noise * step.stiffness / solid.contact.stiffness
 
     def energy(self, x: Array) -> float:
-        """Energy stored in the springs, and traction times slip beyond what they bear."""
+        """Energy stored in the springs, and traction times slip beyond their largest load."""
         trial = self.step.stiffness * self.step.slip(x, self.held.slope)
         bears = np.clip(trial, -self.held.cap, self.held.cap)
         return float(np.vdot(self.solid.contact.weight, bears * (trial - 0.5 * bears))) / self.step.stiffness

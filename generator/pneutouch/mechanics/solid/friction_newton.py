@@ -139,7 +139,8 @@ class FrictionSolver:
         return downhill(here.state, band, here.residual).step
 
     def reached(self, held: HeldState) -> ContactSystem:
-        """Wall, filling and the points that touch, without friction; what the contact does not reach is eliminated."""
+        """Wall, filling and the points that touch, without friction; unknowns that the contact does not reach are
+        eliminated."""
         touching = touched(PointTractions(held.touch.traction, held.points.traction))
         first = self.sides.first_unknown(int(touching[0])) if touching.size else 0
         band = full_tangent(self.scene, held.state)

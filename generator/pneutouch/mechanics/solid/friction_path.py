@@ -47,7 +47,7 @@ class FrictionFollower(PathFollower):
         return friction_plate_state(solver, solved, None)
 
     def feed(self, supply: Supply) -> None:
-        """As that of `PathFollower`; the points stay where they stick."""
+        """Fill the cavity by another supply as `PathFollower` does; the points stay where they stick."""
         super().feed(supply)
         self._bare = replace(self._bare, supply=supply)
 

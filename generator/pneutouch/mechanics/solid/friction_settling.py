@@ -154,7 +154,7 @@ class StepSettling:
         return system.solve(push, both if one_sided is None else both + one_sided)
 
     def _advanced(self, system: ContactSystem, here: _Place, there: _Place) -> tuple[_Place, bool]:
-        """As far towards the end of a round as the work of the residual falls, and whether that is its end."""
+        """Place towards the end of a round up to which the work of the residual falls, and whether that is its end."""
         contact, move = self._contact, there.unknowns - here.unknowns
         begun = here.begun * float(move @ system.begun) - contact.work(here.balanced, here.at, there.at)
         ended = -contact.work(there.balanced, here.at, there.at)

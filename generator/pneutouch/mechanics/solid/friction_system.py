@@ -42,7 +42,7 @@ class ContactSystem:
         return self._filled(self.sides.solve_widened(self._wide, blocks, self._load(push), self.first))
 
     def solve_definite(self, push: Array, blocks: Array) -> Array | None:
-        """The same by Cholesky for symmetric blocks; None where the matrix is not positive definite."""
+        """Solution by Cholesky for symmetric blocks; None if the matrix is not positive definite."""
         solved = self.sides.solve_definite(self.fore.rest, blocks, self._load(push), self.first)
         return None if solved is None else self._filled(solved)
 

@@ -160,7 +160,7 @@ class HarmonicSolid:
         return self._product(forms[0]), self._product(forms[1])
 
     def _add_swelling(self, local: PointFields, linear: Array, square: Array) -> None:
-        """Add what the stiffness of the averaged volume gives with c, in place."""
+        """Add the contribution of the averaged volume's stiffness with c, in place."""
         n_cells, n_points = self._weight.shape
         nodes = linear.shape[1]
         area = area_ratio(local.strains)

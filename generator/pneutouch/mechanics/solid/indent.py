@@ -211,7 +211,7 @@ class _Recorder:
         return (self._plate.height - height) * self._solid.length
 
     def state(self, plate_state: PlateState) -> PressState:
-        """Everything reported at one converged state."""
+        """Reported figures of one converged state."""
         solid, x, touch = self._solid, plate_state.state.x, plate_state.state.touch
         assert touch is not None
         length, mu = solid.length, solid.mu

@@ -46,7 +46,7 @@ class Indenter(Protocol):
         ...
 
     def at(self, height: float) -> Indenter:
-        """The same body at another height."""
+        """This body at another height."""
         ...
 
 
@@ -141,7 +141,7 @@ class RigidObject:
         return np.stack([r, self.underside(r)[0]], axis=1)
 
     def at(self, height: float) -> RigidObject:
-        """The same body at another height."""
+        """This body at another height."""
         return replace(self, height=height)
 
     def scaled(self, factor: float) -> RigidObject:

@@ -34,7 +34,7 @@ class SolidScene:
 
     @property
     def acting(self) -> tuple[EnergyTerm, ...]:
-        """The terms, after what the body itself rests on."""
+        """The terms, after the one for the body's own supports."""
         return (*self.solid.supports, *self.terms)
 
 

@@ -44,7 +44,7 @@ class FreeLoss:
 
 
 def unstable_waves(harmonic: HarmonicSolid, state: SolverState, numbers: tuple[int, ...]) -> tuple[int, ...]:
-    """Those numbers of waves for which the second variation at a state is not positive definite."""
+    """Those of the given numbers of waves for which the second variation at a state is not positive definite."""
     return tuple(n for n, band in harmonic.bands(state, numbers).items() if not is_definite(band))
 
 

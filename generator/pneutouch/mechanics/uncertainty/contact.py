@@ -1,4 +1,4 @@
-"""A sensor under another contact than the atlas's plate without friction: what the solid has of it.
+"""A sensor under another contact than the atlas's plate without friction, by the solid's answers.
 
 The atlas gives the derivatives by wall, radius, gas and driving pressure. The derivative by the modulus, which is
 uncertain by far the most, and that by the friction are the solid's, with the contact itself
@@ -25,10 +25,10 @@ SPREAD = 2.0
 plastic has a coefficient near 1, which dust, speed and load move by as much."""
 
 LEAST_GRIP = 1.0
-"""A surface stated to grip may have any coefficient from this on: an assumption, that of dry rubber on plastic."""
+"""Least coefficient of a surface that is stated to grip: an assumption, that of dry rubber on plastic."""
 
 _KURTOSIS = 1.8
-"""Of a rectangular distribution."""
+"""Kurtosis of a rectangular distribution."""
 
 _LEAST_STEP = 0.1
 """Least half step in ln modulus: below it the noise of the ends of ranges shows in a difference."""
@@ -67,7 +67,8 @@ class ContactShift:
     nodes: Array
 
     def at(self, by: Array) -> Array:
-        """At ln modulus over that of the sensor (k, n), (figures, k, n): a parabola, constant beyond its nodes."""
+        """Shift at ln modulus over that of the sensor (k, n), (figures, k, n): a parabola, constant beyond its
+        nodes."""
         t = np.clip(by / self.half, -1.0, 1.0)
         less, here, more = self.nodes[:, :, None]
         return np.asarray(here + 0.5 * t * (more - less) + 0.5 * t**2 * (more - 2.0 * here + less))

@@ -30,8 +30,8 @@ def pressed_logs(sensor: Sensor, pressures: tuple[float, ...]) -> Array:
 
 
 def state_logs(states: Sequence[SensorState], correction: ResponseCorrection | None = None) -> Array:
-    """Logarithms of the figures of solved states, (figures, n); NaN for what is none. The factors of a ``correction``
-    that the states hold are taken out."""
+    """Logarithms of the figures of solved states, (figures, n); NaN for a missing figure. The factors of a
+    ``correction`` that the states hold are taken out."""
     rows = np.full((len(FIGURES), len(states)), np.nan)
     for k, state in enumerate(states):
         if state.figures is not None:

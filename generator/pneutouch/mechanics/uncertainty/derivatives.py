@@ -45,7 +45,7 @@ class Derivatives:
     one_sided: Flags
 
     def part(self, rows: slice) -> Derivatives:
-        """Those of some of the sensors."""
+        """The derivatives of some of the sensors."""
         return Derivatives(*(getattr(self, each.name)[..., rows] for each in fields(self)))
 
 

@@ -19,7 +19,7 @@ _NEWTON, _LONGEST, _CLOSE = 20, 0.05, 1.0e-10
 
 
 class GasNotes(NamedTuple):
-    """Of n sensors, (n,) each; NaN where the atlas has no state.
+    """Effects of the air on n sensors, (n,) each; NaN if the atlas has no state.
 
     by_temperature_kPa_per_K: Pressure rise of the sealed, untouched sensor, kPa/K.
     force_by_temperature: The contact force that would read the same, N/K.

@@ -78,7 +78,7 @@ def unit_step(batch: SensorBatch) -> Array:
 
 
 def log_figures(batch: SensorBatch, groups: Index | None = None) -> Array:
-    """Natural logarithms of the figures, (figures, n); NaN where there is none. Units as stated in `FIGURES`.
+    """Natural logarithms of the figures, (figures, n); NaN for a missing figure. Units as stated in `FIGURES`.
 
     ``groups`` are those of `respond`.
     """

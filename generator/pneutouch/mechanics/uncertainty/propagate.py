@@ -1,4 +1,4 @@
-"""From sources and derivatives to combined uncertainties and the share of each source (JCGM 100, 5.1)."""
+"""Propagation of sources by derivatives to combined uncertainties and the share of each source (JCGM 100, 5.1)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -130,7 +130,7 @@ def variances(sources: list[UncertaintySource], slopes: Array) -> Array:
 
 
 def _by_input(batch: SensorBatch, sources: list[UncertaintySource]) -> tuple[Array, Array]:
-    """Of each input: standard uncertainty as each figure counts it (inputs, figures, n), and kurtosis (inputs, n)."""
+    """Standard uncertainty of each input as each figure counts it (inputs, figures, n), and kurtosis (inputs, n)."""
     size = len(batch)
     second = np.zeros((len(INPUTS), len(FIGURES), size))
     every, fourth = np.zeros((len(INPUTS), size)), np.zeros((len(INPUTS), size))

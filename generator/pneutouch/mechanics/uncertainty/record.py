@@ -1,4 +1,4 @@
-"""A budget as it leaves the program: what a state's uncertainty is written as."""
+"""A budget as it leaves the program: the form in which a state's uncertainty is written."""
 
 from typing import NotRequired, TypedDict
 
@@ -46,7 +46,7 @@ class SampleRecord(TypedDict):
 
 
 class UncertaintyRecord(TypedDict, total=False):
-    """The uncertainty of a state, figures by name; or ``unknown`` alone, why there is none."""
+    """The uncertainty of a state, figures by name; or ``unknown`` alone, the reason why there is none."""
 
     unknown: str
     coverage_factor: float

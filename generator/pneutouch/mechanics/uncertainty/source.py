@@ -1,4 +1,4 @@
-"""One source of uncertainty: what it acts on, how far it spreads, and where its number comes from."""
+"""One source of uncertainty: its effect, its spread, and the source of its number."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ CONTACT_FIGURES = (
     FIGURES.index("force_at_range_end_N"),
     FIGURES.index("range_end_mm"),
 )
-"""Those that depend on the contact; the last is the end of the range."""
+"""Figures that depend on the contact; the last is the end of the range."""
 DEAD = INPUTS.index("dead_volume")
 
 Distribution = Literal["normal", "rectangular", "lognormal", "log-rectangular"]
@@ -79,7 +79,7 @@ class UncertaintySource:
         return {} if self.acts_on == FIGURE else {self.acts_on: self.standard}
 
     def variance(self, slopes: Array) -> Array:
-        """Of the logarithm of the figures, (figures, n), by their slopes (inputs, figures, n)."""
+        """Variance of the logarithm of the figures, (figures, n), by their slopes (inputs, figures, n)."""
         if self.acts_on == FIGURE:
             whole = np.broadcast_to(self.standard**2, self.counts.shape)
         elif self.acts_on == JOINT:

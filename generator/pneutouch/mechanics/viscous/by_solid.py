@@ -38,7 +38,8 @@ _CUTS = 5
 
 @dataclass(frozen=True)
 class RelaxingGas:
-    """Trapped gas as the elastic dome feels it: pressure less what the past still adds, over the stiffness now."""
+    """Trapped gas as the elastic dome feels it: pressure less the remaining contribution of the past, over the
+    stiffness now."""
 
     gas: Gas
     past: float
@@ -77,14 +78,14 @@ class _Point(NamedTuple):
 def relaxation_by_solid(
     sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], depth: float, speed: float
 ) -> list[list[RelaxationRun]]:
-    """As `runs.relaxation`, under the sensor's own contact."""
+    """Relaxation as `runs.relaxation` has it, under the sensor's own contact."""
     return [[_relaxed(sensor, one, pressure, depth, speed) for one in series] for pressure in driving_pressures]
 
 
 def loop_by_solid(
     sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], depth: float, speed: float
 ) -> list[list[LoopRun]]:
-    """As `runs.loop`, under the sensor's own contact."""
+    """Loop as `runs.loop` has it, under the sensor's own contact."""
     return [[_looped(sensor, one, pressure, depth, speed) for one in series] for pressure in driving_pressures]
 
 

@@ -1,4 +1,5 @@
-"""The uncertainty of a calibrated sensor: its fitted parameters together, and what the corrected model leaves."""
+"""The uncertainty of a calibrated sensor: its fitted parameters together, and the remaining error of the corrected
+model."""
 
 import math
 from dataclasses import replace
@@ -37,8 +38,8 @@ _INPUT_OF = {
 _FORCES = (FIGURES.index("stiffness_N_per_mm"), FIGURES.index("force_at_range_end_N"))
 
 LEFT = math.sqrt(2.0 * (1.0 - MODEL_CORRELATION))
-"""Standard deviation of the difference of two errors of the model, over that of one: what a correction found at one
-driving pressure leaves of the model's error far from it, as far as Table S1 shows at 0 and 22 kPa."""
+"""Standard deviation of the difference of two errors of the model, over that of one: the part of the model's error that
+a correction found at one driving pressure leaves far from it, as far as Table S1 shows at 0 and 22 kPa."""
 
 _BEYOND = 1.05
 """A driving pressure up to this share above the greatest measured one counts as measured: our choice."""

@@ -1,4 +1,5 @@
-"""The uncertainty of the contact: an unknown friction, and what the plate's derivatives leave of another contact."""
+"""The uncertainty of the contact: an unknown friction, and the part of another contact that the plate's derivatives
+miss."""
 
 import numpy as np
 

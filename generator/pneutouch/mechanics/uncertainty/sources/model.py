@@ -72,7 +72,7 @@ def table_s1_errors(materials: list[Material]) -> list[tuple[float, ...]]:
 
 @lru_cache
 def _table_s1_sensitivities(sensors: tuple[Sensor, ...]) -> Array:
-    """By the atlas at 0 and 22 kPa, kPa/N, (n, 2). Kept, since they do not depend on the design."""
+    """Sensitivities by the atlas at 0 and 22 kPa, kPa/N, (n, 2). Kept, since they do not depend on the design."""
     if not sensors:
         return np.empty((0, 2))
     batch = joined([batch_of(sensor, [0.0, 22.0 * KPA]) for sensor in sensors])

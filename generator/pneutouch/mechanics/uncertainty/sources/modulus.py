@@ -84,7 +84,7 @@ def _mixing_fraction(modulus: Quantity, size: int) -> UncertaintySource:
 
 
 def _log_rectangular(factor: float) -> float:
-    """Standard deviation of the logarithm of what lies anywhere between two ends, ``factor`` apart.
+    """Standard deviation of the logarithm of a value that lies anywhere between two ends, ``factor`` apart.
 
     Twelve is the square of a rectangle's width over its variance; the width is kept although the value need not be its
     middle (JCGM 100, 4.3.8).
