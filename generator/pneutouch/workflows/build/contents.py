@@ -27,12 +27,12 @@ CONTENTS: tuple[tuple[tuple[str, ...], str], ...] = (
     (("print-sheet.md",), "which body takes which resin, orientation, cleaning, fits"),
     (("manifest.json",), "inputs, versions, measured mesh deviation, SHA-256 of every file"),
 )
-"""Files of an output folder that belong together, by patterns of their names, and what they are; as in
+"""Files of an output folder that belong together, by patterns of their names, with a description; as in
 docs/reference/files.md."""
 
 
 def described(names: Iterable[str], design: str) -> list[tuple[list[str], str]]:
-    """The files of the output folder of ``design`` by group, with what they are; groups without a file left out."""
+    """The files of the output folder of ``design`` by group, with a description; groups without a file left out."""
     left = list(names)
     groups = []
     for patterns, words in CONTENTS:

@@ -79,7 +79,7 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
 
 
 def inputs(evaluation: Evaluation) -> dict[str, Any]:
-    """Everything that the result follows from: design, materials, printers and parts, as data."""
+    """Everything that the result depends on: design, materials, printers and parts, as data."""
     return BuildRecipe.of(evaluation).inputs()
 
 

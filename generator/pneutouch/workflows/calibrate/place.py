@@ -12,7 +12,7 @@ from pneutouch.spec.names import NAME_RULE, plain_name
 from pneutouch.spec.read import read_toml
 
 _NO_CALIBRATION = "none"
-"""As the name of a calibration it leaves the calibration of a design out."""
+"""Name of a calibration that leaves the calibration of a design out."""
 
 
 def check_place(name: str, root: Path) -> Path:

@@ -156,7 +156,7 @@ def _check_left(
 def _write(
     options: CalibrationOptions, calibration: Calibration, name: str, source: CampaignSource
 ) -> tuple[list[Path], list[str]]:
-    """Write the fit's report and the calibration: what was written, and a note where there is no calibration.
+    """Write the fit's report and the calibration: the written files, and a note if there is no calibration.
 
     Raises InputError where ``save`` requires one; the report is written nevertheless.
     """

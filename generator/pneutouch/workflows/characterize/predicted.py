@@ -26,7 +26,7 @@ _OF_STATE = ("sensitivity_kPa_per_N", "stiffness_N_per_mm")
 
 @dataclass(frozen=True)
 class StatePrediction:
-    """The model's state for a resin at a driving pressure (kPa); ``why`` where there is none."""
+    """The model's state for a resin at a driving pressure (kPa); ``why`` if there is none."""
 
     evaluation: Evaluation | None
     place: int

@@ -36,7 +36,7 @@ from pneutouch.workflows.characterize.tables import injections, points_csv, segm
 from pneutouch.workflows.characterize.verdict import ageing, verdicts
 
 EVIDENCE = ("doubtful", "all", "none")
-"""Of which runs the evidence is plotted: of those with warnings and one of each group, of all, of none."""
+"""Runs of which the evidence is plotted: those with warnings and one of each group, all, or none."""
 
 
 @dataclass(frozen=True)

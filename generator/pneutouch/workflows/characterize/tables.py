@@ -25,7 +25,7 @@ def points_csv(curves: Iterable[MeasuredCurve]) -> bytes:
 
 
 def segments_csv(curves: Iterable[MeasuredCurve]) -> bytes:
-    """Every indentation found, with the seconds that were read; what is doubtful stands with its reason."""
+    """Every indentation found, with the seconds that were read; a doubtful one stands with its reason."""
     rows = []
     for curve in curves:
         for i in curve.indents:

@@ -15,11 +15,11 @@ from pneutouch.spec.files import read_bytes
 from pneutouch.spec.number import is_finite
 
 _MOST_BYTES = 100_000_000
-"""Of the largest file that is read: hundreds of times a usual one."""
+"""Size of the largest file that is read: hundreds of times a usual one."""
 
 
 def manifest_of(folder: Path) -> dict[str, Any]:
-    """The manifest of an output folder. Raises InputError where there is none, or where it is damaged."""
+    """The manifest of an output folder. Raises InputError if there is none, or if it is damaged."""
     if not os.path.lexists(folder / MANIFEST):
         raise InputError(
             f"holds no {MANIFEST}: neither a build nor a characterization",
@@ -62,7 +62,7 @@ def interval_of(entry: Mapping[str, Any]) -> tuple[float, float | None, float | 
 
 
 def numbers(values: Any) -> list[float]:
-    """The values of a list. Raises ValueError where one is no finite number, TypeError for what is no list."""
+    """The values of a list. Raises ValueError if one is no finite number, TypeError for anything but a list."""
     for value in values:
         if not is_finite(value):
             raise ValueError(f"{value!r:.40} is no finite number")

@@ -1,4 +1,4 @@
-"""Compare what a user names: designs, builds and measurements, in columns of one kind."""
+"""Compare the things that a user names: designs, builds and measurements, in columns of one kind."""
 
 from __future__ import annotations
 

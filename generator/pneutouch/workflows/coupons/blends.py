@@ -16,7 +16,7 @@ is known (docs/background/mixing.md)."""
 
 @dataclass(frozen=True, slots=True)
 class CouponMix:
-    """One fraction of a pair ``SOFT+STIFF`` and what it is made of."""
+    """One fraction of a pair ``SOFT+STIFF`` and its resins."""
 
     pair: str
     fraction: float

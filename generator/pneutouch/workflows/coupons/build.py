@@ -22,7 +22,7 @@ RESULTS, SHEET = "results.toml", "measure.md"
 
 
 def build_coupons(options: CouponOptions, out: Path, library: Library | None = None) -> tuple[Path, dict[str, Any]]:
-    """Write the requested coupons into ``out/coupons-<printer>/``; the folder and what lies in it, as data.
+    """Write the coupons into ``out/coupons-<printer>/``; the folder and its content, as data.
 
     Raises InputError for what is unknown or does not fit the tray, and where readings in the folder would be lost.
     The same input gives the same bytes.
@@ -46,7 +46,7 @@ def build_coupons(options: CouponOptions, out: Path, library: Library | None = N
 
 
 def inputs(ordered: CouponOrder) -> dict[str, Any]:
-    """Everything that the coupons follow from, as data."""
+    """Everything that the coupons depend on, as data."""
     scene = ordered.scene
     return {
         "profile": ordered.profile,

@@ -26,7 +26,7 @@ class CouponPiece:
 
     @property
     def size(self) -> tuple[float, float, float]:
-        """Of the bounding box, mm."""
+        """Size of the bounding box, mm."""
         x, y, z = (self.body.bounds[1] - self.body.bounds[0]).tolist()
         return x, y, z
 
@@ -64,7 +64,7 @@ def lay(printer_name: str, items: tuple[CouponItem, ...]) -> tuple[CouponPiece, 
 
 
 def job_mode(printer_name: str, items: tuple[CouponItem, ...]) -> Mode:
-    """The mode that prints everything in one job. Raises InputError where there is none."""
+    """The mode that prints everything in one job. Raises InputError if there is none."""
     printer = items[0].printer
     mode = printer.mode_for(*(item.printed for item in items))
     if mode is None:

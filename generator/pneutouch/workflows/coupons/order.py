@@ -21,7 +21,7 @@ MIXED = ("puck", "dumbbell")
 """Coupons that there are of a mix."""
 
 MIXED_COPIES = 2
-"""Of each fraction: the least that gives a spread, two pucks making the 6 mm under the durometer."""
+"""Copies of each fraction: the least that gives a spread, two pucks making the 6 mm under the durometer."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class CouponItem:
 
 @dataclass(frozen=True)
 class CouponOrder:
-    """Everything to print. ``name`` is the folder's; ``profile`` the requested printer."""
+    """Everything to print. ``name`` is the folder's; ``profile`` the printer that the user named."""
 
     name: str
     profile: str
@@ -88,14 +88,15 @@ class CouponOrder:
     items: tuple[CouponItem, ...]
 
     def machines(self) -> dict[str, tuple[CouponItem, ...]]:
-        """Items by printer, the requested one first."""
+        """Items by printer, the named one first."""
         names = dict.fromkeys((self.profile, *(item.printer_name for item in self.items)))
         groups = {name: tuple(item for item in self.items if item.printer_name == name) for name in names}
         return {name: items for name, items in groups.items() if items}
 
 
 def order(options: CouponOptions, library: Library | None = None) -> CouponOrder:
-    """Resolve every name. Raises InputError for what is unknown, contradicts, or does not run on the machine."""
+    """Resolve every name. Raises InputError for a name that is unknown, contradicts another, or does not run on the
+    machine."""
     library = library or Library.default()
     scene = None if options.design is None else load_scene(options.design, None, library)
     profile = options.profile or (Print().profile if scene is None else scene.design.print.profile)
@@ -157,7 +158,8 @@ def _families(options: CouponOptions) -> list[Coupon]:
 def _materials(
     options: CouponOptions, scene: ResolvedDesign | None, printer: Printer, profile: str, library: Library
 ) -> list[str]:
-    """As requested; else the design's membrane; else the default resin where the printer runs it, else its first."""
+    """Materials: those the user named; else the design's membrane; else the default resin if the printer runs it, else
+    its first."""
     if options.materials or options.mixing:
         return list(dict.fromkeys(options.materials))
     if scene is not None and scene.design.print.profile == profile:
@@ -175,7 +177,7 @@ def _materials(
 def _of_mixing(
     options: CouponOptions, profile: str, printer: Printer, families: list[Coupon], library: Library
 ) -> list[CouponItem]:
-    """The mixing set: every fraction of each pair; pucks, and dumbbells where requested (they take a large tray)."""
+    """The mixing set: every fraction of each pair; pucks, and dumbbells if asked for (they take a large tray)."""
     chosen = [
         coupon
         for coupon in families

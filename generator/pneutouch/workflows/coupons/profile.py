@@ -1,4 +1,4 @@
-"""A lab's own profile: the shipped one with what was measured in place of what was quoted."""
+"""A lab's own profile: the shipped one with measured numbers in place of quoted ones."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ HEAD = "# Written by pneutouch coupons"
 
 @dataclass(frozen=True, slots=True)
 class MeasuredProfile:
-    """A profile to write: its file, its text, and what it changes."""
+    """A profile to write: its file, its text, and its changes."""
 
     path: Path
     text: str
@@ -75,7 +75,7 @@ def _is_ours(path: Path) -> bool:
 
 
 def _earlier(path: Path, changes: Sequence[ProfileChange]) -> dict[str, Any]:
-    """The content of the file that the command wrote before; nothing where there is none."""
+    """The content of the file that the command wrote before; empty if there is none."""
     there = check_ours(path, ", ".join(".".join(change.keys) for change in changes))
     return read_toml(path) if there else {}
 
@@ -105,7 +105,7 @@ def _carry(earlier: dict[str, Any], content: dict[str, Any]) -> None:
 
 
 def _put(content: dict[str, Any], change: ProfileChange, path: Path) -> dict[str, Any]:
-    """Put a quantity in its place; what it was and what it is, as data."""
+    """Put a quantity in its place; its old and new values, as data."""
     *tables, last = change.keys
     owner = content
     for table in tables:

@@ -10,7 +10,7 @@ _CELLS = 5
 """Readings on one line."""
 
 CAST_EXCESS = 1.3
-"""Silicone mixed over that of the coupons: what is struck off and what stays in the cup; own choice."""
+"""Silicone mixed over that of the coupons: the part struck off and the part that stays in the cup; our choice."""
 
 _CAST = "Cast as stated above. Clean, dry, and wait 24 h after the cure; note the age."
 
@@ -83,7 +83,7 @@ def _casting(items: list[CouponItem]) -> list[str]:
 
 
 def stl_name(piece: CouponPiece, order: CouponOrder) -> str:
-    """File of a piece; that of another machine than the requested one is named by it."""
+    """File of a piece; for another machine than the named one the machine is part of the name."""
     item = piece.item
     return (
         f"{piece.body.name}.stl" if item.printer_name == order.profile else f"{item.printer_name}-{piece.body.name}.stl"

@@ -17,7 +17,7 @@ _FIELDS = {
     "shear_modulus": ("shear modulus of the resin, MPa", 1.0),
     "dead_volume": ("pneumatics.dead_volume_mL", ML),
 }
-"""Inputs of the model that a design can change: what a user calls them, and their unit in that of the model."""
+"""Inputs of the model that a design can change: the user's name for each, and its unit in that of the model."""
 
 _FARTHEST = 2.0
 """Greatest factor on an input for which its derivative is followed: our choice."""

@@ -55,7 +55,7 @@ class ReachCurves:
         return np.array([state.driving_pressure for state in self.states])
 
     def values(self, figure: str) -> Array:
-        """A figure by its key at every driving pressure, in its unit (n,); NaN where there is none."""
+        """A figure by its key at every driving pressure, in its unit (n,); NaN for a missing one."""
         return np.array([figure_of(state, figure) for state in self.states])
 
     def widths(self, figure: str) -> Array:

@@ -65,7 +65,7 @@ class TaskAnswer:
 
 @dataclass(frozen=True)
 class DrivingSchedule:
-    """The answers to tasks in their order, and what they were solved on."""
+    """The answers to tasks in their order, and the curves they were solved on."""
 
     curves: ReachCurves
     answers: tuple[TaskAnswer, ...]
@@ -112,7 +112,7 @@ def driving_schedule(
 def _sealed(
     curves: ReachCurves, gas: SealedGas, task: DrivingTask, pressure: float, before: float, conductance: float | None
 ) -> SealedState:
-    """The gas at a driving pressure (MPa) that is among the states; ``before`` is what was injected already, mm3."""
+    """The gas at a driving pressure (MPa) that is among the states; ``before`` is the gas injected already, mm3."""
     k = int(np.searchsorted(gas.pressure, pressure))
     values = curves.values(task.figure)
     near = slice(max(0, k - 1), k + 2)

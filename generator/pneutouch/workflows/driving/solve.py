@@ -16,7 +16,7 @@ _EXACT = 1e-6
 _TRIES = 40
 
 _JUMPED = 1e-3
-"""Relative distance above which what was bracketed is a jump of the figure, not a solution."""
+"""Relative distance above which a bracketed crossing is a jump of the figure, not a solution."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class PressureBand:
 
 @dataclass(frozen=True)
 class DrivingSolution:
-    """A state whose figure has the required value; ``band`` is None where the uncertainty is not known."""
+    """A state whose figure has the required value; ``band`` is None if the uncertainty is not known."""
 
     state: SensorState
     band: PressureBand | None

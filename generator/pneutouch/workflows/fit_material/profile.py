@@ -1,4 +1,4 @@
-"""The material file of a fit: what was measured, over what is known of the material already."""
+"""The material file of a fit: the measured numbers, over those known of the material already."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ class PlanViolation:
     depth_mm: float | None = None
 
     def document(self) -> dict[str, Any]:
-        """As data."""
+        """The violation as data."""
         return dict(vars(self))
 
 

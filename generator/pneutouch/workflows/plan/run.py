@@ -1,4 +1,4 @@
-"""A test plan: every run of a campaign in order, what it must read, and where the rig cannot follow."""
+"""A test plan: every run of a campaign in order, its expected readings, and the places where the rig cannot follow."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

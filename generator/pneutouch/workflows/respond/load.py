@@ -21,7 +21,7 @@ CYCLES = 10.0
 """Cycles of a sine, where no duration is given."""
 
 STEP_SECONDS = 1.0
-"""Length of a step's record, where no duration is given: our choice, many times what a line takes."""
+"""Length of a step's record if no duration is given: our choice, many times the time that a line needs."""
 
 BEFORE = 0.1
 """Share of a step's record before the step."""

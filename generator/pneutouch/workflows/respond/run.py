@@ -33,7 +33,7 @@ MOST_SAMPLES = 2**18
 """Longest signal."""
 
 _MORE_GAS = 0.1
-"""By which share of all gas the second press has more of it."""
+"""Share of all gas that the second press has in addition."""
 
 _SMALL_LOAD = 0.02
 """Share of the range below which the wall's compliance is that without contact."""

@@ -55,7 +55,7 @@ def document(run: ScanRun) -> dict[str, Any]:
 
 
 def inputs(run: ScanRun) -> dict[str, Any]:
-    """Everything that the result follows from, as data; measured signals by their file names."""
+    """Everything that the result depends on, as data; measured signals by their file names."""
     design = run.design
     options = run.options
     return {

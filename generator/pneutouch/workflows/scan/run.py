@@ -53,7 +53,7 @@ class ScanOptions:
 
 @dataclass(frozen=True)
 class AnalysedSignal:
-    """One signal, simulated or measured, with what was detected in it; touch, substrate and scan of a simulated one."""
+    """One signal, simulated or measured, with its detections; touch, substrate and scan of a simulated one."""
 
     label: str
     signal: Signal

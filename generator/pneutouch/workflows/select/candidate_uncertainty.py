@@ -49,7 +49,7 @@ def sensitivity_uncertainties(
 
 
 def _counted(budget: Budget, *, anywhere: bool) -> Flags:
-    """Of which designs every source that is requested counts, (n,)."""
+    """Designs for which every source that the target counts is known, (n,)."""
     placed = [source.counts[SENSITIVITY] for source in budget.sources if source.name == PLACE]
     whole = np.ones(budget.expanded.shape[1], dtype=bool)
     return np.asarray(whole if not anywhere else placed[0] if placed else ~whole)

@@ -82,7 +82,7 @@ def tradeoff(selection: SelectionRun, library: Library | None = None) -> TradeOf
 def _fronts(
     selection: SelectionRun, problem: SelectionProblem, library: Library
 ) -> tuple[list[TradeOffFront], tuple[float, float] | None, str]:
-    """Fronts, their errors and what is stated of them: under the base's contact where the solid answers it."""
+    """Fronts, their errors and notes: under the base's contact if the solid answers it."""
     if selection.by_solid is None:
         return front(problem), None, ""
     solver = CandidateSolver(selection.base, selection.assignments, library)

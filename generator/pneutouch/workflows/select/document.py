@@ -154,7 +154,7 @@ def write_choice(
 
 
 def pick(selection: SelectionRun, rank: int) -> Candidate:
-    """The design of a rank, from 1. Raises InputError where there is none."""
+    """The design of a rank, from 1. Raises InputError if there is none."""
     designs = selection.answer.designs
     if not 1 <= rank <= len(designs):
         raise InputError(f"must be from 1 to {len(designs)}", key="pick", value=rank)

@@ -22,7 +22,7 @@ _UNKNOWN = "its noise is not stated, so the smallest force is not known"
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """A gauge by name, and what it reads at the ambient pressure."""
+    """A gauge by name, and its reading at the ambient pressure."""
 
     name: str
     reading: GaugeReading

@@ -39,7 +39,8 @@ def missed_text(selection: SelectionRun, nearest: Candidate) -> str:
 
 
 def dropped_lines(selection: SelectionRun) -> list[str]:
-    """Each single requirement whose removal admits a design, with what can be reached; or that there is none."""
+    """Each single requirement whose removal admits a design, with the value that can be reached; or that there is
+    none."""
     return [
         f"without the requirement on {dropped.requirement} alone a design fits: {would_need(selection, dropped)} "
         f"({dropped.best.resin.name})"

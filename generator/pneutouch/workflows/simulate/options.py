@@ -13,7 +13,7 @@ PRESSED = ("steps", "saturation", "loop", "relaxation")
 """Kinds of run with a plate."""
 
 REPEATED = ("steps", "saturation")
-"""Kinds that are run as often as requested; the others once."""
+"""Kinds that are run as often as the user asks; the others once."""
 
 
 @dataclass(frozen=True)

@@ -177,7 +177,7 @@ def campaign_toml(campaign: Campaign, comment: str) -> bytes:
 
 
 def _depth(subject: SimulatedResin, options: SimulationOptions) -> float:
-    """The deepest plate travel of the requested kinds, mm."""
+    """The deepest plate travel of the chosen kinds, mm."""
     reach = subject.sensor.dome.inner_radius
     kinds = [kind for kind in options.kinds if kind in PRESSED] or ["steps"]
     return max(max(subject.truth.protocol(kind, reach, np.inf).depths) for kind in kinds)
@@ -200,7 +200,7 @@ def _populations(subject: SimulatedResin, age: float, options: SimulationOptions
 def _specimen(
     subject: SimulatedResin, name: str, k: int, age: float, options: SimulationOptions, truth: dict[str, Any]
 ) -> Iterator[tuple[CampaignRun, bytes]]:
-    """Every run of one specimen, the resin's k-th, at one age, and what is true of it."""
+    """Every run of one specimen, the resin's k-th, at one age, and its true values."""
     rng = np.random.default_rng([options.seed, _number(subject.name), k])
     drawn = SimulatedSpecimens.draw(subject.truth.scatter, 1, rng)
     sensor = aged(drawn.sensor(subject.sensor, 0), subject.truth, age)

@@ -77,7 +77,7 @@ def check_specimen(
 
 
 def inputs(scene: ResolvedSpecimen) -> dict[str, Any]:
-    """Everything that the result follows from, as data."""
+    """Everything that the result depends on, as data."""
     return {
         "specimen": scene.specimen.model_dump(mode="json"),
         "matrix": scene.matrix.model_dump(mode="json"),
@@ -118,7 +118,7 @@ def _polygon(corners: list[tuple[float, float]]) -> tuple[Line, ...]:
 def _files(
     drawn: SpecimenBodies, checked: list[Finding], progress: StepReport
 ) -> tuple[dict[str, bytes], dict[str, Any]]:
-    """The files, and the manifest's entry on what is left out."""
+    """The files, and the manifest's entry on the parts left out."""
     scene, bodies = drawn.scene, drawn.printed
     whole = input_hash(inputs(scene))
     progress("3MF")

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _WIDTH = 180.0
-"""Of the drawing, mm."""
+"""Width of the drawing, mm."""
 
 _ASIDE = 0.011
 """The section is taken this far (mm) off the middle, so that it runs along no face of a lattice."""

@@ -12,7 +12,7 @@ from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
 from pneutouch.workflows.specimen.draw import SpecimenBodies
 
 OPEN = frozenset({"holes", "channels", "gaps", "hollows", "cleaning", "emboss", "matte"})
-"""Rules on open space: what one body leaves open another one fills, so they look at the block as a whole."""
+"""Rules on open space: a space that one body leaves open another one fills, so they look at the block as a whole."""
 
 BONDED = frozenset({"walls", "pins"})
 """Rules on free-standing features: here they are bonded to the other resin, which the limits do not include."""

@@ -23,7 +23,7 @@ _PATIENCE = 6
 """Seconds to wait for the scheduler, and again for a worker."""
 
 _QUEUED = 3
-"""Chunks sent ahead a core of the cluster: more only lengthen what a stop throws away."""
+"""Chunks sent ahead a core of the cluster: more only lengthen the work that a stop throws away."""
 
 
 def on_cluster(study: SweepStudy, chunks: list[SweepChunk], address: str) -> Iterator[list[Record]]:

@@ -28,7 +28,7 @@ _ENDS = "sensitivity_low_kPa_per_N", "sensitivity_high_kPa_per_N"
 
 
 def table_rows(content: xarray.Dataset) -> list[dict[str, Any]]:
-    """A row a state that was requested, in the order of the dataset: swept fields, driving pressure, then figures.
+    """A row for every state of the sweep, in the order of the dataset: swept fields, driving pressure, then figures.
 
     Numbers that are not there are None.
     """

@@ -33,7 +33,7 @@ PRESSURE = "driving_pressure_kPa"
 """The dimension of the driving pressures: those of all points."""
 
 MOST_BYTES = 2**30
-"""Of a dataset, which is in memory as a whole: some million points."""
+"""Largest size of a dataset, which is in memory as a whole: some million points."""
 
 _CONTENT_HASH = "content_hash"
 
@@ -72,7 +72,8 @@ def dataset(study: SweepStudy, records: dict[int, Record]) -> xarray.Dataset:
 
 
 def _content_hash(content: xarray.Dataset) -> str:
-    """SHA-256 of names, dimensions, values and attributes: what is damaged after it was written is never reported."""
+    """SHA-256 of names, dimensions, values and attributes, so that a dataset damaged after it was written is never
+    reported."""
     digest = hashlib.sha256()
     for name in sorted(map(str, content.variables)):
         column = content[name]
@@ -96,7 +97,7 @@ def netcdf(content: xarray.Dataset) -> bytes:
 
 
 def stored_fingerprint(path: Path) -> str:
-    """Fingerprint of a finished sweep's file, read whole. Raises InputError where it is none, or damaged."""
+    """Fingerprint of a finished sweep's file, read whole. Raises InputError if it is no dataset, or damaged."""
     import xarray
 
     _check_size(path)

@@ -18,7 +18,7 @@ _CHECKSUM_DIGITS = 16
 
 
 MOST_BYTES = 2**30
-"""Of a journal: some million points."""
+"""Largest size of a journal: some million points."""
 
 
 class Journal:

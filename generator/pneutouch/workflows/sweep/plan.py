@@ -37,7 +37,7 @@ class SweepAxis:
 
 @dataclass(frozen=True, slots=True)
 class SweepPlan:
-    """A base design, what is set for all points, and either the ``axes`` of a grid or a list of ``points``.
+    """A base design, the settings of all points, and either the ``axes`` of a grid or a list of ``points``.
 
     ``where`` names the sweep file or the flags, for messages; ``design`` is a name, a path or a source.
     """
@@ -104,7 +104,7 @@ class SweepPlan:
         return tuple(reversed(places))
 
     def overrides(self, index: int) -> Settings:
-        """All that a point sets, what is set for all points included."""
+        """All settings of a point, those of all points included."""
         if self.points:
             return {**self.settings, **self.points[index]}
         place = self.position(index)

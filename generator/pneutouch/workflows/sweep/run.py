@@ -51,7 +51,7 @@ def sweep(
     progress: Progress = lambda done, total: None,
     library: Library | None = None,
 ) -> SweepResult:
-    """Compute every point of a plan and write the dataset to ``out``; returns what was done.
+    """Compute every point of a plan and write the dataset to ``out``; returns a record of the work.
 
     Progress is kept in ``out`` with ``.parts`` added. A stopped sweep, however it was stopped, goes on there and
     ends with the same bytes. ``fresh`` forgets progress and replaces another sweep's dataset.

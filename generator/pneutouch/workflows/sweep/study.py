@@ -29,7 +29,8 @@ class SweepPoint:
 
 @dataclass(frozen=True)
 class SweepStudy:
-    """A checked plan. ``base`` is the design file alone; ``files`` (path to text) is a library of what it names.
+    """A checked plan. ``base`` is the design file alone; ``files`` (path to text) is a library of the files that it
+    names.
 
     The work reads ``files`` and not the library: a sweep does not notice when a user edits a material while it
     runs, and a machine of a cluster needs no copy of the user's folder. ``fingerprint`` is the SHA-256 of all that

@@ -9,7 +9,7 @@ from pneutouch.spec.fields import table_of
 
 
 def _field(key: str) -> FieldInfo | None:
-    """The declaration of ``table.key``; None where there is none."""
+    """The declaration of ``table.key``; None if there is none."""
     table_name, _, name = key.partition(".")
     table = table_of(DesignFile, table_name)
     return None if table is None else table.model_fields.get(name)

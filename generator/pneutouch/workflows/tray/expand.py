@@ -47,7 +47,7 @@ class TrayPiece:
 
 @dataclass(frozen=True)
 class ExpandedTray:
-    """All pieces of a tray for its printer, and in words what is left out and why."""
+    """All pieces of a tray for its printer, and notes on the parts left out."""
 
     printer: Printer
     profile: str
@@ -109,7 +109,7 @@ def _assembly(order: TrayOrder, entry: Entry, settings: dict[str, Any], library:
 
 
 def _pieces(value: TrayVariant, printer: Printer, order: TrayOrder) -> tuple[list[TrayPiece], list[str]]:
-    """The pieces of a value by print job, and notes of what is left out."""
+    """The pieces of a value by print job, and notes on the parts left out."""
     assembly, bodies = value.assembly, order.tray.tray.bodies
     groups: dict[str, list[Solid]] = {}
     for solid in assembly.solids:

@@ -1,4 +1,4 @@
-"""The label list: which part is which, where it lies, what it is made of, and how its mark is read."""
+"""The label list: the value, place and material of each part, and the meaning of its mark."""
 
 from typing import Any
 
@@ -22,7 +22,7 @@ def labels_csv(layout: TrayLayout) -> bytes:
 
 
 def labels_md(layout: TrayLayout, findings: tuple[TrayFinding, ...] = ()) -> bytes:
-    """The list to print and stick: a head, a table a job, and what the print rules found."""
+    """The label list to print and stick: a head, a table a job, and the findings of the print rules."""
     printer, head = layout.printer, layout.order.tray.tray
     lines = [
         f"# {_escaped(head.title)}",
@@ -103,7 +103,7 @@ def _value(row: dict[str, Any]) -> str:
 
 
 def _resin(row: dict[str, Any]) -> str:
-    """With the base resins, without which a digital material's code is ambiguous."""
+    """The resin with the base resins, without which a digital material's code is ambiguous."""
     mixed = " + " in row["base_resins"]
     return f"{row['material']} ({row['base_resins']})" if mixed else str(row["material"])
 

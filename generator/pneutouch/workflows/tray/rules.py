@@ -22,7 +22,7 @@ class TrayFinding:
 
     @property
     def text(self) -> str:
-        """One line: where it holds, what it is and what would fix it."""
+        """One line: the place, the problem and the remedy."""
         finding = self.finding
         return f"{finding.severity}: {self.parts}: {finding.rule}: {finding.message}; {finding.fix}"
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _WIDTH = 170.0
-"""Of the drawing, mm."""
+"""Width of the drawing, mm."""
 
 
 def tray_svg(layout: TrayLayout, job: TrayJob) -> bytes:

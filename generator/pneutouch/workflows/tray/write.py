@@ -63,7 +63,7 @@ def document(layout: TrayLayout, folder: Path) -> dict[str, Any]:
 
 
 def inputs(layout: TrayLayout) -> dict[str, Any]:
-    """Everything that a tray follows from: the tray file or options, the printer, and each value's scene resolved.
+    """Everything that a tray depends on: the tray file or options, the printer, and each value's scene resolved.
 
     ``values`` state by letter which of ``things`` each scene is made of: they share most of them.
     """
