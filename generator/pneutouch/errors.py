@@ -100,7 +100,7 @@ class ComputationError(PneutouchError):
 
 
 class BeyondLimitError(ComputationError):
-    """A driving pressure beyond the limit point: the requested ``pressure`` and the ``limit``, MPa."""
+    """A driving pressure beyond the limit point: that ``pressure`` and the ``limit``, MPa."""
 
     def __init__(self, pressure: float, limit: float, problem: str) -> None:
         super().__init__(problem)
@@ -179,7 +179,7 @@ def _number(value: numbers.Real) -> str:
 
 
 def _escaped(text: str, keep: str = "") -> str:
-    """The text with what moves the cursor, rings or colours written as TOML escapes it."""
+    """The text with control characters, which move the cursor, ring or colour, written as TOML escapes them."""
     return "".join(c if c.isprintable() or c in keep else _code(c) for c in text)
 
 

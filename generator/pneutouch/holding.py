@@ -41,7 +41,7 @@ def uninterrupted() -> Iterator[None]:
 
 
 def refuse_stopped() -> None:
-    """Raise KeyboardInterrupt where a stop came that a library has swallowed: what it made since may be wrong."""
+    """Raise KeyboardInterrupt after a stop that a library has swallowed: its results since then may be wrong."""
     if any(getattr(signal.getsignal(number), "received", None) is not None for number in STOPS):
         raise KeyboardInterrupt
 
@@ -58,7 +58,7 @@ def cleaned(clean: Callable[[], object]) -> None:
 
 @contextlib.contextmanager
 def temporary_folder(*, prefix: str = "pneutouch-", within: Path | None = None) -> Iterator[Path]:
-    """A new folder, in ``within`` or where the system keeps temporary files, removed with what is in it at the end.
+    """A new folder, in ``within`` or in the system's folder for temporary files, removed with its content at the end.
 
     The standard library's own loses the folder where a stop comes between its making and its noting.
     """

@@ -21,5 +21,5 @@ def rounded(value: _Json, digits: int, nothing: float = 0.0) -> _Json:
 
 
 def tenths_below(value: float) -> float:
-    """A value rounded down to a tenth, as a rated pressure is shown: what is shown is never above what is meant."""
+    """A value rounded down to a tenth, so that a shown rated pressure is never above the true one."""
     return math.floor(10.0 * value + _ROUNDING) / 10.0

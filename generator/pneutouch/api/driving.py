@@ -1,4 +1,5 @@
-"""Driving pressures as an object: what a task requires, the pressure that gives it, and the gas that it takes."""
+"""Driving pressures as an object: the figure that a task asks for, the pressure that gives it, and the gas needed for
+it."""
 
 from __future__ import annotations
 
@@ -60,7 +61,7 @@ class DrivingResult(show.Shown):
         return None if band is None else (band["low_kPa"], band["high_kPa"])
 
     def to_dict(self) -> dict[str, Any]:
-        """As the command ``predict`` prints it as JSON for the same tasks."""
+        """The document that the command ``predict`` prints as JSON for the same tasks."""
         return dict(self._document)
 
     def _head(self) -> str:

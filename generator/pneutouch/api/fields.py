@@ -90,7 +90,7 @@ def paths_of(values: Any, name: str, remedy: str) -> tuple[Path, ...]:
 
 
 def _entries(values: Any) -> Any:
-    """A set, a generator or another collection as a list; what is none is left as it is."""
+    """A set, a generator or another collection as a list; any other value is returned as it is."""
     if isinstance(values, Iterable) and not isinstance(values, str | Mapping):
         return list(islice(values, _MOST))
     return values

@@ -42,7 +42,7 @@ def gauges() -> Listing:
 
 
 def _listed(kind: str) -> Listing:
-    """Titles by name; that of a file that cannot be read is what is wrong with it."""
+    """Titles by name; for a file that cannot be read its error in place of the title."""
     listed = Listing()
     for entry in listing(kind)[kind]:
         listed[entry["name"]] = f"cannot be read: {entry['error']}" if "error" in entry else entry["title"]

@@ -149,7 +149,7 @@ def characterize(
 
 
 class FittedSensor(Result):
-    """A sensor that was calibrated; `name` is what a design names to be predicted as this sensor.
+    """A sensor that was calibrated; a design that names it by `name` is predicted as this sensor.
 
     It is None where the fit cannot be a calibration, such as with a modulus on its bound; its last note states why.
     """

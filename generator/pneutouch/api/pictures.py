@@ -1,4 +1,4 @@
-"""Drawings of a design for a figure of one's own: its section, and that of the mould it is cast in."""
+"""Drawings of a design for your own figures: its section, and that of the mould it is cast in."""
 
 from __future__ import annotations
 

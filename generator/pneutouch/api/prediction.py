@@ -124,7 +124,7 @@ class Prediction(show.Shown):
 
     @property
     def rating(self) -> Rating:
-        """The rated pressure, what it follows from and what would raise it."""
+        """The rated pressure, its basis and advice that would raise it."""
         return self.evaluation.rating
 
     def at(self, pressure_kPa: float) -> PredictedState:

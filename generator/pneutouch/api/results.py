@@ -27,7 +27,7 @@ class CheckResult(show.Shown):
         return all(finding.severity != "error" for finding in self.findings)
 
     def to_dict(self) -> dict[str, Any]:
-        """As the command ``check`` prints it as JSON."""
+        """The document that the command ``check`` prints as JSON."""
         content = {"design": self.name, "passed": self.passed, "findings": [f.document() for f in self.findings]}
         return {**content, "mixing_curves": list(self.curves)} if self.curves else content
 
@@ -53,7 +53,7 @@ class Result(show.Shown):
         return list(self._document)
 
     def to_dict(self) -> dict[str, Any]:
-        """As the command prints it as JSON."""
+        """The document that the command prints as JSON."""
         return dict(self._document)
 
     def save(self, out: str | Path = "outputs") -> Path:

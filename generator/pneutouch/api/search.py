@@ -44,7 +44,7 @@ class Selection(show.Shown):
         return bool(self.designs)
 
     def to_dict(self) -> dict[str, Any]:
-        """As the command ``select`` prints it as JSON."""
+        """The document that the command ``select`` prints as JSON."""
         return dict(self._document)
 
     def _head(self) -> str:

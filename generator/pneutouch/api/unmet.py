@@ -8,7 +8,8 @@ from pneutouch.api import show
 
 
 def unmet_lines(document: dict[str, Any]) -> list[str]:
-    """The nearest design and what it misses, the requirements whose removal admits one, and what a check rejects."""
+    """The nearest design and its misses, the requirements whose removal admits one, and the designs that a check
+    rejects."""
     if "processes" in document:
         by_process = document["processes"].items()
         return [

@@ -17,7 +17,7 @@ SLOW = 200.0
 """Hz: a file of this rate or less keeps one sample a block; averages of one or two would gain nothing."""
 
 MOST_BLOCKS = 400_000
-"""So that a slow file of any length stays small in memory."""
+"""Largest number of blocks, so that a slow file of any length stays small in memory."""
 
 LEAST_STEP = 1e-9
 """Least time between two samples, s: our choice, far below that of any converter of force or pressure."""
@@ -114,7 +114,7 @@ class BlockCollector:
         self._short[2] = max(self._short[2], int(short.max(initial=0)))
 
     def _average(self, samples: Array, end: bool = False) -> None:
-        """Averages the blocks that are whole and holds the last back, for more of it may come."""
+        """Average the blocks that are whole and hold the last one back, as more of it may come."""
         assert self.size is not None and self.rate is not None and self._first is not None
         if self.size == 1:
             starts = np.arange(samples.shape[1])

@@ -18,7 +18,7 @@ THRESHOLD = 6.0
 """Noise standard deviations of a block beyond which the force is contact: one false alarm in 10^9 blocks."""
 
 LEAST_FORCE = 1e-3
-"""The same as a share of the run's greatest force, for a channel with next to no noise."""
+"""Least force of a contact as a share of the run's greatest force, for a channel with next to no noise."""
 
 FIRST, CLEARLY = 0.01, 20.0
 """The loading is fitted up to this share of the run's greatest force, or this many noise standard deviations if that is
@@ -96,7 +96,7 @@ def threshold(blocks: Blocks, bases: list[Baseline], parts: list[Excursion]) -> 
 def onsets(
     blocks: Blocks, parts: list[Excursion], bases: list[Baseline], least: float, sign: int
 ) -> list[ContactOnset | None]:
-    """First contact of each loading; None where there is none.
+    """First contact of each loading; None for a loading without one.
 
     Contact begins in the block after the last one of the loading that is within ``least`` N of the force without
     contact. From there F = c ((1 - w) x + w x^2), x = position - onset, is fitted up to a small force (`FIRST`), with a

@@ -155,7 +155,7 @@ def _drift(blocks: Blocks, indentations: RunIndentations) -> tuple[float, float]
 
 
 def _noise(bases: Sequence[Baseline], channel: int) -> float:
-    """Of the stretches pooled: what single samples scatter about a straight line."""
+    """Noise of a channel: scatter of single samples about a straight line, pooled over the stretches."""
     count = np.array([max(base.end - base.start - 2, 1) for base in bases], float)
     variance = np.array([base.between[channel] + base.within[channel] for base in bases])
     return float(np.sqrt(count @ variance / count.sum()))

@@ -62,7 +62,7 @@ FIGURES = (
     FigureDefinition("noise_pressure_kPa", "Noise of a pressure sample", "kPa rms"),
     FigureDefinition("resolution_N", "Resolution of the force read from the pressure", "N"),
 )
-"""In the order of every table. Definitions with formula and source: docs/howto/measuring.md."""
+"""Figures in the order of every table. Definitions with formula and source: docs/howto/measuring.md."""
 
 BY_KEY = {figure.key: figure for figure in FIGURES}
 

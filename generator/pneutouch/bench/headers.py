@@ -44,7 +44,7 @@ _OTHER_QUANTITIES = frozenset(
         "cycles",
     }
 )
-"""Words of a column that is none of the channels, whatever its unit: no measured force, no gauge pressure."""
+"""Words that show a column to be no channel at all, whatever its unit: no measured force, no gauge pressure."""
 
 _SPLIT = re.compile(r"[^\W_]+")
 _LONGEST = 200

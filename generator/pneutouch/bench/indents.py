@@ -92,7 +92,7 @@ def _read_times(blocks: Blocks, hold: tuple[int, int]) -> tuple[float, float]:
 
 
 def _just_before(blocks: Blocks, base: Baseline, contact: ContactOnset | None) -> Baseline:
-    """The same over the last `BEFORE` seconds before contact, a block short of it."""
+    """Baseline over the last `BEFORE` seconds before contact, a block short of it."""
     if contact is None:
         return base
     end = int(np.searchsorted(blocks.time, contact.time - 1.5 * blocks.size / blocks.rate))

@@ -16,7 +16,7 @@ import numpy as np
 from pneutouch.arrays import Array
 
 LEVEL = 0.95
-"""Of every interval."""
+"""Probability of every interval."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +92,7 @@ def _chi_square(freedom: int) -> tuple[float, float]:
 
 
 def widened(estimate: Estimate, reading: float) -> Estimate:
-    """With a relative error of the reading that all runs share, added to the interval's half width as squares."""
+    """The estimate with a relative error of the reading that all runs share, added to its half width as squares."""
     if estimate.low is None or estimate.high is None or reading == 0:
         return estimate
     half = float(np.hypot(0.5 * (estimate.high - estimate.low), reading * estimate.value))

@@ -15,14 +15,14 @@ from pneutouch.spec.printer import HOLE_UNDERSIZE_MM, FeatureSize, Printer
 
 _AXES = ("x", "y", "z")
 _INSTRUMENT = 0.01
-"""mm: what a caliper resolves; no accuracy is claimed below it."""
+"""Resolution of a caliper, mm; no accuracy is claimed below it."""
 
 _SLIP = 0.1
 """A length of the block that is off its nominal by more than this share counts as a writing error."""
 
 _FINE_SLIP, _FINE_SLIP_MM = 0.5, 0.3
-"""So does a wall, pin, hole or slot that is off by more than this share and by more than this many mm: our choice,
-several times the tolerance that vendors state for small features."""
+"""Differences, relative and in mm, above both of which a wall, pin, hole or slot fails as well: our choice, several
+times the tolerance that vendors state for small features."""
 
 _ROUNDING = 1e-9
 """Differences of lengths may miss a limit by this, mm."""
@@ -132,7 +132,7 @@ def _smaller(hole: GaugeSize, where: str) -> float:
 
 
 def smallest_sound(sizes: Sequence[GaugeSize]) -> float | None:
-    """The smallest size that is sound together with all larger ones, mm; None where there is none."""
+    """The smallest size that is sound together with all larger ones, mm; None if the largest is not sound."""
     least = None
     for size in sorted(sizes, key=lambda size: -size.nominal_mm):
         if size.sound is False:

@@ -154,7 +154,8 @@ def _number(value: float) -> str:
 
 
 def _magnitude(file: Path, columns: ColumnMap, key: str, ratio: float, reads: str, predicted: str) -> str | None:
-    """None where a ratio of measured to predicted is plausible, else a question; an error where a unit explains it."""
+    """Question about an implausible ratio of measured to predicted; None for a plausible one. Raises an error if a unit
+    explains it."""
     if 1 / FAR <= ratio <= FAR:
         return None
     column = getattr(columns, key)

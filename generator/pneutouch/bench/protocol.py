@@ -59,7 +59,7 @@ class RunProtocol:
         return moves + len(self.depths) * (self.hold + self.rest)
 
     def quicker(self, rest: float, hold: float | None = None) -> RunProtocol:
-        """The same with a shorter rest and, where given, hold."""
+        """The protocol with a shorter rest and, if given, a shorter hold."""
         return replace(self, rest=rest, hold=self.hold if hold is None else hold)
 
     def knots(self) -> tuple[Array, Array]:

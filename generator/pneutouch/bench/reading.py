@@ -27,7 +27,7 @@ SPIKE, FEW = 0.1, 3
 """A moment is shorter than this, in s, or than this many blocks if that is longer: our choice, a plate stays longer."""
 
 GREATEST = 1e100
-"""In internal units; no instrument reads more, and its square would overflow."""
+"""Greatest readings in internal units; no instrument reads more, and its square would overflow."""
 
 FLAT, ALIKE = 0.1, 0.05
 """A flat top lasts longer than this, in s, and less than this share of the other blocks repeats the one before: a

@@ -19,7 +19,8 @@ NEAR, STAY = 0.02, 0.005
 """Shares of an indentation's travel: the first for overshoot at its end, the second for the hold."""
 
 WIDE, FEW = 0.05, 8
-"""With fewer than `FEW` blocks at the clear end, as in a loop without rest, those within `WIDE` of it count."""
+"""Share of the travel, and number of blocks: with fewer than `FEW` blocks at the clear end, as in a loop without rest,
+those within `WIDE` of it count."""
 
 _LEAST_SHARE = 20.0
 """The plate moves where its travel is more than so many standard deviations of its position."""

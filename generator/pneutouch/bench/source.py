@@ -130,7 +130,7 @@ def _undecided(
     open_: dict[str, list[int]],
     meanings: Sequence[HeaderMeaning],
 ) -> InputError:
-    """The error of channels without a column, with the lines that state what was found and what is open."""
+    """The error for channels without a column, with lines that show the columns found and those left open."""
     names, first = layout.all_names, next(iter(open_))
     lines, remarks = {}, {}
     for key in channels:
@@ -179,7 +179,7 @@ def _choice(key: str, layout: TableLayout, places: Sequence[int]) -> str:
 
 
 def _lines(columns: dict[str, Column], remarks: dict[str, str]) -> str:
-    """The table [columns] of a campaign file, with remarks on what is open."""
+    """The table [columns] of a campaign file, with remarks on the columns left open."""
     lines = ["[columns]"]
     for key, column in columns.items():
         entry = value_text({**_entry(column), "unit": column.unit or "?"})

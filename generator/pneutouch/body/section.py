@@ -95,7 +95,7 @@ class SolidSection:
 
 
 def _mark(inside: Flags, window: Window, z: float, tool: _Tool, value: bool) -> None:
-    """Set what a tool holds, looking at its box alone."""
+    """Mark the points inside a tool, looking at its box alone."""
     if not tool.low[2] <= z <= tool.high[2]:
         return
     box = window.within(tool.low, tool.high)

@@ -1,4 +1,4 @@
-"""The exact solid: a turned body or a prism with what is added to it and cut from it, a material and a role."""
+"""The exact solid: a turned body or a prism with tools added to it and cut from it, a material and a role."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,7 +18,7 @@ from pneutouch.units import grams
 
 @dataclass(frozen=True)
 class Solid:
-    """One body as designed, exact. ``role`` is what it does: membrane, connector, ring, plug, coupon ...
+    """One body as designed, exact. ``role`` is its function: membrane, connector, ring, plug, coupon ...
 
     ``base`` is a meridian about the z axis or a prism. ``adds`` are joined to it first; ``bores`` and ``cuts`` are
     taken away then. Bores lie wholly inside the solid and apart from one another.

@@ -10,7 +10,8 @@ from pneutouch.catalogue.library import Library
 
 @dataclass(frozen=True)
 class CachedLibrary(Library):
-    """A library over ``folders`` that do not change while it is used; what it hands out is immutable and shared."""
+    """A library over ``folders`` that do not change while it is used; the objects that it returns are immutable and
+    shared."""
 
     _files: dict[str, dict[str, Path]] = field(default_factory=dict, repr=False, compare=False)
     _things: dict[tuple[str, str], Any] = field(default_factory=dict, repr=False, compare=False)

@@ -86,13 +86,13 @@ KINDS: dict[str, FileKind] = {
 
 @dataclass(frozen=True, slots=True)
 class Library:
-    """Everything that can be named. ``folders`` are searched in order; the first hit wins."""
+    """All files that can be named. ``folders`` are searched in order; the first hit wins."""
 
     folders: tuple[Path, ...]
 
     @staticmethod
     def default() -> Library:
-        """The user's folder, then what is shipped."""
+        """The user's folder, then the shipped one."""
         return Library((user_folder().absolute(), shipped_root()))
 
     def paths(self, kind: str) -> dict[str, Path]:
@@ -122,7 +122,7 @@ class Library:
         return {name: cast(Model, self.load(kind, name)) for name in self.paths(kind)}
 
     def readable(self, kind: str, model: type[Model]) -> dict[str, Model]:
-        """As `all`, without the files that are not valid: what a message proposes must not fail by one of these."""
+        """All files as `all`, without invalid ones: a message must not propose one of those."""
         content: dict[str, Model] = {}
         for name in self.paths(kind):
             with suppress(InputError):

@@ -1,4 +1,4 @@
-"""Names and titles of what can be named, by kind."""
+"""Names and titles of all files that can be named, by kind."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""A material mixed from two base resins: what a mixing curve and the catalogue's materials make of it."""
+"""A material mixed from two base resins, by a mixing curve and the catalogue's materials."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -141,7 +141,7 @@ def _key(content: MixingCurve, curve: str | None, file: str | None, key: str | N
 
 
 def _resolved(point: MixingPoint, curve: MixingCurve, library: Library, where: str) -> tuple[float, float, float]:
-    """Modulus, its spread and the elongation at break of a point; NaN for what is not known."""
+    """Modulus, its spread and the elongation at break of a point; NaN for an unknown one."""
     if point.material is None:
         assert point.shear_modulus_MPa is not None
         spread, break_percent = point.shear_modulus_spread_MPa, point.elongation_at_break_percent

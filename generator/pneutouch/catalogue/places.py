@@ -14,7 +14,7 @@ _CHECKOUT = PACKAGE.parents[1]
 
 
 def shipped_root() -> Path:
-    """The folder of what is shipped, ``designs`` and ``printprofiles``: the installed data, else the checkout."""
+    """The folder of the shipped files, ``designs`` and ``printprofiles``: the installed data, else the checkout."""
     installed = PACKAGE / "data"
     return installed if installed.is_dir() else _CHECKOUT
 

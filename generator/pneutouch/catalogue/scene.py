@@ -72,7 +72,8 @@ class ResolvedDesign:
 
     @property
     def hole_undersize(self) -> float:
-        """By how much the connector's printer makes holes too small, mm in diameter; fits are drawn wider by it."""
+        """Difference in diameter, mm, by which the connector's printer makes holes too small; fits are drawn wider by
+        it."""
         return self.connector_printer.hole_undersize_mm.nominal
 
     @property

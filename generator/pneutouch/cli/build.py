@@ -233,7 +233,7 @@ def _report(findings: Sequence[Finding], folder: Path) -> None:
 
 
 def _planned(evaluation: Evaluation, out: Path, mode: str | None) -> VoxelPlan:
-    """The plan of the voxel stack; what is wrong with it is reported before anything is built."""
+    """The plan of the voxel stack; its errors are reported before anything is built."""
     from pneutouch.workflows.build.voxels import check_stack_folder, plan_voxels, stack_folder
 
     plan = plan_voxels(evaluation.assembly, mode=mode)
@@ -254,7 +254,8 @@ def _write_voxels(plan: VoxelPlan, evaluation: Evaluation, out: Path) -> Path:
 
 
 def _from_3mf(file: str, context: typer.Context, name: str | None) -> Evaluation:
-    """Evaluate the recipe of a 3MF; reports on stderr what was of another version when it was made."""
+    """Evaluate the recipe of a 3MF; reports on stderr the programs and libraries that had another version when it was
+    made."""
     from pneutouch.export.threemf_read import read_threemf
     from pneutouch.output.recipe import evaluate_recipe
     from pneutouch.output.recipe_read import other_versions, read_recipe

@@ -18,7 +18,7 @@ from pneutouch.holding import refuse_stopped
 
 
 class CommandEntry(NamedTuple):
-    """The module of ``cli`` that registers a command, and what the command does on one line of the list."""
+    """The module of ``cli`` that registers a command, and the command's line in the list."""
 
     module: str
     summary: str
@@ -100,7 +100,7 @@ class Commands(TyperGroup):
             return super().make_context(*given, **more)
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the requested command."""
+        """Run the command."""
         try:
             with _plain_words():
                 return super().invoke(ctx)

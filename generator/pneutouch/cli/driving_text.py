@@ -14,7 +14,7 @@ _MINUTE, _HOUR = 60.0, 3600.0
 
 
 def schedule_text(document: dict[str, Any]) -> str:
-    """The answer: how far the pressure reaches, a table of the tasks, and what is to be known of each."""
+    """The answer: the reach of the pressure, a table of the tasks, and remarks on each."""
     rated, top = document["rated_pressure_kPa"], document["highest_kPa"]
     lines = [
         f"{document['design']}: model {document['model']}, rated pressure {tenths_below(rated):.1f} kPa, "

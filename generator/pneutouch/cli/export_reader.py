@@ -72,7 +72,7 @@ def export_reader(
 def _export_simulator(
     design: str, changed: dict[str, Any], simulator: str, out: Path, options: Mapping[str, Any], *, json: bool
 ) -> None:
-    """Write the model of a simulator and what it holds."""
+    """Write the model for a simulator and list its content."""
     from pneutouch.cli.progress import bar
     from pneutouch.evaluation.evaluate import evaluate
     from pneutouch.workflows.simulator import make_simulator, write_simulator

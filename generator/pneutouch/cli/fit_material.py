@@ -90,7 +90,7 @@ def _report_next(name: str, profile: str | None) -> None:
 
 
 def _puck(text: str | None, bonded: bool) -> PuckSize | None:
-    """The size of a puck. Raises InputError for what is none."""
+    """The size of a puck. Raises InputError for a text that is no size."""
     from pneutouch.bench.tensile.puck import PuckSize
     from pneutouch.errors import InputError
     from pneutouch.spec.number import plain_number
@@ -108,7 +108,7 @@ def _puck(text: str | None, bonded: bool) -> PuckSize | None:
 
 
 def _readings(text: str | None) -> tuple[float, ...]:
-    """Readings of hardness. Raises InputError for what is none."""
+    """Readings of hardness. Raises InputError for a text that is no list of readings."""
     from pneutouch.errors import InputError
     from pneutouch.spec.number import plain_number
 

@@ -52,7 +52,7 @@ def select_graded(target: Target, where: str, place: DesignPlace | None, *, json
 
 
 def graded_text(selection: GradedSelectionRun) -> str:
-    """The grade and the constant membranes of its size, or what is missed."""
+    """The grade and the constant membranes of its size, or the requirements that are missed."""
     from pneutouch.evaluation.contact_object import contact_document
     from pneutouch.workflows.select.contact import contact_text
 

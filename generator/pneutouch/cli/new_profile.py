@@ -8,7 +8,7 @@ from pneutouch.spec.material import Material
 
 
 def next_of_profile(kind: str, path: Path) -> tuple[tuple[str, ...], str]:
-    """The command that reads a copy at ``path``, and what has to be done before it."""
+    """The command that reads a copy at ``path``, and the steps before it."""
     name = path.stem
     if kind == "printers":
         return ("coupons", "--profile", name), f"put the title, the resins and the numbers of your machine into {path}"

@@ -18,7 +18,7 @@ def with_plain_numbers(command: Any) -> Any:
 
 
 def _processed(name: str, process: Any, context: Any, given: Any) -> Any:
-    """The value of a parameter. Raises InputError where a number was made of a text that is none."""
+    """The value of a parameter. Raises InputError if a text that is no number was made one."""
     made = process(context, given)
     texts = given if isinstance(given, list | tuple) else [given]
     values = made if isinstance(made, list | tuple) else [made]

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from pneutouch.workflows.select.run import SelectionRun
 
 _FLAGS_ALONE = "select"
-"""Stands for the target's file where there is none."""
+"""Stands for the target's file if none is given."""
 
 
 @app.command()
@@ -88,7 +88,7 @@ def _run(request: Target, where: str, written: int | None) -> SelectionRun:
 
 
 def _report(selection: SelectionRun, pick: int, place: DesignPlace | None, charts: Path | None, *, json: bool) -> None:
-    """Save what is to be saved and show the designs. Exits 1 where there are none."""
+    """Save the chosen design and show the designs. Exits 1 if there are none."""
     from pneutouch.workflows.select import document as shown
 
     designs, choice, path = selection.answer.designs, None, None

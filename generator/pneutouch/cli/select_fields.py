@@ -57,7 +57,7 @@ SELECT_FIELDS = {
 
 
 def target_words(target: Target) -> list[str]:
-    """The options that state what a target states, in the order of `SELECT_FIELDS`."""
+    """The options that give the same target as a file, in the order of `SELECT_FIELDS`."""
     words = []
     for name, option in SELECT_FIELDS.items():
         table = getattr(target, option.table)

@@ -15,7 +15,8 @@ _AGAIN = 0.25
 
 
 class StopSignals:
-    """The handler of the stop signals, which keeps the one ``received`` first: a library may swallow what it raises."""
+    """The handler of the stop signals, which keeps the first one in ``received``: a library may swallow the
+    exception."""
 
     def __init__(self) -> None:
         self.received: int | None = None
@@ -34,7 +35,7 @@ class StopSignals:
         signal.setitimer(signal.ITIMER_REAL, 0)
 
     def unraisable(self, fault: Any) -> None:
-        """In place of ``sys.unraisablehook``: a stop that cannot be raised where it came is raised again later."""
+        """Replacement of ``sys.unraisablehook``: a stop that cannot be raised where it came is raised again later."""
         if self.received is None:
             sys.__unraisablehook__(fault)
 

@@ -7,7 +7,7 @@ from pneutouch.cli.table import table_text
 from pneutouch.rounding import tenths_below
 
 _MOST = 24
-"""Rows that are printed: what a screen shows."""
+"""Number of rows that are printed: as many as a screen shows."""
 
 _FIGURES = {
     "sensitivity_kPa_per_N": ("S kPa/N", 3),
@@ -42,7 +42,7 @@ def _cells(row: dict[str, Any], swept: list[str]) -> list[str]:
 
 
 def _figure(name: str, value: float | None) -> str:
-    """A figure with its decimals; a rated pressure is rounded down, so that what is shown is never above it."""
+    """A figure with its decimals; a rated pressure is rounded down, so that the shown one is never above it."""
     if value is None:
         return "-"
     return f"{tenths_below(value) if name == 'rated_pressure_kPa' else value:.{_FIGURES[name][1]}f}"

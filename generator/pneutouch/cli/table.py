@@ -1,4 +1,4 @@
-"""Tables fitted to the width of the terminal; whole lines where stdout is none."""
+"""Tables fitted to the width of the terminal; whole lines if stdout is no terminal."""
 
 import io
 import sys

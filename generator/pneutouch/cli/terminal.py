@@ -80,7 +80,8 @@ def _fitted(text: str, stream: TextIO) -> str:
 
 
 def _wrapped(line: str, columns: int) -> str:
-    """A line over as many as it takes, the further ones indented. What is to be copied stays on one: commands, TOML."""
+    """A line over as many as it takes, the further ones indented. Commands and TOML, which people copy, stay on one
+    line."""
     if len(line) <= columns or _COPIED.match(line):
         return line
     indent = line[: len(line) - len(line.lstrip())] + "  "

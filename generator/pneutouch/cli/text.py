@@ -77,7 +77,7 @@ def _reach(point: dict[str, float] | None) -> str:
 
 
 def _rating(rating: RatingRecord) -> list[str]:
-    """The rated pressure with its basis, what would raise it, and what is driven above it."""
+    """The rated pressure with its basis, advice that would raise it, and the driving pressures above it."""
     lines = [f"rated pressure {tenths_below(rating['rated_pressure_kPa']):.1f} kPa: {rating['basis']}"]
     lines += [] if rating["remedy"] is None else [f"to raise it: {rating['remedy']}"]
     return lines + [f"{finding['severity']}: {finding['message']}" for finding in rating["findings"]]
@@ -169,7 +169,7 @@ def _viscous(relaxation: dict[str, Any]) -> list[str]:
 
 
 def _span(percents: list[float | None]) -> str:
-    """The range of what is known, or a word that nothing is."""
+    """The range of the known percents, or a word that none is known."""
     known = [value for value in percents if value is not None]
     if not known:
         return "not known"
@@ -183,7 +183,7 @@ def findings_text(findings: Iterable[Finding]) -> str:
 
 
 def finding_line(finding: Finding) -> str:
-    """A finding as a message: its severity, rule and body, what is wrong and the remedy."""
+    """A finding as a message: its severity, rule and body, the problem and the remedy."""
     return f"{finding.severity}: {finding.rule}: {finding.body}: {finding.message}; {finding.fix}"
 
 
@@ -197,7 +197,7 @@ def listing_text(content: dict[str, list[dict[str, str]]]) -> str:
 
 
 def _titled(entry: dict[str, str]) -> str:
-    """The title of an entry, or what is wrong with its file, on one line."""
+    """The title of an entry, or the error in its file, on one line."""
     return entry["title"] if "error" not in entry else f"cannot be read: {entry['error'].partition(chr(10))[0]}"
 
 

@@ -72,7 +72,8 @@ def tray(
 def _order(
     what: list[str], over: list[str], copies: int | None, changed: dict[str, Any], head: dict[str, str | None]
 ) -> TrayOrder:
-    """From a tray file where the one word given is a file with an [[entry]], else from designs and flags."""
+    """The order of a tray: from a tray file if the one word given is a file with an [[entry]], else from designs and
+    flags."""
     from pneutouch.workflows.tray.order import is_tray_file, order_of_file, order_of_flags
 
     if len(what) == 1 and is_tray_file(Path(what[0])):

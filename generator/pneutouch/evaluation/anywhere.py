@@ -34,7 +34,7 @@ _BALLS = ((0.3, 0.0), (0.6, 0.0), (1.0, 0.0), (2.0, 0.0), (0.6, 0.3), (0.6, 0.6)
 """Radii and offsets of the balls of the table, R0."""
 
 _EDGES = ((0.3, 0.0), (1.0, 0.0), (0.3, 0.3), (1.0, 0.6))
-"""The same of the edges of bars."""
+"""Radii and offsets of the edges of bars in the table, R0."""
 
 _TILTS_DEG = (10.0, 20.0)
 _DRAWN_BALL, _FLATTEST, _POINTS = 0.6, 10.0, 41

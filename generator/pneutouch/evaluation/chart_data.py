@@ -1,4 +1,4 @@
-"""Records that charts are drawn from: they hold what was computed and compute nothing."""
+"""Records that charts are drawn from: they hold computed figures and compute nothing."""
 
 from __future__ import annotations
 

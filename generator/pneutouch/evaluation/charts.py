@@ -116,7 +116,7 @@ def resized(sensor: Sensor, problem: SelectionProblem) -> SolveCandidate:
 
 
 def tradeoff_problem(evaluation: Evaluation, pressure: float) -> SelectionProblem:
-    """Everything of the design but its resin, radius and wall."""
+    """The selection problem of the design: everything but its resin, radius and wall is settled."""
     sensor, printer, recipe = plate_alone(evaluation.sensor), evaluation.scene.printer, shipped().recipe
     wall = printer.smallest.wall("elastomer")
     return SelectionProblem(

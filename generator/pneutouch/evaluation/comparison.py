@@ -143,7 +143,7 @@ def different_inputs(sensors: Sequence[ComparedSensor]) -> dict[str, list[Any]]:
 
 
 def comparison_document(sensors: Sequence[ComparedSensor]) -> ComparisonRecord:
-    """Everything a comparison states, as plain data; the first sensor is what the others are compared with.
+    """A comparison as plain data; the other sensors are compared with the first one.
 
     Raises InputError where there is nothing to compare.
     """

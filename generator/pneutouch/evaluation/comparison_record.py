@@ -65,7 +65,7 @@ class RowRecord(TypedDict):
 
 
 class ComparisonRecord(TypedDict):
-    """Everything that a comparison states; ``inputs`` are those that differ, a value a column."""
+    """A comparison; ``inputs`` are those that differ, a value a column."""
 
     pneutouch: NotRequired[str]
     compared: list[ColumnRecord]

@@ -58,7 +58,7 @@ def viscous(evaluation: Evaluation) -> dict[str, Any]:
 
 
 def rating_document(evaluation: Evaluation) -> RatingRecord:
-    """The rated pressure, what it follows from and what would raise it; driving pressures above it are findings."""
+    """The rated pressure, its basis and advice that would raise it; driving pressures above it are findings."""
     return evaluation.rating.document([state.driving_pressure for state in evaluation.prediction.states])
 
 

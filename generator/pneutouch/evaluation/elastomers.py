@@ -19,7 +19,7 @@ def elastomers(library: Library, casting: bool = False) -> Resins:
 
 
 def alike(printer: Printer, resins: Resins) -> Resins:
-    """Those made as the membrane of a printer is: all printed ones, or what a casting profile runs."""
+    """Resins made as the membrane of a printer is: all printed ones, or those of a casting profile."""
     if not printer.is_casting:
         return {name: material for name, material in resins.items() if not material.is_cast}
     return {name: material for name, material in resins.items() if printer.mode_for(material) is not None}

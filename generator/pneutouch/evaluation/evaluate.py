@@ -76,7 +76,7 @@ class Evaluation:
 
     @property
     def alike(self) -> Resins:
-        """Those of `resins` that are made as the membrane is: printed ones, or what the casting profile runs."""
+        """Those of `resins` that are made as the membrane is: printed ones, or those of the casting profile."""
         return alike(self.scene.printer, self.resins)
 
     @cached_property
@@ -266,7 +266,7 @@ def _material_error(scene: ResolvedDesign, error: InputError) -> InputError:
 
 
 def _aged(scene: ResolvedDesign, sensor: Sensor) -> tuple[Sensor, str]:
-    """The sensor after a year, and what is assumed of it. Raises InputError where the resin's hardness then is not
+    """The sensor after a year, and the assumption on it. Raises InputError if the resin's hardness then is not
     known."""
     material = scene.membrane_material
     remaining = 1.0 if scene.calibration is None else scene.calibration.remaining_year

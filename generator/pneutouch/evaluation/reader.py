@@ -20,7 +20,7 @@ COLUMNS = 41
 """Indentations of a row of the grid: the first is no contact, the last the end of the range."""
 
 ROWS = {"atlas": 17, "membrane": 17, "solid": 9, "harmonic": 5}
-"""Driving pressures of the grid by model: what a press costs differs a thousandfold."""
+"""Driving pressures of the grid by model: the cost of a press differs a thousandfold."""
 
 GAS_ROWS = 65
 """Driving pressures at which the gas volume without contact is tabulated."""

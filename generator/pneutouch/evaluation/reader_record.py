@@ -132,5 +132,5 @@ def _one(value: float) -> float:
 
 
 def _single(values: Array) -> Any:
-    """As `_one`, nested lists."""
+    """Nested lists of numbers as `_one` gives them."""
     return [_one(value) for value in values] if values.ndim == 1 else [_single(row) for row in values]

@@ -1,4 +1,4 @@
-"""One design in several resins: what a campaign is planned for and simulated with."""
+"""One design in several resins: the subjects of a campaign's plan and simulation."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -38,7 +38,7 @@ _RING_HINTS = {
     "walls": "raise cast_ring.width_mm or cast_ring.thickness_mm, or lower cast_ring.hole_count",
     "holes": "drill after printing, or raise cast_ring.hole_diameter_mm",
 }
-"""The same for the ring that a flange is cast around."""
+"""Hints for the ring that a flange is cast around."""
 
 
 def subject_of(assembly: Assembly) -> PrintSubject:

@@ -27,7 +27,8 @@ _SENSITIVITY = FIGURES.index("sensitivity_kPa_per_N")
 
 
 def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
-    """From no driving pressure to ``highest`` (MPa), or to `RATED_SHARE` of the limit point where that comes first.
+    """The curve from no driving pressure to ``highest`` (MPa), or to `RATED_SHARE` of the limit point if that comes
+    first.
 
     The sensor must lie in the atlas. Pressures at which it has no answer are left out; None where fewer than two are
     left.

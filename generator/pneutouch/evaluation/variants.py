@@ -1,4 +1,4 @@
-"""The same sensor in every resin: the curves that show what the offline parameter does."""
+"""The same sensor in every resin: the curves that show the effect of the offline parameter."""
 
 from collections.abc import Sequence
 
@@ -28,7 +28,8 @@ _LIMIT_SHARE = {"membrane": 1.0, "solid": 0.8}
 
 
 def in_resin(sensor: Sensor, material: Material) -> Sensor:
-    """The same sensor in another resin, with that resin's law and break strain; a correction is not the other's."""
+    """The same sensor in another resin, with that resin's law and break strain, and without the first resin's
+    correction."""
     return sensor.replace(wall=material_sensor(material).wall, correction=ResponseCorrection())
 
 

@@ -16,7 +16,7 @@ _ENTITY = re.compile(r"#(\d+)\s*=\s*(.*?);\s*(?=#\d+\s*=|ENDSEC)", re.DOTALL)
 _REFERENCE = re.compile(r"#(\d+)")
 _REAL = re.compile(r"(?<![#\w.])-?\d+\.\d*(?:E[+-]?\d+)?")
 _DECIMALS = 10
-"""Lengths to 1e-10 mm: Open CASCADE's own tolerance is 1e-7, and what lies below is noise of the run."""
+"""Decimals of lengths: 1e-10 mm. Open CASCADE's own tolerance is 1e-7, and smaller digits are noise of the run."""
 
 _OCCURRENCE = re.compile(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()'\d+'")
 

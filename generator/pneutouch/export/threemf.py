@@ -74,7 +74,7 @@ def content_of(wrapper: Any, model: Any) -> bytes:
 
 
 def check_readable(wrapper: Any, content: bytes) -> None:
-    """Read strictly what was written: a file that readers refuse must not leave."""
+    """Read the written file strictly: a file that readers refuse must not leave."""
     import lib3mf
 
     try:

@@ -21,7 +21,7 @@ _ENCODED = str.maketrans({letter: f"%{ord(letter):02X}" for letter in "%&<>\"'"}
 
 
 def add_metadata(owner: Any, metadata: dict[str, str]) -> None:
-    """Add entries to a model or an object; what is too long for one is continued in ``key-2``, ``key-3`` ..."""
+    """Add entries to a model or an object; a text too long for one is continued in ``key-2``, ``key-3`` ..."""
     group = owner.GetMetaDataGroup()
     for key in sorted(metadata, key=lambda key: (len(metadata[key]), key)):
         if key in WELL_KNOWN:

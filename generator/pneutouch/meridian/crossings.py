@@ -72,7 +72,7 @@ def encloses(parts: Sequence[RisingPiece], along: Array, level: Array) -> Flags:
 
 
 def _monotone(piece: Segment, first: float, last: float) -> list[tuple[float, float, float]]:
-    """From level to level, and on which side of its centre; an arc is cut where it turns."""
+    """Pieces from level to level, with the side of the centre on which each lies; an arc is cut where it turns."""
     if not isinstance(piece, Arc):
         return [(first, last, 1.0)]
     low, high = sorted((piece.first, piece.last))

@@ -160,7 +160,7 @@ def replacing(folder: Path) -> Iterator[Path]:
 
 
 def _swap(folder: Path, fresh: Path) -> None:
-    """Put ``fresh`` in the place of ``folder``; what is not ours moves over, what is ours goes."""
+    """Put ``fresh`` in the place of ``folder``; files that are not ours move over, our old ones go."""
     fresh.chmod(0o755)
     if not folder.exists():
         fresh.rename(folder)

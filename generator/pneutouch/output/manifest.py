@@ -1,4 +1,4 @@
-"""The manifest of an output folder: what it was made from, by which versions, and the digest of every file in it."""
+"""The manifest of an output folder: its inputs, the versions that made it, and the digest of every file in it."""
 
 import importlib.metadata
 from collections.abc import Mapping

@@ -20,7 +20,7 @@ PROFILES = ("printers", "gauges", "materials")
 """Kinds of files of a laboratory's own next to its designs."""
 
 _DRAWN = ("designs", "specimens")
-"""Kinds of files of what is printed."""
+"""Kinds of files that describe printed things."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +109,7 @@ def change_of_copy(source: str) -> str:
 
 
 def _profile_kind(source: str, library: Library) -> str | None:
-    """The kind of profile that a name stands for; None where it stands for what is printed, an example or nothing.
+    """The kind of profile that a name stands for; None if it stands for a printed thing, an example or nothing.
 
     Raises InputError where it stands for several, one of them a profile.
     """

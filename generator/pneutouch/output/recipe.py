@@ -36,7 +36,7 @@ class BuildRecipe:
         return BuildRecipe(evaluation.scene, evaluation.resins, evaluation.options)
 
     def inputs(self) -> dict[str, Any]:
-        """Everything that the result follows from, as data; what the requested model does not use is null."""
+        """Everything that the result depends on, as data; settings that the model does not use are null."""
         options = self.options
         return {
             "model": options.model,

@@ -26,7 +26,7 @@ FINEST_STEP = 1e-3
 
 
 def read_recipe(package: Package) -> BuildRecipe:
-    """The recipe of a 3MF. Raises InputError where there is none, where it is damaged, altered or of wrong values."""
+    """The recipe of a 3MF. Raises InputError if there is none, or if it is damaged, altered or of wrong values."""
     where = str(package.path)
     if package.recipe is None:
         raise InputError(
@@ -99,7 +99,7 @@ def _part(kind: str, content: Any, where: str) -> Any:
 
 
 def _dated(content: dict[str, Any]) -> dict[str, Any]:
-    """A design with its date as TOML gives it; JSON has no dates. What is no date is left for the validation."""
+    """A design with its date as TOML gives it; JSON has no dates. A wrong date is left for the validation."""
     document = content.get("document")
     if not isinstance(document, dict) or not isinstance(document.get("date"), str):
         return content
@@ -121,7 +121,7 @@ def _resins(content: Any, where: str) -> Resins:
 
 
 def _options(inputs: dict[str, Any], where: str) -> PredictionOptions:
-    """Options of the prediction; what is null keeps its default, which the model does not use."""
+    """Options of the prediction; a null keeps its default, which the model does not use."""
     model = _one_of(inputs, "model", MODEL_CHOICES, where)
     needed = {"closure": model in ("membrane", "auto"), "tolerance": model == "auto"}
     given: dict[str, Any] = {"model": model, "clamp": _one_of(inputs, "clamp", CLAMPS, where)}

@@ -54,7 +54,8 @@ def _gap(scene: ResolvedDesign, layout: Layout) -> list[AirPiece]:
 
 
 def _channel_length(layout: Layout) -> float:
-    """From the base plane, or from the wall of a plug's opening, to where the port or its bore begins."""
+    """Length of the channel from the base plane, or from the wall of a plug's opening, to where the port or its bore
+    begins."""
     if layout.port_axis is None:
         return layout.port.hollow[-1][1] - layout.under
     if layout.opening_radius:

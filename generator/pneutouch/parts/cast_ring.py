@@ -68,7 +68,7 @@ class RingSize:
 
     @property
     def embedded(self) -> float:
-        """Volume in mm3 of the web, its holes left out: what the flange has less."""
+        """Volume in mm3 of the web without its holes, which the flange's material lacks."""
         web = math.pi * (self.flange_radius**2 - self.web_inner**2) * (self.web_high - self.web_low)
         return web - sum(hole.volume() for hole in self.holes())
 

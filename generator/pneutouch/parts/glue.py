@@ -25,7 +25,7 @@ class GlueBond(NamedTuple):
 
 
 class Glue(NamedTuple):
-    """A glue: its name in text, the bonds that it makes, and what they are known from."""
+    """A glue: its name in text, the bonds that it makes, and their source."""
 
     title: str
     bonds: tuple[GlueBond, ...]
@@ -73,7 +73,7 @@ GLUES: dict[str, Glue] = {
 
 
 def surface_of(printer: Printer) -> GlueSurface:
-    """The surface of what a profile makes."""
+    """The surface of a body made with a profile."""
     return _SURFACES[printer.process]
 
 

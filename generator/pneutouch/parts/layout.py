@@ -66,7 +66,8 @@ class Layout:
 
     @property
     def held_radius(self) -> float:
-        """Outer radius of what the seat holds: the flange, or the collar of the ring that it is cast around."""
+        """Outer radius of the part that the seat holds: the flange, or the collar of the ring that it is cast
+        around."""
         return self.flange_radius if self.ring is None else self.ring.collar_radius
 
     @property
@@ -142,7 +143,8 @@ def lay_out_dome(scene: ResolvedDesign, port: PortShape, inner_radius: float, wa
 
 
 def _flange(scene: ResolvedDesign, wall: float) -> tuple[float, float]:
-    """Width and thickness of the flange: one length, or what the web of a ring and the silicone around it need."""
+    """Width and thickness of the flange: one length, or those that the web of a ring and the silicone around it
+    need."""
     seat, web = scene.seat, scene.design.cast_ring
     least = max(seat.least_flange_mm, seat.flange_over_wall * wall)
     if not isinstance(seat, CastRing):
@@ -197,13 +199,14 @@ def _plate_radius(scene: ResolvedDesign, ring: float, bolts: float) -> float:
 
 
 def finger_radius(scene: ResolvedDesign) -> float:
-    """Inner radius of a sleeve: the finger, and what the printer makes holes smaller by."""
+    """Inner radius of a sleeve: the finger's, and the undersize of printed holes."""
     assert isinstance(scene.mount, Sleeve)
     return 0.5 * (scene.mount.finger_diameter + scene.hole_undersize) + scene.connector_printer.accuracy_mm.nominal
 
 
 def _plate_thickness(scene: ResolvedDesign, port: PortShape) -> float:
-    """At least the mount's; thicker for blind holes from both sides, a plug's shoulder or a port in the side."""
+    """Thickness of the plate: at least the mount's; thicker for blind holes from both sides, a plug's shoulder or a
+    port in the side."""
     seat, mount = scene.seat, scene.mount
     depth = mount.hole_depth if isinstance(mount, BoltCircle) and mount.hole_depth is not None else 0.0
     needs, floor = [mount.plate_thickness], scene.connector_printer.smallest.wall("rigid").recommended

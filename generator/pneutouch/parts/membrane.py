@@ -10,7 +10,7 @@ from pneutouch.spec.material import Material
 INNER_WALL = "inner wall"
 OUTER_WALL = "outer wall"
 HELD = "held"
-"""Faces of the flange that the connector holds: what the mechanics clamps."""
+"""Faces of the flange that the connector holds: the mechanics clamps them."""
 
 
 def membrane_meridian(layout: Layout) -> Meridian:
@@ -35,7 +35,7 @@ def membrane_meridian(layout: Layout) -> Meridian:
 
 
 def membrane_solid(layout: Layout, material: Material) -> Solid:
-    """The membrane; without what a ring takes of its flange."""
+    """The membrane, without the volume that a ring takes of its flange."""
     outline = membrane_meridian(layout)
     if layout.ring is not None:
         return layout.ring.enclosed("membrane", material, outline)

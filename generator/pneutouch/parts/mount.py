@@ -10,7 +10,7 @@ from pneutouch.spec.part import BoltCircle, RobotFlange, Sleeve
 
 
 def underside(scene: ResolvedDesign, layout: Layout) -> TracedPath:
-    """From the rear face around the axis outwards to the lower edge of the plate."""
+    """The path from the rear face around the axis outwards to the lower edge of the plate."""
     mount, low = scene.mount, layout.plate_low
     edge = ("plate underside", (layout.plate_radius, low))
     if isinstance(mount, RobotFlange):

@@ -1,4 +1,4 @@
-"""Ports: what each family looks like along its own axis, and what a fitting leaves free of its hollow.
+"""Ports: the shape of each family along its own axis, and the hollow that a fitting leaves free.
 
 A port is drawn in (radius, height over the plate's face): heights grow away from the plate, and below 0 the hollow
 goes on inside the plate.

@@ -10,13 +10,13 @@ from pneutouch.parts.trace import TracedPath
 
 
 def outward(layout: Layout) -> tuple[Point, TracedPath]:
-    """From the inner edge of the port's mouth over its outside to the rear face."""
+    """The path from the inner edge of the port's mouth over its outside to the rear face."""
     port = layout.port
     return _at(layout, port.hollow[0]), [(tag, _at(layout, point)) for point, tag in port.outside]
 
 
 def inward(layout: Layout) -> TracedPath:
-    """From the upper end of the channel down to the inner edge of the port's mouth."""
+    """The path from the upper end of the channel down to the inner edge of the port's mouth."""
     port = layout.port
     meeting = _at(layout, port.hollow[-1])[1]
     points = [(layout.channel_radius, meeting), *(_at(layout, point) for point in reversed(port.hollow))]

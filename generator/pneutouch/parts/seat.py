@@ -12,7 +12,7 @@ SEAT = "seat"
 
 
 def seat_faces(seat: AnySeat, layout: Layout) -> TracedPath:
-    """From the lower edge of the plate over its top to the inner edge of the seat at the base plane."""
+    """The path from the lower edge of the plate over its top to the inner edge of the seat at the base plane."""
     plate: TracedPath = [("plate edge", (layout.plate_radius, layout.plate_high))]
     inner, flange, high = layout.inner_radius, layout.flange_radius, layout.plate_high
     ring: TracedPath = [("plate top", (layout.ring_radius, high)), ("ring", (layout.ring_radius, 0.0))]

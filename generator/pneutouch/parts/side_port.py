@@ -24,7 +24,8 @@ def side_boss(layout: Layout) -> list[Feature]:
 
 
 def side_bore(layout: Layout, across: float) -> Feature:
-    """The bore from a vertical hole of radius ``across`` to the mouth; ``net`` is what it adds to that hole."""
+    """The bore from a vertical hole of radius ``across`` to the mouth; ``net`` is the volume that it adds to that
+    hole."""
     port = layout.port
     start = math.sqrt(across**2 - port.passage**2)
     low = 0.5 * start - layout.plate_radius

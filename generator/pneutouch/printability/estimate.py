@@ -29,7 +29,7 @@ class ItemEstimate:
     resins: dict[str, float]
 
     def document(self) -> dict[str, Any]:
-        """As JSON, units in the names."""
+        """The estimate as JSON, units in the names."""
         return {
             "name": self.name,
             "volume_mL": self.volume / ML,
@@ -63,7 +63,7 @@ class JobEstimate:
         return {name: sum(item.resins.get(name, 0.0) for item in self.items) for name in names}
 
     def document(self) -> dict[str, Any]:
-        """As JSON, units in the names."""
+        """The estimate as JSON, units in the names."""
         return {
             "job": self.name,
             "printer": self.printer,
@@ -145,7 +145,7 @@ def _support(job: PrintJob) -> tuple[float, str]:
 
 
 def _seconds(job: PrintJob, layers: int, swaths: int | None, support: float) -> tuple[float | None, list[str]]:
-    """Time in s, and what it rests on."""
+    """Time in s, and its basis."""
     item = job.parts[0].item
     layer = item.mode.layer_seconds
     if item.printer.process == "polyjet":

@@ -1,4 +1,4 @@
-"""Rules on the mould of a cast membrane: each part on its printer, and what a mould must do: fill, close, let go."""
+"""Rules on the mould of a cast membrane: each part on its printer, and the mould's functions: fill, close, let go."""
 
 from collections.abc import Callable
 
@@ -24,7 +24,7 @@ _HINTS = {
     "resins": "take another mould.material or mould.profile",
     "gaps": "raise mould.wall_mm, or take another mould.profile",
 }
-"""Remedies in the design for what the rules of printing find on parts of a mould."""
+"""Remedies in the design for findings of the printing rules on parts of a mould."""
 
 _LEFT_TO_RAYS = ("edges", "mesh")
 """Rules of printing whose remarks on a mould stand elsewhere: its edges close on one another, and `mould_fit` measures

@@ -1,4 +1,4 @@
-"""Thin places against the printer's limits: what the rules on sizes share."""
+"""Thin places against the printer's limits: the common part of the rules on sizes."""
 
 from collections.abc import Iterator
 
@@ -13,7 +13,7 @@ _ALIKE = 0.02
 
 
 def compare(view: PrintView, rule: str, kinds: dict[FeatureKind, str], limit: str, fix: str) -> list[Finding]:
-    """Findings of a rule: places of ``kinds``, each with what it is called, below a limit of the printer.
+    """Findings of a rule: places of ``kinds``, each with its name in words, below a limit of the printer.
 
     ``fix`` holds where the item gives no hint of its own.
     """
@@ -40,7 +40,7 @@ def lower(size: float, feature: FeatureSize, slack: float) -> float | None:
 
 
 def severity_of(size: float, feature: FeatureSize, slack: float) -> Severity:
-    """An error below what the machine makes, a warning below what is recommended."""
+    """Severity of a size: an error below the machine's least, a warning below the recommended one."""
     return "error" if feature.least is not None and size < feature.least - slack else "warning"
 
 

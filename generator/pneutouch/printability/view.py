@@ -93,7 +93,7 @@ class PrintPart:
 
     @cached_property
     def manifold(self) -> Any:
-        """manifold3d's solid of the mesh; empty where the mesh is none."""
+        """manifold3d's solid of the mesh; empty if the mesh is not closed."""
         return self.item.body.manifold()
 
     @cached_property
@@ -255,7 +255,7 @@ class PrintView:
 
     @cached_property
     def jobs(self) -> tuple[PrintJob, ...]:
-        """In order of their first part; a part without a job's name is a job by itself."""
+        """Jobs in order of their first part; a part without a job's name is a job by itself."""
         jobs: dict[tuple[str, int], list[PrintPart]] = {}
         for number, part in enumerate(self.parts):
             jobs.setdefault((part.item.job, -1 if part.item.job else number), []).append(part)

@@ -17,7 +17,7 @@ DASH = "–"
 _LOGARITHMIC = "contact-radius"
 
 _LOOKS: tuple[dict[str, Any], ...] = ({"color": INK, "ls": LINES[0]}, {"color": ACCENT, "ls": LINES[1]})
-"""Of the lowest and the highest driving pressure."""
+"""Line styles of the lowest and the highest driving pressure."""
 
 _MARKED = 5
 """Points of a curve to one mark."""
@@ -79,7 +79,7 @@ def _curves(ax: Any, curves: ErrorCurves, chart: ContactChart) -> None:
 
 
 def _edges(ax: Any, curves: ErrorCurves) -> None:
-    """The same curves of edges, marked."""
+    """Draw the curves of edges, marked."""
     for errors_percent, look in zip(curves.errors_percent, _LOOKS, strict=False):
         marks: dict[str, Any] = {"marker": MARKERS[0], "ms": 3.2, "mfc": "white", "mew": 0.8, "markevery": _MARKED}
         ax.plot(curves.along, errors_percent, lw=0.9, **marks, **look)

@@ -99,7 +99,7 @@ def _width(document: UncertaintyRecord, name: str) -> str:
 
 
 def _source(source: SourceRecord) -> list[str]:
-    """Name, standard uncertainty, what it acts on, known or assumed, where from."""
+    """Name of a source, its standard uncertainty, its effect, known or assumed, and its origin."""
     size = source["standard_uncertainty"]
     value = f"{size:.2g} mL" if source["unit"] == "mL" else f"{100 * size:.2g} %"
     figures = [_FIGURES[name][0].lower() for name in source["figures"]]

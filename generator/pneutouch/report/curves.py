@@ -113,7 +113,7 @@ def shapes(prediction: SensorPrediction) -> list[str]:
 
 
 def _shape(ax: Axes, state: SensorState, shape: DeformedShape, colours: ScalarMappable) -> list[Artist]:
-    """One deformed half section over the unloaded one, drawn into its frame; what was added to it."""
+    """One deformed half section over the unloaded one, drawn into its frame; returns the artists that were added."""
     from matplotlib.collections import PolyCollection
 
     look: dict[str, Any] = {"cmap": colours.cmap, "norm": colours.norm, "edgecolors": "face", "lw": 0.2}

@@ -17,7 +17,7 @@ CENTRE = (0, (8, 2, 2, 2))
 """Dashes of a centre line."""
 
 NEIGHBOUR = (0, (8, 2, 1.5, 2, 1.5, 2))
-"""Dashes of a neighbouring part, which is no part of what is drawn."""
+"""Dashes of a neighbouring part, which does not belong to the drawn one."""
 
 _SIZE = 6.8
 

@@ -20,7 +20,7 @@ def environment(sheet: SheetData) -> list[list[str]]:
 
 
 def _air(sheet: SheetData) -> list[list[str]]:
-    """At the lowest and the highest driving pressure."""
+    """Effects of the air at the lowest and the highest driving pressure."""
     gas, states = sheet.gas, sheet.prediction.states
     assert gas is not None
     ends = [0, len(states) - 1] if len(states) > 1 else [0]

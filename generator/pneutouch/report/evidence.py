@@ -18,7 +18,7 @@ _SIZE = (180.0, 110.0)
 
 
 def evidence_svg(curve: MeasuredCurve, thinned: Trace, simulated: bool) -> str:
-    """Position, force and pressure over time; contact, the stretch read, and what is doubtful marked in each."""
+    """Position, force and pressure over time; contact, the stretch read, and doubtful parts marked in each."""
     channels = (
         ("position  (mm)", thinned.position),
         ("force  (N)", thinned.force),

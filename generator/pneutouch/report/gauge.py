@@ -1,4 +1,4 @@
-"""The gauge on a datasheet: what it reads, and the smallest force that it detects."""
+"""The gauge on a datasheet: its range, and the smallest force that it detects."""
 
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.units import KPA

@@ -127,7 +127,7 @@ def _holes(ax: Axes, ring: RingSize) -> None:
 
 
 def _labels(ax: Axes, size: MouldSize) -> None:
-    """Names of the parts and of what the silicone passes, from above down on either side."""
+    """Names of the parts and of the silicone's passages, from above down on either side."""
     shape, wide = size.shape, 0.5 * size.pitch + size.margin
     low, high, foot = -size.cap_high, -size.base_low, -size.foot_low
     step, outer = (high - low) / 6, size.seat(size.foot_low)

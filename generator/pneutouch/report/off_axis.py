@@ -67,7 +67,7 @@ def off_axis_rows(states: tuple[SensorState, ...]) -> list[list[str]]:
 
 
 def shear_rows(states: tuple[SensorState, ...]) -> list[list[str]]:
-    """One row a driving pressure at which the object moved sideways; a dash for what was not reached."""
+    """One row a driving pressure at which the object moved sideways; a dash for a figure that was not reached."""
     rows = []
     for state in states:
         sheared = None if state.beyond_axis is None else state.beyond_axis.shear

@@ -38,7 +38,7 @@ def html(template: str, content: Mapping[str, Any], figures: Mapping[str, str], 
 
 
 def _without_repeats(figures: Mapping[str, str]) -> dict[str, str]:
-    """Figures for one page: what is defined alike in several, letters above all, is defined in the first alone."""
+    """Figures for one page: definitions that several share, letters above all, stand in the first alone."""
     seen: set[str] = set()
 
     def once(match: re.Match[str]) -> str:

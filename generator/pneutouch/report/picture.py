@@ -114,7 +114,7 @@ def _span(corners: Array, whole: Array, y: Array, low: Index, high: Index) -> tu
 
 
 def _nearest(image: Array, depth: Array, x: Index, y: Index, corners: Array, whole: Array, colours: Array) -> None:
-    """Paint pixels (n,) of triangles (n, 3, 3) that lie in the triangle and in front of what is there."""
+    """Paint pixels (n,) of triangles (n, 3, 3) that lie in the triangle and in front of the picture so far."""
     (ax, ay, az), (bx, by, bz), (cx, cy, cz) = np.moveaxis(corners, 0, -1)
     right, up = x + 0.5, y + 0.5
     u = ((bx - right) * (cy - up) - (cx - right) * (by - up)) / whole

@@ -24,7 +24,7 @@ _AWAY = (5.0, 8.0, 12.0, 17.0, 23.0, 30.0, 38.0, 47.0, 57.0, 68.0, 80.0, 93.0)
 """Distances from its point that are tried for a label, points."""
 _TURNS = 24
 _LEADER = 9.0
-"""From this distance on a thin line leads from the label to its point."""
+"""Distance from which on a thin line leads from the label to its point."""
 _SPARE = 1.0
 """Free rim around a label, points."""
 
@@ -147,7 +147,7 @@ def _dense(xy: Array) -> Array:
 
 
 def _near(ax: Axes, label: Annotation, curves: Array, taken: list[LabelBox]) -> tuple[LabelBox, Array]:
-    """Move a label to the first free place around its point; where there is none, to the one with least over it.
+    """Move a label to the first free place around its point; if there is none, to the one with least over it.
 
     Returns its box, and points (n, 2) on the line that leads to it.
     """

@@ -91,7 +91,7 @@ def _mould(sheet: SheetData) -> str:
 
 
 def _takes(sheet: SheetData) -> str:
-    """Resin, support, layers and a rough time of each job, with what they rest on."""
+    """Resin, support, layers and a rough time of each job, with their basis."""
     rows, notes = [], []
     for job in sheet.estimates:
         resins = ", ".join(f"{name} {volume:.2f} mL" for name, volume in job.resins.items())

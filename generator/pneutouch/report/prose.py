@@ -111,7 +111,7 @@ def tradeoff(
 
 
 def description(scene: ResolvedDesign) -> str:
-    """One paragraph: what it is and how it works."""
+    """One paragraph on the sensor and the way it works."""
     membrane = scene.design.membrane
     return (
         f"A soft hemispherical membrane ({membrane.inner_radius_mm:g} mm inner radius, {membrane.wall_thickness_mm:g} "

@@ -1,4 +1,4 @@
-"""Residuals of a calibration over travel, by driving pressure: what the fitted model still misses."""
+"""Residuals of a calibration over travel, by driving pressure: the remaining error of the fitted model."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A load and what is read of it over time, and the gain over frequency."""
+"""A load and its reading over time, and the gain over frequency."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ SIZE = (180.0, 70.0)
 
 @dataclass(frozen=True, slots=True)
 class TimeCurves:
-    """Over time (s): pressure rise (MPa) of a slow press, at the gauge, and what the gauge gives (times, rises)."""
+    """Curves over time (s): pressure rise (MPa) of a slow press, at the gauge, and the gauge's output (times,
+    rises)."""
 
     time: Array
     slow: Array

@@ -79,7 +79,7 @@ def _hundredths(number: re.Match[str]) -> str:
 
 
 def _named_by_content(text: str) -> str:
-    """Clip paths called by what they are as printed: their own names follow digits of the layout that no drawing
+    """Clip paths named by their content as printed: their own names follow digits of the layout that no drawing
     repeats."""
     names = {
         old: "p" + hashlib.sha256(" ".join(content.split()).encode()).hexdigest()[:10]

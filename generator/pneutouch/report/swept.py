@@ -58,7 +58,7 @@ class SweptAxis:
 
 @dataclass(frozen=True)
 class SweptFigure:
-    """A figure over the axes: ``value``, ``low`` and ``high`` have a dimension an axis; NaN where there is none."""
+    """A figure over the axes: ``value``, ``low`` and ``high`` have a dimension an axis; NaN for a missing one."""
 
     label: str
     axes: tuple[SweptAxis, ...]
@@ -200,7 +200,7 @@ def _lines(ax: Axes, swept: SweptFigure, span: tuple[float, float]) -> dict[str,
 
 
 def _map(ax: Axes, swept: SweptFigure, span: tuple[float, float]) -> Any:
-    """Cells in shades of one tone with their values where they are few; what is not possible is crossed out."""
+    """Cells in shades of one tone with their values if they are few; impossible points are crossed out."""
     first, second = swept.axes
     x, y = (np.array(axis.values, float) for axis in (first, second))
     order_x, order_y = np.argsort(x), np.argsort(y)

@@ -43,7 +43,7 @@ def _made(name: str, path: str) -> Schema:
 
 
 def _with_format(name: str, schema: Schema) -> Schema:
-    """The same with the key that states the format in a file; of each form where there are several."""
+    """The schema with the key that states the format in a file; in each form if there are several."""
     if "anyOf" in schema:
         return {**schema, "anyOf": [_with_format(name, one) for one in schema["anyOf"]]}
     if KEY in schema["properties"]:

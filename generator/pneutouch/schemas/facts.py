@@ -21,7 +21,7 @@ def described(schema: Any) -> Any:
 
 
 def bounds(schema: Schema) -> str:
-    """The bounds of a number, of the numbers of a list, or of what is sourced: ``from 1 to 100``; "" without any."""
+    """The bounds of a number, of the numbers of a list, or of a sourced number: ``from 1 to 100``; "" without any."""
     while schema.get("type") == "array" and isinstance(schema.get("items"), dict) and "minimum" not in schema:
         schema = schema["items"]
     low, high = schema.get("minimum", schema.get("x-minimum")), schema.get("maximum", schema.get("x-maximum"))

@@ -8,7 +8,7 @@ _FILE = Path(__file__).with_name("helps.toml")
 
 
 def help_of(key: str, record: str = "") -> str:
-    """The meaning of a key, that of the record where it has one of its own."""
+    """The meaning of a key, that of the record if it has its own."""
     known = _helps()
     return known.get(f"{record}.{key}") or known[key]
 

@@ -38,7 +38,7 @@ def model_schema(model: Any) -> Schema:
 
 
 def _tidied(schema: Any) -> Any:
-    """A schema without what is of pydantic alone; fields with unit, bounds and default in their description."""
+    """A schema without entries that pydantic alone reads; fields with unit, bounds and default in their description."""
     if isinstance(schema, list):
         return [_tidied(one) for one in schema]
     if not isinstance(schema, dict):

@@ -57,7 +57,7 @@ FLAG: Schema = {"type": "boolean"}
 
 
 def or_null(schema: Schema) -> Schema:
-    """The same, or null."""
+    """The schema, or null."""
     if isinstance(schema.get("type"), str):
         return {**schema, "type": [schema["type"], "null"]}
     description = {"description": schema["description"]} if "description" in schema else {}
@@ -69,7 +69,7 @@ def or_null(schema: Schema) -> Schema:
 
 
 def any_of(*schemas: Schema) -> Schema:
-    """One of several forms."""
+    """One of several schemas."""
     return {"anyOf": list(schemas)}
 
 
@@ -89,7 +89,7 @@ def mapping(schema: Schema) -> Schema:
 
 
 def described_by(help: str, schema: Schema) -> Schema:
-    """The same with a description."""
+    """The schema with a description."""
     return {**schema, "description": help}
 
 
@@ -99,7 +99,7 @@ def choice(*words: str) -> Schema:
 
 
 def record(help: str, keys: Mapping[str, Schema], optional: Iterable[str] = ()) -> Schema:
-    """A table with these keys and no other; what has no description gets that of its key, and a number its unit."""
+    """A table with these keys and no other; a key without a description gets the common one, and a number its unit."""
     may_be_left_out = set(optional)
     assert may_be_left_out <= set(keys), may_be_left_out - set(keys)
     return {

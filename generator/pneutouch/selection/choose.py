@@ -38,7 +38,7 @@ Uncertainty = Callable[[Sequence[tuple[CandidateResin, SensorBatch]]], list[Arra
 """Relative expanded uncertainties of the sensitivity of the sensors of each resin, (n,) each."""
 
 Refine = Callable[[SelectionProblem, CandidatePool], tuple[SelectionProblem, CandidatePool]]
-"""Candidates at sizes that can be written down made better in what is still free, in a problem of their own resins."""
+"""Function that improves candidates at round sizes in their free parameters, in a problem of their own resins."""
 
 
 @dataclass(frozen=True)
@@ -184,7 +184,7 @@ def differ(pool: CandidatePool, a: int, b: int) -> bool:
 
 
 def rounded(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
-    """The same at round sizes, still inside the atlas and the size limit; what was given stays as given."""
+    """The candidates at round sizes, still inside the atlas and the size limit; given sizes stay as given."""
     unit, box = 10.0**-_DIGITS, problem.recipe
     radius = pool.radius if problem.inner_radius is not None else np.floor(pool.radius / unit) * unit
     wall = pool.wall

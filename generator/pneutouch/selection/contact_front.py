@@ -64,7 +64,8 @@ def contact_front(problem: SelectionProblem, solve: SolveCandidate) -> ContactFr
 
 
 def _off(one: TradeOffFront, row: int, trial: ContactTrial) -> float:
-    """The larger relative difference of sensitivity and force of a place of a front from what the solid has there."""
+    """The larger relative difference of sensitivity and force between a place of a front and the solid's answer
+    there."""
     exact_kPa_per_N, exact = trial.pool.response.lines.sensitivity_kPa_per_N[0], trial.pool.force[0]
     return float(max(abs(one.sensitivity_kPa_per_N[row] / exact_kPa_per_N - 1.0), abs(one.force[row] / exact - 1.0)))
 

@@ -31,7 +31,7 @@ from pneutouch.selection.problem import SelectionProblem
 ROUNDS = 8
 """Searches at most."""
 _ANYWHERE = 2
-"""Searches that take the best anywhere; the later ones stay near what was solved."""
+"""Number of searches that take the best anywhere; the later ones stay near the solved candidates."""
 _FEW = 2
 """Up to so many resins each is followed at several candidates, as without this contact; of more, at its best."""
 _PROBED, _WITHOUT_FIT = 3, 4
@@ -73,7 +73,7 @@ def choose_by_solid(
     solve: SolveCandidate,
     refine: Refine | None = None,
 ) -> ContactSelection:
-    """As `choose`, under a contact that the solid alone answers.
+    """Choose as `choose` does, under a contact that the solid alone answers.
 
     A candidate is settled where it keeps every limit and the sensitivity within a quarter of the tolerance, all by the
     solid. One that keeps the tolerance when nothing nearer is found is an answer too.
@@ -118,7 +118,7 @@ class _Run:
         return replace(self.problem, resins=open_, factors=self.factors if len(self.factors.places) else None)
 
     def round(self) -> None:
-        """Search, and solve what is found; a group is done when it has settled or when nothing new is found."""
+        """Search, and solve the candidates found; a group is finished when it has settled or finds nothing new."""
         self.rounds += 1
         problem = self.corrected()
         pool = searched(problem)

@@ -86,7 +86,7 @@ class ContactTrial:
     def candidate(
         self, solve: SolveCandidate, weights: tuple[float, float], uncertainty: ContactUncertainty, rounds: int
     ) -> Candidate:
-        """As a choice, with the uncertainty and the span under its contact, by the solid."""
+        """The trial as a candidate, with the uncertainty and the span under its contact, by the solid."""
         highest = float(rated(self.problem, self.pool.resin, self.pool.radius, self.pool.wall)[0])
         span = self._span(solve, highest)
         known = np.nan if self.state is None else uncertainty(self.resin, self.pool, self.state)

@@ -18,7 +18,7 @@ _LEVELS = 48
 _STEPS = (0.35, 0.12)
 """Width of each closer look around the best so far, in steps of the scan along the wall ratio."""
 _ALONG_RADIUS = 0.5
-"""The same along the radius, over that along the wall ratio."""
+"""Width of each closer look along the radius, over that along the wall ratio."""
 _REQUIREMENTS = ("sensitivity", "force range", "stiffness")
 
 
@@ -162,7 +162,7 @@ def _best(logs: Array, forces: Array) -> tuple[Index, Array]:
 
 
 def _unbeaten(points: Array) -> Index:
-    """Of points (2, n) those that no other exceeds in both, in falling order of the first."""
+    """Those of the points (2, n) that no other exceeds in both, in falling order of the first."""
     first, second = points
     rows = np.argsort(-first, kind="stable")
     before = np.maximum.accumulate(np.concatenate([[-np.inf], second[rows]]))[:-1]

@@ -21,7 +21,7 @@ _SURFACES = ("linear", "thin_plate_spline")
 """Radial bases in the order tried: the first does not ring where figures jump, since another event ends the range;
 the second follows a smooth course better."""
 _DIGITS = 4
-"""A fraction is given to a hundredth of a percent, below what a droplet pattern resolves."""
+"""Digits of a fraction: a hundredth of a percent, finer than a droplet pattern resolves."""
 _LIMITS = ("limit pressure", "force range")
 _MISSED = 1.0e3
 """Violation of a trial without figures."""

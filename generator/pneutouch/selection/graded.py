@@ -24,7 +24,7 @@ _WALLS = 60
 
 @dataclass(frozen=True)
 class UniformMembrane:
-    """A membrane of one material, of the size of the graded one. ``fraction`` is None of a catalogue resin."""
+    """A membrane of one material, of the size of the graded one. ``fraction`` is None for a catalogue resin."""
 
     name: str
     fraction: float | None

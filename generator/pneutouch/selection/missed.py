@@ -1,4 +1,4 @@
-"""By how much a candidate misses what is required of it, in percent of the required value."""
+"""Distance of a candidate from its requirements, in percent of the required value."""
 
 import numpy as np
 

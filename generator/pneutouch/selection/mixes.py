@@ -16,7 +16,7 @@ _KEPT = 6
 """Candidates whose fraction is refined."""
 _POLISH = 12
 _DIGITS = 4
-"""A fraction is given to a hundredth of a percent, below what a droplet pattern resolves."""
+"""Digits of a fraction: a hundredth of a percent, finer than a droplet pattern resolves."""
 
 MixedResin = Callable[[float], CandidateResin]
 """The mix of a fraction as a resin."""

@@ -16,7 +16,7 @@ from pneutouch.spec.material import Material
 _SMALLEST, _LARGEST = 2.0, 60.0
 """Inner radii that are searched where none is given, mm."""
 _HALVINGS = 14
-"""Of a radius of at most 60 mm: 4 um are left."""
+"""Halvings of a radius of at most 60 mm: 4 um are left."""
 _ROUNDED = 0.01
 """Largest change of a wall by rounding, mm."""
 

@@ -41,7 +41,7 @@ def search(problem: SelectionProblem) -> CandidatePool | None:
 
 
 def scan(problem: SelectionProblem) -> CandidateGrid:
-    """A coarse grid over resin and what is free, inside atlas range, size limit and the printer's least wall."""
+    """A coarse grid over resin and the free parameters, inside atlas range, size limit and the printer's least wall."""
     resins = np.arange(len(problem.resins), dtype=float)
     line = _RADII if problem.inner_radius is None else _LINE
     ratios = _ratios(problem, _RATIOS if problem.inner_radius is None else line)
@@ -121,7 +121,7 @@ def _met(problem: SelectionProblem, grid: CandidateGrid, coarse: CandidatePool) 
 
 
 def _log_ratio(target_kPa_per_N: float, pool: CandidatePool) -> Array:
-    """Logarithm of the sensitivity over the target; NaN where there is none."""
+    """Logarithm of the sensitivity over the target; NaN without a sensitivity."""
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.asarray(np.log(pool.response.lines.sensitivity_kPa_per_N / target_kPa_per_N))
 

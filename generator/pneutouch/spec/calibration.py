@@ -26,8 +26,8 @@ _MOST_VARIANCE = {
     "contact_offset_mm": 100.0,
     "friction": 4.0,
 }
-"""Of a covariance's diagonal, in the units of `SensorCalibration`: a factor of 7, 10 mL, 10 mm, 2. A fit that has
-more has not seen the parameter, and figures by it would not be finite."""
+"""Largest variances on a covariance's diagonal, in the units of `SensorCalibration`: a factor of 7, 10 mL, 10 mm, 2. A
+fit with more has not seen the parameter, and figures by it would not be finite."""
 
 _BY_PRESSURE = ("force_factors", "pressure_factors", "sensitivity_errors_relative", "force_errors_relative")
 

@@ -34,7 +34,7 @@ RunKind = Literal["steps", "saturation", "loop", "relaxation", "leak", "injectio
 """Kind of a run; see `bench.protocol`. Leak and injection need no plate."""
 
 AS_DESIGNED = "as-designed"
-"""In place of a resin's name: the membrane as the design has it, which may be a mix that no file names."""
+"""Name in place of a resin's: the membrane as the design has it, which may be a mix that no file names."""
 
 
 class Column(Table):
@@ -74,7 +74,7 @@ class ColumnMap(Table):
 
 
 class FileFormat(Table):
-    """[format]: how the files are written. What is left out is found from each file."""
+    """[format]: how the files are written. Entries that are left out are found from each file."""
 
     delimiter: Literal[",", ";", "\t", " "] | None = Field(
         default=None,
@@ -120,7 +120,7 @@ Volume = Annotated[float, Field(ge=0, le=1e4)]
 
 
 class CampaignRun(Table):
-    """One [[runs]] entry: a file and what was measured in it."""
+    """One [[runs]] entry: a file and its measurement."""
 
     file: Printable = Field(min_length=1, max_length=1000, description="Path of the file, from the campaign's folder.")
     kind: RunKind = Field(default="steps", description="Kind of run: " + ", ".join(RunKind.__args__) + ".")  # type: ignore[attr-defined]

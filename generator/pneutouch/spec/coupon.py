@@ -1,4 +1,4 @@
-"""The results file: what a lab read on its coupons, one TOML with one table a coupon and material, printer or design.
+"""The results file: a lab's readings of its coupons, one TOML with one table a coupon and material, printer or design.
 
 An empty list means that it was not measured. A list with readings has at least two, so that a spread can be computed.
 """

@@ -1,4 +1,4 @@
-"""The design file: what a user writes, one TOML a design. Defaults are the paper's sensor."""
+"""The design file: the TOML file that a user writes, one a design. Defaults are the paper's sensor."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ Printable = Annotated[str, AfterValidator(_printable)]
 
 
 class DocumentHead(Table):
-    """[document]: what stands in the head of the datasheet."""
+    """[document]: the head of the datasheet."""
 
     title: Printable = Field(default="Pneumatic touch sensor", max_length=80, description="Title of the datasheet.")
     revision: Printable = Field(default="A", max_length=8, description="Revision letter of the design.")

@@ -1,4 +1,4 @@
-"""A pressure gauge: its range, how finely and how often it reads, and what it gives out; one TOML a part."""
+"""A pressure gauge: its range, its resolution, its rate and its output; one TOML a part."""
 
 from typing import Any, Literal
 
@@ -61,7 +61,8 @@ class Transfer(Table):
 
 
 class Gauge(Table):
-    """A pressure gauge as it is sold. A figure that is left out is unknown; ``unknown`` states what was searched."""
+    """A pressure gauge as it is sold. A figure that is left out is unknown; ``unknown`` names the figures that were
+    searched for."""
 
     title: str = Field(min_length=1, max_length=80, description="Name of the gauge.")
     maker: str = Field(min_length=1, max_length=40, description="Name of the maker.")

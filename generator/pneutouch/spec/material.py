@@ -95,7 +95,7 @@ class ArcGrading(Table):
 
 
 class MixByCurve(Table):
-    """A mix by one of the mixing curves of its pair: what the wall is if that curve is true."""
+    """A mix by one of the mixing curves of its pair: the wall if that curve is true."""
 
     curve: str = Field(min_length=1, description="Name of the mixing curve.")
     place: Literal["softer", "in use", "stiffer"] = Field(description="Against the curve in use.")

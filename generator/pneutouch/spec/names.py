@@ -22,7 +22,8 @@ def plain_name(name: str, *, key: str | None = None, file: str | PathLike[str] |
 
 
 def name_of(path: Path) -> str:
-    """The name that a file gives what is in it: its own without the suffix. Raises InputError where it is none."""
+    """The name that a file gives its content: its own without the suffix. Raises InputError for a file name that is no
+    name."""
     try:
         return plain_name(path.stem)
     except InputError:

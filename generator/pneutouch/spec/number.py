@@ -18,7 +18,8 @@ def is_finite(value: object) -> bool:
 
 
 def finite_numbers(values: Iterable[object], key: str) -> list[float]:
-    """The values as floats: 0 and 0.0 are written differently. Raises InputError with ``key`` where one is none."""
+    """The values as floats: 0 and 0.0 are written differently. Raises InputError with ``key`` if one is no finite
+    number."""
     numbers = []
     for value in values:
         if not is_finite(value):

@@ -1,4 +1,4 @@
-"""A printer profile: what the machine can hold, resolve and build."""
+"""A printer profile: the machine's build volume, resolution and materials."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""A target: what a sensor shall do, what is given, and what matters more. One TOML, or the flags of ``select``."""
+"""A target: the sensor's required figures, the given parameters, and the weights. One TOML, or the flags of
+``select``."""
 
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ Names = Annotated[list[str], Field(min_length=1, max_length=50)]
 
 
 class TargetFigures(Table):
-    """[target]: what the sensor shall do. Whatever is left out is free."""
+    """[target]: the required figures of the sensor. Whatever is left out is free."""
 
     sensitivity_kPa_per_N: float | None = number(
         None, unit="kPa/N", low=1e-4, high=1e4, help="Slope of pressure rise over contact force."
@@ -101,7 +102,7 @@ class TargetFigures(Table):
 
 
 class Given(Table):
-    """[given]: what is settled already; the rest is solved for."""
+    """[given]: parameters that are settled already; the rest is solved for."""
 
     inner_radius_mm: float | None = number(None, unit="mm", low=1, high=100, help="Inner radius R0 of the dome.")
     wall_thickness_mm: float | None = number(None, unit="mm", low=0.05, high=50, help="Wall thickness t0 of the dome.")

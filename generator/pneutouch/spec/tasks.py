@@ -62,7 +62,7 @@ _DECIMAL_COMMA = re.compile(r"[+-]?(\d+,\d*|,\d+)([eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
 
 MOST_TASKS = 50
-"""Of one file."""
+"""Largest number of tasks of one file."""
 
 
 class TaskFile(Table):

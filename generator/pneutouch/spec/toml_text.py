@@ -20,7 +20,7 @@ _ODD_NUMBER = re.compile(r"(?<![\w.-])[+-]?(?:\d[\d.eE+-]*_[\d_.eE+-]*|0[xob]\w+
 
 
 def toml_text(content: Mapping[str, Any]) -> str:
-    """TOML of nested tables, lists, text, numbers, booleans and dates; what is None is left out."""
+    """TOML of nested tables, lists, text, numbers, booleans and dates; None is left out."""
     return "\n\n".join(_blocks(content, ())) + "\n"
 
 
@@ -46,7 +46,7 @@ def toml_value(text: str) -> Any:
 
 
 def value_text(value: Any) -> str:
-    """One value on one line, what is None in a table left out. Raises TypeError for what TOML has no form for."""
+    """One value on one line, None in a table left out. Raises TypeError for a value that TOML has no form for."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

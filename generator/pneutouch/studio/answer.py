@@ -77,7 +77,8 @@ class Answers:
 
 
 def full_answer(question: Question, bases: Mapping[str, str], library: Library) -> dict[str, Any]:
-    """The prediction by the model that ``predict`` takes, with the findings of ``check`` and what the print takes.
+    """The prediction by the model that ``predict`` takes, with the findings of ``check`` and the estimates of the
+    print.
 
     Raises PneutouchError where the design cannot work or cannot be computed.
     """

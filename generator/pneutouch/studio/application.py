@@ -121,7 +121,7 @@ def application(bases: dict[str, str], first: str, port: int, token: str) -> App
 
 
 async def _question(request: Request) -> Question:
-    """The question in a body. Raises InputError where it is none."""
+    """The question in a body. Raises InputError if there is none."""
     return Question.of(await json_body(request, "question"))
 
 

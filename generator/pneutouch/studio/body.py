@@ -9,7 +9,7 @@ from pneutouch.errors import InputError
 
 
 async def json_body(request: Request, what: str) -> Any:
-    """The document in a body. Raises InputError, which names it by ``what``, where it is none."""
+    """The document in a body. Raises InputError, which names it by ``what``, if there is none."""
     try:
         content = json.loads(await request.body())
         # JSON can escape halves of surrogate pairs; such a text has no bytes, so that no answer could repeat it.

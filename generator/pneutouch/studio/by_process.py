@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def by_process(target: Target, page: CandidateStates, library: Library, report: Report) -> dict[str, Any]:
-    """Search each process of a target; of one in which nothing meets it, the card is what is nearest."""
+    """Search each process of a target; for one in which no design meets it, the card shows the nearest."""
     selection = select_processes(target, PAGE, library, progress=report)
     row = {process: number for number, (process, _) in enumerate(selection.best, start=1)}
     cards = [_card(process, run, page, row.get(process)) for process, run in selection.runs.items()]
@@ -36,7 +36,8 @@ def by_process(target: Target, page: CandidateStates, library: Library, report: 
 
 
 def _card(process: str, run: SelectionRun, page: CandidateStates, row: int | None) -> dict[str, Any] | None:
-    """The best design of a process, in ``row`` of the table, or what is nearest, with what it misses; None: neither."""
+    """The best design of a process, in ``row`` of the table, or the nearest one with its misses; None without
+    either."""
     choice = run.answer.nearest if row is None else run.answer.designs[0]
     if choice is None:
         return None

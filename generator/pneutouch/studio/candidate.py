@@ -1,4 +1,4 @@
-"""A design that was found, as the page shows it: what it is in words, and the state that makes it the page's design."""
+"""A design that was found, as the page shows it: its description, and the state that makes it the page's design."""
 
 from __future__ import annotations
 

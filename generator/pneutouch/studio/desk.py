@@ -50,7 +50,7 @@ class Desk:
         ]
 
     async def close(self) -> None:
-        """End what runs and remove what is kept."""
+        """End the running job and remove the kept files."""
         await self.jobs.close()
         self._place.cleanup()
 

@@ -29,7 +29,7 @@ def fault_status(error: PneutouchError) -> int:
 
 
 def reported(compute: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-    """``status`` and ``content`` of what is computed; an error is an answer too, without a traceback."""
+    """``status`` and ``content`` of a computation; an error is an answer too, without a traceback."""
     try:
         return {"status": 200, "content": compute()}
     except PneutouchError as error:

@@ -69,7 +69,7 @@ def _printers(library: Library) -> dict[str, list[str]]:
 
 
 def designs_document(bases: Mapping[str, str]) -> list[Option]:
-    """The designs that can be opened, with their titles and what the commands call them."""
+    """The designs that can be opened, with their titles and their names in commands."""
     titles = {entry["name"]: entry["title"] for entry in listing("designs")["designs"] if "error" not in entry}
     known = Library.default().paths("designs")
     return [

@@ -29,7 +29,7 @@ SHEET = {
     "Content-Security-Policy": "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
     "img-src data:; font-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'self'; sandbox allow-scripts"
 }
-"""In place of the policy of `HEADERS`, for a page that a job wrote: whole in itself, it is shown in a frame, where it
+"""Policy in place of that of `HEADERS`, for a page that a job wrote: whole in itself, it is shown in a frame, where it
 has no origin, reaches neither the studio nor anything else, and opens nothing."""
 
 _NAMES = ("127.0.0.1", "localhost")

@@ -63,7 +63,7 @@ def work(request: bytes, out: BinaryIO) -> None:
 
 
 def _stop(number: int, frame: Any) -> None:
-    """Unwind once, which removes what is half written."""
+    """Unwind once, which removes half written files."""
     for each in STOPS:
         signal.signal(each, signal.SIG_IGN)
     raise KeyboardInterrupt

@@ -1,4 +1,4 @@
-"""The commands that do what the page did with measured runs."""
+"""The commands that repeat the page's work on measured runs."""
 
 import shlex
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ Parameters = list[tuple[str, str]]
 
 
 def characterize_words(data: Path, question: Question | None, arguments: Mapping[str, Any]) -> dict[str, str]:
-    """The command, and what is to be done before it."""
+    """The command, and the steps before it."""
     parameters: Parameters = []
     if question is not None:
         parameters.append(("design", arguments["bases"][question.base]))
@@ -33,7 +33,7 @@ def _kept(question: Question | None) -> str:
 def calibrate_words(
     data: Path, question: Question | None, arguments: Mapping[str, Any], options: CalibrationOptions
 ) -> dict[str, str]:
-    """The command, and what is to be done before it: it takes no changes of a design."""
+    """The command, and the steps before it: it takes no changes of a design."""
     changed = question is not None and any(key != "calibration" for key in question.values)
     parameters: Parameters = []
     if question is not None:

@@ -28,7 +28,8 @@ Bases = Mapping[str, str]
 
 
 def open_file(arguments: Mapping[str, Any], folder: Path, report: Callable[[int, int, str | None], None]) -> Content:
-    """Read the one file of ``files``; the state of the page that shows its design, and what the page cannot show.
+    """Read the one file of ``files``; the state of the page that shows its design, and notes on parts that the page
+    cannot show.
 
     ``name`` is the design's, ``question`` the state, ``notes`` are lines for the user. Raises InputError that names
     file, key and value.

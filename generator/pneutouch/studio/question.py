@@ -28,7 +28,7 @@ class Question:
 
     @classmethod
     def of(cls, content: Any) -> "Question":
-        """The question in a JSON document of the page. Raises InputError where it is none."""
+        """The question in a JSON document of the page. Raises InputError if there is none."""
         if not isinstance(content, dict) or set(content) != {"base", "values"}:
             raise InputError("a question is an object with the keys base and values")
         base, values = content["base"], content["values"]

@@ -66,7 +66,7 @@ def _selected(target: Target, page: CandidateStates, library: Library, report: R
 
 
 def _cards(run: SelectionRun, page: CandidateStates) -> list[dict[str, Any]]:
-    """The designs by rank; where there are none, what is nearest and what fits without one of the requirements."""
+    """The designs by rank; if there are none, the nearest, and those that fit without one of the requirements."""
 
     def card(choice: Candidate, kind: str, label: str, *, rank: int | None = None, note: str = "") -> dict[str, Any]:
         """A design as the page shows it, with the state that makes it the page's design."""

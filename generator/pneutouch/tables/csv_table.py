@@ -93,7 +93,7 @@ def _after(stream: TextBytes, lines: int) -> bytes:
 
 
 def _check_text(data: bytes, row: int, reader: _Reader) -> None:
-    """Check some lines, of which the first is ``row``. Raises InputError for what is no UTF-8 text."""
+    """Check some lines, of which the first is ``row``. Raises InputError for a text that is not UTF-8."""
     if b"\0" in data:
         at = row + data.count(b"\n", 0, data.index(b"\0"))
         raise reader.fault(at, "holds a zero byte: a binary file", "must be CSV text")

@@ -63,7 +63,7 @@ class TableLayout:
         return self.names if self.clock is None else (CLOCK, *self.names)
 
     def place(self, name: str) -> int | None:
-        """Index of a column in `names`, by its name or its number (#2 is the second); None where there is none."""
+        """Index of a column in `names`, by its name or its number (#2 is the second); None if there is none."""
         if name in self.names:
             return self.names.index(name)
         number = name[1:] if name.startswith("#") else ""

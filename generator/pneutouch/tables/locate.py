@@ -38,7 +38,7 @@ def width_of(rows: Sequence[Sequence[str]], decimal: str) -> tuple[int, float]:
 
 
 def header_of(rows: Sequence[Sequence[str]], known: Sequence[str]) -> int | None:
-    """Index of the first row that names all of the ``known`` columns; None where there is none, or none is known."""
+    """Index of the first row that names all of the ``known`` columns; None if there is none, or no column is known."""
     if not known:
         return None
     return next((k for k, row in enumerate(rows) if all(name in row for name in known)), None)
@@ -96,7 +96,7 @@ def _next(rows: Sequence[Sequence[str]], at: int) -> int | None:
 
 
 def _above(rows: Sequence[Sequence[str]], first: int, width: int) -> tuple[int | None, int | None]:
-    """Indices of the header and of the row of units above the first numbers, None each where there is none."""
+    """Indices of the header and of the row of units above the first numbers, None for each that is missing."""
     above = [k for k in range(first) if any(rows[k])][-2:]
     near = [k for k in above if _fits(rows[k], width)]
     if not near or near[-1] != above[-1]:

@@ -66,7 +66,7 @@ def _check_size(path: Path, stated: Any) -> None:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[Any]:
-    """The file, for reading. Raises InputError where it is none, or pyarrow is not installed."""
+    """The file, for reading. Raises InputError if it is no parquet file, or pyarrow is not installed."""
     with library_file(path, "parquet", "pyarrow", "parquet"):
         import pyarrow.parquet as pq
 

@@ -21,7 +21,7 @@ from pneutouch.tables.xlsx_table import xlsx_chunks, xlsx_layout
 _ANY = TableFormat()
 
 MOST_NUMBERS = 20_000_000
-"""Of a table that is in memory as a whole: 160 MB."""
+"""Largest number of cells of a table that is in memory as a whole: 160 MB."""
 
 
 class _Kind(NamedTuple):

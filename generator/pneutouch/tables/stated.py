@@ -58,7 +58,7 @@ def lvm_layout(path: Path, lines: Sequence[str], given: TableFormat) -> TableLay
 
 
 def _tags(lines: Sequence[str]) -> dict[str, str]:
-    """Tags with what follows them, the delimiter first."""
+    """Tags with the text that follows them, the delimiter first."""
     heads = ("Separator", "Decimal_Separator", "X_Columns")
     return {head: line[len(head) :] for line in lines for head in heads if line.startswith(head)}
 
@@ -70,7 +70,7 @@ def _delimiter(text: str) -> str:
 
 
 def _least(columns: Sequence[str], numbers: Sequence[Sequence[str]], decimal: str) -> int:
-    """Fewest cells of a row: without the last column, that of remarks, where rows leave it out."""
+    """Fewest cells of a row: without the last column, that of remarks, if rows leave it out."""
     short = any(len(row) == len(columns) - 1 and score(row, decimal) > 0 for row in numbers)
     return len(columns) - 1 if short and len(columns) > 1 else len(columns)
 

@@ -126,7 +126,7 @@ def _clock(channels: Sequence[Any]) -> tuple[float, float] | None:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[Any]:
-    """The file, for reading. Raises InputError where it is none, or npTDMS is not installed."""
+    """The file, for reading. Raises InputError if it is no TDMS file, or npTDMS is not installed."""
     with library_file(path, "TDMS", "npTDMS", "tdms"):
         from nptdms import TdmsFile
 

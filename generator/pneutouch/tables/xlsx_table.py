@@ -98,7 +98,7 @@ def _layout(title: str, located: Located, names: list[str], least: int, given: T
 
 @contextmanager
 def _workbook(path: Path) -> Iterator[Any]:
-    """The workbook, for reading. Raises InputError where it is none, too large, or openpyxl is not installed."""
+    """The workbook, for reading. Raises InputError if it is no workbook, too large, or openpyxl is not installed."""
     with library_file(path, "Excel", "openpyxl", "xlsx"):
         from openpyxl import load_workbook
 

@@ -15,7 +15,8 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.texture.morse import Morse
 
 DEGREE = 3
-"""Of the polynomial of ln power over ln frequency: 0 is white, 1 a power law, 3 a low-passed noise and a floor."""
+"""Degree of the polynomial of ln power over ln frequency: 0 is white, 1 a power law, 3 a low-passed noise and a
+floor."""
 
 _CLIP = 3.0
 """Most that a bin counts above its fit, in units of it: undeclared lines bend it little, 2 % of noise bins are cut."""

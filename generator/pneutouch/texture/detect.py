@@ -23,7 +23,8 @@ SURROGATES = 999
 LEVEL = 0.05
 
 _OVERTONES = (2.0, 3.0)
-"""Of a target frequency, where a pattern with edges has lines too: bins that its taper spreads them over are no noise.
+"""Overtones of a target frequency, at which a pattern with edges has lines too: bins that its taper spreads them over
+are no noise.
 
 No more than these: patterns whose frequencies are multiples of one another would leave no noise between them.
 """

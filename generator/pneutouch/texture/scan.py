@@ -61,7 +61,7 @@ class Recorder:
 
 @dataclass(frozen=True, slots=True)
 class TextureScan:
-    """A scan: what was recorded, the same without noise, and the place (mm), (n,) each.
+    """A scan: the record, the same without noise, and the place (mm), (n,) each.
 
     ``height``: of the sensor above that at the preload, mm; not zero where the force is held.
     """
@@ -92,7 +92,8 @@ def pressure_amplitude(
 
 
 def scan(touch: PreloadContact, substrate: Substrate, path: ScanPath, recorder: Recorder = Recorder()) -> TextureScan:
-    """Slide a dome over a specimen. Raises InputError for a path that is none, or that the curve of the dome leaves."""
+    """Slide a dome over a specimen. Raises InputError for an impossible path, or one that leaves the curve of the
+    dome."""
     _check(touch, substrate, path, recorder)
     time = (
         np.arange(int(np.floor((path.end - path.start) / path.speed * recorder.rate * (1 + 1e-12))) + 1) / recorder.rate

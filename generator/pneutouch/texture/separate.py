@@ -38,7 +38,7 @@ class BarPattern(NamedTuple):
 
     @property
     def bars(self) -> BarRow:
-        """As a row."""
+        """The pattern as a row."""
         half = 0.5 * self.pitch
         return BarRow(f"{self.pitch:g}@{self.depth:g}", self.pitch, half, 1.0, self.depth, np.array([[0.0, half]]))
 

@@ -41,7 +41,7 @@ class RunResiduals:
 
     @property
     def rise_error(self) -> float:
-        """The same of the pressure."""
+        """Root mean square of the pressure residuals over full scale; NaN without any."""
         return _rms(self.rise) / self.rise_scale
 
 

@@ -151,7 +151,7 @@ def covariance(
 
 
 def half_widths(estimate: Covariance) -> Array:
-    """Half widths of the 95 % intervals in the coordinates, (k,); NaN where there is none.
+    """Half widths of the 95 % intervals in the coordinates, (k,); NaN for a coordinate without an interval.
 
     Student's t with the degrees of freedom of Welch and Satterthwaite: of priors they are infinite (JCGM 100, G.4). The
     contribution of a parameter with a uniform prior is not normal: there the interval is that of the sum (JCGM 101,

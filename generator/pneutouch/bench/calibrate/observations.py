@@ -55,7 +55,7 @@ class Observations:
         return tuple(sorted({curve.run.driving_pressure_kPa for curve in self.curves}))
 
     def without(self, driving_pressure_kPa: float) -> Observations:
-        """The same without the curves of a driving pressure, kPa."""
+        """These observations without the curves of a driving pressure, kPa."""
         kept = tuple(curve for curve in self.curves if curve.run.driving_pressure_kPa != driving_pressure_kPa)
         return replace(self, curves=kept)
 
@@ -115,7 +115,7 @@ class ObservationPoints(NamedTuple):
         )
 
     def with_values(self, values: Array) -> ObservationPoints:
-        """The same points with other values, (N,)."""
+        """These points with other values, (N,)."""
         force, rise, pressure = np.split(values, [self.force.size, 2 * self.force.size])
         return self._replace(
             force=force.reshape(self.force.shape),
@@ -130,7 +130,8 @@ class ObservationPoints(NamedTuple):
 
     @property
     def clusters(self) -> Array:
-        """Number of the curve or injection behind each value, (N,): what one run's gain and zero move together."""
+        """Number of the curve or injection behind each value, (N,): the values that one run's gain and zero move
+        together."""
         (c, m), (i, n) = self.travel.shape, self.volume.shape
         curve = np.repeat(np.arange(c), m)
         return np.concatenate([curve, curve, c + np.repeat(np.arange(i), n)])

@@ -24,14 +24,14 @@ NAMES = ("modulus", "wall", "dead-volume", "offset", "friction")
 MODULUS, WALL, DEAD, OFFSET, FRICTION = range(5)
 
 USUAL = NAMES[:FRICTION]
-"""Those that are fitted where nothing else is requested."""
+"""Parameters that are fitted by default."""
 
 KEYS = ("shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL", "contact_offset_mm", "friction")
 """Their names outside, with unit."""
 
 UNITS = ("MPa", "mm", "mL", "mm", "1")
 LOGARITHMIC = np.array([True, True, False, False, False])
-"""Those fitted in their logarithm: positive, and uncertain by a factor."""
+"""Parameters fitted in their logarithm: positive, and uncertain by a factor."""
 _OUTSIDE = np.array([1.0, 1.0, ML, 1.0, 1.0])
 
 OFFSET_BOUND = 0.5
@@ -41,8 +41,8 @@ OFFSET_PRIOR = 0.05
 """Prior standard deviation of the contact offset, mm: our choice, the part of the first touch below the noise."""
 
 FRICTION_PRIOR = GRIPS / np.sqrt(12.0)
-"""Prior standard deviation of the coefficient of friction where it is fitted: our choice, that of anything from none to
-grip."""
+"""Prior standard deviation of the coefficient of friction if it is fitted: our choice, wide enough for anything from
+none to grip."""
 
 _STIFFEST = 100.0
 """Greatest shear modulus fitted, MPa: our choice, far above any elastomer."""

@@ -22,7 +22,7 @@ is taken."""
 _LEAST_POINTS = 3
 
 _MOST_FREEDOM = 1e6
-"""As good as infinite: what the errors have where the scatter is no part of them."""
+"""Degrees of freedom of errors that do not include the scatter: as good as infinite."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,7 @@ _ROUNDING = 1e-9
 _LEAST_POINTS = 3
 
 _SHORT = 1e-4
-"""By this share a press stops before the event that ends its range."""
+"""Share of the travel by which a press stops before the event that ends its range."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Air pushed in with a syringe: what the pressure must be, into the closed line alone and into the sensor."""
+"""Air pushed in with a syringe: the expected pressure in the closed line alone and in the sensor."""
 
 import numpy as np
 

@@ -234,7 +234,7 @@ def _by_key(arrays: FigureArrays) -> dict[str, float | None]:
 
 
 def _with_runs(mean: dict[str, float | None], truth: SimulationTruth, parts: float | None) -> dict[str, float | None]:
-    """With the spread of the sensitivity between runs of one specimen and between specimens."""
+    """The mean with the spread of the sensitivity between runs of one specimen and between specimens."""
     slope = mean["sensitivity_kPa_per_N"]
     return {
         **mean,

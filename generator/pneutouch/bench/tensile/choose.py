@@ -38,7 +38,7 @@ _NEAR_BEST = 0.01
 
 _MOST_SLACK, _SLACK_STEPS = 0.08, 81
 _LEAST_SLACK = 0.002
-"""A slack below this is none: a fifth of a per cent of the gauge length."""
+"""A slack below this counts as none: a fifth of a per cent of the gauge length."""
 
 
 @dataclass(frozen=True, slots=True)

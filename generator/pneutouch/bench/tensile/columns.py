@@ -14,7 +14,7 @@ _WORDS = {
     "force": ("force", "load", "kraft"),
     "travel": ("extension", "displacement", "travel", "compression", "indentation", "position", "crosshead", "weg"),
 }
-"""Words of a header by what the column is."""
+"""Words of a header, by the kind of column that they mean."""
 
 _TRUE = ("true", "log", "logarithmic", "hencky", "cauchy")
 _NOMINAL = ("engineering", "nominal", "eng", "eng.", "technical")
@@ -30,7 +30,7 @@ NAMES = "Engineering Strain, Engineering Stress (MPa)"
 
 
 class TensileColumn(NamedTuple):
-    """One column: its name in the file, what it is, whether true or nominal is stated, and its factor to 1, mm, MPa, N.
+    """One column: its name in the file, its kind, whether it is true or nominal, and its factor to 1, mm, MPa, N.
 
     ``factor`` is None where its name states no unit.
     """

@@ -1,4 +1,4 @@
-"""A measured curve of uniaxial tension, and what is taken off it before a fit."""
+"""A measured curve of uniaxial tension, and its slack, which is taken off before a fit."""
 
 from dataclasses import dataclass, field, replace
 

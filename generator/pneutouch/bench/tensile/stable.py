@@ -20,7 +20,7 @@ _RATIOS = {"uniaxial tension": -0.5, "pure shear": 0.0, "equibiaxial tension": 1
 
 
 def instability(name: str, constants: tuple[float, ...], largest: float) -> str | None:
-    """The first state in which a law is unstable, in words; None where there is none.
+    """The first state in which a law is unstable, in words; None for a stable law.
 
     States are those whose first invariant is at most that of uniaxial tension by ``largest``. Raises InputError for
     constants that give no solid at all.

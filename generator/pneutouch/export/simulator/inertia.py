@@ -55,7 +55,7 @@ def inertia_of(bodies: Iterable[Body], solids: Iterable[Solid]) -> RigidInertia:
 
 
 def _inertia(body: Body, solid: Solid) -> RigidInertia:
-    """By the integrals of 1, x and x y over the tetrahedra from the origin to every triangle."""
+    """Inertia by the integrals of 1, x and x y over the tetrahedra from the origin to every triangle."""
     a, b, c = np.moveaxis(body.corners * _M, 1, 0)
     volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
     total, sums = volumes.sum(), a + b + c

@@ -16,7 +16,7 @@ from pneutouch.rounding import rounded
 _DIGITS = 9
 
 _CONTACT = {"solref": f"{2 * TIME_STEP:g} 1", "solimp": "0.9999 0.9999 0.001"}
-"""As stiff as the time step allows, and nearly rigid: what yields is the joint."""
+"""Contact as stiff as the time step allows, and nearly rigid: the joint yields instead."""
 
 
 def mjcf_files(sensor: SimulatedSensor) -> dict[str, bytes]:

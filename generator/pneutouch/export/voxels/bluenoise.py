@@ -105,7 +105,7 @@ class Thresholds:
     seed: int = 0
 
     def layer(self, number: int, rows: slice, columns: slice) -> Array:
-        """Thresholds (rows, columns) of part of a layer; the same whatever part is requested."""
+        """Thresholds (rows, columns) of part of a layer; they do not depend on the part that is asked for."""
         depth, height, width = self.values.shape
         row, column = np.arange(rows.start, rows.stop), np.arange(columns.start, columns.stop)
         blocks = row[0] // height, column[0] // width

@@ -41,7 +41,7 @@ def encode(labels: Labels, colours: Pixels, dpi: tuple[int, int]) -> bytes:
 
 
 MOST_PIXELS = 100_000_000
-"""Of a slice: three times the tray of a large printer at 600 x 300 dpi; read, 400 MB."""
+"""Largest number of pixels of a slice: three times the tray of a large printer at 600 x 300 dpi; read, 400 MB."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class PngSlice:
 
 
 def decode(content: bytes, where: str) -> PngSlice:
-    """Read a slice. Raises InputError for what the voxel print utility would refuse, and for a damaged file."""
+    """Read a slice. Raises InputError for a slice that the voxel print utility would refuse, and for a damaged file."""
     if not content.startswith(_SIGNATURE):
         raise InputError("not a PNG file", file=where)
     head, dpi, data = None, None, []

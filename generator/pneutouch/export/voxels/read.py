@@ -19,11 +19,11 @@ from pneutouch.formats import check_format
 from pneutouch.spec.files import read_bytes
 
 _MOST_BYTES = 100_000_000
-"""Of a slice, and of the manifest."""
+"""Largest size of a slice, and of the manifest."""
 
 LEAST_SLICES = 30
 MOST_COLOURS = 6
-"""Of the utility (GrabCAD Voxel Print guide), whatever a manifest states."""
+"""Largest number of colours of the utility (GrabCAD Voxel Print guide), whatever a manifest states."""
 
 _NEEDED: dict[str, type | tuple[type, ...]] = {
     "layers": int,

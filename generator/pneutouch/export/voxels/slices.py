@@ -14,7 +14,7 @@ from pneutouch.export.voxels.job import VoxelBody, VoxelJob
 from pneutouch.export.voxels.skin import RecentLayers, SkinCompensation, interior, reach_for
 
 CUBE = 1.0
-"""Edge in mm of the cubes in which the dither is held against what it was given."""
+"""Edge in mm of the cubes in which the dithered share is compared with the given one."""
 
 FULL = 0.5
 """Share of a cube that must lie in the body for it to count: the error of a few voxels has no meaning; our choice."""
@@ -132,7 +132,7 @@ class _Mixed:
         self._given_in, self._got_in, self._voxels_in = (self._cubes.empty() for _ in range(3))
 
     def _parts_of(self, number: int) -> tuple[Flags, Singles] | None:
-        """A layer's interior, and the requested shares, 0 outside."""
+        """A layer's interior, and its shares, 0 outside."""
         below, here, above = self.here(number - 1), self.here(number), self.here(number + 1)
         if here is None:
             return None

@@ -1,4 +1,4 @@
-"""The declaration of a coupon family: what it belongs to, how it is drawn, what is measured on it and with what."""
+"""The declaration of a coupon family: its subject, its drawing, its measurement and the instrument."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

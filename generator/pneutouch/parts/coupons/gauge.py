@@ -1,4 +1,5 @@
-"""The wall and hole gauge and the step block: what the machine makes of small features, and how true its lengths are.
+"""The wall and hole gauge and the step block: they show how the machine makes small features and how true its lengths
+are.
 
 The gauge is a plate with four rows, each in rising order away from the cut corner: walls, pins, holes, slots. The
 block is
@@ -22,7 +23,7 @@ STEPS = (5.0, 10.0, 15.0, 20.0)
 
 BLOCK = 20.0
 PLATE, WALL_HEIGHT, PIN_HEIGHT, LENGTH = 3.0, 5.0, 4.0, 10.0
-"""mm: the plate, what stands on it, and the length of walls and slots."""
+"""Sizes in mm: of the plate, of the walls and pins on it, and the length of walls and slots."""
 
 _GAP, _MARGIN, _ROOT, _CORNER = 4.0, 4.0, 1.0, 4.0
 """mm: between features, around them, how deep a standing feature reaches into the plate, and the cut corner."""

@@ -19,7 +19,7 @@ def draw(context: CouponContext) -> tuple[Solid, ...]:
 
 
 def nominals(context: CouponContext) -> tuple[Nominal, ...]:
-    """Hardness on the scale of the material's kind, then what the density needs."""
+    """Hardness on the scale of the material's kind, then the sizes that the density needs."""
     material = context.material
     soft = material.kind == "elastomer"
     known = material.shore_a if soft else material.shore_d

@@ -42,7 +42,7 @@ class LabelPosition:
 
 
 def lettered_faces(assembly: Assembly, solid: Solid) -> list[RingFace]:
-    """Faces of a rigid body in the order they are preferred: what can be read once mounted comes first."""
+    """Faces of a rigid body in the order they are preferred: faces that can be read once mounted come first."""
     layout, seat = assembly.layout, assembly.scene.seat
     if solid.role == "ring":
         # The other ring, that a flange is cast around, is in the mould: its faces close on the cavity.

@@ -77,7 +77,7 @@ def is_clear(characters: str, height: float, least: float) -> bool:
 
 
 def rounded(shape: Any) -> Any:
-    """The shape with its corners on a grid of 0.1 um: what is merged by a reader in float32 stays apart."""
+    """The shape with its corners on a grid of 0.1 um, so that a reader in float32 merges none of them."""
     from manifold3d import CrossSection, FillRule
 
     return CrossSection([np.round(polygon, 4) for polygon in shape.to_polygons()], FillRule.EvenOdd)

@@ -49,7 +49,7 @@ class MouldAssembly:
 
     @property
     def tolerance(self) -> float:
-        """Chord tolerance of the meshes, mm: what the membrane is meshed to, for the mould forms it."""
+        """Chord tolerance of the meshes, mm: that of the membrane, which the mould forms."""
         return self.scene.mesh_tolerance
 
     @property
@@ -90,7 +90,7 @@ class MouldAssembly:
 
     @property
     def thickness(self) -> float:
-        """Of the closed mould, mm."""
+        """Thickness of the closed mould, mm."""
         return self.size.cap_high - self.size.base_low
 
 

@@ -50,7 +50,7 @@ def _channel(size: MouldSize) -> float:
 
 
 def _wall(size: MouldSize) -> float:
-    """The same of the wall from the flange to the pole, mm-3."""
+    """Resistance of the wall from the flange to the pole, mm-3."""
     inner, outer = size.faces.inner.radius, size.faces.outer.radius
     middle = 0.5 * (inner + outer)
     length, width = 0.5 * math.pi * middle, 2 * math.pi * middle * math.sin(0.25 * math.pi)

@@ -1,4 +1,4 @@
-"""From a membrane and what a design states of its mould to all lengths of the mould."""
+"""Lengths of the mould from a membrane and the mould's entries in a design."""
 
 import math
 

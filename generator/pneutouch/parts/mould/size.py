@@ -83,7 +83,7 @@ class CavityFaces:
         return CavityFaces(inner, rim, underside, edge, top, outer)
 
     def keeping(self, underside: Line, edge: Line) -> "CavityFaces":
-        """The same, but for the flange's underside and edge in their heights and outer radius."""
+        """This cavity, but with the flange's underside and edge in their heights and outer radius."""
         low = underside.start[1]
         foot = self.rim.end[0], low
         return replace(
@@ -96,7 +96,7 @@ class CavityFaces:
 
     @property
     def meridian(self) -> Meridian:
-        """The outline of the cavity: what the silicone fills, and the web of a ring within its flange."""
+        """The outline of the cavity, which the silicone and the web of a ring within the flange fill."""
         return Meridian((self.inner, self.rim, self.underside, self.edge, self.top, self.outer))
 
 

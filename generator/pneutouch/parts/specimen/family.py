@@ -12,7 +12,8 @@ from pneutouch.spec.printer import Printer
 from pneutouch.spec.specimen import Layer
 
 MOST_TRIANGLES = 3_000_000
-"""Of one pattern: about 1.5 GiB while it is made and a 3MF of 60 MB, beyond which tray software was not tried (own)."""
+"""Largest number of triangles of one pattern: about 1.5 GiB while it is made and a 3MF of 60 MB, beyond which tray
+software was not tried (our choice)."""
 
 DECIMALS = 4
 """Coordinates are put on a grid of 0.1 um: two faces are either the same or visibly apart."""

@@ -25,7 +25,7 @@ _SAMPLES = 28
 """Samples along each side of an octant for the first guess of a radius."""
 
 _LARGEST = 0.85
-"""Greatest radius over the distance at which no matrix is left: beyond it what is left is slivers (own)."""
+"""Greatest radius over the distance at which no matrix is left: beyond it slivers remain (our choice)."""
 
 _CLOSE = 1e-3
 """Relative error of the fraction at which the search stops."""

@@ -45,14 +45,14 @@ _GRID = 2.0**-20
 """Vertices of the balls lie on this grid, in half cells, so that sums of them with nodes on the same grid are exact."""
 
 _MERGED = 1e-5
-"""Detail in half cells left out after the boolean: a reader in float32 merges what is nearer than 4e-6 mm at 60 mm."""
+"""Detail in half cells left out after the boolean: a reader in float32 merges points nearer than 4e-6 mm at 60 mm."""
 
 _NUDGES = (0.0, 1e-5, -1e-5, 3e-5, -3e-5, 1e-4, -1e-4, 3e-4)
 """Relative changes of a radius that does not come out clean, in the order tried."""
 
 _CUTS = (1e-3, 1e-4, 3e-3, 2e-5, 6e-3)
 """Detail in mm left out where a lattice is cut to size, in the order tried: a cut may pass as near to its corners as it
-likes, and what is left there must be neither nearly nothing nor pressed into the face."""
+likes, and the remaining piece must be neither nearly nothing nor pressed into the face."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Lattice:
 
     @staticmethod
     def of(kind: str, cell: float, radius: float, tolerance: float) -> Lattice:
-        """With as many sides as keep a chord tolerance, mm."""
+        """Lattice with as many sides as keep a chord tolerance, mm."""
         return Lattice(kind, cell, radius, circle_count(radius, tolerance))
 
     def ball(self) -> Array:

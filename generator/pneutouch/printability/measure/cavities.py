@@ -1,4 +1,4 @@
-"""Hollows that support has to come out of: what lies behind a neck, and what no straight jet reaches."""
+"""Hollows that support has to come out of: the spaces behind a neck, and those that no straight jet reaches."""
 
 from dataclasses import dataclass
 from itertools import product
@@ -20,7 +20,8 @@ _STEPS = 8
 _HALVINGS = 3
 
 _BIAS = 0.25
-"""From the middle of the nearest full cube to the surface, in cubes: half a one at a flat wall, less at a round one."""
+"""Distance from the middle of the nearest full cube to the surface, in cubes: half a one at a flat wall, less at a
+round one."""
 
 _TILTS = (-1.0, -0.5, 0.0, 0.5, 1.0)
 """Slopes of the lines of sight against the axis they mostly follow, in both directions across it: 98 in all."""
@@ -158,7 +159,7 @@ def unseen(voxels: PartVoxels, radius: Array, reached: Flags) -> Flags:
 
 
 def supported(voxels: PartVoxels) -> Flags:
-    """Empty cubes with a full one somewhere above: what a polyjet machine fills with support."""
+    """Empty cubes with a full one somewhere above, which a polyjet machine fills with support."""
     full = voxels.label > 0
     above = np.maximum.accumulate(full[:, :, ::-1], axis=2)[:, :, ::-1]
     below = above & ~full

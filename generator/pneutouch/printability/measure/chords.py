@@ -1,4 +1,4 @@
-"""Thicknesses and clearances: lines from face to opposite face, and the size of what they cross.
+"""Thicknesses and clearances: lines from face to opposite face, and the size of the feature that they cross.
 
 From points all over the surface a line is cast along the normal, into the body and out of it. Where it ends on a face
 that looks back, within 40 degrees, its length is a thickness of the body or a width of the air. Lines across the middle

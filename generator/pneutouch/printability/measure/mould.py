@@ -27,7 +27,7 @@ _REACH = 0.5
 """Distance in mm by which that window reaches past the flange, within the land of `parts.mould.size.LAND`."""
 
 _SIDES = 256
-"""Of the window that the void is taken from; it lies in the ring, clear of the gap at the ring's outside."""
+"""Sides of the window that the void is taken from; it lies in the ring, clear of the gap at the ring's outside."""
 
 _ROUNDING = 1e-9
 """Volume in mm3 that faces which touch may seem to share."""
@@ -136,7 +136,7 @@ def _starts(size: MouldSize, body: Body, tolerance: float) -> list[tuple[Array, 
 
 
 def _whole(near: Flags, count: int) -> Flags:
-    """Of points, ``count`` on each triangle, those of triangles all of whose points are ``near``."""
+    """True for the points, ``count`` on each triangle, of those triangles all of whose points are ``near``."""
     return np.repeat(near.reshape(-1, count).all(axis=1), count)
 
 

@@ -31,14 +31,15 @@ LONG = 3.0
 """A hole longer than this many widths is a channel."""
 
 _KNIFE = np.radians(30.0)
-"""Faces that meet at less than this leave chords down to nothing: the edge is what is wrong there."""
+"""Angle below which faces that meet leave chords down to nothing: the edge is the fault there."""
 
 BLUNT = 0.5
-"""A taper's thickness is that this far (mm) from its thin end: what is shorter is a blunt edge, not a wall (own,
-unverified)."""
+"""Distance (mm) from its thin end at which a taper's thickness is measured: a shorter one is a blunt edge, not a wall
+(our choice, unverified)."""
 
 _BENT = 1.25
-"""By its area a straight hole is as long as by its extent, up to a quarter for one that is not round."""
+"""Ratio of a feature's length by its area to that by its extent, above which it counts as bent: up to a quarter more
+for a hole that is not round."""
 
 _ALONG = np.radians(2.0)
 """Faces that part by less run along each other, within the accuracy of interpolated normals."""
@@ -150,7 +151,7 @@ def _spot(some: _Sized, row: int) -> Point3:
 
 
 def _thinned(chords: Chords, groups: Indices) -> Chords:
-    """At most `_PER_GROUP` chords of each face group; those kept stand for the area of all."""
+    """At most `_PER_GROUP` chords of each face group; the kept ones stand for the area of all."""
     group = groups[chords.near]
     order = np.lexsort((chords.length, group))
     group = group[order]

@@ -1,4 +1,4 @@
-"""Parts in cubes: what rays alone do not show, such as what lies behind a neck or under an overhang."""
+"""Parts in cubes, for spaces that rays alone do not show, such as those behind a neck or under an overhang."""
 
 from dataclasses import dataclass
 

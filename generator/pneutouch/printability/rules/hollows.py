@@ -8,7 +8,7 @@ _FILAMENT = "own, unverified: what is closed cannot be inspected, and loose supp
 
 
 def check(view: PrintView) -> list[Finding]:
-    """Look for shells that face inwards, in each body and in what a job joins to one."""
+    """Look for shells that face inwards, in each body and in the bodies that a job joins to one."""
     findings = []
     for job in view.jobs:
         source = _SOURCE if job.printer.process == "polyjet" else _FILAMENT

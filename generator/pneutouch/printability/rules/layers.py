@@ -70,7 +70,7 @@ def check(view: PrintView) -> list[Finding]:
 
 
 def _advised(wall: float, layer: WallStep, pixel: WallStep) -> float:
-    """The nearest wall, mm, of whole layers that is close to whole pixels; where there is none, the closest to them."""
+    """The nearest wall, mm, of whole layers that is close to whole pixels; if there is none, the closest to them."""
     far = _FAR * max(layer.size, pixel.size)
     numbers = range(max(1, math.ceil((wall - far) / layer.size)), math.floor((wall + far) / layer.size) + 1)
     walls = [number * layer.size for number in numbers]

@@ -42,7 +42,7 @@ class GroupComparison:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """A requirement of the target against what was measured.
+    """A requirement of the target against its measurement.
 
     ``passed`` is None where the interval holds values on both sides of the limit: more specimens would decide.
     """

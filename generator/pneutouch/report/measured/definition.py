@@ -26,7 +26,7 @@ LINES = {
     "noise_pressure_kPa": "Standard deviation of a pressure sample without contact, trend taken out.",
     "resolution_N": "Three standard deviations of the pressure's noise over the sensitivity.",
 }
-"""By key of `bench.figure.FIGURES`."""
+"""Lines by key of `bench.figure.FIGURES`."""
 
 TERMS = (
     (

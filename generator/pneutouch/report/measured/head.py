@@ -1,4 +1,4 @@
-"""The first page in words: what was measured, whether the target is met, the figures that count, and the conditions."""
+"""The first page in words: the measurement, the verdict on the target, the figures that count, and the conditions."""
 
 import math
 from collections import Counter

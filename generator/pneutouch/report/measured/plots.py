@@ -81,7 +81,7 @@ def _spot(k: int) -> dict[str, Any]:
 
 
 def _greatest(comparison: GroupComparison) -> float:
-    """Upper end of what is drawn of a group."""
+    """Upper end of the drawn range of a group."""
     measured, predicted = comparison.group.figures.get(SENSITIVITY), comparison.predicted.get(SENSITIVITY)
     ends = [] if measured is None else [measured.value, measured.high]
     return max((end for end in (*ends, *(predicted or ())) if end is not None), default=0.0)

@@ -1,4 +1,4 @@
-"""The schema of a manifest: every output folder has one, and each command adds what it measured."""
+"""The schema of a manifest: every output folder has one, and each command adds its own measurements."""
 
 from pneutouch.schemas.shape import NUMBER, NUMBERS, TEXT, TEXTS, WHOLE, Schema, described_by, items, mapping, record
 from pneutouch.schemas.written.parts import finding

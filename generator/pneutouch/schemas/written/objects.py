@@ -1,4 +1,4 @@
-"""Schemas of what is stated of an object: a built texture specimen, a voxel stack, an exported design."""
+"""Schemas of the records on an object: a built texture specimen, a voxel stack, an exported design."""
 
 from pneutouch.schemas.shape import (
     NUMBER,

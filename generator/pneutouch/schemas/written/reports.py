@@ -7,7 +7,7 @@ from pneutouch.workflows.calibrate.record import OutcomeRecord
 
 
 def _with_folder(schema: Schema) -> Schema:
-    """The same with the folder that the command wrote."""
+    """The schema with the folder that the command wrote."""
     folder = {**TEXT, "description": "Where it was written; in what the command prints alone."}
     return {**schema, "properties": {**schema["properties"], "folder": folder}}
 
