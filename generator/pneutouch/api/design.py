@@ -127,7 +127,7 @@ class Design(show.Shown):
         ``model`` is "membrane", "atlas", "solid", "harmonic", "auto", the cheapest whose error meets ``tolerance``, a
         fraction, or None: the solid, and harmonic for contact off the axis. ``contact_anywhere`` counts an unknown
         object and place of contact in the interval, as ``contact.anywhere`` of a design does. See
-        `evaluation.evaluate` for the rest. Raises InputError where the design cannot work.
+        `evaluation.evaluate` for the rest. Raises InputError if the design cannot work.
         """
         changed, options = pressures_changed(driving_pressures_kPa), model_options(model, tolerance)
         if contact_anywhere:

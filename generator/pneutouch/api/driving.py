@@ -53,7 +53,7 @@ class DrivingResult(show.Shown):
 
     @property
     def band_kPa(self) -> tuple[float, float] | None:
-        """Pressures at which the sensor in hand may do the first task (k = 2), kPa; None where that is not known.
+        """Pressures at which the sensor in hand may do the first task (k = 2), kPa; None if that is not known.
 
         It ends at 0 and at the highest pressure computed; see ``open_low`` and ``open_high`` of `to_dict`.
         """

@@ -34,7 +34,7 @@ def scan(
     """Slide a sensor over a texture specimen, given by name or path, and read which pattern each state detects.
 
     ``speed_mm_per_s`` None: the specimen's. ``noise_kPa`` is rms of a sample, None: a step of the recorder. ``data``
-    are measured signals (CSV). Raises InputError where the scan cannot be.
+    are measured signals (CSV). Raises InputError if the scan cannot be.
     """
     from pneutouch.texture.scan import NOISE
     from pneutouch.workflows.scan.document import document
@@ -151,7 +151,7 @@ def characterize(
 class FittedSensor(Result):
     """A sensor that was calibrated; a design that names it by `name` is predicted as this sensor.
 
-    It is None where the fit cannot be a calibration, such as with a modulus on its bound; its last note states why.
+    It is None if the fit cannot be a calibration, such as with a modulus on its bound; its last note states why.
     """
 
     def __init__(self, outcome: CalibrationOutcome) -> None:

@@ -31,7 +31,7 @@ _CLOSE = 1e-6
 
 @dataclass(frozen=True)
 class FigureValue:
-    """A figure in its ``unit``; ``interval`` is its expanded one (coverage factor 2), None where it is not known."""
+    """A figure in its ``unit``; ``interval`` is its expanded one (coverage factor 2), None if unknown."""
 
     name: str
     value: float
@@ -57,7 +57,7 @@ class FigureValue:
 class PredictedState(show.Shown):
     """A sensor at one driving pressure: figures, and curves over the indentation as arrays of one length.
 
-    A figure without a unit in its name has value, interval and unit; it is None where it could not be computed.
+    A figure without a unit in its name has value, interval and unit; it is None if it could not be computed.
     """
 
     driving_pressure_kPa: float

@@ -62,7 +62,7 @@ class BlockCollector:
     _short: list[int] = field(default_factory=lambda: [0, 0, 0])
 
     def take(self, rows: Array, samples: Array) -> None:
-        """Take samples (4, n) and their rows (n,). Raises InputError where time does not increase."""
+        """Take samples (4, n) and their rows (n,). Raises InputError if time does not increase."""
         if not rows.size:
             return
         time = samples[0]
@@ -133,7 +133,7 @@ class BlockCollector:
         self._parts.append(np.vstack([samples[:1, starts], means, spreads, extremes]))
 
     def blocks(self, warnings: tuple[SuspectInterval, ...] = ()) -> Blocks:
-        """The blocks, with gaps as warnings. Raises InputError where more than half of the record is missing."""
+        """The blocks, with gaps as warnings. Raises InputError if more than half of the record is missing."""
         if self.rate is None or self.size is None or self._first is None:
             raise InputError("no samples", file=self.file)
         if self._held.size:

@@ -170,7 +170,7 @@ def _error(loading: _Loading, onset: float, bend: float, length: float) -> float
 
 
 def _crossing(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign: int) -> int | None:
-    """The block from which the force stays beyond its noise; None where it does not before the hold."""
+    """The block from which the force stays beyond its noise; None if it does not before the hold."""
     start, end = one.clear[1] - 1, max(one.hold[0] + 1, one.clear[1] + 1)
     force = sign * (blocks.force[start:end] - base.mean[0])
     peak = int(force.argmax())

@@ -27,7 +27,7 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     (see `plausible.check_plausible`). Noise is that of single samples without contact, from the spread within blocks
     and that between their means about a straight line; drift is the slope before the first contact.
 
-    Raises InputError where the plate does not move or moves backwards, or there is no contact.
+    Raises InputError if the plate does not move or moves backwards, or there is no contact.
     """
     if run.kind in ("leak", "injection"):
         raise InputError(f"a {run.kind} run has no plate and no curve", file=blocks.file)

@@ -36,12 +36,12 @@ class RunIndentations:
     Attributes:
         parts: Block numbers.
         bases: Force and pressure before contact.
-        contacts: First contacts, None where there is none.
+        contacts: First contacts, None if there is none.
         indents: What was read.
         pressed: Whether the record begins with the plate in.
         sign: -1 where the force falls as the sensor is pressed.
         least: Least force that counts as contact, N.
-        onset: Plate position at the run's first contact, mm; NaN where there is none.
+        onset: Plate position at the run's first contact, mm; NaN if there is none.
     """
 
     parts: list[Excursion]
@@ -55,7 +55,7 @@ class RunIndentations:
 
 
 def find_indents(blocks: Blocks) -> RunIndentations:
-    """Cut a run into its indentations and read them. Raises InputError where the plate does not move."""
+    """Cut a run into its indentations and read them. Raises InputError if the plate does not move."""
     parts, pressed = excursions(blocks)
     if not parts:
         return RunIndentations([], [], [], (), pressed, 1, 0.0, math.nan)

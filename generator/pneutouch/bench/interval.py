@@ -25,11 +25,11 @@ class Estimate:
 
     Attributes:
         value: Mean over specimens of their means over runs; or a standard deviation.
-        low: Lower end of the 95 % interval, None where there is none.
+        low: Lower end of the 95 % interval, None if there is none.
         high: Upper end, likewise.
         specimens: Number of specimens behind it.
         runs: Number of runs behind it.
-        over: What the interval is over: "specimens", "runs", or "" where there is none.
+        over: What the interval is over: "specimens", "runs", or "" if there is none.
     """
 
     value: float

@@ -119,7 +119,7 @@ def _holes(name: str, measured: MeasuredGauges, source: ReadingSource, results: 
 
 
 def _smaller(hole: GaugeSize, where: str) -> float:
-    """Nominal less measured diameter, mm. Raises InputError where it is outside the bounds of a printer profile."""
+    """Nominal less measured diameter, mm. Raises InputError if it is outside the bounds of a printer profile."""
     average = mean(hole.measured_mm).value
     less, (low, high) = hole.nominal_mm - average, HOLE_UNDERSIZE_MM
     if not low - _ROUNDING <= less <= high + _ROUNDING:

@@ -102,7 +102,7 @@ def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
     """Questions about a leak run that may nevertheless be correct; its pressure is the median of the first `_START`
     seconds.
 
-    Raises InputError where the pressure is at the end of the gauge's range (`reading.CLIPPED`) or at a flat top for
+    Raises InputError if the pressure is at the end of the gauge's range (`reading.CLIPPED`) or at a flat top for
     more than half of the run, or begins at more than `FAR` times or less than 1 / `FAR` of the driving pressure in the
     campaign."""
     questions: list[str] = []

@@ -89,7 +89,7 @@ class MeasuredCurve:
         loop: Of a loop run: force and rise going in, force and rise coming out, of each cycle.
         relaxation: Of a relaxation run: seconds since the hold began, force, rise.
         noise: Standard deviations of a sample of force (N) and pressure (MPa) without contact, trend taken out; NaN
-            where nothing was without contact.
+            if nothing was without contact.
         drift: Slope of the pressure before the first contact, MPa/s, and of the force, N/s.
         warnings: Intervals that may be wrong.
     """

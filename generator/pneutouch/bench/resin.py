@@ -103,7 +103,7 @@ class DumbbellModuli:
 
 
 def pulled(measured: Dumbbell, where: str) -> DumbbellModuli | None:
-    """Neo-Hookean shear modulus of the specimens that have a curve; None where none has.
+    """Neo-Hookean shear modulus of the specimens that have a curve; None if none has.
 
     Raises InputError for too few specimens or points; ``where`` names file and table.
     """

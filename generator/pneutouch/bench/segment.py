@@ -49,7 +49,7 @@ def excursions(blocks: Blocks) -> tuple[list[Excursion], bool]:
 
     No speed and no length is presumed: all limits are shares of the travel or multiples of the position's noise, so
     that a run in a wrong unit is still segmented correctly, and its magnitude reveals the unit. Missed samples do not
-    matter, as no differences of neighbours are taken. Raises InputError where the plate does not move, or moves out of
+    matter, as no differences of neighbours are taken. Raises InputError if the plate does not move, or moves out of
     the sensor when it presses."""
     place = _smooth(blocks.position)
     noise, span = position_noise(blocks.position), float(np.ptp(place))

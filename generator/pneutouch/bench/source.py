@@ -114,7 +114,7 @@ def _with_unit(path: Path, key: str, column: Column, layout: TableLayout) -> Col
 
 
 def _index(layout: TableLayout, name: str) -> int | None:
-    """Index in `TableLayout.all_names` of a column that is named there, or by its number; None where it is not."""
+    """Index in `TableLayout.all_names` of a column that is named there, or by its number; None if it is not."""
     if name in layout.all_names:
         return layout.all_names.index(name)
     place = layout.place(name)

@@ -62,7 +62,7 @@ def dead_volume(cavity: Mean, over_cap_kPa: Mean, over_plug_kPa: Mean, gauge_kPa
 
     Boyle: p_a V_d = p_b (V_d + V_c), so V_d = V_c p_b / (p_a - p_b); syringe and ambient pressure cancel. Volumes in
     one unit, gauge pressures in one unit, ``gauge_kPa`` the gauge's own standard uncertainty. ``spread`` is the
-    standard uncertainty of the result, by the derivatives (JCGM 100, 5.1.2). Raises ValueError where the plug's is not
+    standard uncertainty of the result, by the derivatives (JCGM 100, 5.1.2). Raises ValueError if the plug's is not
     the lower."""
     a, b, volume = over_cap_kPa.value, over_plug_kPa.value, cavity.value
     if b >= a:

@@ -19,7 +19,7 @@ _ROUNDING = 1e-9
 
 
 def leak(name: str, cap: LeakCap, accuracy_kPa: float, source: ReadingSource, results: CouponFindings) -> None:
-    """Leak rate, kPa/min. Raises InputError where pressure rises by more than the gauge's ``accuracy_kPa``."""
+    """Leak rate, kPa/min. Raises InputError if pressure rises by more than the gauge's ``accuracy_kPa``."""
     for run, (start, end) in enumerate(zip(cap.start_kPa, cap.end_kPa, strict=True), start=1):
         rise = end - start
         if rise > accuracy_kPa + _ROUNDING:
@@ -46,7 +46,7 @@ def volume(
     source: ReadingSource,
     results: CouponFindings,
 ) -> None:
-    """Dead volume in mL by Boyle's law. Raises InputError where the cap's pressures are missing or contradict."""
+    """Dead volume in mL by Boyle's law. Raises InputError if the cap's pressures are missing or contradict."""
     cavity = cavity_measured(CouponContext(scene.connector_material, scene), plug)
     results.figure(name, "cavity of the plug, mL", cavity.value, cavity.error, cavity.count)
     if not plug.pressure_kPa:

@@ -36,7 +36,7 @@ class _Hole:
 
 
 def drilled(rings: RevolvedRings, bores: tuple[Bore, ...], tolerance: float) -> tuple[Array, Indices] | None:
-    """The turned body with its bores, or None where a bore does not run between flat faces and must be cut.
+    """The turned body with its bores, or None if a bore does not run between flat faces and must be cut.
 
     Half of ``tolerance`` (mm) went into the rings; a bore takes all of it, for it is straight.
     """

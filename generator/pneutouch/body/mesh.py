@@ -53,7 +53,7 @@ class Body:
         return replace(self, vertices=vertices, triangles=indices)
 
     def manifold(self) -> Any:
-        """The body as manifold3d takes it; empty where it is not closed."""
+        """The body as manifold3d takes it; empty if it is not closed."""
         from manifold3d import Manifold, Mesh64
 
         return Manifold(Mesh64(np.ascontiguousarray(self.vertices), self.triangles.astype(np.uint64)))

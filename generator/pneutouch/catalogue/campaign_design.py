@@ -10,7 +10,7 @@ from pneutouch.spec.campaign_file import CAMPAIGN, design_of
 
 
 def known_design(campaign: Campaign, folder: Path, library: Library) -> str | None:
-    """The design that a campaign names, as a command takes it; None where it names none.
+    """The design that a campaign names, as a command takes it; None if it names none.
 
     Raises InputError for one that is not there, with the campaign's file and key.
     """

@@ -7,7 +7,7 @@ from pneutouch.spec.gauge import Gauge
 
 
 def named_gauge(design: DesignFile, where: str, library: Library) -> Gauge | None:
-    """The gauge of a design, None without one. Raises InputError where it does not read above the ambient pressure."""
+    """The gauge of a design, None without one. Raises InputError if it does not read above the ambient pressure."""
     name, ambient_kPa = design.pneumatics.gauge, design.pneumatics.ambient_pressure_kPa
     if name is None:
         return None

@@ -146,7 +146,7 @@ class Library:
         raise InputError("no such design or file", key="design", value=name, remedy=remedy)
 
     def specimen_file(self, name: str) -> Path | None:
-        """The file of a specimen given by name or path, or None where the name is a sensor's or of nothing."""
+        """The file of a specimen given by name or path, or None if the name is a sensor's or of nothing."""
         files = self.paths("specimens")
         if name in files:
             return files[name]

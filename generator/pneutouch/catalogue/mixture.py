@@ -35,7 +35,7 @@ _FINE = 2001
 
 @dataclass(frozen=True)
 class ResolvedMixingCurve:
-    """A curve with its moduli resolved; arrays (n,) over its points. ``spread`` is NaN where none was measured."""
+    """A curve with its moduli resolved; arrays (n,) over its points. ``spread`` is NaN if none was measured."""
 
     curve: MixingCurve
     fraction: Array
@@ -74,11 +74,11 @@ class ResolvedMixingCurve:
         return np.minimum(low, middle), np.maximum(high, middle)
 
     def spread_at(self, fraction: Array) -> Array:
-        """Standard deviation in MPa, its share straight between the points; NaN where one was not measured."""
+        """Standard deviation in MPa, its share straight between the points; NaN if one was not measured."""
         return np.asarray(np.interp(fraction, self.fraction, self.spread / self.modulus) * self.modulus_at(fraction))
 
     def elongation_at(self, fraction: Array) -> Array:
-        """Elongation at break in percent, straight between the points where it is known; NaN where none is."""
+        """Elongation at break in percent, straight between the points where it is known; NaN if none is."""
         known = np.isfinite(self.elongation)
         if not known.any():
             return np.full(np.shape(fraction), np.nan)
@@ -96,7 +96,7 @@ def mixing(
 ) -> ResolvedMixingCurve:
     """The curve of two base resins, the one in use where no ``curve`` is named.
 
-    Raises InputError where there is none, where it is another pair's, and where its modulus falls with the fraction.
+    Raises InputError if there is none, where it is another pair's, and where its modulus falls with the fraction.
     """
     paths = library.paths("mixing")
     if f"{soft}+{stiff}" not in paths:

@@ -7,7 +7,7 @@ from pneutouch.spec.part import AnyMount, Sleeve, Tube
 
 
 def tube_of(design: DesignFile, where: str, library: Library) -> Tube:
-    """The tube that the design names, else the usual one of its port. Raises InputError where it does not fit."""
+    """The tube that the design names, else the usual one of its port. Raises InputError if it does not fit."""
     port = library.load("ports", design.connector.port, file=where, key="connector.port")
     name = design.pneumatics.tube
     if name is not None:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 class ResolvedDesign:
     """All that a design names. ``where`` is the file as the user gave it, for messages.
 
-    ``mould_printer`` and ``mould_material`` are there where the membrane is cast, and None where it is printed.
+    ``mould_printer`` and ``mould_material`` are there where the membrane is cast, and None if it is printed.
     """
 
     name: str
@@ -123,7 +123,7 @@ class DesignSource:
 
 
 def split_calibration(design: str, library: Library) -> tuple[str, str | None]:
-    """Design and calibration of ``DESIGN@CALIBRATION``; None where no calibration is named."""
+    """Design and calibration of ``DESIGN@CALIBRATION``; None if no calibration is named."""
     plain, at, calibration = design.rpartition("@")
     if not at or not plain or design in library.paths("designs") or Path(design).is_file():
         return design, None

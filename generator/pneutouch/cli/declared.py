@@ -25,7 +25,7 @@ class FieldOption(NamedTuple):
 
 
 def with_fields(model: type[BaseModel], options: Mapping[str, FieldOption]) -> Callable[[Callable[..., None]], Any]:
-    """Give a command an option for each field, after its arguments; it takes them as keywords, None where left out."""
+    """Give a command an option for each field, after its arguments; it takes them as keywords, None if left out."""
 
     def decorate(command: Callable[..., None]) -> Callable[..., None]:
         hints = typing.get_type_hints(command, include_extras=True)
@@ -40,7 +40,7 @@ def with_fields(model: type[BaseModel], options: Mapping[str, FieldOption]) -> C
 
 
 def field_tables(options: Mapping[str, FieldOption], values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Tables of a file that holds the options given. Raises InputError where a text is not of its form."""
+    """Tables of a file that holds the options given. Raises InputError if a text is not of its form."""
     tables: dict[str, dict[str, Any]] = {}
     for name, value in values.items():
         if value is not None:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 def select_graded(target: Target, where: str, place: DesignPlace | None, *, json: bool, refused: list[str]) -> None:
     """Search, show and save a grade. Exits 1 where none meets the target; ``refused`` are flags that exclude it.
 
-    Raises RuleBrokenError where ``check`` rejects the grade that meets it; nothing is saved then.
+    Raises RuleBrokenError if ``check`` rejects the grade that meets it; nothing is saved then.
     """
     from pneutouch.workflows.select import graded_document as shown
     from pneutouch.workflows.select.graded import select_graded as run

@@ -79,7 +79,7 @@ def respond(
 
 
 def _load(step: str | None, sine: str | None, peak: str | None, duration: float | None) -> Load:
-    """The load that the options describe. Raises InputError where they contradict one another."""
+    """The load that the options describe. Raises InputError if they contradict one another."""
     from pneutouch.errors import InputError
     from pneutouch.workflows.respond.load import Load, frequency_Hz, load_size
 

@@ -53,7 +53,7 @@ def select(
     json: JsonOption = False,
     **fields: Any,
 ) -> None:
-    """Find designs for a target; exit 1 where there is none."""
+    """Find designs for a target; exit 1 if there is none."""
     where = str(target or _FLAGS_ALONE)
     stated = {name: SELECT_FIELDS[name] for name, value in fields.items() if value is not None}
     given = {f"{option.table}.{option.key}": name for name, option in stated.items()}

@@ -41,13 +41,13 @@ def calibrated_sensor(sensor: Sensor, scene: ResolvedDesign) -> Sensor:
 
 
 def friction_of(calibration: SensorCalibration) -> float | None:
-    """The coefficient of friction that was fitted, inf for a contact that grips; None where it was not."""
+    """The coefficient of friction that was fitted, inf for a contact that grips; None if it was not."""
     fitted = [parameter.value for parameter in calibration.parameters if parameter.key == "friction"]
     return None if not fitted else float("inf") if fitted[0] >= GRIPS else fitted[0]
 
 
 def friction_spread(calibration: SensorCalibration) -> float | None:
-    """Standard uncertainty of the coefficient of friction that was fitted; None where it was not."""
+    """Standard uncertainty of the coefficient of friction that was fitted; None if it was not."""
     if "friction" not in calibration.covered:
         return None
     place = calibration.covered.index("friction")
@@ -125,7 +125,7 @@ def _span(factors: list[float]) -> str:
 
 
 def calibrated_error(calibration: SensorCalibration) -> ErrorEstimate | None:
-    """The part of ``error_estimate`` on sensitivity by the residuals; None where no curve was measured."""
+    """The part of ``error_estimate`` on sensitivity by the residuals; None if no curve was measured."""
     response = calibration.response
     if response is None:
         return None

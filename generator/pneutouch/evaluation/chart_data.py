@@ -41,7 +41,7 @@ class TuningChart:
 
     Attributes:
         chosen: The curve.
-        low_kPa_per_N: Lower end of its k = 2 interval, kPa/N, (n,); None where that is not known.
+        low_kPa_per_N: Lower end of its k = 2 interval, kPa/N, (n,); None if that is not known.
         high_kPa_per_N: Upper end, (n,).
         working_kPa_per_N: Driving pressures it is meant for and the sensitivities there, kPa to kPa/N.
         others: Designs to compare with.
@@ -75,8 +75,8 @@ class TradeOff:
         fronts: One a resin; empty ones are left out.
         driving_pressure_kPa: Driving pressure, kPa.
         gauge_kPa: Pressure rise that the pressure sensor has left, kPa.
-        window_kPa_per_N: Least and greatest required sensitivity (kPa/N), None where free.
-        force: Least required force range, N; None where free.
+        window_kPa_per_N: Least and greatest required sensitivity (kPa/N), None if free.
+        force: Least required force range, N; None if free.
         spots: Designs, the first picked out.
         caption: What the fronts leave out, below the chart; none where it is empty.
         errors: Median and greatest relative difference of the fronts where the solid was solved to correct them.
@@ -98,7 +98,7 @@ class TradeOff:
 
 
 class ErrorCurves(NamedTuple):
-    """Errors of the force read (percent, (n,) at each driving pressure, NaN where the reading is not reached) over a
+    """Errors of the force read (percent, (n,) at each driving pressure, NaN if the reading is not reached) over a
     size or a place of contact, (n,)."""
 
     along: Array
@@ -107,7 +107,7 @@ class ErrorCurves(NamedTuple):
 
 class ContactRow(NamedTuple):
     """A contact: object (plate, ball or edge), its radius (None: a plate) and offset in mm, tilt in degrees; errors of
-    the force read in percent by driving pressure and reading, None where the reading is not reached."""
+    the force read in percent by driving pressure and reading, None if the reading is not reached."""
 
     kind: ContactKind
     radius: float | None

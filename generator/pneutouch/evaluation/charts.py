@@ -37,7 +37,7 @@ def air(evaluation: Evaluation) -> GasNotes:
 
 
 def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
-    """The design's sensitivity from no driving pressure to ``highest`` (MPa); None where the atlas has no curve.
+    """The design's sensitivity from no driving pressure to ``highest`` (MPa); None if the atlas has no curve.
 
     The sensitivities at its own driving pressures are those of the prediction's model.
     """
@@ -66,7 +66,7 @@ def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
 def tradeoff(evaluation: Evaluation) -> TradeOff | None:
     """Fronts at the design's highest driving pressure in every resin that its printer runs and the atlas covers.
 
-    Under another central contact than a plate without friction the atlas is corrected by the solid. None where the
+    Under another central contact than a plate without friction the atlas is corrected by the solid. None if the
     prediction has no figures there, and for contact off the axis.
     """
     sensor, state = evaluation.sensor, evaluation.prediction.states[-1]

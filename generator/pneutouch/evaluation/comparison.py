@@ -52,7 +52,7 @@ FIGURES = (
 
 @dataclass(frozen=True, slots=True)
 class ComparedFigure:
-    """A figure, its expanded interval (None where it is not known) and the effects of its sources of uncertainty."""
+    """A figure, its expanded interval (None if unknown) and the effects of its sources of uncertainty."""
 
     value: float
     low: float | None = None
@@ -84,7 +84,7 @@ class ComparedState:
 class ComparedSensor:
     """One column of a comparison.
 
-    ``inputs`` are by ``table.key``; ``resin`` is all that is known of the membrane's, None where it was measured;
+    ``inputs`` are by ``table.key``; ``resin`` is all that is known of the membrane's, None if it was measured;
     ``assembly`` draws the parts; ``simulated``: a program made the runs that it rests on.
     """
 
@@ -112,7 +112,7 @@ def labelled(sensors: Sequence[ComparedSensor]) -> tuple[str, ...]:
 
 
 def shared_pressures_kPa(sensors: Sequence[ComparedSensor]) -> list[float]:
-    """Driving pressures that all have. Raises InputError where there are none."""
+    """Driving pressures that all have. Raises InputError if there are none."""
     first, *others = sensors
     shared_kPa = [
         s.driving_pressure_kPa for s in first.states if all(other.state(s.driving_pressure_kPa) for other in others)
@@ -132,7 +132,7 @@ def _listed(sensor: ComparedSensor) -> str:
 
 
 def different_inputs(sensors: Sequence[ComparedSensor]) -> dict[str, list[Any]]:
-    """The inputs that differ, a value a sensor; None where it is not known."""
+    """The inputs that differ, a value a sensor; None if unknown."""
     keys = dict.fromkeys(key for sensor in sensors for key in sensor.inputs)
     # What a prediction does not name it has not, but the wall, which a calibration alone names; of a measurement no
     # input is known.
@@ -145,7 +145,7 @@ def different_inputs(sensors: Sequence[ComparedSensor]) -> dict[str, list[Any]]:
 def comparison_document(sensors: Sequence[ComparedSensor]) -> ComparisonRecord:
     """A comparison as plain data; the other sensors are compared with the first one.
 
-    Raises InputError where there is nothing to compare.
+    Raises InputError if there is nothing to compare.
     """
     pressures_kPa = shared_pressures_kPa(sensors)
     rows = [_row(figure, None, sensors) for figure in FIGURES if not figure.of_state]

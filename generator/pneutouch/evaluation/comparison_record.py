@@ -36,7 +36,7 @@ class ColumnRecord(TypedDict):
 
 
 class ValueRecord(TypedDict):
-    """A figure and the ends of its interval, None where it is not known."""
+    """A figure and the ends of its interval, None if unknown."""
 
     value: float
     low: float | None
@@ -44,7 +44,7 @@ class ValueRecord(TypedDict):
 
 
 class DifferenceRecord(TypedDict):
-    """A difference from the first column with its interval; None where it is not known."""
+    """A difference from the first column with its interval; None if unknown."""
 
     difference: float
     percent: float | None

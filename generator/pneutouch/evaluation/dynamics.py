@@ -60,7 +60,7 @@ class SensorBandwidth:
         pieces: The air's path as drawn.
         end_volume: Gas behind it, mm3: of the gauge, or what the stated dead volume is greater by.
         note: Where the dead volume that the prediction has is not that of the path; else None.
-        rate_Hz: Readings a second of the gauge; None where that is unknown.
+        rate_Hz: Readings a second of the gauge; None if that is unknown.
         states: One a driving pressure and series of relaxation data.
     """
 

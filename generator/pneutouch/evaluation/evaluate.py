@@ -102,7 +102,7 @@ class Evaluation:
         return tuple(estimate(made_of(self.assembly)))
 
     def deep_findings(self) -> list[Finding]:
-        """Findings of pymeshlab, an independent reader, on the meshes. Raises InputError where it is not installed."""
+        """Findings of pymeshlab, an independent reader, on the meshes. Raises InputError if it is not installed."""
         from pneutouch.printability.deep import inspect
 
         tolerance, solids = self.scene.mesh_tolerance, self.assembly.solids
@@ -163,7 +163,7 @@ def evaluate(
     library: Library | None = None,
     aged: bool = False,
 ) -> Evaluation:
-    """Load, draw and predict a design given by name, by path or as a source. Raises InputError where it cannot work.
+    """Load, draw and predict a design given by name, by path or as a source. Raises InputError if it cannot work.
 
     ``tolerance`` is what ``model="auto"`` must meet. ``clamp`` is where the solid is held: at the
     "base" plane, as in the paper, or at the "flange", as printed.
@@ -180,7 +180,7 @@ def evaluate(
 def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], options: PredictionOptions) -> Evaluation:
     """Draw and predict a scene; ``find_resins`` gives the resins to compare with, when they are needed.
 
-    Raises InputError where the scene cannot work.
+    Raises InputError if the scene cannot work.
     """
     if options.model == USUAL:
         options = replace(options, model="harmonic" if scene.design.contact.off_axis else "solid")

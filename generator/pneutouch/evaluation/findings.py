@@ -11,7 +11,7 @@ from pneutouch.printability.mould import check_mould
 def sensor_findings(assembly: Assembly, context: SensorContext) -> list[Finding]:
     """All findings, errors first. A calibrated membrane is cast already: its mould is left aside.
 
-    Raises InputError where a detail of the mould has no space.
+    Raises InputError if a detail of the mould has no space.
     """
     context = replace(context, glued=glued_seat(assembly.scene))
     if assembly.mould is None or context.calibrated:

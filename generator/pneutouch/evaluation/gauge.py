@@ -61,7 +61,7 @@ def _detectable(threshold: float | None, drift_kPa_per_K: float, state: SensorSt
 
 
 def force_at_rise(force: np.ndarray, rise: np.ndarray, threshold: float) -> float | None:
-    """The force (N) at which a curve, (n,) each and from 0, reaches a pressure rise; None where it does not.
+    """The force (N) at which a curve, (n,) each and from 0, reaches a pressure rise; None if it does not.
 
     Below the first loaded point the rise is a power of the force, through that point and the next: an inflated dome
     yields in proportion to the force, and the volume that it displaces grows with the square of the travel.
@@ -90,7 +90,7 @@ def zero_drift_kPa_per_K(scene: ResolvedDesign, prediction: SensorPrediction, st
 
 
 def gauge_document(evaluation: Evaluation) -> dict[str, Any]:
-    """The gauge and the smallest forces in boundary units; ``name`` is None where the paper's is assumed."""
+    """The gauge and the smallest forces in boundary units; ``name`` is None if the paper's is assumed."""
     scene, reading = evaluation.scene, reading_of(evaluation.scene)
     pressures = {
         "reads_from_kPa": reading.low,

@@ -6,7 +6,7 @@ from pneutouch.parts.mould import silicone_batch
 
 
 def silicone_pour(assembly: Assembly) -> SiliconePour | None:
-    """The batch that fills the mould once; None where the membrane is not cast."""
+    """The batch that fills the mould once; None if the membrane is not cast."""
     if assembly.mould is None:
         return None
     batch = silicone_batch(assembly.mould)

@@ -84,7 +84,7 @@ class ReaderGrid:
 
 
 def reader_grid(evaluation: Evaluation) -> ReaderGrid:
-    """Tabulate a design's sensor. Raises ComputationError where a press has no range, InputError as `predict`."""
+    """Tabulate a design's sensor. Raises ComputationError if a press has no range, InputError as `predict`."""
     sensor, options = evaluation.sensor, evaluation.options
     set_to = [state.driving_pressure for state in evaluation.prediction.states]
     rows, computed, low, high = _driving_pressures(evaluation, min(set_to), max(set_to))
@@ -156,7 +156,7 @@ def _driving_pressures(evaluation: Evaluation, lowest: float, highest: float) ->
 def curve_of(state: SensorState, sensor: Sensor, deepest: float = np.inf) -> ReaderCurve:
     """The part of a press that a reader may use: up to its range's end, ``deepest`` (mm), or where it turns back.
 
-    Raises ComputationError where nothing is left.
+    Raises ComputationError if nothing is left.
     """
     end = min(state.range_end, deepest)
     kept = int(np.searchsorted(state.indentation, end * (1 + 1e-9), side="right"))

@@ -26,7 +26,7 @@ _STEPS = 40
 
 def force_uncertainty(evaluation: Evaluation, grid: ReaderGrid) -> Array | None:
     """Relative standard uncertainty of the force at the rows of a grid and `UNCERTAINTY_COLUMNS` shares of the
-    indentation, (n, 11); None where it is unknown, see `why_unknown`.
+    indentation, (n, 11); None if it is unknown, see `why_unknown`.
 
     Sources that act on inputs of the model act through the curve of force over pressure rise; errors of the model are
     those of its sensitivity, the slope of that curve. The gauge's noise is not in it.

@@ -81,7 +81,7 @@ def constant_membranes(sensor: Sensor, prediction: SensorPrediction) -> tuple[Co
 
 
 def _constant(sensor: Sensor, pressures: np.ndarray, label: str) -> ComparedMembrane | None:
-    """A constant membrane at the pressures that it can be solved for; None where there are none."""
+    """A constant membrane at the pressures that it can be solved for; None if there are none."""
     from pneutouch.mechanics.solid_states import solid_states
 
     for count in range(pressures.size, 0, -1):

@@ -74,7 +74,7 @@ class ViscousData:
         sources: One source a series.
         basis: What the model assumes.
         rows: One row a driving pressure and series.
-        held: One curve a series; None where the run ended before 1 s.
+        held: One curve a series; None if the run ended before 1 s.
         loops: One loop a series; None without an unloading branch.
     """
 
@@ -96,7 +96,7 @@ class AgeingData(NamedTuple):
 
 
 class DetectableForce(NamedTuple):
-    """The smallest force at one driving pressure (MPa); None where it is not known.
+    """The smallest force at one driving pressure (MPa); None if unknown.
 
     Attributes:
         driving_pressure: MPa.
@@ -121,8 +121,8 @@ class SheetGauge(NamedTuple):
     Attributes:
         title: Its name.
         low_kPa, limit_kPa: Least and greatest pressure read.
-        threshold_kPa: Smallest change of pressure detected; None where it is not known.
-        rate_Hz: Readings a second; None where it is not known.
+        threshold_kPa: Smallest change of pressure detected; None if unknown.
+        rate_Hz: Readings a second; None if unknown.
         limited_by: What the threshold follows from.
         criterion: When a change counts as detected.
         forces: The smallest force at each driving pressure.
@@ -199,8 +199,8 @@ class SheetData:
         object_section: Section (n, 2) in mm, r and z, of the object that presses it, at first contact with the unloaded
             dome; None for a plate.
         pressed: The pressed dome in three dimensions; None by a model without its surface.
-        speed: How fast the sensor reads; None where that was not computed.
-        pour: The silicone to weigh; None where the membrane is not cast.
+        speed: How fast the sensor reads; None if that was not computed.
+        pour: The silicone to weigh; None if the membrane is not cast.
         curves: The sensor by every mixing curve of its mix, the softest first.
     """
 

@@ -41,7 +41,7 @@ def published_sensitivities(sensor: Sensor, material: Material) -> dict[float, f
 
 
 def compute_errors(material: Material, model: str, closure: str) -> list[float | None]:
-    """Relative errors at the pressures of Table S1; None where the model gives no figure."""
+    """Relative errors at the pressures of Table S1; None if the model gives no figure."""
     truth = measured(material)
     assert truth is not None
     return list(_errors(material_sensor(material), truth, model, closure))

@@ -30,7 +30,7 @@ def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
     """The curve from no driving pressure to ``highest`` (MPa), or to `RATED_SHARE` of the limit point if that comes
     first.
 
-    The sensor must lie in the atlas. Pressures at which it has no answer are left out; None where fewer than two are
+    The sensor must lie in the atlas. Pressures at which it has no answer are left out; None if fewer than two are
     left.
     """
     limit = (

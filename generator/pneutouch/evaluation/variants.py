@@ -97,7 +97,7 @@ def _by_atlas(variants: dict[str, Sensor], highest: float) -> dict[str, ResinCur
 
 
 def _under_contact(variant: Sensor, plate: ResinCurve, states: Sequence[SensorState]) -> ResinCurve | None:
-    """A resin's curve under its own contact, from few of the solid's; None where it cannot be solved at both ends.
+    """A resin's curve under its own contact, from few of the solid's; None if it cannot be solved at both ends.
 
     Where the ranges at both ends go to the depth, the atlas's curve ``plate`` times the ratio of the solid to it, whose
     logarithm is straight in between, or between the ``states`` where there are any. Where an event ends a range, the
@@ -124,7 +124,7 @@ def _under_contact(variant: Sensor, plate: ResinCurve, states: Sequence[SensorSt
 
 
 def _by_model(variant: Sensor, highest: float, model: str, closure: str | None) -> ResinCurve | None:
-    """One resin's curve by a model of its own; None where this geometry cannot be solved in it, which must not stop the
+    """One resin's curve by a model of its own; None if this geometry cannot be solved in it, which must not stop the
     sheet."""
     top = min(highest, _MARGIN * _LIMIT_SHARE[model] * limit_point(variant).driving_pressure)
     pressures = np.linspace(0.0, top, _POINTS[model])

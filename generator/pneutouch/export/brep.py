@@ -26,7 +26,7 @@ _AT_AXIS = 1e-9
 def exact_solid(solid: Solid) -> TopoDS_Shape:
     """The solid as a boundary representation, in the design frame, mm.
 
-    Raises ComputationError where the kernel closes no solid.
+    Raises ComputationError if the kernel closes no solid.
     """
     from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut, BRepAlgoAPI_Fuse
     from OCP.ShapeUpgrade import ShapeUpgrade_UnifySameDomain

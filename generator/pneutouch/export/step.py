@@ -46,7 +46,7 @@ def step_files(name: str, solids: tuple[Solid, ...], offset: Array) -> tuple[dic
 def step(name: str, solids: tuple[Solid, ...], offset: Array) -> bytes:
     """Write the solids, shifted by ``offset`` (3,) into the print frame, as one assembly called ``name``.
 
-    Raises ComputationError where the kernel writes nothing.
+    Raises ComputationError if the kernel writes nothing.
     """
     from OCP.IFSelect import IFSelect_ReturnStatus
     from OCP.Interface import Interface_Static

@@ -52,7 +52,7 @@ def threemf(name: str, bodies: tuple[Body, ...], metadata: dict[str, str], thumb
 
 
 def mesh_object(wrapper: Any, model: Any, materials: Materials, body: Body, identity: str) -> Any:
-    """A body as a mesh object with its material and metadata. Raises ComputationError where it is not closed."""
+    """A body as a mesh object with its material and metadata. Raises ComputationError if it is not closed."""
     mesh = model.AddMeshObject()
     mesh.SetName(body.name)
     mesh.SetUUID(identity)
@@ -65,7 +65,7 @@ def mesh_object(wrapper: Any, model: Any, materials: Materials, body: Body, iden
 
 
 def content_of(wrapper: Any, model: Any) -> bytes:
-    """The file of a model, read back once. Raises ComputationError where it cannot be."""
+    """The file of a model, read back once. Raises ComputationError if it cannot be."""
     writer = model.QueryWriter("3mf")
     writer.SetDecimalPrecision(DECIMALS)
     content = bytes(writer.WriteToBuffer())

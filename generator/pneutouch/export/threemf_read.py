@@ -28,7 +28,7 @@ class StoredBody:
 
     Attributes:
         name: As stored; may be empty.
-        material: Its name, or that of its base material; None where it has none.
+        material: Its name, or that of its base material; None if it has none.
         colour: Display colour ``#RRGGBB``, or None.
         mix: Base material to fraction, where the material is a composite.
         vertices: (n, 3), mm.

@@ -73,7 +73,7 @@ def contact_ratio(
 ) -> ContactRatio:
     """The ratio of a sensor with its object at coefficients, near driving pressures (MPa) and to a travel (mm).
 
-    Raises ComputationError where the solid cannot press the sensor at any of the pressures.
+    Raises ComputationError if the solid cannot press the sensor at any of the pressures.
     """
     grains = np.unique(np.round(driving_pressures / _GRAIN)) * _GRAIN
     bare = sensor.replace(depth=deepest, steps=_STEPS, waves=0, gauge_limit=np.inf, break_stretch=None, friction=0.0)

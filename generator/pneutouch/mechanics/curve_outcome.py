@@ -15,7 +15,7 @@ class CurveOutcome:
     """The sensor by one mixing curve.
 
     states: as many of the design's driving pressures as it can be inflated to, from the lowest. rated: rated pressure,
-    MPa; None where nothing could be solved.
+    MPa; None if nothing could be solved.
     """
 
     by_curve: MixByCurve

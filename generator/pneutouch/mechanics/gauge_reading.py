@@ -35,11 +35,11 @@ class GaugeReading:
     Attributes:
         title: Its name.
         low, limit: Least and greatest gauge pressure that it reads.
-        noise: Standard deviation of one reading; None where it is not known.
-        step: Smallest step of a reading, of an analog gauge the recorder's; None where it is not known.
-        rate_Hz: Readings a second, of an analog gauge the recorder's; None where it is not known.
+        noise: Standard deviation of one reading; None if unknown.
+        step: Smallest step of a reading, of an analog gauge the recorder's; None if unknown.
+        rate_Hz: Readings a second, of an analog gauge the recorder's; None if unknown.
         absolute: Whether it reads ambient plus gauge pressure.
-        error: Greatest error over its span; None where it is not known.
+        error: Greatest error over its span; None if unknown.
     """
 
     title: str
@@ -58,7 +58,7 @@ class GaugeReading:
 
     @property
     def threshold(self) -> float | None:
-        """Smallest change of pressure that two readings distinguish, at least one step; None where it is not known."""
+        """Smallest change of pressure that two readings distinguish, at least one step; None if unknown."""
         scatter = self.scatter
         return None if scatter is None else max(SIGMAS * math.sqrt(2.0) * scatter, self.step or 0.0)
 

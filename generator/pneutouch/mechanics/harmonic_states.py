@@ -40,7 +40,7 @@ _COMPARED = 3
 def harmonic_result(sensor: Sensor, driving_pressures: Array) -> ModelResult:
     """Inflate as the solid does, then press at every driving pressure (MPa, ascending) off the axis.
 
-    Raises ComputationError where no equilibrium is found, or where the figures do not settle.
+    Raises ComputationError if no equilibrium is found, or where the figures do not settle.
     """
     return solid_result(sensor, driving_pressures, pressed_state=_state)
 

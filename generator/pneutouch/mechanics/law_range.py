@@ -10,7 +10,7 @@ from pneutouch.mechanics.solid.stress import StrainProbe, met
 
 def leaves_law(probe: StrainProbe, run: Inflation, largest: float | None) -> tuple[float, float] | None:
     """Pressure (MPa) and outer apex height (mm) at which free inflation leaves the stretches of tension up to
-    ``largest``; None where it does not, or where they are not known."""
+    ``largest``; None if it does not, or where they are not known."""
     return None if largest is None else met(probe, run, probe.greatest_tension, largest)
 
 

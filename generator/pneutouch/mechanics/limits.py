@@ -43,7 +43,7 @@ class LimitPoint:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Driving pressures (MPa) at which each limit is met; None where it is not met before the limit point.
+    """Driving pressures (MPa) at which each limit is met; None if it is not met before the limit point.
 
     ``law_range``: where the inflated wall leaves the stretches that its law was fitted over, of a law that states them.
     """

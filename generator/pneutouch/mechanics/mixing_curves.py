@@ -16,7 +16,7 @@ from pneutouch.spec.printer import Printer
 def curve_outcomes(
     sensor: Sensor, material: Material, printer: Printer, prediction: SensorPrediction, rated: Rating
 ) -> tuple[CurveOutcome, ...]:
-    """The sensor by every mixing curve of its mix, the softest first; empty where its material has not several.
+    """The sensor by every mixing curve of its mix, the softest first; empty if its material has not several.
 
     ``prediction`` and ``rated`` are by the curve in use. The others are predicted by the same model, without the
     search for waves, which changes no figure; contact off the axis is left out for its cost.

@@ -10,7 +10,7 @@ from pneutouch.units import KPA
 
 
 class ShearRecord(TypedDict):
-    """A shear as ``predict`` prints it: lists of one length, and figures that are None where they are not reached."""
+    """A shear as ``predict`` prints it: lists of one length, and figures that are None if they are not reached."""
 
     shear_mm: list[float]
     contact_force_N: list[float]

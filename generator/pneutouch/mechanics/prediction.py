@@ -55,7 +55,7 @@ class CurveRecord(StressRecord):
 
 
 class StateRecord(TypedDict):
-    """A state as ``predict`` prints it; figures are None where no line can be fitted."""
+    """A state as ``predict`` prints it; figures are None if no line can be fitted."""
 
     driving_pressure_kPa: float
     apex_height_inner_mm: float

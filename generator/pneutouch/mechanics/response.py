@@ -86,7 +86,7 @@ def lines(indentation: Array, force: Array, rise_kPa: Array) -> FigureArrays:
 
 
 def figures(indentation: Array, force: Array, rise_kPa: Array) -> Figures | None:
-    """Key figures over all the points given, or None where they do not determine a straight line.
+    """Key figures over all the points given, or None if they do not determine a straight line.
 
     ``sensitivity`` is the slope of the least-squares line of pressure rise over force with intercept;
     ``nonlinearity`` the greatest distance from that line over the full-scale rise; ``stiffness`` the mean
@@ -100,7 +100,7 @@ def figures(indentation: Array, force: Array, rise_kPa: Array) -> Figures | None
 
 
 def saturation_force(force: Array, rise_kPa: Array, slope: Array | float) -> Array:
-    """Force at which the local slope of pressure over force falls below half the fitted one, NaN where it does not.
+    """Force at which the local slope of pressure over force falls below half the fitted one, NaN if it does not.
 
     A curve that begins flat has not saturated: the slope must have been above before. Curves along the last axis; the
     local slope is the second-order difference, one-sided at the ends.

@@ -40,7 +40,7 @@ def replace_file(path: Path, content: bytes, *, key: str = "out") -> None:
 def replace_files(files: Mapping[Path, bytes], *, key: str = "out") -> None:
     """Write files, in place of those that are there, which stay until all the new ones are whole and on the disk.
 
-    Raises InputError where one cannot be written; ``key`` is the parameter that gives the folder.
+    Raises InputError if one cannot be written; ``key`` is the parameter that gives the folder.
     """
     path = Path()
     try:
@@ -59,7 +59,7 @@ def replace_files(files: Mapping[Path, bytes], *, key: str = "out") -> None:
 
 @uninterrupted()
 def create_file(path: Path, content: bytes, *, key: str = "out") -> None:
-    """Write a file that is not there yet. Raises InputError where it is there, or cannot be written, as above."""
+    """Write a file that is not there yet. Raises InputError if it is there, or cannot be written, as above."""
     try:
         with _hidden(path, content) as fresh:
             _link(fresh, path)
@@ -145,7 +145,7 @@ def write_folder(folder: Path, files: dict[str, bytes]) -> None:
 def replacing(folder: Path) -> Iterator[Path]:
     """A hidden folder to write into, put in the place of ``folder`` when the block ends; what others put there is kept.
 
-    Raises InputError where it cannot be written, half way too; the previous output then stays and nothing else does.
+    Raises InputError if it cannot be written, half way too; the previous output then stays and nothing else does.
     """
     check_writable(folder)
     try:
@@ -199,7 +199,7 @@ def _our_files(folder: Path) -> set[str]:
 
 
 def stated_digest(folder: Path, name: str) -> str | None:
-    """The SHA-256 that the folder's manifest states of a file; None where it states none."""
+    """The SHA-256 that the folder's manifest states of a file; None if it states none."""
     try:
         digest_ = json.loads(read_bytes(folder / MANIFEST, _MOST_MANIFEST, "manifest"))["files"][name]["sha256"]
     except (InputError, ValueError, KeyError, TypeError, RecursionError):

@@ -42,7 +42,7 @@ def new_design(
     """Write ``folder/name.toml`` with every key, its default, unit, bounds and help; never over a file.
 
     With ``process`` or ``material`` the design starts with a profile that runs it, and which that is is stated next to
-    the path. Raises InputError where none does.
+    the path. Raises InputError if none does.
     """
     if process is None and material is None:
         return write_design(name, folder, design_template(name)), None
@@ -111,7 +111,7 @@ def change_of_copy(source: str) -> str:
 def _profile_kind(source: str, library: Library) -> str | None:
     """The kind of profile that a name stands for; None if it stands for a printed thing, an example or nothing.
 
-    Raises InputError where it stands for several, one of them a profile.
+    Raises InputError if it stands for several, one of them a profile.
     """
     kinds = [one for one in (*_DRAWN, *PROFILES) if source in library.paths(one)]
     owners = [f"{one} ({library.paths(one)[source]})" for one in kinds]

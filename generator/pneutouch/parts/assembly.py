@@ -42,7 +42,7 @@ class Assembly:
 
     @cached_property
     def mould(self) -> MouldAssembly | None:
-        """The mould of a cast membrane, None of a printed one. Raises InputError where a detail has no space."""
+        """The mould of a cast membrane, None of a printed one. Raises InputError if a detail has no space."""
         return None if self.scene.mould_printer is None else mould_of(self.scene, self.layout)
 
     def solid(self, name: str) -> Solid:
@@ -133,7 +133,7 @@ class Assembly:
 
 
 def assemble(scene: ResolvedDesign) -> Assembly:
-    """Draw the membrane and the rigid bodies of a scene. Raises InputError where a part has no space."""
+    """Draw the membrane and the rigid bodies of a scene. Raises InputError if a part has no space."""
     layout = lay_out(scene)
     check_space(scene, layout)
     membrane = membrane_solid(layout, scene.membrane_material)

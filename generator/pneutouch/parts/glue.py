@@ -32,7 +32,7 @@ class Glue(NamedTuple):
     source: str
 
     def bond(self, one: GlueSurface, other: GlueSurface) -> GlueBond | None:
-        """The bond between two surfaces, None where it makes none."""
+        """The bond between two surfaces, None if it makes none."""
         return next((bond for bond in self.bonds if bond.pair == {one, other}), None)
 
 
@@ -91,7 +91,7 @@ def glue_surfaces(scene: ResolvedDesign) -> tuple[GlueSurface, GlueSurface] | No
 
 def glue_of(scene: ResolvedDesign) -> str | None:
     """Name of the glue at the seat: the design's, else silicone's own for a cast flange, and for a cast ring the one
-    that fills the gap of a fit; None where it is open."""
+    that fills the gap of a fit; None if it is open."""
     surfaces, named = glue_surfaces(scene), scene.design.connector.glue
     if surfaces is None or named is not None:
         return named

@@ -31,7 +31,7 @@ def inspect(body: Body, solid: Meshable | None = None, tolerance: float = 0.016)
     """Self-intersections, topology, sliver triangles, and the distance in both directions from a ten times finer mesh.
 
     ``tolerance`` (mm) is what the body was meshed to. The distance needs the exact solid. Takes seconds.
-    Raises InputError where pymeshlab is not installed.
+    Raises InputError if pymeshlab is not installed.
     """
     try:
         lab: Any = importlib.import_module("pymeshlab")

@@ -40,7 +40,7 @@ class ItemEstimate:
 
 @dataclass(frozen=True)
 class JobEstimate:
-    """One job: size as it stands in mm, support in mm3, time in s; None where the profile does not state enough.
+    """One job: size as it stands in mm, support in mm3, time in s; None if the profile does not state enough.
 
     ``assumptions`` state what each figure is based on. What is cast has no layers.
     """

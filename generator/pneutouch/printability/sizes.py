@@ -33,7 +33,7 @@ def compare(view: PrintView, rule: str, kinds: dict[FeatureKind, str], limit: st
 
 
 def lower(size: float, feature: FeatureSize, slack: float) -> float | None:
-    """The limit that a size (mm) is below, the harder one first; None where it is below none."""
+    """The limit that a size (mm) is below, the harder one first; None if it is below none."""
     if feature.least is not None and size < feature.least - slack:
         return feature.least
     return feature.recommended if size < feature.recommended - slack else None

@@ -51,7 +51,7 @@ class SensorContext:
 
     ``membrane`` is the name of the item whose wall the sensor presses; ``calibrated``: the sensor is a printed one.
     ``gauge`` is the one that the design names; None stands for the paper's. ``wetted``: what a cast membrane cures
-    against. ``glued``: what joins membrane and connector, None where the seat or the design leaves it open.
+    against. ``glued``: what joins membrane and connector, None if the seat or the design leaves it open.
     ``curves``: the sensor by every mixing curve of its mix.
     """
 

@@ -38,7 +38,7 @@ def ends(prediction: SensorPrediction, documents: tuple[UncertaintyRecord, ...])
 
 
 def interval(document: UncertaintyRecord, figure: str = SENSITIVITY) -> str:
-    """The k = 2 interval of a figure, such as ``1.57 to 2.38``; empty where it is not known."""
+    """The k = 2 interval of a figure, such as ``1.57 to 2.38``; empty if unknown."""
     estimate = document.get("figures", {}).get(figure)
     return "" if estimate is None else f"{_digits(estimate['low'])} to {_digits(estimate['high'])}"
 

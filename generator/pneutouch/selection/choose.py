@@ -171,7 +171,7 @@ def _least_moved(
 
 
 def places(problem: SelectionProblem, pool: CandidatePool) -> Array:
-    """Relative standard uncertainty of the sensitivity by an unknown place of contact, (n,); NaN where not known."""
+    """Relative standard uncertainty of the sensitivity by an unknown place of contact, (n,); NaN if not known."""
     batch = problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
     return place_uncertainties(batch, pool.response)
 

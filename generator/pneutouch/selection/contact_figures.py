@@ -31,7 +31,7 @@ def ending(state: SensorState) -> str:
 def solid_response(state: SensorState, atlas: AtlasResponse) -> AtlasResponse | None:
     """A state of the solid as an answer of one row; the atlas's row gives the limit point, which no contact changes.
 
-    None where the state has no figures. An end that the atlas does not have counts as buckling, which no margin reads.
+    None if the state has no figures. An end that the atlas does not have counts as buckling, which no margin reads.
     """
     figures, kind = state.figures, ending(state)
     if figures is None:

@@ -29,7 +29,7 @@ class ContactFronts(NamedTuple):
     """Fronts, and how far those drawn before were off the solid where it was solved next, from the second round on.
 
     Of each place the larger relative difference of sensitivity and force counts: the median and the greatest of all,
-    NaN where there is none. ``presses`` is the number of places solved.
+    NaN if there is none. ``presses`` is the number of places solved.
     """
 
     fronts: list[TradeOffFront]

@@ -38,7 +38,7 @@ SolveCandidate = Callable[[CandidateResin, CandidatePool, list[float]], SolvedSt
 
 ContactUncertainty = Callable[[CandidateResin, CandidatePool, SensorState], float]
 """Relative expanded uncertainty of the sensitivity of a candidate (one row) under its contact, from its solved state;
-NaN where it is not known."""
+NaN if unknown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +100,7 @@ class ContactTrial:
         return self.problem.batch(self.pool.resin, self.pool.radius, self.pool.wall, self.pool.pressure)
 
     def _span(self, solve: SolveCandidate, highest: float) -> tuple[float, float]:
-        """Sensitivities at no pressure and at the rated one; NaN where the solid has none."""
+        """Sensitivities at no pressure and at the rated one; NaN if the solid has none."""
         pressures = [0.0, highest]
         driven = float(self.pool.pressure[0])
         solved = {driven: float(self.pool.response.lines.sensitivity_kPa_per_N[0])}

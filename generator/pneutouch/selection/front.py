@@ -81,7 +81,7 @@ def _between(problem: SelectionProblem, pool: CandidatePool, on_plate: Array) ->
 
 
 def _finer(values: Array) -> Array:
-    """Values on a grid interpolated in its cells; NaN where a corner is, but not on the grid's own points."""
+    """Values on a grid interpolated in its cells; NaN if a corner is, but not on the grid's own points."""
     for finer in _FINER:
         x = np.linspace(0.0, len(values) - 1, (len(values) - 1) * finer + 1)
         at = np.minimum(x.astype(np.intp), len(values) - 2)

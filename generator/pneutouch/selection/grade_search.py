@@ -31,7 +31,7 @@ _MISSED = 1.0e3
 class GradeTarget:
     """Aims of a grade: sensitivity (kPa/N) at each pressure (MPa) within a share, the same at all within another.
 
-    force: what the range must reach (N); None where it need not. widest: whether it shall reach as far as it can.
+    force: what the range must reach (N); None if it need not. widest: whether it shall reach as far as it can.
     """
 
     sensitivity_kPa_per_N: float
@@ -143,7 +143,7 @@ def _done(target: GradeTarget, trials: list[GradeTrial]) -> bool:
 
 
 def _promising(target: GradeTarget, top: float, trials: list[GradeTrial], surface: str) -> tuple[float, float] | None:
-    """The place of least cost on the surface through the trials, none tried yet; None where it promises no gain."""
+    """The place of least cost on the surface through the trials, none tried yet; None if it promises no gain."""
     known = [trial for trial in trials if np.isfinite(trial.sensitivity_kPa_per_N).all()]
     if len(known) < _FEWEST:
         return None

@@ -12,7 +12,7 @@ _MOST = ("outer diameter", "footprint", "break strain", "gauge range")
 def missed_percent(problem: SelectionProblem, candidate: Candidate) -> dict[str, float | None]:
     """Requirements and limits that are broken, and how far its value is off, in percent of the required one.
 
-    None where its value is not known.
+    None if its value is not known.
     """
     broken = {name: margin for name, margin in candidate.margins.items() if margin < 0}
     return {

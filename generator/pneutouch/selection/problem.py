@@ -48,7 +48,7 @@ class SelectionProblem:
     """Requirements on a sensor and the settled parameters; None for a free one. depth_share: plate travel over R0.
 
     plate_share: the plate's radius over R0 where it is larger than ``plate_radius``, for a plate that goes with the
-    dome. connector: of domes of inner radius and wall (n,), mm; None where no connector matters. limit_spread: where
+    dome. connector: of domes of inner radius and wall (n,), mm; None if no connector matters. limit_spread: where
     it is None, designs may be driven above their rated pressure. factors: on the atlas's figures, for a contact that it
     does not cover. anywhere: whether the ranking counts an unknown object and place of contact.
     """

@@ -28,7 +28,7 @@ class CandidateGrid:
 def search(problem: SelectionProblem) -> CandidatePool | None:
     """Every candidate evaluated: the scan, and the points on it where the sensitivity is the target.
 
-    None where no size is inside the bounds.
+    None if no size is inside the bounds.
     """
     grid = scan(problem)
     if grid.radius.size == 0:
@@ -96,7 +96,7 @@ def _pressures(problem: SelectionProblem, resins: Array, ratio: Array, radius: A
 
 
 def _met(problem: SelectionProblem, grid: CandidateGrid, coarse: CandidatePool) -> CandidatePool | None:
-    """Points between neighbours of the scan where the sensitivity passes the target; None where it never does."""
+    """Points between neighbours of the scan where the sensitivity passes the target; None if it never does."""
     assert problem.sensitivity_kPa_per_N is not None
     off = _log_ratio(problem.sensitivity_kPa_per_N, coarse).reshape(grid.radius.shape)
     with np.errstate(invalid="ignore"):

@@ -22,7 +22,7 @@ def campaign_of(data: Path) -> tuple[Campaign, Path]:
 
 
 def design_of(campaign: Campaign, folder: Path) -> str | None:
-    """The design that a campaign names, as a command takes it; None where it names none. Raises InputError."""
+    """The design that a campaign names, as a command takes it; None if it names none. Raises InputError."""
     if campaign.design is None:
         return None
     return design_inside(folder, campaign.design, file=folder / CAMPAIGN, key="design")

@@ -176,7 +176,7 @@ class ContactTable(Table):
 
     @property
     def off_axis(self) -> dict[str, float | str]:
-        """The keys that keep the scene from being axisymmetric, and their values; empty where it is."""
+        """The keys that keep the scene from being axisymmetric, and their values; empty if it is."""
         keys = ("offset_mm", "tilt_deg", "shear_mm", *(("object",) if self.is_lying else ()))
         return {key: getattr(self, key) for key in keys if getattr(self, key)}
 

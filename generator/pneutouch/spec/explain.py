@@ -69,7 +69,7 @@ def _is_sentence(right: str) -> bool:
 
 
 def _bounds(detail: Any) -> str:
-    """The bounds of a number or a text that pydantic names, in words; empty where it names none."""
+    """The bounds of a number or a text that pydantic names, in words; empty if it names none."""
     words = {"ge": "at least", "gt": "more than", "le": "at most", "lt": "less than"}
     given = detail.get("ctx", {})
     numbers = [f"{word} {given[key]:g}" for key, word in words.items() if isinstance(given.get(key), int | float)]

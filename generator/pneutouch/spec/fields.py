@@ -92,7 +92,7 @@ def declarations(model: type[BaseModel]) -> list[Declaration]:
 
 
 def table_of(model: type[BaseModel], key: str) -> type[BaseModel] | None:
-    """Return the model of the sub-table ``key``, or None where ``key`` is a plain value."""
+    """Return the model of the sub-table ``key``, or None if ``key`` is a plain value."""
     info = model.model_fields.get(key)
     if info is None:
         return None

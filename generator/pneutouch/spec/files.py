@@ -67,7 +67,7 @@ def exists(path: Path) -> bool:
 
 
 def inside(folder: Path, name: str, *, file: str | PathLike[str], key: str) -> Path:
-    """The path of ``name`` in ``folder``. Raises InputError where it leads out of the folder, by a link too.
+    """The path of ``name`` in ``folder``. Raises InputError if it leads out of the folder, by a link too.
 
     ``file`` and ``key`` state where the name was written: whoever wrote it decides on the files of its folder alone.
     """

@@ -12,7 +12,7 @@ _MOST_KEYS = 8
 
 
 def table_form(owner: type[BaseModel] | None, key: str) -> str:
-    """The form of the table ``key`` of ``owner`` with its needed keys; empty where these are none or too many."""
+    """The form of the table ``key`` of ``owner`` with its needed keys; empty if these are none or too many."""
     table = None if owner is None else table_of(owner, key)
     if table is None:
         return ""

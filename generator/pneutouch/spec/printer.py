@@ -198,7 +198,7 @@ class Printer(Table):
         return CAST_STEP_SOURCE if self.resolution is None else self.resolution.source
 
     def mode_for(self, *materials: Material) -> Mode | None:
-        """The finest mode that makes the materials in one job, or None where there is none.
+        """The finest mode that makes the materials in one job, or None if there is none.
 
         Casting makes what has a table [casting] alone.
         """

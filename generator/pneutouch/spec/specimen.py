@@ -57,7 +57,7 @@ class Layer(Table):
     )
 
     def period(self) -> float | None:
-        """The pitch or cell as given, mm; None where the frequency is given."""
+        """The pitch or cell as given, mm; None if the frequency is given."""
         raise NotImplementedError
 
     def period_key(self) -> str:

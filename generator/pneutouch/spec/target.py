@@ -92,7 +92,7 @@ class TargetFigures(Table):
 
     @property
     def finger_diameter_mm(self) -> float | None:
-        """Diameter of the finger that the sensor must fit on, None where none is required."""
+        """Diameter of the finger that the sensor must fit on, None if none is required."""
         return None if self.fits is None else float(self.fits.partition(":")[2])
 
     @property

@@ -80,7 +80,7 @@ def full_answer(question: Question, bases: Mapping[str, str], library: Library) 
     """The prediction by the model that ``predict`` takes, with the findings of ``check`` and the estimates of the
     print.
 
-    Raises PneutouchError where the design cannot work or cannot be computed.
+    Raises PneutouchError if the design cannot work or cannot be computed.
     """
     source = question.source(bases, library)
     scene = load_scene(source, {}, library)
@@ -110,7 +110,7 @@ def _highest(evaluation: Evaluation) -> float:
 
 
 def _banded(evaluation: Evaluation) -> dict[str, Any] | None:
-    """Sensitivity of the design over driving pressure with its interval; None where that is not known."""
+    """Sensitivity of the design over driving pressure with its interval; None if that is not known."""
     if unknown(evaluation.sensor, evaluation.prediction.model) is not None:
         return None
     drawn = tuning(evaluation, _highest(evaluation))

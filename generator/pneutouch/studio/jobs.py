@@ -74,7 +74,7 @@ class Jobs:
         self._number = 0
 
     def __getitem__(self, number: int) -> Job:
-        """A job by its number. Raises KeyError where it is not known, or no longer."""
+        """A job by its number. Raises KeyError if unknown, or no longer."""
         return self._jobs[number]
 
     def documents(self) -> list[Content]:
@@ -135,7 +135,7 @@ class Jobs:
                     shutil.rmtree(job.place, ignore_errors=True)
 
     async def _answered(self, job: Job, request: bytes) -> Content | None:
-        """The last line of the process; None where it ended without one."""
+        """The last line of the process; None if it ended without one."""
         job.process = process = await asyncio.create_subprocess_exec(
             *self._command,
             stdin=asyncio.subprocess.PIPE,

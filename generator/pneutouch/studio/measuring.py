@@ -62,7 +62,7 @@ def recognised(arguments: Mapping[str, Any], folder: Path, report: Report) -> di
     """The runs of the files: as their campaign file lists them, with the columns found; else proposed, each read as a
     steps run at the driving pressure that it shows before contact.
 
-    Raises InputError where the campaign is wrong or nothing may be a run.
+    Raises InputError if the campaign is wrong or nothing may be a run.
     """
     with _given(arguments, folder) as given:
         if given.planned:

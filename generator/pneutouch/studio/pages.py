@@ -38,7 +38,7 @@ def page_files() -> dict[str, PageFile]:
 
 
 def respond(known: dict[str, PageFile], request: Request) -> Response:
-    """The file at the path of a request, compressed where the browser takes it; 404 where there is none."""
+    """The file at the path of a request, compressed where the browser takes it; 404 if there is none."""
     file = known.get(request.url.path)
     if file is None:
         return PlainTextResponse("not found", 404)

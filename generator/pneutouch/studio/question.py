@@ -20,7 +20,7 @@ _LONGEST_TEXT = 4000
 class Question:
     """A design of the catalogue, or the one the studio was started with, by ``base``; and changed fields.
 
-    ``values`` holds by ``table.key`` the text of a change ``table.key=text``, or None where the key is left out.
+    ``values`` holds by ``table.key`` the text of a change ``table.key=text``, or None if the key is left out.
     """
 
     base: str

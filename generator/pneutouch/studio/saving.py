@@ -24,7 +24,7 @@ def save_design(request: Mapping[str, Any], bases: dict[str, str]) -> dict[str, 
     """Write the design of ``question`` as ``name`` into the folder of the user's designs, and add it to ``bases``.
 
     Over a file with ``replace`` alone. A design without changes is copied with its comments. Returns its name and
-    file. Raises NameTakenError where there is such a file, and InputError that names the key.
+    file. Raises NameTakenError if there is such a file, and InputError that names the key.
     """
     name, overwrite = _checked(request)
     question, library = Question.of(request.get("question")), Library.default()

@@ -35,7 +35,7 @@ class _Server(uvicorn.Server):
 def bases_of(design: str | None) -> tuple[dict[str, str], str]:
     """Designs that the page may open, by the name shown, and the name that it begins with.
 
-    ``design`` is a name or a path; a path's design is named by its file. Raises InputError where it is not found.
+    ``design`` is a name or a path; a path's design is named by its file. Raises InputError if it is not found.
     """
     library = Library.default()
     bases = {name: name for name in library.paths("designs")}
@@ -52,7 +52,7 @@ def bases_of(design: str | None) -> tuple[dict[str, str], str]:
 def serve(design: str | None, port: int, opened: Callable[[str], None]) -> None:
     """Serve until a stop signal raises KeyboardInterrupt; ``opened`` is given the address. ``port`` 0 is a free one.
 
-    Raises InputError where the design is not found or the port is taken.
+    Raises InputError if the design is not found or the port is taken.
     """
     bases, first = bases_of(design)
     token = secrets.token_urlsafe(32)

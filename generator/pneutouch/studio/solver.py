@@ -34,7 +34,7 @@ class Solver:
         self._is_busy, self._newer = False, asyncio.Event()
 
     async def request(self, question: Mapping[str, Any]) -> Answer:
-        """Status and content of the answer. Raises SupersededError where a newer question came."""
+        """Status and content of the answer. Raises SupersededError if a newer question came."""
         self._newer.set()
         if self._waiting is not None:
             self._waiting.set_exception(SupersededError())

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 def state_of(design: DesignFile, base: str, bases: Mapping[str, str], library: Library) -> dict[str, Any]:
     """The state that is ``design``: ``base``, by the page's name for it, and by ``table.key`` the texts of its values
-    that differ from the base's file, None where a key is left out.
+    that differ from the base's file, None if a key is left out.
 
-    Raises InputError where the page has no such base, or its file is wrong.
+    Raises InputError if the page has no such base, or its file is wrong.
     """
     if base not in bases:
         raise InputError("unknown design", key="base", value=base)

@@ -34,7 +34,7 @@ class Uploads:
         self._folder, self._files, self._number = folder, dict[int, Upload](), 0
 
     def __getitem__(self, number: int) -> Upload:
-        """A file by its number. Raises KeyError where it is not known, or no longer."""
+        """A file by its number. Raises KeyError if unknown, or no longer."""
         return self._files[number]
 
     async def add(self, name: str, stream: AsyncIterator[bytes]) -> int:

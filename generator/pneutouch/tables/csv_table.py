@@ -78,7 +78,7 @@ def csv_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterato
 
 
 def _after(stream: TextBytes, lines: int) -> bytes:
-    """The first bytes after so many lines; empty where the file ends before."""
+    """The first bytes after so many lines; empty if the file ends before."""
     data = stream.read(CHUNK)
     while data:
         at = -1
@@ -191,7 +191,7 @@ def _raise_fault(data: bytes, row: int, reader: _Reader) -> None:
 
 
 def _last(rest: bytes, row: int, reader: _Reader) -> Array:
-    """Values (k, 1) of a last row without a line end. Raises InputError where it is not complete."""
+    """Values (k, 1) of a last row without a line end. Raises InputError if it is not complete."""
     _check_text(rest, row, reader)
     text = rest.decode("utf-8")
     in_row = cells(text, reader.delimiter)

@@ -11,7 +11,7 @@ from pneutouch.errors import InputError
 def library_file(path: Path, kind: str, library: str, extra: str) -> Iterator[None]:
     """Import and use the library of ``extra`` that reads files of a ``kind``.
 
-    Raises InputError where it is not installed, and in place of whatever its parsers raise.
+    Raises InputError if it is not installed, and in place of whatever its parsers raise.
     """
     try:
         yield

@@ -45,7 +45,7 @@ def header_of(rows: Sequence[Sequence[str]], known: Sequence[str]) -> int | None
 
 
 def locate(rows: Sequence[Sequence[str]], decimal: str, header: int | None) -> Located | None:
-    """The table in the first rows of a file; ``header`` where it is known. None where there are no numbers."""
+    """The table in the first rows of a file; ``header`` where it is known. None if there are no numbers."""
     width = width_of(rows, decimal)[0]
     if header is None:
         first = _first(rows, decimal, width)

@@ -33,7 +33,7 @@ def is_lvm(lines: Sequence[str]) -> bool:
 
 
 def lvm_layout(path: Path, lines: Sequence[str], given: TableFormat) -> TableLayout:
-    """Layout of a LabVIEW measurement file. Raises InputError where its header is not whole, or has several clocks."""
+    """Layout of a LabVIEW measurement file. Raises InputError if its header is not whole, or has several clocks."""
     ends = [k for k, line in enumerate(lines) if line.startswith(_END)]
     tags = _tags(lines[: ends[0]] if ends else lines)
     delimiter = given.delimiter or _delimiter(tags.get("Separator", ""))

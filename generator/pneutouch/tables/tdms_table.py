@@ -115,7 +115,7 @@ def _unit(properties: Any) -> str:
 
 
 def _clock(channels: Sequence[Any]) -> tuple[float, float] | None:
-    """First time and step of the channels, s; None where one has none, or another than the first."""
+    """First time and step of the channels, s; None if one has none, or another than the first."""
     clocks = {
         (float(one.properties.get("wf_start_offset", 0.0)), float(one.properties.get("wf_increment", 0.0)))
         for one in channels

@@ -24,7 +24,7 @@ _ORDER = ("\t", ";", ",", " ")
 def text_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLayout:
     """Layout of a text file; its header is the first row that names the ``known`` columns, or stands above the numbers.
 
-    Raises InputError where no table is found, and where a comma may be a decimal comma or one of thousands."""
+    Raises InputError if no table is found, and where a comma may be a decimal comma or one of thousands."""
     lines, encoding, guessed = head_lines(path, given.encoding)
     if not any(line.strip() for line in lines):
         raise InputError("no header row", file=path, remedy=f"must name the columns, as {','.join(known)}")
@@ -77,7 +77,7 @@ def _cells(line: str, delimiter: str) -> list[str]:
 
 
 def _known_header(rows: Sequence[str], given: TableFormat, known: Sequence[str]) -> tuple[str | None, int | None]:
-    """The delimiter by which a row names all known columns, and the row's index, None where no row does."""
+    """The delimiter by which a row names all known columns, and the row's index, None if no row does."""
     for delimiter in (given.delimiter,) if given.delimiter else _ORDER:
         split = [_cells(line, delimiter) if all(name in line for name in known) else [] for line in rows]
         header = header_of(split, known)
@@ -105,7 +105,7 @@ def _of_header(rows: Sequence[str], header: int | None) -> str:
 
 
 def _check_header(path: Path, table: Sequence[Sequence[str]], located: Located, begin: int, delimiter: str) -> None:
-    """Check that a header stands above the numbers. Raises InputError where the row above them has other cells."""
+    """Check that a header stands above the numbers. Raises InputError if the row above them has other cells."""
     above = [k for k in range(located.first) if table[k]]
     if located.header is not None or not above:
         return

@@ -80,7 +80,7 @@ BRACKETS = re.compile(r"[(\[{<]\s*([^(\[{<]*?(?:\(g\))?)\s*[)\]}>]")
 
 
 def unit_of(word: str) -> tuple[str, str] | None:
-    """Channel and unit that a word stands for, as of "kPa" or "[µm]"; None where it is no unit of a channel."""
+    """Channel and unit that a word stands for, as of "kPa" or "[µm]"; None if it is no unit of a channel."""
     word = word.strip()
     bracketed = BRACKETS.fullmatch(word)
     word = bracketed[1] if bracketed else word

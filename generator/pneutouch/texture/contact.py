@@ -67,7 +67,7 @@ class PreloadContact:
 
 
 class PreloadContacts(NamedTuple):
-    """Many sensors at one preload, (n,) each as in `PreloadContact`; NaN where the atlas does not reach the preload."""
+    """Many sensors at one preload, (n,) each as in `PreloadContact`; NaN if the atlas does not reach the preload."""
 
     indentation: Array
     contact_radius: Array
@@ -164,7 +164,7 @@ LoadingCurve = tuple[Array, Array, Array, Array, Array, Array]
 
 
 def _atlas_curve(sensor: Sensor, pressure: float) -> LoadingCurve | None:
-    """The curve as far as the atlas covers it; None where that is not even the first steps."""
+    """The curve as far as the atlas covers it; None if that is not even the first steps."""
     batch = batch_of(sensor, [pressure])
     press = AtlasPress(batch, shipped().slices(batch.wall_ratio, ("contact_radius",)), np.zeros(1, dtype=np.intp))
     track = press.march(np.linspace(0.0, sensor.protocol.depth / sensor.dome.inner_radius, _COLUMNS)[None, :])

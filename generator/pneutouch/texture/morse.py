@@ -93,7 +93,7 @@ def time_average(values: Array, rate: float, frequency: Array, wavelet: Morse = 
     """Mean of |W| over the times outside the cone of influence, (..., k), mirrored ends; arguments as ``transform``.
 
     Every voice is sampled as coarsely as its band allows: exact samples of the same transform, in a tenth of the time.
-    Raises ValueError where a voice's cone covers the record.
+    Raises ValueError if a voice's cone covers the record.
     """
     import scipy.fft
 

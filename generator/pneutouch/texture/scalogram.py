@@ -69,7 +69,7 @@ def ridge(amplitude: Array, frequency: Array, low: float, high: float, wavelet: 
     """The highest point between ``low`` and ``high`` Hz of amplitudes (..., k) at evenly spaced voices (k,), rising.
 
     A parabola through the logarithms of three voices over ln f, once the wavelet's own departure from a parabola is
-    taken off: of a pure tone nothing remains but rounding. Raises ValueError where no voice lies in the range.
+    taken off: of a pure tone nothing remains but rounding. Raises ValueError if no voice lies in the range.
     """
     within = np.flatnonzero((frequency >= low) & (frequency <= high))
     within = within[(within > 0) & (within < len(frequency) - 1)]

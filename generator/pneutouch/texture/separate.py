@@ -75,7 +75,7 @@ def noise_amplitude(frequency: float, noise: float = NOISE, rate: float = RATE) 
 def amplitudes(batch: SensorBatch, preload: float, matrix: MatrixLayer, patterns: list[BarPattern]) -> Array:
     """Pressure amplitudes at a held height, MPa, (n, patterns), blurred.
 
-    NaN where a dome does not reach the preload, or reaches it within `LEAST_TRAVEL`.
+    NaN if a dome does not reach the preload, or reaches it within `LEAST_TRAVEL`.
     """
     contact = touches(batch, preload)
     radius = np.where(contact.indentation >= LEAST_TRAVEL * batch.inner_radius, contact.contact_radius, np.nan)
@@ -91,7 +91,7 @@ def recommend(
 ) -> PressureAdvice:
     """The driving pressure up to ``highest`` (MPa) at which a sensor shows a pattern with the greatest amplitude.
 
-    The sensor must lie in the atlas. Raises InputError where it reaches the preload at none.
+    The sensor must lie in the atlas. Raises InputError if it reaches the preload at none.
     """
     check(pattern, matrix)
     pressures = np.linspace(0.0, highest, POINTS)

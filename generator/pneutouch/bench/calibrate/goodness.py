@@ -16,7 +16,7 @@ _CHANCE = 0.001
 
 @dataclass(frozen=True, slots=True)
 class RunResiduals:
-    """One run: model less measured; arrays (n,), NaN where the model has no state. Of an injection ``force`` is empty.
+    """One run: model less measured; arrays (n,), NaN if the model has no state. Of an injection ``force`` is empty.
 
     Attributes:
         label: Of the run.

@@ -69,7 +69,7 @@ class AtlasModel:
     `ObservationPoints.values`.
 
     Under another contact than a plate without friction it is the atlas times the solid's ratio of both, of the sensor
-    ``contact.centre``. Raises InputError where the atlas does not cover the sensor, ComputationError where the solid
+    ``contact.centre``. Raises InputError if the atlas does not cover the sensor, ComputationError where the solid
     cannot press it.
     """
 

@@ -56,7 +56,7 @@ class ResponseGap:
 
 
 def response_gap(fit: CalibrationFit) -> ResponseGap | None:
-    """The gap of a fit; None where no run has enough points in the model."""
+    """The gap of a fit; None if no run has enough points in the model."""
     p, size = fit.points, fit.points.there.size
     shape = p.there.shape
     use = fit.solution.use[:size].reshape(shape)

@@ -95,7 +95,7 @@ class LeastSquaresProblem:
 
 
 def solve(problem: LeastSquaresProblem, start: Array) -> LeastSquaresSolution:
-    """The least sum of squares from ``start``, (k,). Raises ComputationError where the search does not end.
+    """The least sum of squares from ``start``, (k,). Raises ComputationError if the search does not end.
 
     Points outside the model are left out during the search; those that are inside at its end are included again.
     """

@@ -18,7 +18,7 @@ _DECIMALS = {"time_s": 6, "position_mm": 5, "force_N": 5, "pressure_kPa": 6, "vo
 
 
 def encoded(columns: dict[str, Array], *, parquet: bool = False) -> bytes:
-    """Columns as CSV or parquet, marked as simulated. Raises InputError where pyarrow is required and missing."""
+    """Columns as CSV or parquet, marked as simulated. Raises InputError if pyarrow is required and missing."""
     rounded = {name: np.round(values, _DECIMALS[name]) + 0.0 for name, values in columns.items()}
     if not parquet:
         from pandas import DataFrame

@@ -191,7 +191,7 @@ def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float
 def _drawn(
     sensor: Sensor, driving: float, steps: RunProtocol, truth: SimulationTruth, seed: tuple[int, ...]
 ) -> tuple[FigureArrays, int] | None:
-    """Figures of the nominal sensor (first) and of the specimens that reach every depth; None where too few do."""
+    """Figures of the nominal sensor (first) and of the specimens that reach every depth; None if too few do."""
     from pneutouch.mechanics.atlas_states import outside_atlas
 
     depth = max(steps.depths)

@@ -32,7 +32,7 @@ NAMES = "Engineering Strain, Engineering Stress (MPa)"
 class TensileColumn(NamedTuple):
     """One column: its name in the file, its kind, whether it is true or nominal, and its factor to 1, mm, MPa, N.
 
-    ``factor`` is None where its name states no unit.
+    ``factor`` is None if its name states no unit.
     """
 
     name: str
@@ -52,7 +52,7 @@ class ColumnPair(NamedTuple):
 def column_pairs(names: Sequence[str], units: Sequence[str], file: str) -> list[ColumnPair]:
     """The pairs that a file has, the best first: nominal before true, stress before force.
 
-    Raises InputError where there is none, where a stress states no unit, or a unit is none of that quantity.
+    Raises InputError if there is none, where a stress states no unit, or a unit is none of that quantity.
     """
     known = [column for pair in zip(names, units, strict=True) if (column := _column(*pair, file)) is not None]
     pairs = []

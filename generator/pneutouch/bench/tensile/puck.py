@@ -84,7 +84,7 @@ def fit_puck(path: Path, size: PuckSize) -> PuckFit:
 
 
 def _fit(travel: Array, stress: Array, thickness: float) -> tuple[float, float, Array, Array, float] | None:
-    """Modulus, twice its standard error, the points and the misfit; None where there are too few points."""
+    """Modulus, twice its standard error, the points and the misfit; None if there are too few points."""
     near = (travel > 0.0) & (travel <= _MOST * thickness)
     if near.sum() < LEAST_POINTS or travel[near].max() < _LEAST * thickness:
         return None

@@ -208,7 +208,7 @@ class ForceReader:
         )
 
     def _share(self, row: int, part: float, column: float) -> float:
-        """Relative standard uncertainty of the force at a column of the grid; NaN where it is unknown."""
+        """Relative standard uncertainty of the force at a column of the grid; NaN if it is unknown."""
         if self._relative is None:
             return math.nan
         place = column * (len(self._relative[0]) - 1) / (len(self._rise[0]) - 1)

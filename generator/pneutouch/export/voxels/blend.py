@@ -18,7 +18,7 @@ Share = Callable[[Array, Array], Array]
 
 @dataclass(frozen=True)
 class ResinBlend:
-    """The resins of a body, soft one first; ``share`` is of the second, None where there is one alone.
+    """The resins of a body, soft one first; ``share`` is of the second, None if there is one alone.
 
     ``most`` is its greatest value. ``assumed`` states what the share rests on where it was neither measured nor
     requested.
@@ -34,7 +34,7 @@ def blend(material: Material, name: str, library: Library, where: str) -> ResinB
     """The blend of a material; ``name`` is its own in the catalogue, ``where`` the file and key that request it.
 
     A digital material of the catalogue has no published mix: its fraction is taken from the mixing curve that it is a
-    point of. Raises InputError where there is none, and for more than two resins.
+    point of. Raises InputError if there is none, and for more than two resins.
     """
     resins = tuple(material.base_resins)
     if len(resins) == 1:

@@ -46,7 +46,7 @@ MOST_PIXELS = 100_000_000
 
 @dataclass(frozen=True)
 class PngSlice:
-    """A slice as read: ``pixels`` (rows, columns) RGBA in one number each; ``dpi`` None where the file gives none."""
+    """A slice as read: ``pixels`` (rows, columns) RGBA in one number each; ``dpi`` None if the file gives none."""
 
     pixels: Pixels
     dpi: tuple[int, int] | None

@@ -43,7 +43,7 @@ def plate_places(wall_ratio: Array, tilt: Array) -> ContactPlaces:
 
 def force_logs(domes: DomeConditions, places: ContactPlaces, levels: Array, table: PlaceTable | None = None) -> Array:
     """Logarithm of the force under objects over the central plate's at the readings that the plate has at travels
-    ``levels`` (n, k) in R0; (n, m, k), NaN where the object does not reach the reading within 0.75 R0.
+    ``levels`` (n, k) in R0; (n, m, k), NaN if the object does not reach the reading within 0.75 R0.
 
     A force that is read by the central calibration is exp(-logarithm) times the true one.
     """

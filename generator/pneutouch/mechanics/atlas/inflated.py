@@ -27,7 +27,7 @@ def least_limit(wall_ratio: Array, break_stretch: Array) -> Array:
 
 
 def _ruptured(break_stretch: float, stretch: Array, pressure: Array) -> Array:
-    """Pressure at a break stretch for each wall ratio; NaN where the limit point comes before."""
+    """Pressure at a break stretch for each wall ratio; NaN if the limit point comes before."""
     reached = stretch >= break_stretch
     after = np.maximum(reached.argmax(axis=1), 1)
     rows = np.arange(after.size)

@@ -59,7 +59,7 @@ class _HarmonicFace:
         self.weight = np.repeat(face.weight[..., None], angles, axis=2) / angles
 
     def meet(self, x: Array) -> tuple[SurfaceHeight, Array] | None:
-        """The base under the points and their tractions; None where no point is below it."""
+        """The base under the points and their tractions; None if no point is below it."""
         place = self._operator.fields(x)
         if place[..., Z].min() >= self._face.high:
             return None

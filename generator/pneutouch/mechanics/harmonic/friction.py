@@ -178,7 +178,7 @@ class SurfaceFriction(FrictionStep):
         return SurfaceFrictionTerm(solid, self, points)
 
     def moved(self, x: Array, points: FrictionPoints) -> Array:
-        """Places at which the points rest after the step; NaN where a point does not touch."""
+        """Places at which the points rest after the step; NaN if a point does not touch."""
         assert isinstance(points, SurfacePoints)
         place = self.contact.points(x)[..., :Z] - points.load[..., :Z] / self.stiffness - [self.along, 0.0]
         sliding, sticking = points.sliding[..., None], points.sticking[..., None]

@@ -51,7 +51,7 @@ class PointSets:
         return newton
 
     def _factored(self, active: Flags) -> Index | None:
-        """Factor the tangent for a set; no changed points, or None where it is not positive definite."""
+        """Factor the tangent for a set; no changed points, or None if it is not positive definite."""
         factor, info = lapack.dpbtrf(with_contact(self._scene, self._band, self._held, active), lower=1)
         self._factor = None
         if info:
@@ -64,7 +64,7 @@ class PointSets:
         return np.empty(0, np.intp)
 
     def _changed(self, active: Flags, changed: Index) -> NewtonDirection | None:
-        """The step with some points of the factored set changed; None where the tangent is not positive definite."""
+        """The step with some points of the factored set changed; None if the tangent is not positive definite."""
         solution = self._solution
         if changed.size:
             columns = self._known(changed)

@@ -134,7 +134,7 @@ class OffAxisPress:
     def run(self, order: int) -> OffAxisPath:
         """The press with harmonics to an order.
 
-        Raises NoConvergenceError where first contact has no equilibrium.
+        Raises NoConvergenceError if first contact has no equilibrium.
         """
         model, press, start = self._model(order), self._press, self.surface.height
         probe = HarmonicProbe(model, self._probe)
@@ -159,7 +159,7 @@ class OffAxisPress:
         return shear(follower, self._travel, self._free.pressure) if pressed.complete else not_sheared()
 
     def coarser(self, order: int, states: list[OffAxisState]) -> list[tuple[float, float]] | None:
-        """Force (N) and pressure rise (MPa) near solved states with fewer harmonics; None where one has no equilibrium.
+        """Force (N) and pressure rise (MPa) near solved states with fewer harmonics; None if one has no equilibrium.
 
         Without friction, with which a state follows from those before it.
         """

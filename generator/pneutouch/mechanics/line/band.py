@@ -106,7 +106,7 @@ def _first_peak(dynamics: SensorDynamics, grid: Array, gain: Array) -> float | N
 
 
 def _leaves(dynamics: SensorDynamics, grid: Array, excess: Callable[[Array], Array]) -> float | None:
-    """The lowest frequency at which an excess of the gain turns positive, by halving; None where none does."""
+    """The lowest frequency at which an excess of the gain turns positive, by halving; None if none does."""
     at = _first(excess(gain_at(dynamics, grid)) > 0.0)
     if at is None:
         return None

@@ -34,7 +34,7 @@ class StepFigures:
     Attributes:
         delay: From the step to half of the final value, s.
         rise_time: From 10 to 90 % of the final value, s: the first front.
-        overshoot: Greatest value over the final one, less 1; 0 where there is none.
+        overshoot: Greatest value over the final one, less 1; 0 if there is none.
         time, reading: The response, s and over its final value.
     """
 

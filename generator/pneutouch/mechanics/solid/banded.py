@@ -102,7 +102,7 @@ def solve(band: Array, b: Array) -> BandedSolution:
 
 
 def solve_definite(band: Array, b: Array) -> Array | None:
-    """Solution of K x = b (size, n_rhs) by Cholesky; None where the matrix is not positive definite."""
+    """Solution of K x = b (size, n_rhs) by Cholesky; None if the matrix is not positive definite."""
     factor, info = lapack.dpbtrf(band, lower=1)
     if info:
         return None

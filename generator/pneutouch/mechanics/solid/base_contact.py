@@ -130,7 +130,7 @@ class BaseFace:
         self._rim = solid.contact.longest
 
     def meet(self, nodes: Array) -> BaseMeeting | None:
-        """Points below the surface of the base at positions (n_nodes, 2); None where there are none."""
+        """Points below the surface of the base at positions (n_nodes, 2); None if there are none."""
         line = nodes[self.edges]
         z = line[..., 1] @ self.shape.T
         if z.min() >= self.high:

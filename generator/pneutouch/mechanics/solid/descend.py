@@ -97,7 +97,7 @@ def _close_in(follower: PathFollower, end: float) -> PathJump | None:
 
 
 def _past_a_stall(follower: PathFollower, end: float, stalled: NewtonFailure) -> PathJump | None:
-    """A solver that failed is no evidence of another branch: search a little further before naming the end; None where
+    """A solver that failed is no evidence of another branch: search a little further before naming the end; None if
     the path goes on soundly there, as it may behind a height where friction lets go of a point.
 
     With friction the search is by no energy and often finds nothing: there the end is read from the path itself.
@@ -119,7 +119,7 @@ def _past_a_stall(follower: PathFollower, end: float, stalled: NewtonFailure) ->
 
 
 def _limit_point(path: list[PlateState]) -> PathJump | None:
-    """The jump of a path whose newest states run into a limit point; None where they do not."""
+    """The jump of a path whose newest states run into a limit point; None if they do not."""
     if not _turns_back(path):
         return None
     here = path[-1]

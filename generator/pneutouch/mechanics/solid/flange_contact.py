@@ -104,7 +104,7 @@ class FlangeContact:
         return BaseLoad(float(np.vdot(self._weight, met.traction)), most, most / self._stiffness)
 
     def _meet(self, x: Array) -> _Touch | None:
-        """Points of the wall below the top of the flange at positions x (n_nodes, 2); None where there are none."""
+        """Points of the wall below the top of the flange at positions x (n_nodes, 2); None if there are none."""
         line, top = x[self._edges], x[self._top]
         r, z = line[..., 0] @ self._shape.T, line[..., 1] @ self._shape.T
         # A spline rises over its highest node by less than its nodes differ.

@@ -154,7 +154,7 @@ class FrictionStep:
         return FrictionTerm(solid, self, points)
 
     def moved(self, x: Array, points: FrictionPoints) -> Array:
-        """Radii at which the points rest after the step; NaN where a point does not touch."""
+        """Radii at which the points rest after the step; NaN if a point does not touch."""
         r, _ = self.contact.positions(x)
         slid = r - points.traction / self.stiffness / points.secant
         return np.where(points.sliding, slid, np.where(points.sticking, self.rest, np.nan))

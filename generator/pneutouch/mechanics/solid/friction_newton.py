@@ -180,7 +180,7 @@ class FrictionSolver:
 
     def _search(self, here: HeldState, step: Array, slope: float) -> HeldState | None:
         """The state at the end of a step that balances the forces better, else of a line search by the energy with
-        friction held; None where no step lowers it."""
+        friction held; None if no step lowers it."""
         move = self.solid.expand(step)
         state = here.state
         noise = 1.0e-13 * (abs(here.energy) + state.local.energy + self.solid.wall)

@@ -50,7 +50,7 @@ class PiecewiseLine:
             self._bound(j)
 
     def status(self) -> PointStatus | None:
-        """The status at the end of the line; None where it turns back or goes through too many pieces."""
+        """The status at the end of the line; None if it turns back or goes through too many pieces."""
         n = self._grip.size
         for _ in range(_MOST * n):
             margin = self._by_normal * self._at[:n] + self._by_trial * self._at[n:] + self._free

@@ -62,7 +62,7 @@ class StepSettling:
         self._first = contact.begins(self._still)
 
     def step(self) -> Array | None:
-        """Newton step (size,); None where the linear model is not definite or its points do not settle.
+        """Newton step (size,); None if the linear model is not definite or its points do not settle.
 
         With held tractions there always is one: the diagonal is raised until the model is definite, and a step that is
         not settled lowers its energy all the same. Where the contact allows it, one that is not settled will do.
@@ -119,7 +119,7 @@ class StepSettling:
         self, system: ContactSystem, edge: int, status: PointStatus, after: PointTractions
     ) -> PointStatus | None:
         """The status that is settled one point after another from the start, where a status led to tractions ``after``;
-        None where none is settled."""
+        None if none is settled."""
         contact = self._contact
         both, one_sided = contact.blocks(status, contact.under(status, self._still))
         response = system.response(both if one_sided is None else both + one_sided, contact.rows(edge))
@@ -136,7 +136,7 @@ class StepSettling:
         return whole
 
     def _solve(self, system: ContactSystem, status: PointStatus, first_round: bool) -> Array | None:
-        """The linear model of one status; None where it is not definite, the band then raised for another try."""
+        """The linear model of one status; None if it is not definite, the band then raised for another try."""
         begun = self._contact.under(status, self._still)
         both, one_sided = self._contact.blocks(status, begun)
         push = self._contact.force(begun)

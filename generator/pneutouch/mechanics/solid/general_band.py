@@ -76,7 +76,7 @@ class OneSidedBlocks:
         return out[:, :size]
 
     def solve_definite(self, band: Array, blocks: Array, b: Array, first: int = 0) -> Array | None:
-        """X of (band + symmetric blocks) x = b by Cholesky; None where the matrix is not positive definite."""
+        """X of (band + symmetric blocks) x = b by Cholesky; None if the matrix is not positive definite."""
         full = band.T.copy()
         _add(
             full,

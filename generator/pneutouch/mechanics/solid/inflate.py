@@ -133,7 +133,7 @@ def inflate(
 
     to_pressure: stop once this gauge pressure (MPa) is bracketed; None goes on to the limit point.
     past_limit:  go on to this multiple of the limit volume.  largest: give up on a limit at this multiple of V0.
-    Raises NoConvergenceError where volume steps shrink to nothing.
+    Raises NoConvergenceError if volume steps shrink to nothing.
     """
     path = [rest_state(solid)]
     rest = path[0].unit.volume

@@ -28,9 +28,9 @@ State = TypeVar("State", bound=_Balanced)
 def line_search(
     trial: Callable[[float], tuple[float, Callable[[], State]] | None], step: Array, slope: float, noise: float
 ) -> State | None:
-    """Backtrack from the full step until the energy falls by Armijo's condition; None where it never does.
+    """Backtrack from the full step until the energy falls by Armijo's condition; None if it never does.
 
-    trial: at a share of the step the change of the energy and what completes the state there; None where there is none.
+    trial: at a share of the step the change of the energy and what completes the state there; None if there is none.
     slope: derivative of the energy along the step (size,), negative.
 
     Near convergence the change drowns in rounding, ``noise``: there a step is also taken when it lowers the slope.

@@ -92,7 +92,7 @@ class NewtonFailure:
 
 
 def evaluate(scene: SolidScene, x: Array) -> SolverState | None:
-    """Energy and residual at x; None where a point of the wall is inverted or the cavity is gone."""
+    """Energy and residual at x; None if a point of the wall is inverted or the cavity is gone."""
     solid = scene.solid
     local = solid.local(x)
     if not np.isfinite(local.energy):
@@ -286,7 +286,7 @@ def _energy_scale(scene: SolidScene, state: SolverState) -> float:
 
 
 def _search(scene: SolidScene, state: SolverState, step: Array, slope: float) -> SolverState | None:
-    """The state at the end of a line search; None where no step lowers the energy."""
+    """The state at the end of a line search; None if no step lowers the energy."""
     move = scene.solid.expand(step)
     noise = 1.0e-13 * (abs(state.energy) + state.local.energy + scene.solid.wall)
 

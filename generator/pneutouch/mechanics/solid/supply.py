@@ -23,7 +23,7 @@ class Supply(Protocol):
     """Anything with a potential of the cavity volume."""
 
     def at(self, volume: float) -> FillingState | None:
-        """Potential, pressure and rate, or None where the volume is impossible."""
+        """Potential, pressure and rate, or None if the volume is impossible."""
         ...
 
 

@@ -14,7 +14,7 @@ class TermState:
     derivative as ``blocks`` of `SolidModel.contact_pattern` (edges of the outer wall) and ``inner_blocks`` of
     `SolidModel.edge_pattern` (edges of the inner wall), (n_edges, 2 n, 2 n) each, and ``fold_blocks`` of
     `SolidModel.fold_pattern` (edges of the outer wall with the flange's top); ``around`` by displacements of the edges
-    of the outer wall around the axis, (n_edges, n, n). None where it has none."""
+    of the outer wall around the axis, (n_edges, n, n). None if it has none."""
 
     energy: float
     gradient: Array

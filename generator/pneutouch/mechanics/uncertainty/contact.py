@@ -43,7 +43,7 @@ class FrictionSpread:
     """Effect of an unknown coefficient of friction on n sensors.
 
     Attributes:
-        standard: Standard uncertainties of the logarithm of the figures, (figures, n); NaN where no equilibrium was
+        standard: Standard uncertainties of the logarithm of the figures, (figures, n); NaN if no equilibrium was
             found at another coefficient.
         elasticities: d ln figure / d ln coefficient, (figures, n); None for a surface that grips.
         origin: How the coefficient is assumed to be distributed.

@@ -17,7 +17,7 @@ SAME = 1e-6
 
 @lru_cache(maxsize=128)
 def pressed_logs(sensor: Sensor, pressures: tuple[float, ...]) -> Array:
-    """Logarithms of the figures at ascending driving pressures, MPa, (figures, n), read-only; all NaN where the solid
+    """Logarithms of the figures at ascending driving pressures, MPa, (figures, n), read-only; all NaN if the solid
     cannot solve the highest. The chart, the budget and the curves of a datasheet need the same ones again."""
     from pneutouch.mechanics.solid_states import solid_states
 

@@ -32,7 +32,7 @@ class Derivatives:
 
     Attributes:
         logs: ln of the figures, (figures, n).
-        elasticities: d ln figure / d ln input, (inputs, figures, n); 0 for the dead volume where there is none.
+        elasticities: d ln figure / d ln input, (inputs, figures, n); 0 for the dead volume if there is none.
         local: Derivatives of ln figure by the input in its unit of uncertainty (relative; dead volume mm3), same shape.
         slopes: The same, or root mean square change over the input's spread per standard uncertainty where it is bent.
         one_sided: Where a sensor could not be evaluated on one side: beyond its limit point or the atlas, (inputs, n).

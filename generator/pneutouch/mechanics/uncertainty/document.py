@@ -148,7 +148,7 @@ def text(budget: Budget, row: int = 0, *, calibrated: bool = False) -> str:
 
 
 def gas_text(batch: SensorBatch) -> list[tuple[str, ...]]:
-    """Notes on the air of n sensors, one tuple each; empty where the atlas has no state."""
+    """Notes on the air of n sensors, one tuple each; empty if the atlas has no state."""
     notes = gas_notes(batch)
     return [
         (

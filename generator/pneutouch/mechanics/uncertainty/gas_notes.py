@@ -64,7 +64,7 @@ def _wall_stiffness(press: AtlasPress, k: Index) -> Array:
 
 
 def _sensitivity_kPa_per_N(press: AtlasPress, indentation: Array, exponent: float) -> Array:
-    """Slope of pressure over force, kPa/N, at plate travels (n, m) in mm; NaN where one of them has no state."""
+    """Slope of pressure over force, kPa/N, at plate travels (n, m) in mm; NaN if one of them has no state."""
     mu, radius = press.batch.shear_modulus[:, None], press.batch.inner_radius[:, None]
     pressure, force, converged = _pressed(press, np.nan_to_num(indentation) / radius, exponent)
     rise_kPa = (pressure - press.pressure[:, None]) * mu / KPA

@@ -49,7 +49,7 @@ class Budget:
 
     @property
     def values(self) -> Array:
-        """The figures as the atlas has them, (figures, n), in the units of `FIGURES`; NaN where it has none."""
+        """The figures as the atlas has them, (figures, n), in the units of `FIGURES`; NaN if it has none."""
         return np.asarray(np.exp(self.derivatives.logs))
 
     @property

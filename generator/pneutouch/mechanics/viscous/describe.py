@@ -113,7 +113,7 @@ def chosen_depth(sensor: Sensor, range_ends: Sequence[float]) -> float:
 def ageing_shift(sensor: Sensor, material: Material, driving_pressures: Sequence[float]) -> tuple[float, Array]:
     """Ratio of the modulus after a year by hardness, and the relative change of the sensitivity from it, (n,).
 
-    Raises InputError where the resin's hardness after a year is not known.
+    Raises InputError if the resin's hardness after a year is not known.
     """
     ratio = ageing_ratio(material)
     old = sensor.replace(shear_modulus=ratio * sensor.wall.shear_modulus)

@@ -34,7 +34,7 @@ class Prony:
 
 
 def prony_series(material: Material) -> tuple[Prony, ...]:
-    """The relaxation data of a resin, one series a source; empty where there are none."""
+    """The relaxation data of a resin, one series a source; empty if there are none."""
     return tuple(
         Prony(tuple(t.share for t in data.terms), tuple(t.time_s for t in data.terms), data.source)
         for data in material.relaxation

@@ -28,7 +28,7 @@ _RAMP_STEPS, _LOOP_STEPS = 30, 48
 class RelaxationRun:
     """A sensor pressed evenly to a depth and held: force (N), pressure rise (MPa) over times (s) since the ramp's end.
 
-    ``ended`` states where the run could not be followed further, with what is known before; None where it was followed.
+    ``ended`` states where the run could not be followed further, with what is known before; None if it was followed.
     """
 
     times: Array
@@ -40,7 +40,7 @@ class RelaxationRun:
         """Loss of a value from 1 s to the end, and loss per decade (least squares over log10 t from 1 s), over the
         value at 1 s.
 
-        Raises ValueError where the run does not reach from 1 s onwards.
+        Raises ValueError if the run does not reach from 1 s onwards.
         """
         late = self.times >= 1.0 - 1e-9
         if late.sum() < 2:
@@ -55,7 +55,7 @@ class LoopRun:
     """A sensor pressed evenly to a depth and let go: indentation (mm), force (N), pressure rise (MPa) in and out.
 
     ``contact_lost`` is the plate travel (mm) at which the dome no longer follows the plate while it retracts, where the
-    loop ends; None where it follows to the end. ``ended`` states where the run could not be followed further, or None;
+    loop ends; None if it follows to the end. ``ended`` states where the run could not be followed further, or None;
     one that does not reach its depth has no retraction.
     """
 
@@ -69,7 +69,7 @@ class LoopRun:
     ended: str | None = None
 
     def hysteresis(self) -> tuple[float, float] | None:
-        """Both usual measures, see `response.hysteresis`; None where there is no retraction."""
+        """Both usual measures, see `response.hysteresis`; None if there is no retraction."""
         if self.force_out.size < 2:
             return None
         return hysteresis(self.force_in, self.rise_in, self.force_out, self.rise_out)

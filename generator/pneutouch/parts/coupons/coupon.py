@@ -22,7 +22,7 @@ class Nominal:
 
     Attributes:
         feature: What it is a size of, such as hole; features of one name make one table.
-        value: As drawn, in ``unit``; None where nothing is drawn and the reading alone counts.
+        value: As drawn, in ``unit``; None if nothing is drawn and the reading alone counts.
         unit: mm, g, mL, kPa ... or Shore A.
         instrument: What measures it.
         readings: How often on each copy.
@@ -47,7 +47,7 @@ class CouponContext:
         return lay_out(self.design())
 
     def design(self) -> ResolvedDesign:
-        """The scene. Raises TypeError where the coupon belongs to no design."""
+        """The scene. Raises TypeError if the coupon belongs to no design."""
         if self.scene is None:
             raise TypeError("this coupon belongs to a design; give its scene")
         return self.scene

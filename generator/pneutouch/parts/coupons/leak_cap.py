@@ -20,7 +20,7 @@ _LEAST_DISC, _DISC_SHARE = 3.0, 1 / 3
 
 
 def draw(context: CouponContext) -> tuple[Solid, ...]:
-    """The cap in the frame of its design. Raises InputError where a part of the design has no space."""
+    """The cap in the frame of its design. Raises InputError if a part of the design has no space."""
     return (Solid("leak-cap", ROLE, context.design().connector_material, cap(context, [], 0.0)),)
 
 

@@ -54,7 +54,7 @@ class TallyRing:
 def tally(index: int, copy: int, inner: float, outer: float, width: float) -> TallyRing | None:
     """Grooves for a value's ``index`` and a ``copy``, both from 1; ``width`` mm is the narrowest, at ``inner``.
 
-    None where they do not go round the ring with a gap before the start comes again.
+    None if they do not go round the ring with a gap before the start comes again.
     """
     sectors, at = [(0.0, START * width)], START * width
     for number in (index, copy):

@@ -23,7 +23,7 @@ LEAST_LOSS_ML = 2.0
 class SiliconeBatch:
     """The silicone of one filling of the mould. Volumes in mL at the mould's size, masses in g.
 
-    ``parts_by_mass`` are the mixing parts of the material, empty where it is not known.
+    ``parts_by_mass`` are the mixing parts of the material, empty if unknown.
     """
 
     cavities: int

@@ -77,7 +77,7 @@ def plane(side: BoxSide) -> tuple[int, int]:
 def triangulated(points: Array, edges: Indices) -> Indices:
     """Indices (m, 3) of the region left of directed ``edges`` (n, 2) among plane ``points`` (k, 2); no new vertices.
 
-    Raises ComputationError where the edges bound no region.
+    Raises ComputationError if the edges bound no region.
     """
     try:
         groups = _grouped(points, _loops(points, edges))

@@ -16,7 +16,7 @@ from pneutouch.parts.specimen.mesh import Box, Mesh, Point3
 def complement(box: Box, inclusion: Mesh) -> Mesh:
     """The box without a closed inclusion inside it, whose faces on the box's sides lie on them exactly.
 
-    Raises ComputationError where the inclusion touches itself or the box's edges in a way that leaves no solid.
+    Raises ComputationError if the inclusion touches itself or the box's edges in a way that leaves no solid.
     """
     return _Partition(box, inclusion).matrix()
 

@@ -118,7 +118,7 @@ def octant(lattice: Lattice) -> Mesh:
     """The lattice in an octant of the cell whose side is one, closed: one batch union of its struts and one cut.
 
     Struts that cross at symmetric places can leave a spike or a touching edge (manifold3d 3.5.4: octet, cell 7.7 mm,
-    radius 0.5 mm). The radius is then changed by some parts in 100,000. Raises ComputationError where that does not
+    radius 0.5 mm). The radius is then changed by some parts in 100,000. Raises ComputationError if that does not
     help.
     """
     for nudge in _NUDGES:

@@ -13,7 +13,7 @@ _BUBBLE = "rise of a free bubble as wide as a vent: Hadamard (1911), Rybczynski 
 
 
 def mould_filling(mould: MouldAssembly) -> MouldFilling | None:
-    """Times of filling one cavity; None where the silicone's viscosity is not known."""
+    """Times of filling one cavity; None if the silicone's viscosity is not known."""
     material = mould.scene.membrane_material
     if material.casting is None or material.casting.mixed_viscosity_Pa_s is None:
         return None

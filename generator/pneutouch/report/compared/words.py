@@ -46,7 +46,7 @@ def figure_cells(row: RowRecord) -> list[tuple[str, str]]:
 
 
 def _interval(value: float, low: float | None, high: float | None) -> str:
-    """The interval; empty where it is not known, or no wider than the digits that are shown."""
+    """The interval; empty if unknown, or no wider than the digits that are shown."""
     if low is None or high is None or number(low, _DIGITS, value) == number(high, _DIGITS, value):
         return ""
     return between((value, low, high), _DIGITS)

@@ -18,11 +18,11 @@ class GroupComparison:
     Attributes:
         group: The runs and their figures.
         label: Title of the resin.
-        state: The predicted state at the group's driving pressure; None where there is none.
+        state: The predicted state at the group's driving pressure; None if there is none.
         uncertainty: Its uncertainty, as `Evaluation.uncertainty` has it for a state.
         predicted: Predicted figures by key of `bench.figure.FIGURES`, with the ends of their 95 % band where known:
             value, low, high.
-        why: Why there is no prediction; empty where there is one.
+        why: Why there is no prediction; empty if there is one.
         published: What the paper measured of this sensor, by key of `bench.figure.FIGURES`.
     """
 
@@ -35,7 +35,7 @@ class GroupComparison:
     published: dict[str, float] = field(default_factory=dict)
 
     def relative_band(self, figure: str) -> tuple[float, float] | None:
-        """Ends of a figure's predicted band over its value; None where it has none."""
+        """Ends of a figure's predicted band over its value; None if it has none."""
         value, low, high = self.predicted.get(figure, (0.0, None, None))
         return None if not value or low is None or high is None else (low / value, high / value)
 
@@ -44,7 +44,7 @@ class GroupComparison:
 class Verdict:
     """A requirement of the target against its measurement.
 
-    ``passed`` is None where the interval holds values on both sides of the limit: more specimens would decide.
+    ``passed`` is None if the interval holds values on both sides of the limit: more specimens would decide.
     """
 
     what: str

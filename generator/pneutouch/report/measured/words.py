@@ -45,7 +45,7 @@ def signed(value: float | None, digits: int = 1) -> str:
 
 
 def difference(measured: float, predicted: float) -> float | None:
-    """Measured less predicted in percent of the predicted; None where that is nothing."""
+    """Measured less predicted in percent of the predicted; None if that is nothing."""
     return 100 * (measured - predicted) / abs(predicted) if predicted else None
 
 

@@ -28,7 +28,7 @@ _APART = 1.2
 
 
 def mould_files(mould: MouldAssembly) -> tuple[dict[str, bytes], dict[str, str]]:
-    """The files by name, and those left out with the reason. Raises ComputationError where the CAD kernel fails."""
+    """The files by name, and those left out with the reason. Raises ComputationError if the CAD kernel fails."""
     name = f"{mould.scene.name}-mould"
     files = {f"{FOLDER}/{body.name}.stl": stl(body) for body in mould.printed}
     plates = _plates(mould)

@@ -109,7 +109,7 @@ def prepare(
 
 
 def savable(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
-    """`calibration_content`, checked. Raises InputError where it cannot be a calibration.
+    """`calibration_content`, checked. Raises InputError if it cannot be a calibration.
 
     That is: a modulus, a wall or a friction that was fitted has no interval, the data do not determine the friction,
     the runs contradict the fitted model, or a value or its uncertainty is beyond the bounds. The key is ``fit`` where
@@ -149,7 +149,7 @@ def _check_friction(calibration: Calibration) -> None:
 
 
 def save(saved: SavedCalibration) -> None:
-    """Write what `prepare` made. Raises InputError where the folder cannot be written."""
+    """Write what `prepare` made. Raises InputError if the folder cannot be written."""
     try:
         write_profiles([MeasuredProfile(saved.path, saved.text, [])])
     except InputError as error:

@@ -140,7 +140,7 @@ def calibrate(
 
 
 def chosen_sensor(campaign: Campaign, sensor: str | None) -> str:
-    """The sensor named, or the only one. Raises InputError where there are several and none is named, or not that."""
+    """The sensor named, or the only one. Raises InputError if there are several and none is named, or not that."""
     known = sorted({run.sensor for run in campaign.runs})
     if sensor is None and len(known) > 1:
         raise InputError(f"the campaign holds {', '.join(known)}", key="sensor", remedy="name one")

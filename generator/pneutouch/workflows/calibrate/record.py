@@ -26,7 +26,7 @@ class EstimateRecord(TypedDict):
 
 
 class CorrelationRecord(TypedDict):
-    """The correlation matrix of the fitted parameters, None where it is not known."""
+    """The correlation matrix of the fitted parameters, None if unknown."""
 
     parameters: list[str]
     matrix: list[list[float | None]]

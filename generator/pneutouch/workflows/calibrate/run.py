@@ -158,7 +158,7 @@ def _write(
 ) -> tuple[list[Path], list[str]]:
     """Write the fit's report and the calibration: the written files, and a note if there is no calibration.
 
-    Raises InputError where ``save`` requires one; the report is written nevertheless.
+    Raises InputError if ``save`` requires one; the report is written nevertheless.
     """
     unsaved: list[str] = []
     try:

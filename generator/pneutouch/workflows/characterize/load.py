@@ -81,7 +81,7 @@ def load_curves(
     """Read a campaign's folder, its campaign file, or one file of a steps run; ``reading`` is laid over the campaign.
 
     A single file is of the design's resin and of that of its driving pressures that was read before contact; ``scene``
-    is the design then. Raises InputError where the campaign itself is wrong, or none of its files can be read.
+    is the design then. Raises InputError if the campaign itself is wrong, or none of its files can be read.
     """
     if data.is_dir() or data.suffix == ".toml":
         campaign, folder = campaign_of(data)
@@ -159,7 +159,7 @@ def _read(
 
 
 def recognise(run: CampaignRun, campaign: Campaign, folder: Path) -> MeasuredFile:
-    """The file of a run with its columns; no sample is read. Raises InputError where one is not found."""
+    """The file of a run with its columns; no sample is read. Raises InputError if one is not found."""
     path = folder / run.file
     if not is_file(path):
         raise InputError("no such file", file=path, remedy=f"the campaign names it as {run.label}")

@@ -92,7 +92,7 @@ def characterize(
 
     ``design`` comes before the one that the campaign names; ``changes`` are laid over either, and ``reading`` (tables
     ``columns`` and ``format``) over what the campaign states of its files. ``model`` USUAL is the solid, or harmonic
-    off the axis. Raises InputError where nothing can be read; files that fail are listed in the outcome.
+    off the axis. Raises InputError if nothing can be read; files that fail are listed in the outcome.
     """
     library = library or Library.default()
     name, named = (design, {}) if design is not None else _design_of(data, library)

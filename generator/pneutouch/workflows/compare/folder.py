@@ -53,7 +53,7 @@ def as_written(folder: Path, name: str, remedy: str) -> Iterator[None]:
 
 
 def interval_of(entry: Mapping[str, Any]) -> tuple[float, float | None, float | None]:
-    """Value, low and high of a figure, the last two None where it has no interval. Raises ValueError for all else."""
+    """Value, low and high of a figure, the last two None if it has no interval. Raises ValueError for all else."""
     value, low, high = entry["value"], entry["low"], entry["high"]
     numbers([value, *(each for each in (low, high) if each is not None)])
     if low is not None and high is not None and low > high:
@@ -70,7 +70,7 @@ def numbers(values: Any) -> list[float]:
 
 
 def listed_file(folder: Path, name: str, manifest: dict[str, Any]) -> bytes:
-    """A file of an output folder. Raises InputError where it is missing or not as it was written."""
+    """A file of an output folder. Raises InputError if it is missing or not as it was written."""
     entry = manifest["files"].get(name)
     if entry is None or not os.path.lexists(folder / name):
         raise InputError(f"holds no {name}", file=folder, remedy="make the folder again")

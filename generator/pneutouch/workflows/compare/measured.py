@@ -43,7 +43,7 @@ class MeasuredColumn:
 def measured_columns(folder: Path, *, predicted: bool = False) -> list[MeasuredColumn]:
     """The columns of a folder of results; ``predicted`` adds the prediction that stands in it, before each.
 
-    Raises InputError where the folder is damaged or holds no group.
+    Raises InputError if the folder is damaged or holds no group.
     """
     manifest = manifest_of(folder)
     with as_written(folder, "figures.json", "characterize the campaign again"):

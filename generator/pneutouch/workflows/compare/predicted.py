@@ -54,7 +54,7 @@ class PredictedColumn:
     def sensor(self, depths: Depths) -> ComparedSensor:
         """The column; where there is a measurement, figures of the curve are read at its depths.
 
-        Raises InputError where a build's prediction is not as it was written."""
+        Raises InputError if a build's prediction is not as it was written."""
         with as_written(Path(self.source), "prediction.json", _REMEDY) if self.evaluation is None else nullcontext():
             states = [_state(state, self.document, depths) for state in self.document["states"]]
             inputs = self._inputs()
@@ -108,7 +108,7 @@ def of_design(evaluation: Evaluation, source: str) -> PredictedColumn:
 def of_build(folder: Path) -> PredictedColumn:
     """The column of a build's output folder: its recorded prediction, and the scene of its recipe.
 
-    Raises InputError where the folder is damaged.
+    Raises InputError if the folder is damaged.
     """
     manifest = manifest_of(folder)
     with as_written(folder, "prediction.json", _REMEDY):

@@ -71,7 +71,7 @@ def compare(
     """Set two or more columns side by side; a folder of results alone is its measurement and its prediction.
 
     ``changes`` are laid over every design, and over that of every build, which is then predicted again; ``options``
-    are those of `evaluation.evaluate`. Raises InputError where something cannot be compared.
+    are those of `evaluation.evaluate`. Raises InputError if something cannot be compared.
     """
     library = library or Library.default()
     _check_given(given)

@@ -39,7 +39,7 @@ def resins_of(pair: str, *, file: str | None = None, key: str) -> tuple[str, str
 def blends(pair: str, library: Library) -> list[CouponMix]:
     """Mixes of a pair to print, up to the end of its mixing curve or to the stiffness that a membrane may have.
 
-    Raises InputError where there is no curve."""
+    Raises InputError if there is no curve."""
     soft, stiff = resins_of(pair, key="mixing")
     for name in (soft, stiff):
         library.load("materials", name, key="mixing")

@@ -26,7 +26,7 @@ def local_curve(
     out: Path,
     results: CouponFindings,
 ) -> MeasuredProfile | None:
-    """The lab's mixing curve of a pair, checked but not written; None where nothing was measured.
+    """The lab's mixing curve of a pair, checked but not written; None if nothing was measured.
 
     Figures and notes go to ``results``. Raises InputError for unknown resins, for moduli that do not rise with the
     fraction, and where a curve of that name was not written by the command.

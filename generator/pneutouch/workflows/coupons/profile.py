@@ -37,7 +37,7 @@ def local_profiles(
 ) -> list[MeasuredProfile]:
     """One profile for each material and printer that something was measured of, checked but not written.
 
-    Quantities that an earlier run of the command measured and this one did not are kept. Raises InputError where a file
+    Quantities that an earlier run of the command measured and this one did not are kept. Raises InputError if a file
     of that name was not written by the command.
     """
     profiles = []
@@ -65,7 +65,7 @@ def head(source: ReadingSource, what: str) -> str:
 
 
 def write_profiles(profiles: Sequence[MeasuredProfile]) -> None:
-    """Write every profile, or none. Raises InputError where a folder cannot be written."""
+    """Write every profile, or none. Raises InputError if a folder cannot be written."""
     replace_files({profile.path: profile.text.encode() for profile in profiles})
 
 

@@ -83,7 +83,7 @@ def _material(name: str, file: str, key: str, library: Library) -> Material:
 
 
 def _shipped(kind: str, name: str, file: str, key: str, library: Library) -> Any:
-    """A profile as it was before the command wrote one. Raises InputError where the name is unknown."""
+    """A profile as it was before the command wrote one. Raises InputError if the name is unknown."""
     library.load(kind, name, file=file, key=key)
     path = base_file(kind, name, library)
     return KINDS[kind].validate(read_toml(path), str(path))

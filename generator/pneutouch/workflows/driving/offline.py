@@ -64,7 +64,7 @@ def _input(curves: ReachCurves, name: str) -> float:
 
 
 def _with(curves: ReachCurves, name: str, value: float, pressure: float, figure: str) -> float | None:
-    """The figure with one input changed, at a driving pressure in MPa; None where the model has none."""
+    """The figure with one input changed, at a driving pressure in MPa; None if the model has none."""
     sensor = curves.evaluation.sensor.replace(**{name: value})
     try:
         states = predict("changed", sensor, [pressure], model=curves.model).states

@@ -92,7 +92,7 @@ class ReachCurves:
 
 
 def figure_of(state: SensorState, figure: str) -> float:
-    """A figure of a task by its key, in its unit; NaN where the state has none."""
+    """A figure of a task by its key, in its unit; NaN if the state has none."""
     if state.figures is None:
         return float("nan")
     return {

@@ -31,8 +31,8 @@ class SealedState:
         by_temperature: Change of the pressure, MPa/K.
         slope: Change of the figure over the driving pressure, in its unit over MPa; None at a jump.
         step: Change of the driving pressure that changes the figure by `HOLD_SHARE`, MPa; None at an extremum.
-        loss: Fall of the pressure by the leak, MPa/s; None where the leak is not known.
-        hold: Time in which the leak changes the figure by `HOLD_SHARE`, s; None where one of both is not known.
+        loss: Fall of the pressure by the leak, MPa/s; None if the leak is not known.
+        hold: Time in which the leak changes the figure by `HOLD_SHARE`, s; None if one of both is not known.
     """
 
     injected: float

@@ -57,7 +57,7 @@ def solutions(curves: ReachCurves, figure: str, value: float) -> list[DrivingSol
 
 
 def _root(curves: ReachCurves, figure: str, value: float, ends: tuple[float, float]) -> float | None:
-    """The pressure in a bracket at which the model itself gives the value (Illinois); None where the figure jumps."""
+    """The pressure in a bracket at which the model itself gives the value (Illinois); None if the figure jumps."""
     low, high = ends
     off_low, off_high = (figure_of(curves.add(end), figure) / value - 1.0 for end in ends)
     middle = off = np.nan
@@ -75,7 +75,7 @@ def _root(curves: ReachCurves, figure: str, value: float, ends: tuple[float, flo
 
 
 def band(curves: ReachCurves, figure: str, value: float, near: float) -> PressureBand | None:
-    """The band about a driving pressure (MPa), or None where the uncertainty of the figure is not known.
+    """The band about a driving pressure (MPa), or None if the uncertainty of the figure is not known.
 
     With f the predicted figure and w the expanded uncertainty of its logarithm it holds where \\|ln(f/value)\\| <= w.
     """

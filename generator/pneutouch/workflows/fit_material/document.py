@@ -110,7 +110,7 @@ def _uncast(fitted: FittedMaterial) -> list[str]:
 
 
 def _profile(fitted: FittedMaterial) -> str | None:
-    """The profile that makes the material: one that casts where it is cast; None where none runs it."""
+    """The profile that makes the material: one that casts where it is cast; None if none runs it."""
     material = _material(fitted)
     made = makers(material, Library.default())
     cast = [name for name, one in made.items() if one.is_casting == material.is_cast]

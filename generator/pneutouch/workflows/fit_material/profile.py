@@ -25,7 +25,7 @@ _POISSON = {
 
 
 def material_file(fitted: FittedMaterial, library: Library) -> str:
-    """The text of the file, checked as a material. Raises InputError where a file of that name is not of a fit."""
+    """The text of the file, checked as a material. Raises InputError if a file of that name is not of a fit."""
     _check_ours(fitted.path)
     content = _base(fitted, library)
     content["shear_modulus_MPa"] = _modulus(fitted)

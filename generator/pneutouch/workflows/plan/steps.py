@@ -14,7 +14,7 @@ _REST = (("wait", 0.2), ("vent", 0.2), ("set_pressure", 0.2), ("wait", 0.4))
 
 
 class StepRecord(TypedDict):
-    """One step: the action, the value that it sets in ``unit`` (None where it sets none), and its seconds."""
+    """One step: the action, the value that it sets in ``unit`` (None if it sets none), and its seconds."""
 
     action: str
     value: float | None

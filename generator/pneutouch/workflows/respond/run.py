@@ -51,7 +51,7 @@ class GaugeSamples:
 @dataclass(frozen=True)
 class StateSignal:
     """One state's signal, arrays of one length: load (N or mm), pressure rise (MPa) of a slow press, in the cavity and
-    at the gauge; ``samples`` None where the gauge's rate is not known."""
+    at the gauge; ``samples`` None if the gauge's rate is not known."""
 
     driving_pressure: float
     source: str | None

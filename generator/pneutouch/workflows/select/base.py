@@ -56,7 +56,7 @@ def setting_changes(target: Target, library: Library) -> dict[str, Any]:
 def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
     """The scene that gives everything the target does not; its own dome is replaced by the candidates'.
 
-    Raises InputError where it names what there is not; ``where`` names the target's file.
+    Raises InputError if it names what there is not; ``where`` names the target's file.
     """
     with named_by_target(target, where):
         return _base_scene(target, where, library)
@@ -114,7 +114,7 @@ def check_central(scene: ResolvedDesign) -> None:
 
 
 def requested_pair(target: Target, where: str, printer: Printer, library: Library) -> ResinPair | None:
-    """The pair to mix: the one named, the usual one for a grade; None where resins are to be chosen from."""
+    """The pair to mix: the one named, the usual one for a grade; None if resins are to be chosen from."""
     given = target.given
     if given.mix is None and not given.graded:
         return None

@@ -38,7 +38,7 @@ def write_charts(
 
     Returns what was written.
 
-    Raises InputError where the folder cannot be written.
+    Raises InputError if the folder cannot be written.
     """
     library = library or Library.default()
     charts = {"trade-off.svg": tradeoff_chart(tradeoff(selection, library), _SIZE)}

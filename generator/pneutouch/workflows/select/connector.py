@@ -42,7 +42,7 @@ def connector_fit(scene: ResolvedDesign) -> Callable[[Array, Array], ConnectorFi
 def base_sensor(scene: ResolvedDesign) -> Sensor:
     """The sensor of a base, whose own dome is drawn in another size where the connector has no space for it.
 
-    Raises InputError where no size has space.
+    Raises InputError if no size has space.
     """
     try:
         return sensor_of(assemble(scene))
@@ -68,7 +68,7 @@ def base_around(scene: ResolvedDesign, radius: float, wall: float) -> RigidBase 
     """Base that the wall of a dome of inner radius and wall (mm) can lie down on: the scene's connector as drawn for
     it.
 
-    None where the wall passes through; a plane where the connector cannot be drawn.
+    None if the wall passes through; a plane where the connector cannot be drawn.
     """
     drawn = _resized(scene, radius, wall)
     return RigidBase() if drawn is None else rigid_base(drawn)
@@ -81,7 +81,7 @@ def _sizes(scene: ResolvedDesign) -> Iterator[tuple[float, Assembly | None]]:
 
 
 def _resized(scene: ResolvedDesign, radius: float, wall: float) -> Assembly | None:
-    """The scene with another dome (mm), or None where its connector cannot be drawn."""
+    """The scene with another dome (mm), or None if its connector cannot be drawn."""
     sizes = {"inner_radius_mm": radius, "wall_thickness_mm": wall}
     membrane = scene.design.membrane.model_copy(update=sizes)
     try:

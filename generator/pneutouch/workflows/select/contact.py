@@ -85,7 +85,7 @@ class CandidateSolver:
             return SolvedStates((), "; ".join(part for part in (error.problem, error.remedy) if part))
 
     def drawn(self, resin: CandidateResin, pool: CandidatePool) -> tuple[ResolvedDesign, Sensor]:
-        """The design of a candidate and its sensor. Raises InputError where it cannot be drawn."""
+        """The design of a candidate and its sensor. Raises InputError if it cannot be drawn."""
         choice = Candidate(resin, pool, {}, np.nan, (np.nan, np.nan), np.nan, np.nan)
         unchecked: Changes = {"indentation.checked_waves": 0}
         scene = load_scene(source_of(self._base, self._assignments(choice)), unchecked, self._library)
@@ -93,7 +93,7 @@ class CandidateSolver:
 
     def expanded(self, resin: CandidateResin, pool: CandidatePool, state: SensorState) -> float:
         """Relative expanded uncertainty of the sensitivity under the contact, from the candidate's solved state: the
-        budget of `predict` at that driving pressure. NaN where it is not known."""
+        budget of `predict` at that driving pressure. NaN if unknown."""
         scene, sensor = self.drawn(resin, pool)
         sensor = even_wall(sensor)
         if unknown(sensor, "solid") is not None:
@@ -106,7 +106,7 @@ class CandidateSolver:
     def interval(
         self, resin: CandidateResin, pool: CandidatePool, drawn: TuningCurve, states: Sequence[SensorState]
     ) -> tuple[Array, Array] | None:
-        """Both ends of the k = 2 interval of a candidate's tuning curve through its states; None where not known."""
+        """Both ends of the k = 2 interval of a candidate's tuning curve through its states; None if not known."""
         scene, sensor = self.drawn(resin, pool)
         sensor = even_wall(sensor)
         if unknown(sensor, "solid") is not None:

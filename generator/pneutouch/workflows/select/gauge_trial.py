@@ -9,7 +9,7 @@ ANY = "any"
 
 @dataclass(frozen=True, slots=True)
 class GaugeTrial:
-    """A gauge by name; ``smallest_force_N`` by the best design's sensitivity, None where its noise is not known."""
+    """A gauge by name; ``smallest_force_N`` by the best design's sensitivity, None if its noise is not known."""
 
     name: str
     title: str

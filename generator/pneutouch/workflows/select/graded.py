@@ -55,7 +55,7 @@ class GradedSelectionRun:
 
     changes: what the target changes in its base, by ``table.key``. sensor: the base's, with the radius and wall
     searched at. constants: catalogue resins, then the nearest mix. solves: solid solves in all. rejected: why
-    ``check`` rejects a grade that meets the target, None where it passes or none meets it.
+    ``check`` rejects a grade that meets the target, None if it passes or none meets it.
     """
 
     target: Target
@@ -117,7 +117,7 @@ def select_graded(
     progress: TrialReport = lambda trial, done, most: None,
     trials: int | None = None,
 ) -> GradedSelectionRun:
-    """Answer a target that requires a grade. Raises InputError where it names what there is not.
+    """Answer a target that requires a grade. Raises InputError if it names what there is not.
 
     ``where`` names the file in messages; ``trials`` bounds the solid solves of the search. A grade that meets the
     target is judged as ``check`` does.

@@ -54,7 +54,7 @@ class ResinPair:
 
 
 def pair_of(name: str, printer: Printer, library: Library, where: str, named: bool = True) -> ResinPair:
-    """The pair of ``SOFT+STIFF``. Raises InputError where a name is unknown or the printer does not hold both.
+    """The pair of ``SOFT+STIFF``. Raises InputError if a name is unknown or the printer does not hold both.
 
     ``named`` is whether the user named the pair.
     """

@@ -21,7 +21,7 @@ from pneutouch.spec.template import design_template
 
 @dataclass(frozen=True)
 class RejectedDesign:
-    """A design that ``check`` rejects: the rule that it breaks, None where it cannot be drawn or predicted, and why."""
+    """A design that ``check`` rejects: the rule that it breaks, None if it cannot be drawn or predicted, and why."""
 
     choice: Candidate
     rule: str | None
@@ -31,8 +31,8 @@ class RejectedDesign:
 class Judgement(NamedTuple):
     """Judgement of ``check`` on a design.
 
-    reason: the first broken rule (None where the design cannot be drawn or predicted) and why; None where it passes.
-    evaluation: the design as the solid predicts it; None where the print rules alone looked at it.
+    reason: the first broken rule (None if the design cannot be drawn or predicted) and why; None if it passes.
+    evaluation: the design as the solid predicts it; None if the print rules alone looked at it.
     """
 
     reason: tuple[str | None, str] | None

@@ -89,7 +89,7 @@ _Offer = tuple[str, list[str] | None]
 
 
 def _profile(process: str, usual: str, resins: list[str] | None, library: Library) -> _Offer | None:
-    """A profile of a process, and those of the resins named that it makes; None where it makes none."""
+    """A profile of a process, and those of the resins named that it makes; None if it makes none."""
     printers = library.all("printers", Printer)
     known = library.all("materials", Material)
     loaded = {name: library.load("materials", name, key="given.materials") for name in resins or known}

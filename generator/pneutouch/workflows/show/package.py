@@ -15,7 +15,7 @@ _DIGITS = 6
 
 
 def show(path: Path) -> dict[str, Any]:
-    """The content of a 3MF: bodies, metadata and the recipe, None where the file is not one of ours.
+    """The content of a 3MF: bodies, metadata and the recipe, None if the file is not one of ours.
 
     Raises InputError for a file that is unsafe, not valid, or whose recipe is damaged.
     """

@@ -29,7 +29,7 @@ _QUEUED = 3
 def on_cluster(study: SweepStudy, chunks: list[SweepChunk], address: str) -> Iterator[list[Record]]:
     """Compute chunks on the cluster of a scheduler; records come in the order in which chunks are done.
 
-    A chunk whose worker is lost is computed again elsewhere by Dask. Raises InputError where there is no cluster
+    A chunk whose worker is lost is computed again elsewhere by Dask. Raises InputError if there is no cluster
     that can do this work, ComputationError where the connection is lost.
     """
     try:

@@ -100,7 +100,7 @@ def _picture_files(out: Path, name: str) -> tuple[Path, Path]:
 
 
 def swept_figure(content: xarray.Dataset) -> SweptFigure | None:
-    """The drawn figure over the swept fields; None where no state has one. A list is drawn over its first field."""
+    """The drawn figure over the swept fields; None if no state has one. A list is drawn over its first field."""
     from pneutouch.report.swept import SweptFigure
 
     if not np.isfinite(content[FIGURE].values).any():

@@ -117,7 +117,7 @@ def stored_fingerprint(path: Path) -> str:
 
 
 def stored_dataset(path: Path) -> xarray.Dataset:
-    """A finished sweep's dataset. Raises InputError where it is not as it was written."""
+    """A finished sweep's dataset. Raises InputError if it is not as it was written."""
     import xarray
 
     _check_size(path)
@@ -145,7 +145,7 @@ def _check_size(path: Path) -> None:
 def _by_pressure(
     requested_kPa: list[tuple[float, ...]], pressures_kPa: list[float], records: dict[int, Record]
 ) -> list[list[dict[str, Any]]]:
-    """States of every point, one for each pressure of the dimension; empty where a point does not have it."""
+    """States of every point, one for each pressure of the dimension; empty if a point does not have it."""
     rows = []
     for index, pressures_of in enumerate(requested_kPa):
         states = dict(zip(pressures_of, records[index]["states"], strict=True))

@@ -30,7 +30,7 @@ class Journal:
     def read(self) -> dict[int, Record]:
         """Finished points by number. Damaged lines are cut out of the file.
 
-        Raises InputError where the journal is another sweep's.
+        Raises InputError if the journal is another sweep's.
         """
         if not self.path.exists():
             return {}
@@ -82,7 +82,7 @@ def _checksum(text: bytes) -> bytes:
 
 
 def _content(line: bytes) -> dict[str, Any] | None:
-    """The content of a line, or None where it does not agree with its checksum or is of another form."""
+    """The content of a line, or None if it does not agree with its checksum or is of another form."""
     checksum, space, text = line.partition(b" ")
     if not space or checksum != _checksum(text):
         return None

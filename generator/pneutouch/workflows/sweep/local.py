@@ -32,7 +32,7 @@ def in_process(chunks: list[SweepChunk], folder: Path) -> Iterator[list[Record]]
 def in_pool(chunks: list[SweepChunk], folder: Path, workers: int) -> Iterator[list[Record]]:
     """Compute chunks in ``workers`` processes; records come in the order in which chunks are done.
 
-    Raises ComputationError where a worker dies. What ends it half way ends the processes as well.
+    Raises ComputationError if a worker dies. What ends it half way ends the processes as well.
     """
     context = multiprocessing.get_context("spawn")
     waiting, others = iter(chunks), set(multiprocessing.active_children())

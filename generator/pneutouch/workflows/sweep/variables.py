@@ -22,7 +22,7 @@ class SweepVariable:
 
 
 def _at(*keys: str) -> Callable[[Document], Any]:
-    """Reads a nested entry; None where a key is missing or null."""
+    """Reads a nested entry; None if a key is missing or null."""
 
     def read(document: Document) -> Any:
         value: Any = document

@@ -25,7 +25,7 @@ class WorkFolder:
     """
 
     def __init__(self, out: Path) -> None:
-        """Raises InputError where ``out`` cannot be a dataset's file."""
+        """Raises InputError if ``out`` cannot be a dataset's file."""
         check_output(out)
         self.out, self.path = out, out.with_name(f"{out.name}.parts")
         self.journal, self.files = self.path / _JOURNAL, self.path / _FILES
@@ -33,7 +33,7 @@ class WorkFolder:
         self._made: list[Path] = []
 
     def __enter__(self) -> WorkFolder:
-        """Make and lock the folder. Raises InputError where it cannot be, or is held, or holds foreign files."""
+        """Make and lock the folder. Raises InputError if it cannot be, or is held, or holds foreign files."""
         try:
             with uninterrupted():
                 self._enter()
@@ -94,7 +94,7 @@ class WorkFolder:
                 folder.rmdir()
 
     def _take(self) -> FileIO | None:
-        """The lock, or None where its file was removed by a sweep that ended between opening and locking it."""
+        """The lock, or None if its file was removed by a sweep that ended between opening and locking it."""
         try:
             file = FileIO(os.open(self.path / _LOCK, os.O_RDWR | os.O_CREAT, 0o644), "r+")
         except FileNotFoundError:

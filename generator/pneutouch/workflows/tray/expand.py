@@ -56,7 +56,7 @@ class ExpandedTray:
 
 
 def expand(order: TrayOrder, library: Library | None = None) -> ExpandedTray:
-    """Load and draw every design of a tray, without prediction. Raises InputError where one is wrong or none left."""
+    """Load and draw every design of a tray, without prediction. Raises InputError if one is wrong or none left."""
     library = library or Library.default()
     values = [value for entry in order.tray.entry for value in _values(order, entry, library)]
     values = [

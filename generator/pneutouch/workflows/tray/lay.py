@@ -117,7 +117,7 @@ class TrayLayout:
 
 
 def lay(order: TrayOrder, library: Library | None = None, progress: StepReport = lambda step: None) -> TrayLayout:
-    """Draw, group, mesh, mark and pack the parts of a tray. Raises InputError where it cannot be or does not fit."""
+    """Draw, group, mesh, mark and pack the parts of a tray. Raises InputError if it cannot be or does not fit."""
     progress("designs")
     expanded = expand(order, library)
     pieces, printer = expanded.pieces, expanded.printer

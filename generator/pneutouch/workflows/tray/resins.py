@@ -14,7 +14,7 @@ _EXACT = 7
 def jobs(materials: Sequence[tuple[Material, ...]], printer: Printer, where: str = "tray") -> list[list[int]]:
     """Indices of ``materials`` (those of one part each) by job: fewest jobs, then fewest resins to load.
 
-    A job's base resins must be in the printer at once, in one mode (`Printer.mode_for`). Raises InputError where a part
+    A job's base resins must be in the printer at once, in one mode (`Printer.mode_for`). Raises InputError if a part
     cannot be printed at all.
     """
     kinds: dict[frozenset[str], list[int]] = {}
