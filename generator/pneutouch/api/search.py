@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 class Selection(show.Shown):
-    """Designs that meet a target, best first; empty if none does. `to_dict` states what each misses."""
+    """Designs that meet a target, best first; empty if none does. `to_dict` names the misses of each."""
 
     def __init__(self, designs: tuple[Design, ...], content: dict[str, Any]) -> None:
         self.designs, self._document = designs, content

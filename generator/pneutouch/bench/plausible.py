@@ -50,7 +50,7 @@ _MINUS = {
 
 _HOLD_FAR = 50.0
 _WHY = "another resin (runs.resin) or design (design), a smaller plate, or a wrong calibration?"
-_WHY_LEAK = "a leak, a dead volume that is not stated (pneumatics.dead_volume_mL), another resin or design?"
+_WHY_LEAK = "a leak, a dead volume that is not given (pneumatics.dead_volume_mL), another resin or design?"
 _WHY_TIME = "holds of another protocol, another kind of run, or another column?"
 
 _START = 1.0

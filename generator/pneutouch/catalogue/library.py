@@ -58,7 +58,7 @@ def _calibration(content: dict[str, Any], where: str) -> BaseModel:
 
 
 def _by_family(models: Mapping[str, type[BaseModel]]) -> ValidateFile:
-    """A file states its family, and so which keys it has."""
+    """Validation of a file by the keys of the family that it names."""
 
     def check(content: dict[str, Any], where: str) -> BaseModel:
         family = content.get("family")

@@ -140,7 +140,7 @@ def reporting() -> Iterator[None]:
         # A name that no file can have, a folder that may not be read, a full disk: the system's own words.
         raise InputError(error.strerror or str(error), file=error.filename) from None
     except MemoryError:
-        raise ComputationError("not enough memory", remedy="request less at once, or close other programs") from None
+        raise ComputationError("not enough memory", remedy="ask for less at once, or close other programs") from None
     except Exception as error:
         refuse_stopped()
         if os.environ.get("PNEUTOUCH_DEBUG"):

@@ -123,7 +123,7 @@ def check(
     set_: SetOption = None,
     calibration: CalibrationOption = None,
     deep: Annotated[bool, typer.Option("--deep", help="Have pymeshlab (an extra) inspect the meshes as well.")] = False,
-    voxels: Annotated[bool, typer.Option("--voxels", help="Check as well what a voxel stack must keep to.")] = False,
+    voxels: Annotated[bool, typer.Option("--voxels", help="Check the limits of a voxel stack as well.")] = False,
     json: JsonOption = False,
 ) -> None:
     """Check printability and mechanical limits; exit 1 where a rule is broken."""

@@ -37,7 +37,7 @@ def calibrate(
     hold_out: Annotated[
         list[str] | None, typer.Option(metavar="KPA,KPA", help="Driving pressures to predict by the others.")
     ] = None,
-    no_priors: Annotated[bool, typer.Option("--no-priors", help="Leave aside what is known before measuring.")] = False,
+    no_priors: Annotated[bool, typer.Option("--no-priors", help="Fit to the measurements alone.")] = False,
     save: Annotated[
         str | None,
         typer.Option(

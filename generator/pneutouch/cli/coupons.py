@@ -92,7 +92,7 @@ def _enter(path: Path, out: Path | None, given: dict[str, Any], json: bool) -> N
 
     if given:
         flags = ", ".join(_FLAGS[key] for key in given)
-        raise InputError(f"--results {path}: {flags} cannot be given with it: the file states what was measured")
+        raise InputError(f"--results {path}: {flags} cannot be given with it: the file holds the measurements")
     from pneutouch.workflows.coupons.results import enter_results
 
     document = enter_results(path, out)

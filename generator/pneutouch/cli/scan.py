@@ -49,7 +49,7 @@ def scan(
     ] = "0,22",
     preload: Annotated[float, typer.Option(help="Normal force at which the height is set, N.")] = 0.5,
     speed: Annotated[float | None, typer.Option(help="Speed along the path, mm/s; left out: the specimen's.")] = None,
-    control: Annotated[str, typer.Option(help="What is held along the path: height or force.")] = "height",
+    control: Annotated[str, typer.Option(help="Quantity held constant along the path: height or force.")] = "height",
     noise: Annotated[
         float | None, typer.Option(help="White noise of a sample, kPa rms; left out: one step of the recorder.")
     ] = None,

@@ -25,7 +25,7 @@ def sweep(
     file: Annotated[Path | None, typer.Argument(metavar="SWEEP.toml", help="Sweep file: a grid or a list.")] = None,
     design: Annotated[
         str | None,
-        typer.Option("--design", help="Base design, where there is no sweep file.", autocompletion=names("designs")),
+        typer.Option("--design", help="Base design, if no sweep file is given.", autocompletion=names("designs")),
     ] = None,
     over: Annotated[
         list[str] | None,

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pneutouch.evaluation.evaluate import Evaluation
 
 STATES = 10_000
-"""Compared states where a press costs next to nothing."""
+"""Number of compared states if a press costs next to nothing."""
 
 _PRESSES = {"atlas": 100, "membrane": 100}
 _FEW = 4

@@ -117,6 +117,6 @@ def set_geometry(wrapper: Any, mesh: Any, body: Body) -> None:
 
 
 def facts_of(body: Body) -> dict[str, str]:
-    """Metadata of a body: a composite has no name of its own that could state the intent."""
+    """Metadata of a body: a composite has no name of its own that would carry the intent."""
     mix = body.material.mix
     return {"role": body.role, "material": body.material.label, **({} if mix is None else {"mix-source": mix.source})}

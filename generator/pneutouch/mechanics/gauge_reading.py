@@ -66,7 +66,7 @@ class GaugeReading:
     def limited_by(self) -> str:
         """Property of the gauge that sets the threshold, in words."""
         if self.noise is None:
-            return "not known: the gauge's noise is not stated"
+            return "not known: the gauge's noise is unknown"
         return "gauge noise" if self.noise >= (self.step or 0.0) / math.sqrt(12.0) else "gauge resolution"
 
 

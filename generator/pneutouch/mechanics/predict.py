@@ -57,7 +57,7 @@ _THROUGH_BASE = (
     "the fold of the wall at its clamped corner, which refined meshes find in deep presses, is not resolved by default",
 )
 _ON_BASE = (
-    "next to its clamp and inside, the wall lies down without friction on what it stands on; contact of the rest of "
+    "next to its clamp and inside, the wall lies down without friction on the body below it; contact of the rest of "
     "the wall with itself is not modelled"
 )
 
@@ -180,7 +180,7 @@ def _answer(
         result, limitation = _result(model, sensor, pressures, closure)
         if limitation is not None and limitation.fatal:
             raise InputError(limitation.why, key="model", value=model, remedy=_OTHER)
-        return model, result, None if limitation is None else f"requested by name, although {limitation.why}"
+        return model, result, None if limitation is None else f"asked for by name, although {limitation.why}"
     sequence = models_for(sensor, tolerance)
     passed = list(sequence.passed)
     for model in sequence.models:

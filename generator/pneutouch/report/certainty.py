@@ -113,7 +113,7 @@ def _model_rows(sheet: SheetData) -> list[list[str]]:
     exact = f"within {error:.1%} in sensitivity"
     if prediction.model == "membrane":
         exact = f"up to {1 + error:.0f} times off the solid's sensitivity"
-    usual = _ONLY_MODEL if prediction.model == "harmonic" else "requested by name, or the default"
+    usual = _ONLY_MODEL if prediction.model == "harmonic" else "asked for by name, or the default"
     why = prediction.error_estimate.get("model_choice", usual)
     rows = [["Model", prediction.model], ["Numerical error", exact], ["Why this model", why]]
     calibration = sheet.scene.calibration

@@ -12,7 +12,7 @@ DASH = "–"
 
 _CAPTION = (
     "The fraction of the stiff resin is printed exactly; its modulus is assumed. The published characterizations of "
-    "such mixes differ, and none is of these two resins: each column states what this design does if its curve is true "
+    "such mixes differ, and none is of these two resins: each column predicts this design if its curve is true "
     "(docs/background/mixing.md). A curve measured on coupons of the printer in use replaces all of them."
 )
 _BEYOND = (

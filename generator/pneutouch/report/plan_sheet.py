@@ -176,7 +176,7 @@ def _air(plan: dict[str, Any]) -> list[str]:
             )
         else:
             lines.append(
-                "- The design states no dead volume, so nothing can be foretold of the line alone: push the smallest "
+                "- The design gives no dead volume, so the line's reading cannot be predicted: push the smallest "
                 "volume of the syringe into the capped line. Pushed: ________ mL  Read: ________ kPa"
             )
         lines += ["", *_pushes(air), ""]

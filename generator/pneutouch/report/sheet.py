@@ -172,7 +172,7 @@ def _operating(sheet: SheetData) -> list[list[str]]:
     design = sheet.scene.design
     pressures = ", ".join(f"{p:g}" for p in design.pneumatics.driving_pressures_kPa)
     note = sheet.assembly.dead_volume_note
-    stated = f"stated in the design, {note}" if note else "stated in the design"
+    stated = f"given in the design, {note}" if note else "given in the design"
     if design.pneumatics.dead_volume_mL is None:
         tube = f"{sheet.scene.tube.outer_diameter:g} x {sheet.scene.tube.inner_diameter:g} mm tube"
         length = f"{design.pneumatics.tube_length_mm:g} mm of {tube}"

@@ -48,7 +48,7 @@ def _with_format(name: str, schema: Schema) -> Schema:
         return {**schema, "anyOf": [_with_format(name, one) for one in schema["anyOf"]]}
     if KEY in schema["properties"]:
         return schema
-    stated = {"const": format_of(name), "description": "Format of the file; not in what a command prints."}
+    stated = {"const": format_of(name), "description": "Format of the file; not in the output of a command."}
     return {**schema, "properties": {KEY: stated, **schema["properties"]}}
 
 

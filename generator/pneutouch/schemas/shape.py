@@ -45,7 +45,7 @@ _SUFFIX = re.compile(rf"_({'|'.join(_UNITS)})(?:_\d+)?$")
 
 
 def unit_of(key: str) -> str:
-    """The unit that the name of a key states; "" where it states none."""
+    """The unit that the name of a key ends with; "" without one."""
     match = _SUFFIX.search(key)
     return _UNITS[match[1]] if match else ""
 

@@ -44,7 +44,7 @@ class CalibrationSource(Table):
         pattern="^[0-9a-f]{64}$",
         description="SHA-256 of the campaign file and of the files of the runs that were used.",
     )
-    simulated: bool = Field(description="Whether a program made the runs.")
+    simulated: bool = Field(description="True if a program made the runs.")
     curves: int = Field(ge=0, le=100_000, description="Number of loading curves.")
     injections: int = Field(ge=0, le=100_000, description="Number of injection runs.")
     driving_pressures_kPa: list[DrivingPressure] = Field(
@@ -57,7 +57,7 @@ class CalibrationSource(Table):
     )
     plate_diameter_mm: float | None = Field(default=None, gt=0, le=500, description="Plate that it was measured with.")
     contact: Printable | None = Field(
-        default=None, max_length=200, description="What it was measured with, where that is no frictionless plate."
+        default=None, max_length=200, description="Object that it was measured with, if that is no frictionless plate."
     )
 
 
@@ -119,7 +119,7 @@ class SensorCalibration(Table):
     """
 
     format: str = Field(description="Format of the file and its version.")
-    title: Printable = Field(min_length=1, max_length=200, description="What it is of.")
+    title: Printable = Field(min_length=1, max_length=200, description="Sensor and measurement behind it.")
     covariance: list[list[float]] = Field(max_length=5, description="Of the covered parameters, in their order.")
     source: CalibrationSource
     design: CalibratedDesign

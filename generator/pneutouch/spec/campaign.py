@@ -41,7 +41,7 @@ class Column(Table):
     """A column of the files: its name, its unit, and its sign."""
 
     name: str = Field(min_length=1, description="Name in the header of the file.")
-    unit: str = Field(default="", description="Unit of its numbers; left out: as the header states it.")
+    unit: str = Field(default="", description="Unit of its numbers; left out: the unit in the header.")
     sign: Literal[1, -1] = Field(default=1, description="-1 where the rig counts in the opposite direction.")
 
 
@@ -89,7 +89,7 @@ class FileFormat(Table):
 
 
 def merged_columns(under: ColumnMap, over: ColumnMap | None) -> ColumnMap:
-    """Columns of ``under``, those that ``over`` states in their place."""
+    """Columns of ``under``, with those of ``over`` in their place."""
     both = [one for one in (under, over) if one is not None]
     return ColumnMap.model_validate(
         {key: getattr(one, key).model_dump() for one in both for key in one.model_fields_set}
@@ -158,7 +158,7 @@ class Campaign(Table):
     assignments: list[str] = Field(
         default=[], max_length=100, description="What changes the design, TABLE.KEY=VALUE each."
     )
-    simulated: bool = Field(default=False, description="Whether a program made the files; every sheet states it.")
+    simulated: bool = Field(default=False, description="True if a program made the files; every sheet says so.")
     ambient_pressure_kPa: float | None = number(
         None, unit="kPa", low=20, high=1000, help="Absolute pressure in the laboratory; left out: the design's."
     )

@@ -44,7 +44,7 @@ class GaugeRange(Table):
 class Transfer(Table):
     """[transfer]: the output at both ends of the range, straight between; none of a compensated output."""
 
-    output: Output = Field(description="What the gauge gives out.")
+    output: Output = Field(description="Output of the gauge.")
     at_low: float | None = Field(default=None, ge=-1e12, le=1e12, description="Output at the low end of the range.")
     at_high: float | None = Field(default=None, ge=-1e12, le=1e12, description="Output at the high end.")
     source: str = Field(min_length=8, description="Table, page or address; how far it was verified.")
@@ -86,7 +86,7 @@ class Gauge(Table):
     overload_kPa: Quantity | None = _figure("kPa", 0, 1e5, "Greatest pressure that leaves it as it was.")
     supply_V: Quantity | None = _figure("V", 0.5, 60, "Supply voltage.")  # noqa: N815
     temperature_C: Quantity | None = _figure("°C", -100, 300, "Temperatures at which it may be used.")
-    unknown: dict[str, str] = Field(default_factory=dict, description="For figures left out: what was searched.")
+    unknown: dict[str, str] = Field(default_factory=dict, description="For figures left out: the sources searched.")
 
     @field_validator(
         "resolution_kPa",
@@ -114,7 +114,7 @@ class Gauge(Table):
             if key not in FIGURES:
                 raise ValueError(f"unknown.{key}: is no figure of a gauge; must be one of {', '.join(FIGURES)}")
             if getattr(self, key) is not None:
-                raise ValueError(f"unknown.{key}: is stated as {key} too; give one of both")
+                raise ValueError(f"unknown.{key}: is given as {key} too; give one of both")
         return self
 
     @model_validator(mode="after")

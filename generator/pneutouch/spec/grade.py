@@ -40,7 +40,7 @@ class Grade(Table):
     )
     at: list[float] | None = Field(default=None, description="Knots along the arc, 0 at the pole, 1 at the rim.")
     curve: str | None = Field(
-        default=None, min_length=1, description="Mixing curve by name, where the pair's file states more than one."
+        default=None, min_length=1, description="Mixing curve by name, if the pair's file has more than one."
     )
 
     @model_validator(mode="after")

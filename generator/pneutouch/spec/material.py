@@ -69,7 +69,7 @@ class Mix(Table):
     def _whole(self) -> Mix:
         for resin, fraction in self.fractions.items():
             if not fraction > 0:
-                raise ValueError(f"fractions.{resin} = {fraction:g}: must be more than 0; leave out what is not in it")
+                raise ValueError(f"fractions.{resin} = {fraction:g}: must be more than 0; leave out resins not in it")
         total = math.fsum(self.fractions.values())
         if abs(total - 1) > _MIX_SUM:
             raise ValueError(f"fractions add up to {total:.9g}; they must add up to 1")
@@ -178,7 +178,7 @@ class Material(Table):
     elongation_at_break_percent: Quantity | None = Field(default=None, description="Elongation at break.")
     law: HyperelasticLaw | None = Field(default=None, description="A law of the material's own; left out: neo-Hookean.")
     measured: PaperMeasurements | None = Field(
-        default=None, description="What the paper measured on its sensor in this material."
+        default=None, description="Measurements of the paper on its sensor in this material."
     )
     mix: Mix | None = Field(
         default=None, description="Volume fractions of a digital material's base resins, where they are known."

@@ -58,7 +58,7 @@ class MixingPoint(Table):
 class MixingCurveNames(Table):
     """Names of the curves that one file states: the one in use, and those through the ends of every point's range."""
 
-    fraction: str = Field(min_length=1, description="The curve through the points, used where none is named.")
+    fraction: str = Field(min_length=1, description="The curve through the points, used if no curve is named.")
     fraction_low: str = Field(min_length=1, description="The stiffer curve, through the points' fraction_low.")
     fraction_high: str = Field(min_length=1, description="The softer curve, through the points' fraction_high.")
 
@@ -80,7 +80,7 @@ class MixingCurve(Table):
     title: str = Field(description="Name of the pair.")
     soft: str = Field(min_length=1, description="Soft base resin.")
     stiff: str = Field(min_length=1, description="Stiff base resin.")
-    assumption: str = Field(min_length=8, description="What the curve rests on.")
+    assumption: str = Field(min_length=8, description="Source of the curve.")
     curves: MixingCurveNames | None = Field(
         default=None, description="Names of the curves, where sources differ; a measured curve has none."
     )

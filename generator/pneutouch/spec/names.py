@@ -27,7 +27,7 @@ def name_of(path: Path) -> str:
     try:
         return plain_name(path.stem)
     except InputError:
-        problem = f"the file's name without {path.suffix or 'a suffix'} is the name of what is in it"
+        problem = f"the file's name without {path.suffix or 'a suffix'} is the name of its content"
         raise InputError(problem, file=path, remedy=f"rename the file: {NAME_RULE}") from None
 
 

@@ -26,7 +26,7 @@ class Tube(Part):
     outer_diameter: Length = Field(description="Outside.")
     inner_diameter: Length = Field(description="Inside.")
     bend_radius: Length | None = Field(default=None, description="Least bend radius.")
-    materials: str = Field(description="What it is made of.")
+    materials: str = Field(description="Material that it is made of.")
 
 
 class Barb(Part):

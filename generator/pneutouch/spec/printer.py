@@ -47,9 +47,11 @@ class Mode(Table):
     name: str = Field(description="Name of the mode, as the vendor calls it.")
     layer_height_um: float | None = Field(default=None, gt=0, description="Left out: it builds no layers.")
     digital_materials: bool = Field(description="Whether it mixes digital materials.")
-    resins_at_once: int | None = Field(default=None, ge=1, le=8, description="Fewer than the machine, where it is so.")
+    resins_at_once: int | None = Field(
+        default=None, ge=1, le=8, description="Base resins in one job, if fewer than the machine's."
+    )
     layer_seconds: Quantity | None = Field(
-        default=None, description="Time of one layer, s; of one swath where there are several."
+        default=None, description="Time of one layer, s; of one swath if a layer has several."
     )
     source: str = Field(min_length=8, description="Table, page or address; how far it was verified.")
 

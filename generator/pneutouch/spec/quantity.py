@@ -11,7 +11,7 @@ class Quantity(Table):
     """A sourced number: a value, or the range a source gives, or both; ``spread`` is one standard deviation."""
 
     value: float | None = Field(
-        default=None, description="The number, in the unit of its key; may be left out where there is a range."
+        default=None, description="The number, in the unit of its key; may be left out if there is a range."
     )
     low: float | None = Field(default=None, description="Lower end of the range.")
     high: float | None = Field(default=None, description="Upper end of the range.")

@@ -21,7 +21,7 @@ class Relaxation(Table):
     """Fall of a resin's modulus after a step of strain, over its first value: 1 - sum of share (1 - exp(-t/time_s))."""
 
     terms: list[RelaxationTerm] = Field(min_length=1, max_length=20, description="In ascending order of time_s.")
-    temperature_C: float | None = Field(default=None, description="Of the test, where it is known.")
+    temperature_C: float | None = Field(default=None, description="Temperature of the test, if known.")
     source: str = Field(min_length=8, description="Table, page, DOI or measurement; how far it was verified.")
 
     @model_validator(mode="after")

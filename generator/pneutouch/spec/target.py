@@ -45,7 +45,7 @@ class TargetFigures(Table):
     fits: str | None = Field(
         default=None,
         pattern=r"^finger:[0-9]+(\.[0-9]+)?$",
-        description="finger:MM, what the sensor must fit on: a finger of that diameter, mm, by a sleeve over it.",
+        description="finger:MM, the finger, of that diameter in mm, that the sensor must fit on by a sleeve.",
     )
     same_sensitivity_at_kPa: list[float] | None = Field(
         default=None,

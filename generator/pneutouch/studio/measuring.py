@@ -247,7 +247,7 @@ def _plan(given: _Given, arguments: Mapping[str, Any]) -> None:
         return
     runs = arguments.get("runs")
     if not isinstance(runs, list) or not runs or not all(isinstance(run, dict) for run in runs):
-        raise InputError("no runs are stated", key="runs", remedy="choose the files that are runs")
+        raise InputError("no runs are given", key="runs", remedy="choose the files that are runs")
     write_runs(given.data, runs)
 
 

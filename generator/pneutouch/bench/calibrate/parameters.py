@@ -178,7 +178,7 @@ def _priors(
         [source for source in built if source.acts_on == "dead_volume"],
     )
     priors = [_together(group) for group in groups]
-    offset = (OFFSET_PRIOR, f"normal, {OFFSET_PRIOR:g} mm: our choice, what is lost of the first touch below the noise")
+    offset = (OFFSET_PRIOR, f"normal, {OFFSET_PRIOR:g} mm: our choice, the part of the touch that the noise hides")
     spreads, origins = zip(*priors, offset, _friction_prior(sensor, fitted=fitted), strict=True)
     even = [len(group) == 1 and group[0].distribution.endswith("rectangular") for group in groups]
     return np.array(spreads), np.array([*even, False, False]), tuple(origins)

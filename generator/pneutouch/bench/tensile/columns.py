@@ -67,7 +67,7 @@ def column_pairs(names: Sequence[str], units: Sequence[str], file: str) -> list[
     if not pairs and lengths and loads:
         # One of them is true and the other nominal, or the one does not state it.
         raise InputError(
-            f"column {lengths[0].name} and column {loads[0].name}: one is true, the other is not stated to be",
+            f"column {lengths[0].name} and column {loads[0].name}: one is true, the other is not named so",
             file=file,
             remedy=f"name both, as {NAMES}, or True Strain, True Stress (MPa)",
         )

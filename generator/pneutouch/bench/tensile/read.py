@@ -201,7 +201,7 @@ def _plausible(curve: TensionCurve) -> None:
     most = float(curve.stretch[-1])
     if most < LEAST_STRETCH:
         problem = f"the largest stretch is {most:.4g}, a strain of {100 * (most - 1):.3g} %"
-        remedy = f"a law needs at least {LEAST_STRETCH:g}; is a strain of per cent meant, or one named so that is none?"
+        remedy = f"a law needs at least {LEAST_STRETCH:g}; is the strain in per cent, or not a strain at all?"
         raise InputError(problem, file=curve.file, remedy=remedy)
     modulus = fit_law(LawForm("neo-hookean", 1), [curve]).constants[0]
     if not MODULI[0] <= modulus <= MODULI[1]:

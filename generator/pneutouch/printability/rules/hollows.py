@@ -4,7 +4,7 @@ from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.view import PrintView
 
 _SOURCE = "vendor, objet.com Tips and Tricks: a confined hollow is not cleanable"
-_FILAMENT = "own, unverified: what is closed cannot be inspected, and loose support stays in it"
+_FILAMENT = "our choice, unverified: a closed hollow cannot be inspected, and loose support stays in it"
 
 
 def check(view: PrintView) -> list[Finding]:

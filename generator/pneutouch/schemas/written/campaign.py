@@ -87,13 +87,13 @@ def _expected() -> Schema:
         "resin": TEXT,
         "model": TEXT,
         "states": items(record("One driving pressure.", state)),
-        "injection": record("Air to be injected, and what it reads.", injection),
+        "injection": record("Air to inject, and the expected readings.", injection),
         "limit_kPa": NUMBER,
         "limit_by": TEXT,
         "rating": typed(RatingRecord, {}),
         "leak_limit_kPa_per_min": or_null(NUMBER),
     }
-    return record("What one resin must read.", keys)
+    return record("Expected readings of one resin.", keys)
 
 
 def _test() -> Schema:
@@ -143,7 +143,7 @@ def figures() -> Schema:
         "injections": items(record("A figure of an injection.", injection)),
         "ageing": items(record("A change with age.", ageing)),
         "target": items(record("A requirement.", verdict)),
-        "questions": items(record("What is to be looked at.", {"file": TEXT, "question": TEXT})),
+        "questions": items(record("Parts of the data to look at.", {"file": TEXT, "question": TEXT})),
         "failures": items(record("A file that could not be used.", {"file": TEXT, "message": TEXT})),
         "read_as": items({"type": "object"}),
         "folder": TEXT,

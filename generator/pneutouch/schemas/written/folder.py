@@ -35,4 +35,4 @@ def manifest() -> Schema:
         "resin_changes": {"type": ["string", "null"]},
         "coupons": described_by("Coupons by name.", {"type": ["object", "array"]}),
     }
-    return record("What a folder was made from, and the digest of every file in it.", keys, set(keys) - set(required))
+    return record("Inputs of a folder, and the digest of every file in it.", keys, set(keys) - set(required))

@@ -49,7 +49,7 @@ def specimen() -> Schema:
         "scan": record("How it is to be scanned.", path),
         "layers": items(record("A layer of bars or of another pattern.", layer)),
     }
-    return record("What is in a texture specimen, and where.", keys)
+    return record("Content of a texture specimen, with places.", keys)
 
 
 def stack() -> Schema:

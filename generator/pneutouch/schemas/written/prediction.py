@@ -102,7 +102,7 @@ def _viscous() -> Schema:
         "basis": TEXTS,
         "states": items(record("One driving pressure.", state)),
     }
-    return record("Relaxation and hysteresis; or `unknown` alone, why there is none.", keys, keys)
+    return record("Relaxation and hysteresis; or `unknown` alone, the reason why there are none.", keys, keys)
 
 
 def _dynamics() -> Schema:

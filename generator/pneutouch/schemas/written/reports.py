@@ -8,7 +8,7 @@ from pneutouch.workflows.calibrate.record import OutcomeRecord
 
 def _with_folder(schema: Schema) -> Schema:
     """The schema with the folder that the command wrote."""
-    folder = {**TEXT, "description": "Where it was written; in what the command prints alone."}
+    folder = {**TEXT, "description": "Folder that it was written to; only in the output of the command."}
     return {**schema, "properties": {**schema["properties"], "folder": folder}}
 
 

@@ -92,10 +92,10 @@ def response() -> Schema:
         "gauge_rate_Hz": _MAYBE,
         "notes": TEXTS,
         "states": items(record("One driving pressure.", state, ["gain", "phase_lag_deg", "samples_file"])),
-        "basis": described_by("What the simulation rests on, in sentences.", TEXTS),
+        "basis": described_by("Assumptions of the simulation, in sentences.", TEXTS),
         "folder": TEXT,
     }
-    return record("What the gauge reads of a force that changes in time.", keys, ["peak_N", "peak_mm", "folder"])
+    return record("Readings of the gauge under a force that changes in time.", keys, ["peak_N", "peak_mm", "folder"])
 
 
 def scan() -> Schema:
@@ -200,4 +200,4 @@ def truth() -> Schema:
         "populations": items(record("Sensors of one resin, age and driving pressure.", population)),
         "notes": TEXTS,
     }
-    return record("What is true of the simulated specimens, without noise.", keys)
+    return record("True values of the simulated specimens, without noise.", keys)

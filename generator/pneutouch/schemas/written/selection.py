@@ -117,7 +117,7 @@ def _choice() -> dict[str, Schema]:
         "binding": TEXT,
         "model": TEXT,
         "rounds": WHOLE,
-        "solid": or_null(record("What the solid confirms.", solid)),
+        "solid": or_null(record("The solid's figures of the design.", solid)),
         "set": TEXTS,
     }
 

@@ -41,7 +41,7 @@ def parse_columns(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
 
 
 def with_reading(campaign: Campaign, reading: Reading | None) -> Campaign:
-    """The campaign with what ``reading`` states in place of its columns and format, those of its runs too.
+    """The campaign with ``reading`` in place of its columns and format, those of its runs too. Raises InputError.
 
     Raises InputError.
     """

@@ -50,7 +50,7 @@ def local_profiles(
         KINDS[kind].validate(content, str(path))
         profiles.append(
             MeasuredProfile(
-                path, head(source, "the shipped profile with what was measured") + toml_text(content), change_list
+                path, head(source, "the shipped profile with the measured numbers") + toml_text(content), change_list
             )
         )
     return profiles

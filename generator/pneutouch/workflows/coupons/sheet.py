@@ -12,7 +12,7 @@ _CELLS = 5
 CAST_EXCESS = 1.3
 """Silicone mixed over that of the coupons: the part struck off and the part that stays in the cup; our choice."""
 
-_CAST = "Cast as stated above. Clean, dry, and wait 24 h after the cure; note the age."
+_CAST = "Cast as described above. Clean, dry, and wait 24 h after the cure; note the age."
 
 _MIXES = (
     "Mixed pieces are composites of two base resins in the 3MF, in volume fractions. No catalogue material has a known "

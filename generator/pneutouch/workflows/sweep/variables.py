@@ -65,11 +65,7 @@ _END = "end of the interval of the sensitivity, k = 2; unknown: NaN"
 
 STATE: tuple[SweepVariable, ...] = (
     SweepVariable(
-        "status",
-        "",
-        "ok, refused (not possible), failed (not computed); empty where not requested",
-        lambda _: "ok",
-        True,
+        "status", "", "ok, refused (not possible), failed (not computed); empty if not asked for", lambda _: "ok", True
     ),
     SweepVariable("message", "", "why a state is refused or failed", lambda _: "", True),
     _number("sensitivity_kPa_per_N", "kPa/N", "slope of pressure rise over contact force, first contact to range end"),
@@ -105,7 +101,7 @@ _TEAR = "driving pressure at which the resin may tear; not before the limit poin
 _RATED = "greatest driving pressure to be used: 0.9 of the lower end (k = 2) of the least limit"
 _ERROR = "greatest known error of the sensitivity; unknown: NaN"
 _LIMIT_ERROR = "known error of the limit pressure; unknown: NaN"
-_BASIS = "what the error of the sensitivity rests on"
+_BASIS = "basis of the error of the sensitivity"
 
 POINT: tuple[SweepVariable, ...] = (
     _number("limit_point_kPa", "kPa", "driving pressure of the limit point; none: NaN", "limits", "limit_point_kPa"),
