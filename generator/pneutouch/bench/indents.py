@@ -37,8 +37,8 @@ class RunIndentations:
         parts: Block numbers.
         bases: Force and pressure before contact.
         contacts: First contacts, None if there is none.
-        indents: What was read.
-        pressed: Whether the record begins with the plate in.
+        indents: Readings of the indentations.
+        pressed: True if the record begins with the plate in.
         sign: -1 where the force falls as the sensor is pressed.
         least: Least force that counts as contact, N.
         onset: Plate position at the run's first contact, mm; NaN if there is none.

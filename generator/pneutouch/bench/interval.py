@@ -29,7 +29,7 @@ class Estimate:
         high: Upper end, likewise.
         specimens: Number of specimens behind it.
         runs: Number of runs behind it.
-        over: What the interval is over: "specimens", "runs", or "" if there is none.
+        over: Source of the scatter: "specimens", "runs", or "" if there is none.
     """
 
     value: float

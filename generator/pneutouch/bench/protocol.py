@@ -39,9 +39,9 @@ class RunProtocol:
     Attributes:
         kind: The kind of run.
         depths: Plate travels after first contact at which the plate stays, in order; of a loop its deepest point.
-        hold: How long it stays at each; 0 in a loop.
-        rest: How long it waits without contact before each indentation.
-        reset: Whether the cavity is vented and set to its driving pressure again in every rest.
+        hold: Time that it stays at each; 0 in a loop.
+        rest: Time that it waits without contact before each indentation.
+        reset: True if the cavity is vented and set to its driving pressure again in every rest.
         speed: Of the plate.
     """
 

@@ -56,7 +56,7 @@ class MeasuredIndentation:
         read: Begin and end of the stretch that was averaged: the last part of the hold.
         release: Time at which contact is lost.
         onset: Plate position at its own first contact.
-        fitted: Whether that was fitted; else it is the median of those that were.
+        fitted: True if that was fitted; else it is the median of those that were.
         indentation: Plate travel to the hold from the run's first contact (`indents.EARLY`).
         force: Mean over ``read`` less the mean before contact.
         rise: The same of the pressure.

@@ -46,7 +46,7 @@ class TuningChart:
         working_kPa_per_N: Driving pressures it is meant for and the sensitivities there, kPa to kPa/N.
         others: Designs to compare with.
         published_kPa_per_N: Measured sensitivities of this very sensor, kPa to kPa/N.
-        caption: What the curves leave out, below the chart; none where it is empty.
+        caption: Note below the chart on what the curves leave out; empty for no note.
     """
 
     chosen: TuningCurve
@@ -78,7 +78,7 @@ class TradeOff:
         window_kPa_per_N: Least and greatest required sensitivity (kPa/N), None if free.
         force: Least required force range, N; None if free.
         spots: Designs, the first picked out.
-        caption: What the fronts leave out, below the chart; none where it is empty.
+        caption: Note below the chart on what the fronts leave out; empty for no note.
         errors: Median and greatest relative difference of the fronts where the solid was solved to correct them.
     """
 
@@ -129,9 +129,9 @@ class ContactChart:
         by_tilt: A leaning plate over its tilt, degrees.
         ball_radius: mm.
         rows: The table.
-        standard_uncertainties: What an unknown place of contact adds to the logarithm of the sensitivity, by driving
+        standard_uncertainties: Addition of an unknown place of contact to the logarithm of the sensitivity, by driving
             pressure.
-        free_offset: How far a plate may stand off the axis without effect, mm.
+        free_offset: Distance of a plate from the axis without effect, mm.
     """
 
     driving_pressures_kPa: tuple[float, ...]
@@ -155,7 +155,7 @@ class PressedView:
     Attributes:
         driving_pressure_kPa: Driving pressure, kPa.
         indentation: Of the object, mm.
-        travel: How far it then moved sideways, mm.
+        travel: Distance that it then moved sideways, mm.
         force: Contact force, N.
         points: Outer surface, mm, (n, m, 3): rows from the base to the pole, columns once around.
         normals: Outward unit normals there, (n, m, 3).

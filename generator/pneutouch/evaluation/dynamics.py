@@ -59,7 +59,7 @@ class SensorBandwidth:
     Attributes:
         pieces: The air's path as drawn.
         end_volume: Gas behind it, mm3: of the gauge, or what the stated dead volume is greater by.
-        note: Where the dead volume that the prediction has is not that of the path; else None.
+        note: Note on a dead volume of the prediction that is not that of the path; else None.
         rate_Hz: Readings a second of the gauge; None if that is unknown.
         states: One a driving pressure and series of relaxation data.
     """

@@ -72,7 +72,7 @@ class ViscousData:
         depth: Indentation of the runs, mm.
         ramp_speed: Speed of the press before the hold, mm/s.
         sources: One source a series.
-        basis: What the model assumes.
+        basis: Assumptions of the model.
         rows: One row a driving pressure and series.
         held: One curve a series; None if the run ended before 1 s.
         loops: One loop a series; None without an unloading branch.
@@ -123,7 +123,7 @@ class SheetGauge(NamedTuple):
         low_kPa, limit_kPa: Least and greatest pressure read.
         threshold_kPa: Smallest change of pressure detected; None if unknown.
         rate_Hz: Readings a second; None if unknown.
-        limited_by: What the threshold follows from.
+        limited_by: Property of the gauge that sets the threshold.
         criterion: When a change counts as detected.
         forces: The smallest force at each driving pressure.
     """
@@ -185,7 +185,7 @@ class SheetData:
         rating: The rated driving pressure and what it follows from.
         numerical_error: Stated relative error in sensitivity of the model.
         zero_drift_kPa_per_K: Drift of the sealed gas without contact, at the lowest driving pressure.
-        gauge: What its gauge reads, and the smallest force at each driving pressure.
+        gauge: Range of its gauge, and the smallest force at each driving pressure.
         resin_curves: The same sensor in every resin, by title.
         viscous: Relaxation and hysteresis, or why they are not predicted.
         ageing: Change after a year, or why it is unknown.
@@ -195,11 +195,11 @@ class SheetData:
         tradeoff: The trade-off that the design is part of; None outside the atlas.
         tuning: Its sensitivity over the driving pressure; None outside the atlas.
         contact: Errors of the force read where contact is not central, or why they are not known.
-        other_contact: Whether something else than a plate without friction presses it.
+        other_contact: True if something else than a plate without friction presses it.
         object_section: Section (n, 2) in mm, r and z, of the object that presses it, at first contact with the unloaded
             dome; None for a plate.
         pressed: The pressed dome in three dimensions; None by a model without its surface.
-        speed: How fast the sensor reads; None if that was not computed.
+        speed: Speed of the sensor's reading; None if that was not computed.
         pour: The silicone to weigh; None if the membrane is not cast.
         curves: The sensor by every mixing curve of its mix, the softest first.
     """

@@ -38,7 +38,7 @@ class GaugeReading:
         noise: Standard deviation of one reading; None if unknown.
         step: Smallest step of a reading, of an analog gauge the recorder's; None if unknown.
         rate_Hz: Readings a second, of an analog gauge the recorder's; None if unknown.
-        absolute: Whether it reads ambient plus gauge pressure.
+        absolute: True if it reads ambient plus gauge pressure.
         error: Greatest error over its span; None if unknown.
     """
 

@@ -22,13 +22,13 @@ class PressedFace:
 
     Attributes:
         indentation: Of the object.
-        travel: How far the object then moved sideways.
+        travel: Distance that the object then moved sideways.
         harmonics: The Fourier sums of the positions.
         coefficients: Positions of the nodes, (n_nodes, columns), see `harmonic.fields.Harmonics`.
         forces: Contact forces of the wall on the object, normal to it, (n_ends, M + 1, 3), at the contact angles of the
             half circle; each stands for its mirror image too, whose component in y is opposite.
         areas: Areas of the deformed wall that belong to them, (n_ends, M + 1); of both images.
-        touching: What of these areas touches the object, (n_ends, M + 1).
+        touching: Part of these areas that touches the object, (n_ends, M + 1).
         lines: Lines that outline the object, (k, 3) each.
     """
 

@@ -68,8 +68,8 @@ class Rating:
     Attributes:
         pressure: The rated pressure, MPa.
         limits: The limits that are met, the one with the least lower end first.
-        measured: What the rated pressure would be with the modulus measured on coupons and confirmed, MPa.
-        is_fitted: Whether a calibration of a built sensor would cover it.
+        measured: Rated pressure with the modulus measured on coupons and confirmed, MPa.
+        is_fitted: True if a calibration of a built sensor would cover it.
     """
 
     pressure: float

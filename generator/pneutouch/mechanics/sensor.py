@@ -111,7 +111,7 @@ class ResponseCorrection:
     """Factors on the contact force and the pressure rise of atlas and solid, as a calibration found them.
 
     Attributes:
-        driving_pressures: Where they were found, MPa, ascending; none: nothing is corrected.
+        driving_pressures: Driving pressures at which they were found, MPa, ascending; empty: nothing is corrected.
         force_factors, rise_factors: The factors there; their logarithms are straight between, constant beyond.
     """
 

@@ -31,10 +31,10 @@ class PortShape:
         outside: Faces from the inner edge of the mouth, over the outside, to the root at height 0: end point and tag.
         hollow: Points from the inner edge of the mouth inwards; the last one is where the passage begins.
         length: Height of the mouth.
-        engaged: How deep a fitting or tube fills the hollow, measured from the mouth.
+        engaged: Depth to which a fitting or tube fills the hollow, measured from the mouth.
         fitting_bore: Radius that it leaves free.
         lugs: Prisms joined to the outside, in the frame of the port.
-        lug_volume: What they add, mm3.
+        lug_volume: Volume that they add, mm3.
     """
 
     outside: tuple[tuple[Point, str], ...]

@@ -39,7 +39,7 @@ class TableLayout:
     Attributes:
         names: Of the columns, as in the header; a table without header has #1, #2 and so on.
         units: Of the columns as a row or a property of their own states them, "" where none does.
-        format: How the file is written, as it is read.
+        format: Format in which the file is read.
         guessed: Keys of ``format`` that were found by the look of the numbers or of the bytes; what the file states,
             such as its delimiter or a byte order mark, is not among them.
         header_row: Row of the header, counted from 1; None without header.

@@ -53,7 +53,7 @@ class Detection:
             doi 10.2202/1544-6115.1585: counted with the record itself, so never 0). Of this frequency alone.
         surrogates: Number of noise records.
         level: Of significance.
-        is_ridge: Whether the highest point is a maximum inside the band, not the slope of another line.
+        is_ridge: True if the highest point is a maximum inside the band, not the slope of another line.
     """
 
     target: float

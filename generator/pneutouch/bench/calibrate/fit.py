@@ -36,7 +36,7 @@ class CalibrationFit:
     """A fit; coordinates as in `CalibrationParameters`.
 
     Attributes:
-        observations, points, parameters, sensor: What was fitted; the sensor as designed, in the laboratory's air.
+        observations, points, parameters, sensor: Inputs of the fit; the sensor as designed, in the laboratory's air.
         problem, solution: As solved, weights with the scatter of the runs.
         covariance: Its uncertainty.
         half_width: Of the 95 % intervals, (k,); NaN on a bound.
@@ -45,7 +45,7 @@ class CalibrationFit:
         channel_factor: Standard deviations of points over their stated ones: force, rise, injection.
         sizes: Of what the model leaves out of all runs alike, share of the reading: force, rise, injection.
         run_factor: Variance by which runs scatter more than independent points would.
-        contact: Where the contact is not a plate without friction: what the model takes the solid's ratio of.
+        contact: Contact whose ratio by the solid the model takes; None for a plate without friction.
     """
 
     observations: Observations

@@ -30,7 +30,7 @@ class Covariance:
         freedom: Degrees of freedom of the scatter between runs, infinite without scatter between runs.
         share: Share of the data in each parameter's variance, (k,).
         considered: Standard deviations that the parameters not fitted add, by those, (k, 4); they are in ``matrix``.
-        even: Which of those have a uniform prior, (4,).
+        even: Those that have a uniform prior, (4,).
         runs: Runs with a point in the fit.
         alone: For each parameter the number of the one run that it rests on, -1 where there are several, (k,).
     """

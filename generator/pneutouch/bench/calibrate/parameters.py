@@ -59,10 +59,10 @@ class CalibrationParameters:
         start: Design values; what is not fitted keeps them.
         low, high: Bounds.
         prior_spread: Standard deviations of the priors around ``start``.
-        even: Which of the priors are uniform; the others are normal.
+        even: Priors that are uniform; the others are normal.
         step: Finite difference steps.
         origin: Origin of each prior.
-        priors: Whether the priors are used in the fit.
+        priors: True if the priors are used in the fit.
         frictions: Coefficients at which the solid is solved; none where the contact is a plate without friction.
     """
 

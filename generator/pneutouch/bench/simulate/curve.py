@@ -33,7 +33,7 @@ class PressCurve:
     Attributes:
         driving: Driving pressure.
         indentation, force, rise: The curve; the first point is the origin.
-        ends: What ends the range before the requested depth, and where (mm); None if nothing does.
+        ends: Event that ends the range before the depth, and its place (mm); None without one.
     """
 
     driving: float

@@ -50,7 +50,7 @@ class LawChoice:
         whole: The same with their points beyond the range.
         largest: Greatest stretch of the fit.
         fits: The laws that were tried, in the order of `FORMS`; Ogden's alone where none before was good enough.
-        refused: Why a law cannot be used, by its index in ``fits``.
+        refused: Reasons why a law cannot be used, by its index in ``fits``.
         chosen: Index of the law taken.
         each: Shear modulus of the neo-Hookean law of each curve alone, MPa.
     """

@@ -12,10 +12,10 @@ class TensionCurve:
     """One loading: stretch (n,), rising, and nominal stress (n,) in MPa, force over the undeformed cross-section.
 
     Attributes:
-        file: Where it is from, for messages.
-        notes: What was done to the numbers as they were read.
+        file: Its file, for messages.
+        notes: Changes made to the numbers when they were read.
         slack: Strain that was taken off: pulled before the specimen carried load.
-        facts: What the file states of the test, such as its machine or its speed.
+        facts: Entries of the file on the test, such as its machine or its speed.
     """
 
     stretch: Array

@@ -32,7 +32,7 @@ class DomeForce:
 
     Args:
         model: The MjModel.
-        table: What was exported of the sensor.
+        table: Exported data of the sensor.
         driving_pressure_kPa: One of the table's; None: that of the number NAME_driving_pressure_kPa in the model.
         prefix: In front of all names where the sensor was attached with one.
 

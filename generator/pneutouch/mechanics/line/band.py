@@ -45,7 +45,7 @@ class BandFigures:
         resonance_gain: The gain there, over that of the same wall when slow.
         bandwidth: Up to where that gain is within 3 dB of the slow one: down in a damped line, up before a resonance.
         within_tolerance: Up to where the gain, relaxation of the wall included, is within `TOLERANCE` of the slow one.
-        limited_by: What ends that band: `LINE`, `GAS` or `WALL`.
+        limited_by: Effect that ends that band: `LINE`, `GAS` or `WALL`.
         highest: Up to where was looked.
     """
 

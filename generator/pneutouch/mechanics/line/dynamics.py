@@ -29,13 +29,13 @@ class SensorDynamics:
 
     Attributes:
         cavity: The gas under the dome.
-        line: What lies behind it.
+        line: Gas line behind it.
         wall_compliance: Change of the cavity volume over a pressure inside, mm3/MPa; infinite where the source sets the
             pressure, 0 where it sets the volume.
         excess, times: Terms of the wall's modulus over the relaxed one and their times in s; none: an elastic wall.
         stiffening: Factor on the wall's modulus: what it has, at once, over the relaxed one.
-        isothermal: Whether the gas of the cavity keeps its temperature at any frequency.
-        lumped: Whether the line is its isothermal volume alone.
+        isothermal: True if the gas of the cavity keeps its temperature at any frequency.
+        lumped: True if the line is its isothermal volume alone.
     """
 
     cavity: GasVolume

@@ -32,14 +32,14 @@ def budget(
         batch: The sensors, mm, MPa, mm3; see `batch_of`.
         material: Their resin; must have a shear modulus.
         printer: Who prints them.
-        near_paper: Which of them the model's error on the paper's sensor applies to, one flag or (n,).
+        near_paper: Those to which the model's error on the paper's sensor applies, one flag or (n,).
         errors: The model's relative errors against Table S1; see `model_errors`.
         numerical: Greatest relative errors of discretisation and interpolation by figure (`FIGURES`).
-        aged: Whether the sensor may be up to a year old; else it is fresh, or of the age at which it was calibrated.
+        aged: True if the sensor may be up to a year old; else it is fresh, or of the age at which it was calibrated.
         calibration: Of the sensor in hand; its parameters and its model error take the place of those of design and
             resin.
-        contact: What presses the sensor at the n driving pressures, where that is no plate without friction.
-        anywhere: Whether object and place of contact are unknown; see `sources.place`.
+        contact: Contact at the n driving pressures, if that is no plate without friction.
+        anywhere: True if object and place of contact are unknown; see `sources.place`.
 
     Raises:
         InputError: ``numerical`` names a figure that there is not.

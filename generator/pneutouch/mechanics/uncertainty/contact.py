@@ -46,7 +46,7 @@ class FrictionSpread:
         standard: Standard uncertainties of the logarithm of the figures, (figures, n); NaN if no equilibrium was
             found at another coefficient.
         elasticities: d ln figure / d ln coefficient, (figures, n); None for a surface that grips.
-        origin: How the coefficient is assumed to be distributed.
+        origin: Assumed distribution of the coefficient.
     """
 
     standard: Array

@@ -35,7 +35,8 @@ class Derivatives:
         elasticities: d ln figure / d ln input, (inputs, figures, n); 0 for the dead volume if there is none.
         local: Derivatives of ln figure by the input in its unit of uncertainty (relative; dead volume mm3), same shape.
         slopes: The same, or root mean square change over the input's spread per standard uncertainty where it is bent.
-        one_sided: Where a sensor could not be evaluated on one side: beyond its limit point or the atlas, (inputs, n).
+        one_sided: True where a sensor could not be evaluated on one side: beyond its limit point or the atlas,
+            (inputs, n).
     """
 
     logs: Array

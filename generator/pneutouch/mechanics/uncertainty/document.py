@@ -36,11 +36,11 @@ def document(
     """Figures, sources and notes of sensor ``row``.
 
     Args:
-        budget: What `budget` gave.
-        row: Which of its sensors.
+        budget: Result of `budget`.
+        row: Index of the sensor.
         values: The figures by another model, by name, with the budget's relative uncertainty; the atlas's else.
         notes: More notes, such as `gas_text`.
-        calibrated: Whether to add to each figure ``at_calibration``, its interval without the ageing since then.
+        calibrated: True if to add to each figure ``at_calibration``, its interval without the ageing since then.
 
     Returns:
         A figure that the atlas does not have is left out; without any the notes state it.

@@ -53,9 +53,9 @@ class UncertaintySource:
         acts_on: One of `INPUTS`, `FIGURE`, or `JOINT`.
         standard: Standard uncertainty (n,), relative; of the dead volume absolute, mm3, because it may be zero.
         distribution: Of the relative deviation (normal, rectangular) or of its logarithm (lognormal, log-rectangular).
-        counts: Which figures of which sensors it counts for, (figures, n).
-        origin: Where the number comes from.
-        known: Whether it is a published or measured number; False for an assumption.
+        counts: Figures and sensors that it counts for, (figures, n).
+        origin: Source of the number.
+        known: True if it is a published or measured number; False for an assumption.
         freedom: Degrees of freedom of ``standard``; infinite for a bound or an assumption (JCGM 100, G.4.3).
         loads: Of a joint source, by input its root of the covariance: how far each of independent deviations of unit
             variance moves it, in its unit; rows of one length. ``standard`` is not read then.

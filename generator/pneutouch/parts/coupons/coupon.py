@@ -21,11 +21,11 @@ class Nominal:
     """A feature to be measured.
 
     Attributes:
-        feature: What it is a size of, such as hole; features of one name make one table.
+        feature: Feature that it is a size of, such as hole; features of one name make one table.
         value: As drawn, in ``unit``; None if nothing is drawn and the reading alone counts.
         unit: mm, g, mL, kPa ... or Shore A.
-        instrument: What measures it.
-        readings: How often on each copy.
+        instrument: Instrument that measures it.
+        readings: Number of readings on each copy.
     """
 
     feature: str
@@ -61,11 +61,11 @@ class Coupon:
         name: As the command line and the results file call it.
         title: The name in text.
         belongs: Material: one set a material; printer: one a printer and material; design: one a design.
-        copies: How many are printed unless requested otherwise.
+        copies: Number that are printed by default.
         draw: The exact solids, in mm; those of a design in its frame.
-        nominals: What is measured, in the order of the sheet.
-        steps: How it is printed and measured, for the sheet.
-        formulas: What is computed from the readings, for the sheet.
+        nominals: Sizes to measure, in the order of the sheet.
+        steps: Steps of printing and measuring, for the sheet.
+        formulas: Formulas for the readings, for the sheet.
         each: Name of the table that every copy has of its own in the results file; empty: one table for all.
         kinds: Kinds of material it is made for.
         turned_over: Printed upside down: what seals or is filled then faces up and needs no support.

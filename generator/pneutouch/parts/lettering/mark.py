@@ -36,7 +36,7 @@ class Mark:
         depth: Of the engraving, or height of the raising, mm.
         stroke: Its narrowest line, measured, mm.
         height: Of capitals, mm; 0 for a tally.
-        note: Why it is none, or other than requested.
+        note: Reason why there is none, or another than asked for.
     """
 
     kind: str

@@ -22,8 +22,8 @@ class GroupComparison:
         uncertainty: Its uncertainty, as `Evaluation.uncertainty` has it for a state.
         predicted: Predicted figures by key of `bench.figure.FIGURES`, with the ends of their 95 % band where known:
             value, low, high.
-        why: Why there is no prediction; empty if there is one.
-        published: What the paper measured of this sensor, by key of `bench.figure.FIGURES`.
+        why: Reason why there is no prediction; empty if there is one.
+        published: Measurements of the paper on this sensor, by key of `bench.figure.FIGURES`.
     """
 
     group: RunGroup
@@ -60,11 +60,11 @@ class CampaignReport:
     Attributes:
         campaign: The campaign file.
         scene: The design that it is compared with.
-        folder: Where the campaign lies, as the user gave it.
+        folder: Folder of the campaign, as the user gave it.
         comparisons: Groups in the order of resin, age and pressure.
         curves: Every curve read, injections aside.
         failures: Files that are not used, with the message.
-        questions: What looks wrong and was not changed: file or run, and the question.
+        questions: Data that look wrong and were not changed: file or run, and the question.
         verdicts: Of the target, empty without one.
         injections: Figures of leak and injection runs: sensor, name, value, standard error, unit.
         ageing: Change of sensitivity between ages: resin, pressure, age, change in percent with its interval, and what

@@ -71,9 +71,9 @@ class CalibrationOutcome:
         document: The calibration's document with ``calibration`` (its name, or None), ``written``, ``failures`` and
             ``read_as``.
         calibration: The calibration itself.
-        source: Where its runs are from.
+        source: Source of its runs.
         design_given: The design as a command takes it.
-        assignments: What the campaign changes in it.
+        assignments: Changes of the campaign to it.
     """
 
     document: OutcomeRecord

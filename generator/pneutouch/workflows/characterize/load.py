@@ -40,13 +40,13 @@ class CampaignData:
 
     Attributes:
         campaign: The campaign; of a single file one that holds it alone.
-        folder: Where its files lie.
+        folder: Folder of its files.
         curves: Of every run with a plate that could be read, in the campaign's order.
         traces: The same runs thinned for plotting, by file.
         injections: Run, volumes (mm3) and pressures (MPa) of the injection runs.
         leaks: Run, leak rate and its standard error (MPa/s) of the leak runs.
         failures: Files that could not be read, with the message.
-        questions: What looks wrong in runs without a plate: file, and the question.
+        questions: Data that look wrong in runs without a plate: file, and the question.
         sources: The files that could be identified, with their columns as they were read.
     """
 

@@ -36,7 +36,7 @@ class FitOptions:
         puck: Size of the puck, where the test is one.
         largest: Stretch to fit up to; None: what a sensor reaches with such a modulus.
         slack: Strain to take off each curve; None: found.
-        facts: What else the file states of the material.
+        facts: Further entries of the file on the material.
     """
 
     data: tuple[Path, ...]
