@@ -1,4 +1,4 @@
-"""Designs, builds and measurements side by side: what differs between them, and their figures with intervals."""
+"""Designs, builds and measurements side by side: their differences, and their figures with intervals."""
 
 from __future__ import annotations
 

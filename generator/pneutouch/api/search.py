@@ -96,7 +96,8 @@ def select(target: str | Path | None = None, **fields: Any) -> Selection:
 
 
 def _selected(goal: Target, label: str, base: ResolvedDesign, changed: list[str]) -> Design:
-    """A base with what makes it a design that was found; named after a base that the target names."""
+    """The design of a search result: a base with the changes that were found; named after a base that the target
+    names."""
     name = f"{base.name if goal.setting.base else 'selected'}-{label}"
     return Design.of(DesignSource(name, assigned(base.design, changed, name), WHERE))
 

@@ -18,7 +18,7 @@ LINES, WIDTH, ROWS = 10, 110, 40
 
 
 class Shown:
-    """Base of what shows itself: a head, rows of cells, and in a notebook the section of an assembly."""
+    """Base of objects that show themselves: a head, rows of cells, and in a notebook the section of an assembly."""
 
     _columns: Sequence[str] = ()
 

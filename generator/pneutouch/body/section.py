@@ -58,7 +58,7 @@ def _inside(tool: _Tool, points: Array) -> Flags:
 
 
 class SolidSection:
-    """The inside of a solid; what does not change from section to section is worked out once."""
+    """The inside of a solid; everything that does not change from section to section is worked out once."""
 
     def __init__(self, solid: Solid) -> None:
         base = solid.base

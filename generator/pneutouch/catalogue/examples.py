@@ -44,8 +44,8 @@ def example_remedy(name: str) -> str | None:
 
 
 def read_given(path: Path, otherwise: str) -> dict[str, Any]:
-    """Content of a TOML file that a user gave. Raises InputError, which states the example of this name where there is
-    one in place of the file, and ``otherwise`` what to give."""
+    """Content of a TOML file that a user gave. Raises InputError; for a missing file its remedy is the example of this
+    name, if there is one, else ``otherwise``."""
     try:
         return read_toml(path)
     except InputError as error:

@@ -10,8 +10,8 @@ from pneutouch.cli.stop import StopSignals, stop_signals
 __all__ = ["command_line", "run"]
 
 _OBJECTS_BEFORE_COLLECTION = 250_000
-"""A command ends within seconds and keeps most of what it makes: collecting garbage at Python's 700 is a sixth of
-the time that CadQuery and matplotlib take to load."""
+"""Number of objects before a collection. A command ends within seconds and keeps most objects that it makes: collecting
+garbage at Python's 700 is a sixth of the time that CadQuery and matplotlib take to load."""
 
 _KEPT_BYTES = 1 << 20
 """The GNU C library returns freed memory to the system above a bound, which a freed block of this size raises.

@@ -41,7 +41,7 @@ def compare(
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
 ) -> None:
-    """Compare designs, builds and measurements: what differs, and which differences exceed their uncertainty."""
+    """Compare designs, builds and measurements: their differences, and those that exceed their uncertainty."""
     with reporting():
         from pneutouch.cli.progress import bar
         from pneutouch.mechanics.models import model_options

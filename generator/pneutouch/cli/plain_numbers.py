@@ -8,7 +8,7 @@ from pneutouch.spec.number import plain_number
 
 
 def with_plain_numbers(command: Any) -> Any:
-    """The command, whose number options refuse what `plain_number` does not read."""
+    """The command, whose number options refuse texts that `plain_number` does not read."""
     for parameter in command.params:
         if isinstance(parameter.process_value, partial):
             # A command may be requested more than once.

@@ -1,4 +1,4 @@
-"""Options of the commands that read measured files, and what they print of how they read them."""
+"""Options of the commands that read measured files, and the text on how they read them."""
 
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any

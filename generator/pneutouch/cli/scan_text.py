@@ -8,7 +8,7 @@ _HEAD = ["state", "patch radius mm", "N/mm", "kPa/mm", "kPa", "model"]
 
 
 def scan_text(document: dict[str, Any]) -> str:
-    """States, then what each shows of each pattern."""
+    """States, then the readings of each pattern in each."""
     states = [
         [
             state["label"],

@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM: the command unwinds, which removes what is half written, and ends with one line."""
+"""Ctrl-C and SIGTERM: the command unwinds, which removes half written files, and ends with one line."""
 
 import signal
 import sys
@@ -62,7 +62,8 @@ def _loads_library(frame: FrameType | None) -> bool:
 
 @contextmanager
 def stop_signals(after: Any = None) -> Iterator[StopSignals]:
-    """Handle the stop signals until the block ends; one that is ignored, as under nohup, stays ignored.
+    """Handle the stop signals until the block ends; one that is ignored, as under nohup, stays ignored. ``after``
+    handles them from then on.
 
     after: what handles them then, in place of what did before.
     """

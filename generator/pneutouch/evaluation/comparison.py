@@ -1,4 +1,5 @@
-"""Sensors side by side, predicted or measured: what differs in their inputs, and which figures differ significantly."""
+"""Sensors side by side, predicted or measured: the differences of their inputs, and the figures that differ
+significantly."""
 
 from __future__ import annotations
 

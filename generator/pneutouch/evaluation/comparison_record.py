@@ -1,4 +1,5 @@
-"""A comparison as it leaves the program: what ``compare`` writes, and what its page and its text are made of."""
+"""A comparison as it leaves the program: the document that ``compare`` writes, and the source of its page and its
+text."""
 
 from typing import Any, Literal, NotRequired, TypedDict
 

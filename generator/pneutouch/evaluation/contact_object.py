@@ -76,8 +76,8 @@ def contact_object(scene: ResolvedDesign) -> RigidObject | None:
 
 
 def contact_document(scene: ResolvedDesign) -> dict[str, Any]:
-    """``contact`` with what presses the sensor, by the keys of ``[contact]``; empty for a frictionless plate with its
-    usual rim. A surface that grips has the friction "inf"."""
+    """``contact`` with the pressing object, by the keys of ``[contact]``; empty for a frictionless plate with its usual
+    rim. A surface that grips has the friction "inf"."""
     contact = scene.design.contact
     if contact.is_atlas_plate:
         return {}

@@ -1,4 +1,4 @@
-"""Uncertainty of the difference of two predicted figures: what both sensors share cancels in part."""
+"""Uncertainty of the difference of two predicted figures: sources that both sensors share cancel in part."""
 
 import math
 from collections.abc import Sequence

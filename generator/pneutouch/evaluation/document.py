@@ -29,7 +29,7 @@ class UncertainStateRecord(StateRecord):
 
 
 class AgedRecord(TypedDict):
-    """The modulus after a year over the fresh one, and what that assumes."""
+    """The modulus after a year over the fresh one, and the assumption behind it."""
 
     modulus_ratio: float
     assumes: str

@@ -44,7 +44,7 @@ class DynamicState:
     step: StepFigures
 
     def usable(self, rate_Hz: float | None) -> tuple[float | None, str | None]:
-        """Bandwidth in Hz with a gauge of ``rate_Hz`` (None: unknown), and what limits it."""
+        """Bandwidth in Hz with a gauge of ``rate_Hz`` (None: unknown), and the effect that limits it."""
         line = self.band.bandwidth
         nyquist = None if rate_Hz is None else 0.5 * rate_Hz
         if nyquist is not None and (line is None or nyquist < line):

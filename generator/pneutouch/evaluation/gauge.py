@@ -1,4 +1,4 @@
-"""The smallest force that a sensor with its gauge detects, and what limits it."""
+"""The smallest force that a sensor with its gauge detects, and the limit behind it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The document of a reader, ``reader.json``: what its files in C and Python are made from."""
+"""The document of a reader, ``reader.json``: the source of its files in C and Python."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def _gauge(evaluation: Evaluation) -> dict[str, Any]:
 
 
 def _zero(evaluation: Evaluation, grid: ReaderGrid) -> dict[str, float]:
-    """Bounds of the drift that a reader follows: what warmer air makes of the sealed gas, and the gauge's noise."""
+    """Bounds of the drift that a reader follows: the effect of warmer air on the sealed gas, and the gauge's noise."""
     ambient = evaluation.sensor.gas.ambient_pressure
     content = (grid.gas_pressure + ambient) * grid.gas_volume
     inside = grid.gas_pressure >= min(grid.low, grid.gas_pressure[-2])

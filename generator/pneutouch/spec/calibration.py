@@ -35,7 +35,7 @@ _ROUNDING = 1e-6
 
 
 class CalibrationSource(Table):
-    """[source]: what was measured."""
+    """[source]: the measurement behind the calibration."""
 
     sensor: Printable = Field(min_length=1, max_length=60, description="Name of the specimen.")
     campaign: Printable = Field(default="", max_length=120, description="Title of the campaign.")
@@ -90,7 +90,7 @@ class CalibratedParameter(Table):
 
 
 class CalibratedResponse(Table):
-    """[response]: what the fitted model leaves out: factors that correct it, by driving pressure, and errors."""
+    """[response]: the error of the fitted model: factors that correct it, by driving pressure, and the errors left."""
 
     force_factors: list[Factor] = Field(description="Measured force over that of the fitted model, by pressure.")
     pressure_factors: list[Factor] = Field(description="Measured pressure rise over that of the fitted model.")

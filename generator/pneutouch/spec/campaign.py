@@ -103,7 +103,7 @@ def merged_format(under: FileFormat, over: FileFormat | None) -> FileFormat:
 
 
 class Rig(Table):
-    """[rig]: what the instruments can do. Defaults are the paper's (Supplement C)."""
+    """[rig]: the abilities of the instruments. Defaults are the paper's (Supplement C)."""
 
     name: Printable = Field(default="the paper's rig: ATI SI-40-2, SMC PSE543-R06", max_length=120, description="Name.")
     force_range_N: float = number(40.0, unit="N", low=1e-3, high=1e5, help="Greatest force of the force sensor.")

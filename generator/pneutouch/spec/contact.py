@@ -1,4 +1,4 @@
-"""[contact] of a design file: what presses the sensor, and with how much friction."""
+"""[contact] of a design file: the object that presses the sensor, and its friction."""
 
 from __future__ import annotations
 

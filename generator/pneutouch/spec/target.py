@@ -190,7 +190,7 @@ class Setting(Table):
 
 
 class Weights(Table):
-    """[weights]: what matters between designs that all meet the target."""
+    """[weights]: the preferences between designs that all meet the target."""
 
     robustness: float = number(1.0, unit="", low=0, high=100, help="Weight on a small uncertainty of the sensitivity.")
     tunability: float = number(

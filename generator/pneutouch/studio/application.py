@@ -1,4 +1,4 @@
-"""The requests of the page and what answers them."""
+"""The requests of the page and their answers."""
 
 import asyncio
 import contextlib

@@ -123,7 +123,7 @@ class Guard:
 
 
 def too_large(path: str) -> Response:
-    """The answer to a body that is longer than what ``path`` takes."""
+    """The answer to a body that is longer than ``path`` allows."""
     what = (
         f"a file has at most {LARGEST_FILE >> 20} MB"
         if path == UPLOADS

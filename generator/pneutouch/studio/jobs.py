@@ -111,7 +111,7 @@ class Jobs:
         shutil.rmtree(job.place, ignore_errors=True)
 
     async def close(self) -> None:
-        """End what runs."""
+        """End the running job."""
         await asyncio.gather(*(self.cancel(job) for job in self._jobs.values()))
         if self._watches:
             # They end with the output of their processes.

@@ -40,7 +40,7 @@ def _column(source: MeasuredFile, channel: str) -> dict[str, Any]:
 
 
 def runs_document(outcome: CharacterizationResult) -> list[dict[str, Any]]:
-    """Every run of a campaign that was read: its columns, what failed, the questions and the doubtful parts."""
+    """Every run of a campaign that was read: its columns, its error, the questions and the doubtful parts."""
     measured = outcome.measured
     failures = dict(measured.failures)
     questions: dict[str, list[str]] = {}

@@ -1,4 +1,4 @@
-"""One process for what takes a second, and one question waiting for it: the newest."""
+"""One process for computations that take a second, and one question waiting for it: the newest."""
 
 import asyncio
 import contextlib

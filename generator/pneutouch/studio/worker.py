@@ -1,4 +1,4 @@
-"""The process that computes what takes a second: one line of JSON in, one out, until its input ends."""
+"""The process for computations that take a second: one line of JSON in, one out, until its input ends."""
 
 import json
 import signal

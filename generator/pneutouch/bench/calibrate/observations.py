@@ -144,7 +144,7 @@ class ObservationPoints(NamedTuple):
 
 
 def points_of(observations: Observations) -> ObservationPoints:
-    """The arrays of observations. Raises InputError for what holds nothing to fit."""
+    """The arrays of observations. Raises InputError if there is nothing to fit."""
     if not observations.curves and not observations.injections:
         raise InputError(
             "calibrate: no curves and no injections; there must be at least one run of kind steps or injection"

@@ -50,7 +50,7 @@ class LeastSquaresSolution:
 
 class LeastSquaresProblem:
     """Residuals and derivatives; ``errors`` (N,) are the standard deviations that weigh the values, each for itself,
-    ``shared`` (N, q) what unknowns of unit variance add to many of them together."""
+    ``shared`` (N, q) the contributions of unknowns of unit variance to many of them together."""
 
     def __init__(self, model: AtlasModel, chosen: CalibrationParameters, errors: Array, shared: Array) -> None:
         self.model, self.chosen, self.errors = model, chosen, errors

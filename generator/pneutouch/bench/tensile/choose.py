@@ -1,4 +1,4 @@
-"""The law that a material takes: the fewest constants whose stress is within 5 % of what was measured."""
+"""Choice of the law of a material: the fewest constants whose stress is within 5 % of the measured one."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -12,7 +12,7 @@ SOFT = 0.1
 """MPa; below this the wall is stretched further."""
 
 REACHED, REACHED_SOFT = 2.0, 2.5
-"""Stretches of uniaxial tension, rounded up from what was measured."""
+"""Stretches of uniaxial tension, rounded up from the measured ones."""
 
 
 def reached_stretch(shear_modulus: float) -> float:

@@ -156,7 +156,7 @@ class ChainedCallback:
         self._put(self)
 
     def pause(self) -> Callable[[], None]:
-        """Take a Python callback away, whose ever it is; returns what sets it again."""
+        """Take a Python callback away, whose ever it is; returns the function that sets it again."""
         current = self._get()
         if current is None or hasattr(current, "restype"):  # A C function of ctypes.
             return lambda: None

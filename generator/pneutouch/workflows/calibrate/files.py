@@ -149,7 +149,7 @@ def _check_friction(calibration: Calibration) -> None:
 
 
 def save(saved: SavedCalibration) -> None:
-    """Write what `prepare` made. Raises InputError if the folder cannot be written."""
+    """Write the files that `prepare` made. Raises InputError if the folder cannot be written."""
     try:
         write_profiles([MeasuredProfile(saved.path, saved.text, [])])
     except InputError as error:

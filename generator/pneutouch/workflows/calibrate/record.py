@@ -1,4 +1,4 @@
-"""A calibration as data: what ``calibrate`` prints and ``calibration.json`` holds."""
+"""A calibration as data: the output of ``calibrate`` and the content of ``calibration.json``."""
 
 from typing import Any, TypedDict
 

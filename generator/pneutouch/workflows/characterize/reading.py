@@ -56,7 +56,7 @@ def with_reading(campaign: Campaign, reading: Reading | None) -> Campaign:
 
 
 def _with_stated(columns: ColumnMap, written: FileFormat, reading: Reading, file: str = "") -> dict[str, Any]:
-    """Columns and format with what ``reading`` states in their place; ``file``: of one run. Raises InputError."""
+    """Columns and format with ``reading`` in their place; ``file``: of one run. Raises InputError."""
     stated = {key: getattr(columns, key).model_dump() for key in columns.model_fields_set}
     try:
         merged = validate(ColumnMap, {**stated, **reading.get("columns", {})}, "")

@@ -137,7 +137,7 @@ def characterize(
 
 
 def _design_of(data: Path, library: Library) -> tuple[str, dict[str, Any]]:
-    """The design that a campaign names, and what changes it."""
+    """The design that a campaign names, and the campaign's changes to it."""
     if not (data.is_dir() or data.suffix == ".toml"):
         if not data.exists():
             raise InputError("no such file or folder", file=data, remedy=example_remedy(str(data)))

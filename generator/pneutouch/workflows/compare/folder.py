@@ -44,7 +44,8 @@ _MISFORMED = (KeyError, ValueError, TypeError, AttributeError, IndexError, Overf
 
 @contextmanager
 def as_written(folder: Path, name: str, remedy: str) -> Iterator[None]:
-    """Use the content of a file of ours. Raises InputError in place of what content of another form raises."""
+    """Use the content of a file of ours. Raises InputError in place of the exceptions that content of another form
+    raises."""
     try:
         yield
     except _MISFORMED as error:

@@ -81,7 +81,7 @@ def _earlier(path: Path, changes: Sequence[ProfileChange]) -> dict[str, Any]:
 
 
 def check_ours(path: Path, keys: str) -> bool:
-    """True if the command wrote the file. Raises InputError if it did not; ``keys`` is what would go into it."""
+    """True if the command wrote the file. Raises InputError if it did not; ``keys`` are the entries to write."""
     if not (path.exists() or path.is_symlink()):
         return False
     if path.is_file() and not path.is_symlink() and _is_ours(path):

@@ -1,4 +1,5 @@
-"""The print-and-measure sheet: what to print and how, what to measure with what, cells to fill, formulas."""
+"""The print-and-measure sheet: pieces and settings of the print, quantities and instruments, cells to fill,
+formulas."""
 
 from collections.abc import Mapping
 
@@ -127,7 +128,7 @@ def _table(item: CouponItem) -> list[str]:
 
 
 def _sizes(nominals: tuple[Nominal, ...]) -> list[str]:
-    """The sizes of each feature, and what measures it."""
+    """The sizes of each feature, and their instrument."""
     instruments = {nominal.feature: nominal.instrument for nominal in nominals}
     instruments_of = [f"- {feature}: {instrument}" for feature, instrument in instruments.items()]
     most = max(nominal.readings for nominal in nominals)

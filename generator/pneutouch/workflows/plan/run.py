@@ -86,7 +86,7 @@ def make_plan(
     rig_name: str = "",
     library: Library | None = None,
 ) -> CampaignPlan:
-    """Plan a campaign of the paper's tests for a design in each resin. Raises InputError for what cannot be."""
+    """Plan a campaign of the paper's tests for a design in each resin. Raises InputError if that is impossible."""
     if not 1 <= specimens <= 1000:
         raise InputError("must be from 1 to 1000", key="specimens", value=specimens)
     library = library or Library.default()

@@ -1,4 +1,4 @@
-"""The steps of a planned run: what rig and hand do, and for how long."""
+"""The steps of a planned run: the work of rig and hand, and its duration."""
 
 from typing import TypedDict
 

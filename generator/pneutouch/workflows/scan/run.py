@@ -97,7 +97,7 @@ def run_scan(
 ) -> ScanRun:
     """Scan a specimen with a sensor, both by name or path; ``changes`` are of the design.
 
-    Raises InputError for what cannot be: see `texture.contact`, `texture.scan`, `texture.detect`.
+    Raises InputError if that is impossible: see `texture.contact`, `texture.scan`, `texture.detect`.
     """
     library = library or Library.default()
     check_options(options)

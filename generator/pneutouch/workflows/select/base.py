@@ -24,7 +24,7 @@ _SEARCHED = {
     "membrane.material": "given.materials (`material`) or given.mix (`mix`)",
     "pneumatics.driving_pressures_kPa": "target.driving_pressure_kPa (`at`)",
 }
-"""Fields of a design that the search finds, and what settles them instead."""
+"""Fields of a design that the search finds, and the options that settle them instead."""
 
 _FINGER = "connector.finger_diameter_mm"
 
@@ -56,7 +56,7 @@ def setting_changes(target: Target, library: Library) -> dict[str, Any]:
 def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
     """The scene that gives everything the target does not; its own dome is replaced by the candidates'.
 
-    Raises InputError if it names what there is not; ``where`` names the target's file.
+    Raises InputError if it names something unknown; ``where`` names the target's file.
     """
     with named_by_target(target, where):
         return _base_scene(target, where, library)

@@ -1,4 +1,4 @@
-"""The charts of a selection: what its target costs, and how far the chosen design can be tuned."""
+"""The charts of a selection: the cost of its target, and the range over which the chosen design can be tuned."""
 
 from dataclasses import replace
 from pathlib import Path

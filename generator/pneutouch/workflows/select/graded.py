@@ -117,7 +117,7 @@ def select_graded(
     progress: TrialReport = lambda trial, done, most: None,
     trials: int | None = None,
 ) -> GradedSelectionRun:
-    """Answer a target that requires a grade. Raises InputError if it names what there is not.
+    """Answer a target that requires a grade. Raises InputError if it names something unknown.
 
     ``where`` names the file in messages; ``trials`` bounds the solid solves of the search. A grade that meets the
     target is judged as ``check`` does.

@@ -128,7 +128,7 @@ def select(
     written: int | None = None,
     progress: Callable[[str], None] = lambda step: None,
 ) -> SelectionRun:
-    """Answer a target. Raises InputError if it names what there is not; ``where`` names the file in messages.
+    """Answer a target. Raises InputError if it names something unknown; ``where`` names the file in messages.
 
     The best design and that of rank ``written``, to be saved, pass all that ``check`` looks at; those between them
     the print rules. Designs that do not are taken out of the answer.

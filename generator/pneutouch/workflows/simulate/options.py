@@ -39,7 +39,7 @@ class SimulationOptions:
 
 
 def check_options(options: SimulationOptions) -> None:
-    """Raise InputError for what cannot be simulated."""
+    """Raise InputError for a simulation that is impossible."""
     bounds = (
         ("specimens", options.specimens, 1, 1000),
         ("runs", options.runs, 1, 1000),

@@ -65,7 +65,7 @@ def simulate(
     """Write ``out/<design>-campaign/``: campaign.toml, runs, truth.json, manifest; the same input, the same bytes.
 
     ``design`` may be the folder of a plan, whose runs are simulated. Runs are written to a hidden folder next to the
-    one to be as they are made. Raises InputError for what cannot be.
+    one to be as they are made. Raises InputError if that is impossible.
     """
     check_options(options)
     library = library or Library.default()

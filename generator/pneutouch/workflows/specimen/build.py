@@ -45,8 +45,8 @@ def build_specimen(
 
     ``called`` is the name of the folder and its files where it is not the specimen's own.
 
-    Raises InputError for what cannot be, RuleBrokenError, with nothing written, where a rule is broken. The same input
-    gives the same bytes.
+    Raises InputError if that is impossible, and RuleBrokenError, with nothing written, if a rule is broken. The same
+    input gives the same bytes.
     """
     scene = load_specimen(name, changes, library)
     scene = scene if called is None else replace(scene, name=plain_name(called))
@@ -66,7 +66,7 @@ def build_specimen(
 def check_specimen(
     name: str, changes: Changes | None = None, library: Library | None = None, *, deep: bool = False
 ) -> list[Finding]:
-    """The findings on a specimen; with ``deep`` those of pymeshlab too. Raises InputError for what cannot be."""
+    """The findings on a specimen; with ``deep`` those of pymeshlab too. Raises InputError if that is impossible."""
     drawn = draw(load_specimen(name, changes, library))
     checked = findings(drawn)
     if deep:

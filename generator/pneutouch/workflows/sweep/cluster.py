@@ -77,7 +77,7 @@ def compute_there(chunk: SweepChunk, files: dict[str, str], version: str) -> lis
 
 
 def _result(future: Any, address: str) -> list[Record]:
-    """A chunk's records; raises what went wrong, in words."""
+    """A chunk's records; raises an error that says what went wrong."""
     if future.status == "finished":
         records: list[Record] = future.result()
         return records

@@ -94,7 +94,7 @@ def _content(line: bytes) -> dict[str, Any] | None:
 
 
 def _is_entry(content: Any) -> bool:
-    """True if a line holds what `Journal.append` writes; a checksum can be of anything."""
+    """True if a line is one that `Journal.append` writes; a checksum alone proves nothing."""
     if not isinstance(content, dict) or not isinstance(content.get("sweep"), str):
         return False
     records = content.get("records")

@@ -1,4 +1,4 @@
-"""A plan: which fields of a design are varied, over which values, and what each point of the sweep is."""
+"""A plan: the varied fields of a design, their values, and the points of the sweep."""
 
 import math
 from dataclasses import dataclass
