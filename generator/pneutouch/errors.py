@@ -94,7 +94,7 @@ class InputError(PneutouchError):
 
 
 class ComputationError(PneutouchError):
-    """A computation stopped; the message states where, why, and a remedy."""
+    """A computation stopped; the message says where, why, and a remedy."""
 
     exit_code = 3
 

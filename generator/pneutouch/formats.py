@@ -1,6 +1,6 @@
 """Versions of the files that the program writes to be read later, all in one place.
 
-Every such file states ``format = "pneutouch/NAME/VERSION"``; a campaign does in ``campaign_format``, as its ``format``
+Every such file gives ``format = "pneutouch/NAME/VERSION"``; a campaign does in ``campaign_format``, as its ``format``
 is that of the measured files. A version counts changes after which an older program would misread the file; keys that
 are added do not raise it.
 """
@@ -65,7 +65,7 @@ def versioned(name: str, document: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def problem_of(name: str, stated: object) -> tuple[str, str] | None:
-    """Problem with the format that a file states and its remedy; None for a file that can be read.
+    """Problem with the format that a file gives and its remedy; None for a file that can be read.
 
     ``stated`` is None for a file without the key.
     """

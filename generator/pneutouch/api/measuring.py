@@ -129,7 +129,7 @@ def characterize(
     """Figures of measured runs (a campaign's folder, its file or one run's) compared with the predicted ones.
 
     ``columns`` and ``file_format`` are the tables [columns] and [format] of a campaign file, such as
-    ``{"force": {"name": "Load", "unit": "N"}}`` and ``{"decimal": ","}``; what they leave out is as the campaign states
+    ``{"force": {"name": "Load", "unit": "N"}}`` and ``{"decimal": ","}``; what they leave out is as the campaign gives
     it, else found from each file.
     ``target`` is a target file to compare with; ``evidence`` states of which runs `Result.save` plots the evidence:
     "doubtful", "all" or "none".
@@ -151,7 +151,7 @@ def characterize(
 class FittedSensor(Result):
     """A sensor that was calibrated; a design that names it by `name` is predicted as this sensor.
 
-    It is None if the fit cannot be a calibration, such as with a modulus on its bound; its last note states why.
+    It is None if the fit cannot be a calibration, such as with a modulus on its bound; its last note says why.
     """
 
     def __init__(self, outcome: CalibrationOutcome) -> None:

@@ -1,4 +1,4 @@
-"""The channel and the unit that a column's name states."""
+"""The channel and the unit that a column's name gives."""
 
 import re
 from typing import NamedTuple
@@ -56,7 +56,7 @@ _LAST = re.compile(r"(.*?)(?:[\s_,:;/.-]+|\bin\s+)([^\s_,:;/]+)")
 class HeaderMeaning(NamedTuple):
     """Meaning of a header: the channel that its words name, and the channel and the unit of its unit; "" if unknown.
 
-    ``odd``: it states a unit, or another quantity, which no channel has."""
+    ``odd``: it gives a unit, or another quantity, which no channel has."""
 
     word: str
     kind: str

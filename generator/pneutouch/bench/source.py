@@ -98,7 +98,7 @@ def _rest(columns: ColumnMap, matched: dict[str, Column]) -> dict[str, dict[str,
 
 
 def _with_unit(path: Path, key: str, column: Column, layout: TableLayout) -> Column:
-    """A stated column with the unit that its header states, where the campaign states none. Raises InputError."""
+    """A stated column with the unit that its header gives, if the campaign gives none. Raises InputError."""
     if column.unit:
         return column
     place = _index(layout, column.name)

@@ -192,7 +192,7 @@ def _calibration(design: DesignFile, where: str, library: Library) -> SensorCali
 def check_scene(scene: ResolvedDesign, library: Library | None = None) -> None:
     """Check the rules between the parts of a scene. Raises InputError that names ``scene.where`` and the key.
 
-    With the ``library`` that its names were found in, it states which profiles make a material as well.
+    With the ``library`` that its names were found in, it says which profiles make a material as well.
     """
     _check_kind(scene, "membrane.material", scene.membrane_material, "elastomer")
     _check_kind(scene, "connector.material", scene.connector_material, "rigid")

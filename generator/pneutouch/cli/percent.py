@@ -1,4 +1,4 @@
-"""Options in per cent: ``5%``, ``5`` and ``0.05`` are the same; below 1 a note states it."""
+"""Options in per cent: ``5%``, ``5`` and ``0.05`` are the same; below 1 a note says so."""
 
 import typer
 

@@ -94,7 +94,7 @@ def resin_of(scene: ResolvedDesign) -> str:
 
 
 def pressed(resin: str, sensor: Sensor, pressures: Sequence[float], depth: float, model: str) -> PressCurves:
-    """`press_curves` at ascending pressures in MPa; beyond the limit point InputError states the greatest allowed
+    """`press_curves` at ascending pressures in MPa; beyond the limit point InputError gives the greatest allowed
     pressure."""
     try:
         return press_curves(sensor, pressures, depth, model)

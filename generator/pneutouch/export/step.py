@@ -1,6 +1,6 @@
 """STEP: the exact solids as one assembly, with names and colours.
 
-CadQuery, which brings the kernel, is an extra; `step_obstacle` states why there is no STEP file without it.
+CadQuery, which brings the kernel, is an extra; `step_obstacle` says why there is no STEP file without it.
 """
 
 from __future__ import annotations

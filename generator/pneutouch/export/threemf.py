@@ -1,7 +1,7 @@
 """3MF through lib3mf: one object per body, its material, one component assembly in one frame.
 
 Follows the 3MF core specification 1.4 and its materials extension 1.2: materials sit on mesh objects, never on the
-components object; a material's name states the intent and its display colour is for rendering only. A digital material
+components object; a material's name gives the intent and its display colour is for rendering only. A digital material
 whose mix is known is a composite of its base resins, any other material a base material. Bodies lie in one assembly
 because tray software rejects separate objects whose bounding boxes overlap.
 """

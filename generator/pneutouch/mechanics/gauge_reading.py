@@ -19,7 +19,7 @@ PAPER_STEP = RECORDER_STEP_V * 50.0 * KPA
 the PSE543's sheet was not read)."""
 
 PAPER_NOISE = 0.015 * KPA
-"""White noise of a reading, MPa rms: one step of the recorder. An assumption; the paper states no noise."""
+"""White noise of a reading, MPa rms: one step of the recorder. An assumption; the paper gives none."""
 
 PAPER_GAUGE = "SMC PSE543-R06"
 

@@ -45,7 +45,7 @@ class LimitPoint:
 class Limits:
     """Driving pressures (MPa) at which each limit is met; None if it is not met before the limit point.
 
-    ``law_range``: where the inflated wall leaves the stretches that its law was fitted over, of a law that states them.
+    ``law_range``: where the inflated wall leaves the stretches that its law was fitted over, of a law that gives them.
     """
 
     limit_point: float | None

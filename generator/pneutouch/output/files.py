@@ -199,7 +199,7 @@ def _our_files(folder: Path) -> set[str]:
 
 
 def stated_digest(folder: Path, name: str) -> str | None:
-    """The SHA-256 that the folder's manifest states of a file; None if it states none."""
+    """The SHA-256 that the folder's manifest gives of a file; None if it gives none."""
     try:
         digest_ = json.loads(read_bytes(folder / MANIFEST, _MOST_MANIFEST, "manifest"))["files"][name]["sha256"]
     except (InputError, ValueError, KeyError, TypeError, RecursionError):

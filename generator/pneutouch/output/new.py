@@ -27,7 +27,7 @@ _DRAWN = ("designs", "specimens")
 class NewFile:
     """A file that was written, and the words of the command that takes it: ``("select", "fingertip.toml")``.
 
-    ``first`` states what has to be done before that command. ``profile`` is its kind where it is one of `PROFILES`,
+    ``first`` says what has to be done before that command. ``profile`` is its kind where it is one of `PROFILES`,
     for which there is no command of two words."""
 
     path: Path

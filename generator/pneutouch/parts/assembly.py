@@ -107,7 +107,7 @@ class Assembly:
 
     @property
     def dead_volume(self) -> float:
-        """Gas behind the cavity in mm3: as the design states it, else as drawn."""
+        """Gas behind the cavity in mm3: as the design gives it, else as drawn."""
         stated_mL = self.scene.design.pneumatics.dead_volume_mL
         return self.drawn_volume if stated_mL is None else stated_mL * ML
 
@@ -119,7 +119,7 @@ class Assembly:
 
     @property
     def drawn_volume(self) -> float:
-        """Gas in connector, tube and gauge, mm3, whatever the design states."""
+        """Gas in connector, tube and gauge, mm3, whatever the design gives."""
         return self.internal_volume + self.tube_volume + self.gauge_volume_mL * ML
 
     @property

@@ -52,7 +52,7 @@ def _column(name: str, unit: str) -> Column:
 class ColumnMap(Table):
     """[columns]: the column map. Position counts into the sensor, force and pressure rise as it is pressed.
 
-    A channel that is left out is the column of the name below, else the one whose header states channel and unit."""
+    A channel that is left out is the column of the name below, else the one whose header gives channel and unit."""
 
     time: Column = _column("time_s", "s")
     position: Column = _column("position_mm", "mm")

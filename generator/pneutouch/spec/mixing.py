@@ -56,7 +56,7 @@ class MixingPoint(Table):
 
 
 class MixingCurveNames(Table):
-    """Names of the curves that one file states: the one in use, and those through the ends of every point's range."""
+    """Names of the curves that one file gives: the one in use, and those through the ends of every point's range."""
 
     fraction: str = Field(min_length=1, description="The curve through the points, used if no curve is named.")
     fraction_low: str = Field(min_length=1, description="The stiffer curve, through the points' fraction_low.")
@@ -138,5 +138,5 @@ class MixingCurve(Table):
 
     @property
     def common_top(self) -> float:
-        """The greatest fraction at which every curve of the file states a modulus."""
+        """The greatest fraction at which every curve of the file gives a modulus."""
         return self.points[-1].low

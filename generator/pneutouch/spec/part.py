@@ -214,4 +214,4 @@ MOUNTS: dict[str, type[Part]] = {
     "robot-flange": RobotFlange,
     "sleeve": Sleeve,
 }
-"""Models by family: a file states its family, and with it its keys."""
+"""Models by family: a file names its family, and with it its keys."""

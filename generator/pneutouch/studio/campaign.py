@@ -58,7 +58,7 @@ def placed(files: Sequence[Mapping[str, str]], paths: Sequence[str], place: Path
 
 
 def write_runs(folder: Path, runs: Sequence[Mapping[str, Any]]) -> Path:
-    """Write the campaign file of runs that the page states. Raises InputError for values that TOML has no form for."""
+    """Write the campaign file of runs that the page gives. Raises InputError for values that TOML has no form for."""
     path = folder / CAMPAIGN
     try:
         text = toml_text({"runs": [dict(run) for run in runs]})

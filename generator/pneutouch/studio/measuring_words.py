@@ -12,7 +12,7 @@ from pneutouch.workflows.calibrate.run import CalibrationOptions
 _MARKS = {"\t": "tab", " ": "space"}
 
 Parameters = list[tuple[str, str]]
-"""Names of a command's parameters with their texts; a text is empty if the name alone states it."""
+"""Names of a command's parameters with their texts; a text is empty if the name alone is enough."""
 
 
 def characterize_words(data: Path, question: Question | None, arguments: Mapping[str, Any]) -> dict[str, str]:

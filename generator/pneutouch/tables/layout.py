@@ -59,7 +59,7 @@ class TableLayout:
 
     @property
     def all_names(self) -> tuple[str, ...]:
-        """Names of the columns, and of the times that the file states in place of a column."""
+        """Names of the columns, and of the times that the file gives in place of a column."""
         return self.names if self.clock is None else (CLOCK, *self.names)
 
     def place(self, name: str) -> int | None:

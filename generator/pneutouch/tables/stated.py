@@ -19,7 +19,7 @@ _MTS_FIELDS = 6
 
 
 def stated_format(lines: Sequence[str], given: TableFormat) -> TableFormat:
-    """``given`` with the delimiter and the decimal mark that an MTS file states in its first line."""
+    """``given`` with the delimiter and the decimal mark that an MTS file gives in its first line."""
     fields = lines[0].split("|") if lines and lines[0].startswith(_MTS) else []
     if len(fields) < _MTS_FIELDS:
         return given

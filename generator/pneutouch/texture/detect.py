@@ -14,7 +14,7 @@ from pneutouch.texture.scalogram import Ridge, ridge
 from pneutouch.texture.signal import OVERSAMPLING, Signal, decimated
 
 BAND = 0.15
-"""A pattern may lie this share off the target frequency: a pitch and a speed as the paper states them are 11 % off."""
+"""A pattern may lie this share off the target frequency: a pitch and a speed as the paper gives them are 11 % off."""
 
 CYCLES = 3.0
 """Cycles of the target frequency that must lie outside the cone of influence."""

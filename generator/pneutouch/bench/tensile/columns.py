@@ -32,7 +32,7 @@ NAMES = "Engineering Strain, Engineering Stress (MPa)"
 class TensileColumn(NamedTuple):
     """One column: its name in the file, its kind, whether it is true or nominal, and its factor to 1, mm, MPa, N.
 
-    ``factor`` is None if its name states no unit.
+    ``factor`` is None if its name gives no unit.
     """
 
     name: str

@@ -37,7 +37,7 @@ _FACT = re.compile(r"([A-Z][^;,\t]*)[;,\t]([^;,\t]+)[;,\t]*")
 
 @dataclass(frozen=True, slots=True)
 class SpecimenSize:
-    """Lengths of a tensile specimen in mm; None: as the file states it."""
+    """Lengths of a tensile specimen in mm; None: as the file gives it."""
 
     gauge_length: float | None = None
     width: float | None = None

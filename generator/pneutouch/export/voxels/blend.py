@@ -20,7 +20,7 @@ Share = Callable[[Array, Array], Array]
 class ResinBlend:
     """The resins of a body, soft one first; ``share`` is of the second, None if there is one alone.
 
-    ``most`` is its greatest value. ``assumed`` states what the share rests on where it was neither measured nor
+    ``most`` is its greatest value. ``assumed`` says what the share rests on where it was neither measured nor
     requested.
     """
 

@@ -20,7 +20,7 @@ METHOD = (
 )
 
 SHORT = 1e-3
-"""Difference of fractions over a body beyond which a warning states that the request is not met."""
+"""Difference of fractions over a body beyond which a warning says that the request is not met."""
 
 
 def slice_name(prefix: str, number: int) -> str:

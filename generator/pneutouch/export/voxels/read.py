@@ -23,7 +23,7 @@ _MOST_BYTES = 100_000_000
 
 LEAST_SLICES = 30
 MOST_COLOURS = 6
-"""Largest number of colours of the utility (GrabCAD Voxel Print guide), whatever a manifest states."""
+"""Largest number of colours of the utility (GrabCAD Voxel Print guide), whatever a manifest gives."""
 
 _NEEDED: dict[str, type | tuple[type, ...]] = {
     "layers": int,

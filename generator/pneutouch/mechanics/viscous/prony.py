@@ -42,6 +42,6 @@ def prony_series(material: Material) -> tuple[Prony, ...]:
 
 
 def relaxed(sensor: Sensor, material: Material, series: Prony) -> Sensor:
-    """A sensor with its relaxed modulus; that of its resin's file is relaxed or instantaneous as the file states."""
+    """A sensor with its relaxed modulus; that of its resin's file is relaxed or instantaneous as the file says."""
     share = series.relaxed_share if material.shear_modulus_is == "instantaneous" else 1.0
     return sensor.replace(shear_modulus=share * sensor.wall.shear_modulus)

@@ -32,7 +32,7 @@ class PatternContext:
     where: str
 
     def refuse(self, number: int, key: str, value: Any, right: str) -> InputError:
-        """The error for one value of a layer: names file, layer, key and value, and states what would be right."""
+        """The error for one value of a layer: names file, layer, key and value, and says what would be right."""
         given = f"{value:g}" if isinstance(value, float | int) else shown(value)
         return InputError(f"layer[{number}].{key} = {given}: {right}", file=self.where)
 

@@ -51,7 +51,7 @@ class Plot(NamedTuple):
 class Panel:
     """The groups of one resin in the order of age and pressure.
 
-    ``campaign_pressures_kPa`` are the driving pressures of every resin, kPa; ``alone`` states that there is no other
+    ``campaign_pressures_kPa`` are the driving pressures of every resin, kPa; ``alone`` says that there is no other
     resin.
     """
 

@@ -92,7 +92,7 @@ def run_calibration(
     """Read, fit and write.
 
     The places of all files are checked before the fit. A fit that cannot be a calibration is reported: without ``save``
-    the document's ``calibration`` is None and its last note states why. Raises InputError.
+    the document's ``calibration`` is None and its last note says why. Raises InputError.
     """
     library = library or Library.default()
     if options.save is not None:

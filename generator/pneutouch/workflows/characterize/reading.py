@@ -25,7 +25,7 @@ _FORM = "write channel=NAME or channel=NAME:UNIT, such as force=Load or force=Lo
 def parse_columns(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
     """The table [columns] from texts ``channel=NAME:UNIT``, several with commas between. Raises InputError.
 
-    The unit may be left out where the header states it; a minus before the name turns the sign."""
+    The unit may be left out where the header gives it; a minus before the name turns the sign."""
     columns: dict[str, dict[str, Any]] = {}
     for text in (part for whole in texts for part in _NEXT.split(whole)):
         channel, equals, name = (part.strip() for part in text.partition("="))

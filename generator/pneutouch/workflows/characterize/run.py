@@ -91,7 +91,7 @@ def characterize(
     """Read a campaign's folder or one file, and compare its figures with the prediction of its design.
 
     ``design`` comes before the one that the campaign names; ``changes`` are laid over either, and ``reading`` (tables
-    ``columns`` and ``format``) over what the campaign states of its files. ``model`` USUAL is the solid, or harmonic
+    ``columns`` and ``format``) over what the campaign gives of its files. ``model`` USUAL is the solid, or harmonic
     off the axis. Raises InputError if nothing can be read; files that fail are listed in the outcome.
     """
     library = library or Library.default()

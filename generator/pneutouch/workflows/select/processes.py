@@ -22,7 +22,7 @@ from pneutouch.workflows.select.run import STEPS, SelectionRun
 
 @dataclass(frozen=True)
 class ProcessSelection:
-    """The answers by process, with the profile of each; ``left_out`` states why a process was not searched."""
+    """The answers by process, with the profile of each; ``left_out`` says why a process was not searched."""
 
     runs: dict[str, SelectionRun]
     profiles: dict[str, str]

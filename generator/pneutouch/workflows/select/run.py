@@ -44,7 +44,7 @@ _CONFIRMED = 3
 """Designs that are confirmed by the solid."""
 _NOTHING = SelectionResult([], None, [], 0)
 _PLATE_SHARE = 1.25
-"""Radius over R0 of a plate that no base states: the contact of an inflated dome grows past R0."""
+"""Radius over R0 of a plate that no base gives: the contact of an inflated dome grows past R0."""
 
 
 @dataclass(frozen=True)

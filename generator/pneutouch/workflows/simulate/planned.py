@@ -12,7 +12,7 @@ from pneutouch.spec.read import Changes, parse_changes
 from pneutouch.workflows.simulate.options import KINDS, SimulationOptions
 
 _STATED = ("resins", "specimens", "driving_pressures_kPa", "runs", "kinds", "ages_days")
-"""Options that a plan states."""
+"""Options that a plan gives."""
 
 
 def as_planned(

@@ -24,7 +24,7 @@ from pneutouch.spec.calibration import CalibratedResponse, SensorCalibration
 from pneutouch.units import KPA, ML
 
 FORCE_GAUGE = 0.01
-"""Greatest relative error of the rig's force sensor: an assumption; the paper states its resolution alone."""
+"""Greatest relative error of the rig's force sensor: an assumption; the paper gives its resolution alone."""
 
 NAME = "calibrated parameters"
 
