@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from pneutouch.errors import InputError, RuleBrokenError
+from pneutouch.formats import format_of
 from pneutouch.output.files import check_writable, replacing, write_folder
 from pneutouch.workflows.build import STEPS, build
 
@@ -47,7 +48,13 @@ def test_every_named_file_is_there_and_in_the_manifest(built):
         assert 0 < mesh["measured_deviation_mm"] <= mesh["tolerance_mm"]
 
 
-OLD = {"manifest.json": b'{"files": {"old.txt": {}}}', "old.txt": b"old"}
+def listing(files: str) -> bytes:
+    """A manifest that lists files."""
+    stated = format_of("manifest")
+    return f'{{"format": "{stated}", "files": {files}}}'.encode()
+
+
+OLD = {"manifest.json": listing('{"old.txt": {}}'), "old.txt": b"old"}
 
 
 @pytest.mark.slow
@@ -122,25 +129,21 @@ def test_a_build_killed_while_it_writes_leaves_the_previous_output_whole(moment,
 
 def test_a_new_build_replaces_our_files_and_keeps_other_peoples(tmp_path):
     folder = tmp_path / "x"
-    write_folder(folder, {"manifest.json": b'{"files": {"a.txt": {}, "b/c.txt": {}}}', "a.txt": b"1", "b/c.txt": b"1"})
+    write_folder(folder, {"manifest.json": listing('{"a.txt": {}, "b/c.txt": {}}'), "a.txt": b"1", "b/c.txt": b"1"})
     (folder / "notes").mkdir()
     (folder / "notes/mine.csv").write_text("measured")
-    write_folder(folder, {"manifest.json": b'{"files": {"a.txt": {}}}', "a.txt": b"2"})
-    assert content(folder) == {
-        "manifest.json": b'{"files": {"a.txt": {}}}',
-        "a.txt": b"2",
-        "notes/mine.csv": b"measured",
-    }
+    write_folder(folder, {"manifest.json": listing('{"a.txt": {}}'), "a.txt": b"2"})
+    assert content(folder) == {"manifest.json": listing('{"a.txt": {}}'), "a.txt": b"2", "notes/mine.csv": b"measured"}
     assert list(tmp_path.iterdir()) == [folder]
 
 
 def test_links_and_empty_folders_of_other_people_are_kept(tmp_path):
     folder, elsewhere = tmp_path / "x", tmp_path / "data"
     elsewhere.mkdir()
-    write_folder(folder, {"manifest.json": b'{"files": {}}'})
+    write_folder(folder, {"manifest.json": listing("{}")})
     (folder / "link").symlink_to(elsewhere)
     (folder / "empty").mkdir()
-    write_folder(folder, {"manifest.json": b'{"files": {}}', "a.txt": b"1"})
+    write_folder(folder, {"manifest.json": listing("{}"), "a.txt": b"1"})
     assert (folder / "link").is_symlink()
     assert (folder / "empty").is_dir()
     (tmp_path / "alias").symlink_to(folder)
