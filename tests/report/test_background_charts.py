@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from benchmarks.background_charts import CHARTS, DOCS, shares
+from pictures.background import CHARTS, DOCS, shares
 
 from tests.drawings import same_drawing
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from benchmarks.atlas_build.fit import roughness
+from release.tables.atlas.fit import roughness
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline

@@ -19,7 +19,7 @@ from pneutouch.spec.read import parse_changes
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[4]
 LIBRARY = Library((ROOT,))
 
 

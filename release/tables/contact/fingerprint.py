@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from benchmarks.contact_table_build.press import DomeState, pressed
+from release.tables.contact.press import DomeState, pressed
 from pneutouch.arrays import Array
 from pneutouch.mechanics.anywhere.recipe import PlaceTableRecipe
 

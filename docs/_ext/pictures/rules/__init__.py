@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from benchmarks.rule_exhibits import blocks, casting, meshes, moulds, sensors
-from benchmarks.rule_exhibits.case import Case, Pair
+from pictures.rules import blocks, casting, meshes, moulds, sensors
+from pictures.rules.case import Case, Pair
 
 EXHIBITS: dict[str, Callable[[], Pair]] = {
     **meshes.EXHIBITS,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.rule_exhibits.case import LIBRARY, Case, Pair, assembled, evaluated, item_of, of_rule, of_sensor, window
+from pictures.rules.case import LIBRARY, Case, Pair, assembled, evaluated, item_of, of_rule, of_sensor, window
 from pneutouch.mechanics.prediction import DeformedShape
 from pneutouch.report.dimension import leader, polar
 from pneutouch.report.section import draw_section

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from tests.printability.gallery import ball, box, item, printer, prism, rod
 
-from benchmarks.rule_exhibits.case import Case, Pair, of_rule
+from pictures.rules.case import Case, Pair, of_rule
 from pneutouch.body.outline import mesh_outline
 from pneutouch.printability import PrintItem
 from pneutouch.printability.rules.voxels import check_stack

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.rule_exhibits.case import Case, Pair, assembled, item_of, of_rule, window
+from pictures.rules.case import Case, Pair, assembled, item_of, of_rule, window
 from pneutouch.arrays import Array
 from pneutouch.body import Body
 from pneutouch.body.outline import mesh_outline, section_outline

@@ -10,7 +10,7 @@ from pneutouch.report.section import draw_section
 from pneutouch.report.style import figure, svg
 from pneutouch.spec.read import parse_changes
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[3]
 
 SHOWN = (
     ("glued-flange", "barb-4x2.5", "bolt-circle-4xM3"),

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 from rich.progress import Progress
 
-from benchmarks.atlas_build.fit import WallCoefficients, fit_sheet, join
-from benchmarks.atlas_build.stale import solid_fingerprint, survey_fingerprint
-from benchmarks.atlas_build.survey import survey
+from release.tables.atlas.fit import WallCoefficients, fit_sheet, join
+from release.tables.atlas.stale import solid_fingerprint, survey_fingerprint
+from release.tables.atlas.survey import survey
 from pneutouch.mechanics.atlas.recipe import RECIPE
 from pneutouch.mechanics.atlas.table import SHIPPED
 

@@ -1,4 +1,4 @@
-"""A picture of a good and a bad case of every print rule, with what the rule finds: ``python -m benchmarks.rule_pictures``.
+"""A picture of a good and a bad case of every print rule, with what the rule finds: ``python -m pictures.rules.draw``.
 
 It writes ``docs/reference/rules/``, of which the page of the rules is made; with names of rules, theirs alone.
 """
@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from benchmarks.rule_exhibits import EXHIBITS, Case
+from pictures.rules import EXHIBITS, Case
 from pneutouch.report.style import BOLD, figure, svg
 
-FOLDER = Path(__file__).resolve().parents[1] / "docs/reference/rules"
+FOLDER = Path(__file__).resolve().parents[4] / "docs/reference/rules"
 RECORD = FOLDER / "findings.json"
 SIZE = (84.0, 50.0)
 """Width and height of a picture, mm: two stand side by side on a page, one on a phone."""

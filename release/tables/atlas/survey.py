@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.atlas_build.sampler import AtlasSampler, Equilibrium, SampledPress, survey_depths, survey_volumes
+from release.tables.atlas.sampler import AtlasSampler, Equilibrium, SampledPress, survey_depths, survey_volumes
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.recipe import STORED, STRETCHES, AtlasRecipe
 

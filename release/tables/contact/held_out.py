@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks.contact_table_build.press import DomeState, at_equal_reading, pressed
+from release.tables.contact.press import DomeState, at_equal_reading, pressed
 from pneutouch.arrays import Array
 from pneutouch.mechanics.anywhere.recipe import PlaceTableRecipe
 from pneutouch.mechanics.anywhere.table import ContactPlaces, DomeConditions, PlaceTable

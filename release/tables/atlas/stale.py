@@ -8,7 +8,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from benchmarks.atlas_build.sampler import AtlasSampler
+from release.tables.atlas.sampler import AtlasSampler
 from pneutouch.mechanics.atlas.recipe import RECIPE, AtlasRecipe
 
 _WALLS = (0.07, 0.16, 0.3)

@@ -1,4 +1,4 @@
-"""Charts of the pages of docs/background that are written by hand: ``make background-charts`` (some seconds).
+"""Charts of the pages of docs/background that are written by hand: ``python -m pictures.background`` (some seconds).
 
 Each is drawn from what the code gives today; tests/report/test_background_charts.py compares the stored ones with it.
 """
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchmarks import contact_chart, off_axis_chart
+from pictures import contact, off_axis
 from pneutouch.arrays import Array
 from pneutouch.catalogue import Library
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
@@ -30,7 +30,7 @@ from pneutouch.units import KPA
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[3]
 DOCS = ROOT / "docs" / "background"
 
 DRIVEN_kPa, PRESSED_mm = 22.0, 4.0
@@ -233,8 +233,8 @@ CHARTS: dict[str, Callable[[], str]] = {
     "viscous": viscous,
     "ageing": ageing,
     "graded": graded,
-    "contact": contact_chart.chart,
-    "off-axis": off_axis_chart.chart,
+    "contact": contact.chart,
+    "off-axis": off_axis.chart,
 }
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.rule_exhibits.case import LIBRARY, Case, Pair, window
+from pictures.rules.case import LIBRARY, Case, Pair, window
 from pneutouch.body.outline import section_outline
 from pneutouch.catalogue import load_scene
 from pneutouch.parts.mould import MouldAssembly, mould_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from benchmarks.rule_exhibits.case import Case, Pair, evaluated, of_sensor, window
+from pictures.rules.case import Case, Pair, evaluated, of_sensor, window
 from pneutouch.report.dimension import circle, leader, polar
 from pneutouch.report.mould import draw_mould
 from pneutouch.report.section import draw_section

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import solve_triangular
 
-from benchmarks.atlas_build.survey import Survey
+from release.tables.atlas.survey import Survey
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.recipe import STORED, AtlasAxes, AtlasRecipe, axes, flattened
 from pneutouch.mechanics.atlas.spline import SplineAxis

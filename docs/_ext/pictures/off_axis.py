@@ -1,4 +1,4 @@
-"""The chart of docs/background/off-axis.md: the error of the force read under other contacts. `background_charts` writes it."""
+"""The chart of docs/background/off-axis.md: the error of the force read under other contacts. `pictures.background` writes it."""
 
 from __future__ import annotations
 
