@@ -1,4 +1,4 @@
-"""The paper's sensor refined over its whole depth: ``python -m benchmarks.full_depth`` writes this part of docs/background/accuracy.md."""
+"""The paper's sensor refined over its whole depth: ``python -m benchmarks.full_depth`` writes docs/background/full-depth.json."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.page_section import replace_section
 from benchmarks.scenes import PAPER
 from benchmarks.speed_accuracy import REFINEMENTS, extrapolate
 from pneutouch.mechanics.response import figures
@@ -23,9 +22,7 @@ from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid_states import KINDS, curve_between
 from pneutouch.units import KPA
 
-DOCS = Path(__file__).resolve().parents[1] / "docs" / "background"
-PAGE, STORED = DOCS / "accuracy.md", DOCS / "full-depth.json"
-HEADING = "## The paper's sensor over its whole depth"
+STORED = Path(__file__).resolve().parents[1] / "docs" / "background" / "full-depth.json"
 FLANGE = 2.25
 """Width and thickness of the flange of a glued seat around this wall, mm."""
 SHALLOW = 5.75
@@ -108,53 +105,5 @@ def _stored(press: FullDepthPress, unit: float) -> dict[str, Any]:
     }
 
 
-def section(groups: list[dict[str, Any]]) -> list[str]:
-    """The part of the page."""
-    lines, verdicts = [], []
-    for group in groups:
-        pressure = f"{group['driving_pressure_kPa']:.0f}"
-        label = f"| {group['held']} | {'yes' if group['base'] else 'no'} | {pressure} |"
-        lines += [f"{label} {_row(press)}" for press in group["presses"]]
-        if "extrapolated" in group:
-            shallow, deep = group["extrapolated"]
-            lines.append(f"{label} extrapolated | | | {_pair(*shallow)} | {_pair(*deep)} | |")
-            default = group["presses"][0]["sensitivity_kPa_per_N"][1]
-            verdicts.append(f"{default / deep[0] - 1:+.2%} at {pressure} kPa")
-    return [
-        HEADING,
-        "",
-        "With a base, the default, the wall lies down next to its clamp: on the rigid base plane, or on the free top of its own flange where "
-        "the rim is held as printed. The default mesh then differs from the extrapolated sensitivity over the whole depth by "
-        f"{' and '.join(verdicts)}. Without a base (`contact.base = false`) the wall passes through its base plane, refined meshes fold at the clamp, and "
-        "figures over the whole depth do not converge.",
-        "",
-        "The table has the sensitivity S in kPa/N of TangoPlus without dead volume, from first contact to 5.75 mm and to the whole depth of 6.94 mm. "
-        "Extrapolated from 32 x 2, 64 x 4 and 128 x 8 cells. Times are over that of the default mesh without base.",
-        "",
-        "| held at | base | driving kPa | mesh | cells | time | S to 5.75 mm | S to 6.94 mm | events, mm |",
-        "|---|---|---|---|---|---|---|---|---|",
-        *lines,
-        "",
-    ]
-
-
-def _row(press: dict[str, Any]) -> str:
-    shallow, deep = ("not reached" if x is None else f"{x:.4f}" for x in press["sensitivity_kPa_per_N"])
-    return (
-        f"{press['mesh']} | {press['cells']} | {press['time_ratio']:.1f} | {shallow} | {deep} | {press['happened']} |"
-    )
-
-
-def _pair(value: float, error: float) -> str:
-    return f"{value:.4f} ± {error:.2%}"
-
-
-def main() -> None:
-    groups = measure()
-    STORED.write_text(json.dumps(groups, indent=1) + "\n", encoding="utf-8")
-    replace_section(PAGE, section(groups))
-    print(f"wrote {HEADING.removeprefix('## ')} of docs/background/{PAGE.name}")
-
-
 if __name__ == "__main__":
-    main()
+    STORED.write_text(json.dumps(measure(), indent=1) + "\n", encoding="utf-8")

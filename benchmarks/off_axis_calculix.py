@@ -3,8 +3,7 @@
 ``python -m benchmarks.off_axis_calculix [SCENE ...]`` presses the paper's sensor in the scenes of these numbers, or in all
 of them, with the harmonic solid and with half a dome of C3D20R cells, without the base. Compared are the force, the
 sideways force and the pressure rise of both, each with its own gas, and their processor times. Stores
-docs/background/off-axis-calculix.json, and writes its section into docs/background/validation.md
-(``python -m benchmarks.pages.validation_text`` renews the whole page from what is stored).
+docs/background/off-axis-calculix.json.
 """
 
 from __future__ import annotations
@@ -17,12 +16,10 @@ from typing import Any
 import numpy as np
 
 from benchmarks.off_axis_scenes import SCENES, OffAxisScene
-from benchmarks.page_section import replace_section
 from pneutouch.units import KPA
 
 ROOT = Path(__file__).resolve().parents[1]
-STORED, PAGE = ROOT / "docs" / "background" / "off-axis-calculix.json", ROOT / "docs" / "background" / "validation.md"
-HEADING = "## CalculiX: contact off the axis"
+STORED = ROOT / "docs" / "background" / "off-axis-calculix.json"
 FIGURES = ("force_N", "sideways_N", "rise_kPa")
 _STRAIGHT = 1e-4
 """A sideways force below this share of the force is that of a scene with a second plane of symmetry: it is not compared."""
@@ -73,71 +70,6 @@ def figures(force: float, sideways: float, rise: float) -> dict[str, float]:
     return dict(zip(FIGURES, (float(force), float(sideways), float(rise) / KPA), strict=True))
 
 
-def section(data: list[dict[str, Any]]) -> list[str]:
-    """The lines of the comparison for a page."""
-    worst = {figure: max(map(abs, differences(data, figure))) for figure in FIGURES}
-    orders = " or ".join(map(str, sorted({scene["harmonics"] for scene in data})))
-    refined = " and ".join(f"{_times(s['cells'][-2])} to {_times(s['cells'][-1])}" for s in data if len(s["cells"]) > 1)
-    return [
-        HEADING,
-        "",
-        f"The paper's sensor without its base: the harmonic solid (M = {orders}, 24 x 2 cells), and half a dome of C3D20R cells. "
-        "CalculiX has no gas; its pressure is that which Boyle's law gives in the volume that it finds. Columns "
-        '"CalculiX": difference of CalculiX on its finest mesh from the figure left of it. Last column: greatest change of the three '
-        f"figures by refinement in CalculiX, where it was run on two meshes ({refined}). [off-axis.md](off-axis.md#calculix) explains "
-        "the differences. `python -m benchmarks.off_axis_calculix` computes the section.",
-        "",
-        "| scene | mm | force N | CalculiX | sideways N | CalculiX | pressure rise kPa | CalculiX | refinement |",
-        "|---|---|---|---|---|---|---|---|---|",
-        *(_line(scene, row) for scene in data for row in scene["rows"]),
-        "",
-        f"Greatest differences: force {worst['force_N']:.1%}, sideways force {worst['sideways_N']:.1%}, pressure rise "
-        f"{worst['rise_kPa']:.1%}.",
-        "",
-        *_cost_lines(data),
-    ]
-
-
-def _cost_lines(data: list[dict[str, Any]]) -> list[str]:
-    """M, the finest mesh of CalculiX and the processor times, of scenes that have them."""
-    timed = [scene for scene in data if "calculix_cost" in scene]
-    if not timed:
-        return []
-    lines = [
-        f"| {scene['scene']} | {scene['harmonics']} | {_times(scene['cells'][-1])} | "
-        f"{scene['calculix_cost'][-1]['processor_s'] / scene['harmonic_processor_s']:.0f} | "
-        f"{scene['calculix_cost'][-1]['raised_share']:.0%} |"
-        for scene in timed
-    ]
-    return [
-        "Processor times: one thread, one machine, one program after the other; CalculiX's is that of its whole process. The last column "
-        "is the share of its Newton iterations that went to the second pressure, from which Boyle's law follows. Times at equal error: "
-        "[accuracy.md](accuracy.md#contact-off-the-axis-time-at-equal-error).",
-        "",
-        "| scene | M | CalculiX's cells | CalculiX's time over that of the harmonic solid | second pressure |",
-        "|---|---|---|---|---|",
-        *lines,
-        "",
-    ]
-
-
-def _times(cells: list[int]) -> str:
-    return " x ".join(map(str, cells))
-
-
-def _line(scene: dict[str, Any], row: dict[str, Any]) -> str:
-    ours, fine = row["harmonic"], row["calculix"][-1]
-    known = [figure for figure in FIGURES if compares(row, figure)]
-    pairs = [
-        f"{ours[figure]:.4g} | {fine[figure] / ours[figure] - 1.0:+.1%}" if figure in known else "0 |"
-        for figure in FIGURES
-    ]
-    changes = [abs(fine[figure] / coarse[figure] - 1.0) for coarse in row["calculix"][-2:-1] for figure in known]
-    settled = f"{max(changes):.1%}" if changes else ""
-    where = f"{row['depth_mm']:g}" + (f", {row['travel_mm']:g} sideways" if "travel_mm" in row else "")
-    return f"| {scene['scene']} | {where} | {' | '.join(pairs)} | {settled} |"
-
-
 def compares(row: dict[str, Any], figure: str) -> bool:
     """Whether a figure of a row is compared: a sideways force that symmetry forbids is not."""
     ours = row["harmonic"]
@@ -158,7 +90,6 @@ def main(*numbers: int) -> None:
         stored[scene.name] = compared(scene)
         data = [stored[scene.name] for scene in SCENES if scene.name in stored]
         STORED.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
-    replace_section(PAGE, section(json.loads(STORED.read_text("utf-8"))))
 
 
 if __name__ == "__main__":

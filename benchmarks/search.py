@@ -21,7 +21,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 import pneutouch as pt
-from benchmarks.answer import solid_answer
+from benchmarks.methods import solid_answer
 from benchmarks.scenes import Scene
 from pneutouch.errors import PneutouchError
 from pneutouch.evaluation.evaluate import sensor_of

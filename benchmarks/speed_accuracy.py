@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.answer import Answer, membrane_answer, solid_answer, solid_limit
-from benchmarks.models import (
+from benchmarks.methods import (
+    Answer, membrane_answer, solid_answer, solid_limit,
     ATLAS,
     AUTO,
     MODEL_METHODS,

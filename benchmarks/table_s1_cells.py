@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks.theory import resins
+from benchmarks.paper import resins
 from benchmarks.validation import PRINTED_FLANGE
 from pneutouch.catalogue import Library
 from pneutouch.errors import ComputationError

@@ -5,7 +5,7 @@ import pytest
 from benchmarks.table_s1_cells import ALL, Assumptions, resin_rows
 from benchmarks.table_s1_chart import draw
 from benchmarks.table_s1_page import page, ranked, read, spread
-from benchmarks.theory import resins
+from benchmarks.paper import resins
 
 from pneutouch.catalogue import Library
 from tests.conftest import ROOT

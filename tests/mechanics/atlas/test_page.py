@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from benchmarks import atlas_page
 from benchmarks.atlas_presses import compare, random_cases
-from benchmarks.models import ATLAS, AUTO, atlas_answer, atlas_limit, auto_answer, why_no_answer
+from benchmarks.methods import ATLAS, AUTO, atlas_answer, atlas_limit, auto_answer, why_no_answer
 from benchmarks.scenes import SCENES
 from benchmarks.speed_accuracy import limit, run
 
