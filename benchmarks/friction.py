@@ -1,35 +1,28 @@
-"""Write docs/background/friction.md with its chart, every number computed: ``make friction-page`` (a few minutes)."""
+"""Friction between wall and plate: sensitivity, the loop it makes, convergence and time (a few minutes).
+
+``python -m benchmarks.friction`` writes docs/background/friction.json; ``python -m benchmarks.friction presses`` prints
+the random presses of which it times friction, and what they come to.
+"""
 
 from __future__ import annotations
 
 import json
+import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 from unittest import mock
 
 import numpy as np
 
-from benchmarks.friction_cost import costs, summary
-from benchmarks.friction_text import (
-    BEFORE_EVENTS,
-    DEPTH,
-    FRICTIONS,
-    LOOP_DEPTH,
-    LOOP_FRICTIONS,
-    RADIUS,
-    STEPS,
-    draw,
-    label,
-    page,
-)
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.solid.friction_loop import friction_loop
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent
-from pneutouch.mechanics.solid.inflate import FreeState, state_at
+from pneutouch.mechanics.solid.inflate import FreeState, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.rigid_base import RigidBase
@@ -39,7 +32,63 @@ STORED = Path(__file__).resolve().parents[1] / "docs" / "background" / "friction
 RESINS = ("TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985")
 WALL, PRESSURES = 1.5, (0.0, 22 * KPA)
 
+FRICTIONS = (0.0, 0.3, 0.6, 1.0, np.inf)
+LOOP_FRICTIONS = (0.1, 0.3, 0.6, 1.0, np.inf)
+STEPS = (14, 28, 56, 112)
+RADIUS, DEPTH = 9.25, 0.75 * 9.25
+LOOP_DEPTH = 0.5 * RADIUS
+BEFORE_EVENTS = 0.6 * RADIUS
+"""Depth before which no press of the tables of steps and of time jumps."""
+
+RANDOM, THIN = 120, 0.1
+"""Random presses, and the share of R0 below which a wall counts as thin."""
+
 Scene = tuple[SolidModel, FreeState]
+
+
+class FrictionCost(NamedTuple):
+    """A press: wall over the inner radius, modulus (MPa), driving pressure over the limit, coefficient, and the
+    processor time with friction over that without."""
+
+    wall: float
+    modulus: float
+    share: float
+    friction: float
+    ratio: float
+
+
+def costs(count: int = RANDOM) -> Iterator[FrictionCost]:
+    """Random presses to 0.6 R0; the least time of two each."""
+    for seed in range(count):
+        random = np.random.default_rng(seed)
+        wall, modulus = (float(np.exp(random.uniform(*np.log(box)))) for box in ((0.05, 0.4), (0.17, 4.0)))
+        share = float(random.choice([0.0, random.uniform(0.0, 0.9)]))
+        friction = float(random.choice([*random.uniform(0.05, 1.5, 3), np.inf]))
+        solid = SolidModel(dome(RADIUS, wall * RADIUS), neo_hookean(modulus), base=RigidBase())
+        inflated = inflate(solid, past_limit=1.0)
+        assert inflated.limit is not None
+        free = state_at(solid, share * inflated.limit.pressure, inflated)
+        without, with_friction = (min(_seconds((solid, free), one) for _ in range(2)) for one in (0.0, friction))
+        yield FrictionCost(wall, modulus, share, friction, with_friction / without)
+
+
+def summary(rows: list[FrictionCost]) -> dict[str, float]:
+    """Number of presses, mean and greatest ratio, how many take more than twice as long, and how many of those have thin
+    walls."""
+    ratios = np.array([row.ratio for row in rows])
+    above = [row for row in rows if row.ratio > 2.0]
+    return {
+        "count": len(rows),
+        "mean": round(float(ratios.mean()), 2),
+        "greatest": round(float(ratios.max()), 1),
+        "above_two": len(above),
+        "above_two_thin": sum(row.wall < THIN for row in above),
+    }
+
+
+def label(friction: float) -> str:
+    """A coefficient as the tables show it."""
+    return "grip" if np.isinf(friction) else f"{friction:g}"
 
 
 def scene(modulus: float, pressure: float) -> Scene:
@@ -126,21 +175,30 @@ def measure(library: Library) -> dict[str, Any]:
     materials = {name: library.load("materials", name) for name in RESINS}
     moduli = {name: material_sensor(material).wall.shear_modulus for name, material in materials.items()}
     measured = {name: material.measured.hysteresis_percent.nominal for name, material in materials.items()}
-    return {
-        "sensitivity": _sensitivities(moduli),
-        "loops": _loops(moduli, measured),
-        "steps": _steps(),
-        "times": _times(),
-    }
+    found = {"sensitivity": _sensitivities(moduli), "loops": _loops(moduli, measured)}
+    return {**found, "steps": _steps(), "times": _times(), **greatest(found)}
 
 
-def main() -> None:
-    data = measure(Library.default())
-    STORED.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
-    STORED.with_suffix(".svg").write_text(draw(data), encoding="utf-8")
-    STORED.with_suffix(".md").write_text(page(data), encoding="utf-8")
-    print("wrote docs/background/friction.md, friction.json and friction.svg")
+def greatest(found: dict[str, Any]) -> dict[str, Any]:
+    """Relative change of the sensitivity on a plate that grips, by driving pressure and resin, and the widest loop."""
+    grip: dict[str, dict[str, float]] = {}
+    for row in found["sensitivity"]:
+        values = row["sensitivity_kPa_per_N"]
+        grip.setdefault(f"{row['driving_pressure_kPa']:g}", {})[row["resin"]] = values[-1] / values[0] - 1
+    widest = max(shares[0] for row in found["loops"] for shares in row["loop_percent"])
+    return {"grip": grip, "widest_loop_percent": widest}
+
+
+def main(*words: str) -> None:
+    if words:
+        rows = []
+        for row in costs():
+            rows.append(row)
+            print(" ".join(f"{value:.3g}" for value in row), flush=True)
+        print(summary(rows))
+    else:
+        STORED.write_text(json.dumps(measure(Library.default()), indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    main(*sys.argv[1:])

@@ -1,20 +1,29 @@
-"""Random presses inside the atlas's box, pressed by the solid and by the atlas alike; everything in units of R0 and mu."""
+"""Random presses inside the atlas's box, pressed by the solid and by the atlas alike; everything in units of R0 and mu.
+
+``python -m benchmarks.atlas`` (minutes, every core) writes docs/background/atlas.json; with ``stored`` it reduces the
+stored errors anew.
+"""
 
 from __future__ import annotations
 
+import json
+import os
+import sys
+from collections import Counter
 from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from multiprocessing import get_context
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
-from pneutouch.mechanics.atlas.recipe import RECIPE
+from pneutouch.mechanics.atlas.recipe import RECIPE, axes
 from pneutouch.mechanics.atlas.respond import ENDS, respond
-from pneutouch.mechanics.atlas.table import shipped
+from pneutouch.mechanics.atlas.table import SHIPPED, shipped
 from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.response import figures
@@ -25,6 +34,20 @@ from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid_states import curve_between, reported_events
 from pneutouch.units import KPA
+
+STORED = Path(__file__).resolve().parents[1] / "docs" / "background" / "atlas.json"
+COUNT, SEED = 500, 2000
+KEYS = ("wall", "share", "ambient", "dead", "depth")
+ERRORS = {
+    "force": "force at the worst state of a press, over its greatest force",
+    "pressure": "pressure at the worst state of a press, over its greatest rise",
+    "gauge": "the same, over its greatest gauge pressure",
+    "common": "sensitivity over the common range",
+    "own": "sensitivity, each over its range",
+    "limit": "limit pressure",
+}
+LEVELS = (0.001, 0.002, 0.005)
+_DIGITS = 4
 
 STEPS = 14
 POISSON = 0.49
@@ -185,3 +208,70 @@ def compare_all(cases: Iterable[Case], workers: int) -> list[Gap | None]:
         return [compare(case) for case in cases]
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         return list(pool.map(compare, cases, chunksize=20))
+
+
+def measure() -> dict[str, Any]:
+    """Errors of random presses, as columns; the presses of `make check-slow`."""
+    os.environ["OMP_NUM_THREADS"] = "1"
+    gaps = [gap for gap in compare_all(random_cases(COUNT, SEED), os.cpu_count() or 1) if gap is not None]
+
+    def column(values: list[float]) -> list[float]:
+        return [float(f"{value:.{_DIGITS}g}") for value in values]
+
+    return {
+        "requested": COUNT,
+        **{key: column([getattr(gap.case, key) for gap in gaps]) for key in KEYS},
+        **{name: column([getattr(gap, name) for gap in gaps]) for name in ERRORS},
+        "end_off": column([gap.positions[1] - gap.positions[0] for gap in gaps]),
+        "states": {name: _states(gaps, f"every_{name}") for name in ("force", "pressure")},
+        "ends": dict(Counter(" / ".join(gap.ends) for gap in gaps).most_common()),
+    }
+
+
+def _states(gaps: list[Gap], name: str) -> list[float]:
+    """Count, median, 99th percentile and greatest over all states of all presses."""
+    errors = np.concatenate([getattr(gap, name) for gap in gaps])
+    return [float(errors.size), *(float(f"{x:.{_DIGITS}g}") for x in np.quantile(errors, [0.5, 0.99, 1.0]))]
+
+
+def reduced(data: dict[str, Any]) -> dict[str, Any]:
+    """What the page states: quantiles of every error, the six worst presses, and the box of the recipe."""
+    rows = []
+    for name, words in ERRORS.items():
+        errors = np.abs(np.array(data[name]))
+        quantiles = [float(x) for x in np.quantile(errors, [0.5, 0.99, 1.0])]
+        rows.append({"error": words, "quantiles": quantiles, "above": int((errors > LEVELS[-1]).sum())})
+    worst = np.argsort(-np.abs(np.array(data["force"])))[:6]
+    columns = (*KEYS, "force", "pressure", "common")
+    grid, same = axes(RECIPE), [count for kinds, count in data["ends"].items() if len(set(kinds.split(" / "))) == 1]
+    return {
+        "count": len(data["wall"]),
+        "errors": rows,
+        "median_sensitivity": float(np.median(np.abs(data["common"]))),
+        "greatest_sensitivity": float(np.abs(data["common"]).max()),
+        "greatest_force": float(np.abs(data["force"]).max()),
+        "same_end": sum(same),
+        "greatest_end_off": float(np.abs(data["end_off"]).max()),
+        "worst": [{key: data[key][i] for key in columns} for i in worst],
+        "recipe": {
+            "walls": [RECIPE.thinnest, RECIPE.thickest],
+            "volumes": [RECIPE.lowest_volume, RECIPE.highest_volume],
+            "deepest": RECIPE.deepest,
+            "stiffest": RECIPE.stiffest,
+            "surveyed": RECIPE.walls,
+            "degree": RECIPE.degree,
+            "poisson_ratio": RECIPE.poisson_ratio,
+            "coefficients": [grid.wall.size, grid.volume.size, grid.depth.size],
+        },
+        "megabytes": SHIPPED.stat().st_size / 1e6,
+    }
+
+
+def main(*words: str) -> None:
+    data = json.loads(STORED.read_text(encoding="utf-8")) if "stored" in words else measure()
+    data["summary"] = reduced(data)
+    STORED.write_text(json.dumps(data) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
