@@ -200,7 +200,7 @@ def panels(timed: Rows) -> dict[str, tuple[str, list[Point]]]:
         "Prediction, 14 scenes": ("sensitivity", predicted),
         "Inflation to the limit point": ("limit pressure", _inflation(stored("peers")["rows"])),
         "Contact under a leaning plate": ("forces and pressure", contact),
-        "Print mesh of the membrane": ("surface, over R0", _meshes(mesh["membrane"])),
+        "Print mesh of the membrane": ("surface, over R0", _meshes(mesh["bodies"]["membrane"])),
         "Voxels of the membrane": ("volume", _voxels(voxel["rasters"])),
         "Selection for a target": ("distance from the target", _selection(searched["searches"])),
         "Sweep of 16 designs": ("sensitivity", _sweep(searched["sweeps"])),

@@ -1,20 +1,25 @@
-"""The mixing chart: the modulus of a mix over its fraction by every curve of the pair, with two limits of structure."""
+"""Charts of mixes and of the hard resins: curves of modulus over fraction, and sensitivity over published moduli."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from benchmarks.mixing import PRESSURES_KPA, RESINS, MixingCurves, curves, sensitivities
 from benchmarks.mixing_theory import THRESHOLD, hashin_shtrikman_low, percolation
 from pneutouch.arrays import Array
+from pneutouch.catalogue import Library
 from pneutouch.catalogue.mixture import ResolvedMixingCurve
-from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, figure, halo, plain_ticks, svg
+from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MARKERS, MUTED, figure, halo, plain_ticks, svg
+from stored_pages import stored
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+ROOT = Path(__file__).resolve().parents[3]
 _COUNT = 401
 _WIDEST = 0.7
 """Greatest fraction shown: the softest curve ends at 0.668."""
@@ -26,25 +31,11 @@ _LOOKS: dict[str, dict[str, Any]] = {
 }
 
 
-@dataclass(frozen=True)
-class MixingChart:
-    """Every curve of a pair.
-
-    Attributes:
-        laws: The curves by name, the one in use first.
-        stiff: Least shear modulus of the stiff resin, MPa.
-        names: Labels of the points.
-    """
-
-    laws: dict[str, ResolvedMixingCurve]
-    stiff: float
-    names: tuple[str, ...]
-
-
-def mixing_chart(chart: MixingChart, size: tuple[float, float]) -> str:
-    """Shear modulus over fraction as SVG; ``size`` is width and height in mm."""
+def mixing() -> str:
+    """Shear modulus over fraction by every curve of the pair, with two limits of structure."""
+    chart = curves(Library((ROOT,)))
     used = next(iter(chart.laws.values()))
-    with figure(*size) as drawn:
+    with figure(178, 105) as drawn:
         ax = drawn.add_subplot()
         _limits(ax, float(used.modulus[0]), chart.stiff)
         _curves(ax, chart)
@@ -70,7 +61,7 @@ def _limits(ax: Axes, soft: float, stiff: float) -> None:
     ax.text(THRESHOLD + 0.012, 31, f"glassy droplets that touch beyond {100 * THRESHOLD:g} %", **_text(color=MUTED))
 
 
-def _curves(ax: Axes, chart: MixingChart) -> None:
+def _curves(ax: Axes, chart: MixingCurves) -> None:
     used = next(iter(chart.laws.values()))
     names = used.curve.curves
     assert names is not None
@@ -97,3 +88,40 @@ def _points(ax: Axes, law: ResolvedMixingCurve, names: tuple[str, ...]) -> None:
         ax.plot([point.low, point.high], [mu, mu], color=INK, lw=0.6, zorder=3)
         ax.text(point.high + 0.012, float(mu), name, va="center", **_text())
     ax.plot(law.fraction, law.modulus, "o", color=INK, mfc="white", ms=4.2, zorder=5, clip_on=False)
+
+
+def hard_resins() -> str:
+    """Sensitivity over modulus for each resin, with the published moduli and the measured sensitivity."""
+    library, found, moduli = Library((ROOT,)), stored("mixing")["hard_resins"], np.geomspace(2.0, 13.0, 40)
+    curves = sensitivities(list(moduli), library)
+    with figure(165, 78) as drawn:
+        for ax, name in zip(drawn.subplots(1, 2, sharey=True), RESINS, strict=True):
+            measured = library.load("materials", name).measured
+            known = (measured.sensitivity_0kPa_kPa_per_N.nominal, measured.sensitivity_22kPa_kPa_per_N.nominal)
+            for k, pressure in enumerate(PRESSURES_KPA):
+                ax.plot(moduli, curves[:, k], color=FAINT, ls=LINES[k], lw=1.2, label=f"model, {pressure:g} kPa")
+                ax.axhline(known[k], color=MUTED, ls=LINES[k], lw=0.9, label=f"measured, {pressure:g} kPa")
+            for marker, row in zip(MARKERS, (row for row in found if row["resin"] == name), strict=False):
+                _mark(ax, row, marker)
+            ax.set(xscale="log", xlim=(2.0, 13.0), ylim=(0.0, 1.15), xlabel="shear modulus  (MPa)", title=name)
+            ax.set_xticks([2, 3, 4, 6, 8, 12], ["2", "3", "4", "6", "8", "12"])
+            ax.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
+        drawn.axes[0].set_ylabel("sensitivity  (kPa/N)")
+        handles, labels = drawn.axes[0].get_legend_handles_labels()
+        drawn.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=6.5)
+        return svg(drawn)
+
+
+def _mark(ax: Axes, row: dict[str, Any], marker: str) -> None:
+    """One published modulus: on both curves, named by its source."""
+    ends, values = row["ends_MPa"], np.array(row["kPa_per_N"])
+    used = row["origin"].startswith("**")
+    for k in (0, 1):
+        look = {"color": ACCENT if used else INK, "mfc": (ACCENT if used else INK) if k == 0 else "white"}
+        label = row["name"] if k == 0 else None
+        ax.plot(
+            ends, values[:, k], marker=marker, ms=6 if used else 4, lw=0.9, ls=LINES[k], label=label, **look
+        )
+
+
+CHARTS: dict[str, Callable[[], str]] = {"mixing": mixing, "hard-resins": hard_resins}

@@ -1,8 +1,12 @@
-"""Write docs/background/texture.md with its charts: ``make texture-page`` (a few minutes)."""
+"""The scan model and finite elements on Figure 9 of the paper: ``python -m benchmarks.texture`` (a few minutes).
+
+Writes docs/background/texture.json; with ``stored`` it reduces the stored numbers anew.
+"""
 
 from __future__ import annotations
 
 import json
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -10,21 +14,21 @@ from typing import Any
 import numpy as np
 
 from benchmarks.strip import AGILUS, Row, Strip, harmonic
-from benchmarks.texture_text import page
 from pneutouch.arrays import Array
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.uncertainty import batch_of
-from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, figure, svg
+from pneutouch.texture.scalogram import scalogram
+from pneutouch.texture.scan import scan
 from pneutouch.texture.separate import BarPattern, amplitudes, noise_amplitude, recommend
 from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate, amplitude
 from pneutouch.units import KPA
-from pneutouch.workflows.scan.document import document, spectra
+from pneutouch.workflows.scan.document import document
 from pneutouch.workflows.scan.run import ScanOptions, run_scan
 from pneutouch.workflows.scan.separate import separating
 
 ROOT = Path(__file__).resolve().parents[1]
-DOCS = ROOT / "docs" / "background"
+STORED = ROOT / "docs" / "background" / "texture.json"
 CELL, LENGTH, HEIGHT = 0.5, 24.0, 8.0
 DEPTHS, KINDS = (0.0, 1.0, 2.0, 3.0), {3.0: (1.5, 1.0), 6.0: (3.0, 1.5)}
 SURFACE = Row(3.0, 1.5, 1.0, 0.0, 0.75)
@@ -126,9 +130,6 @@ def plane(radii: list[float]) -> list[dict[str, float]]:
 
 def speed(run: Any) -> dict[str, float]:
     """Processor time of the finite elements over the reduced model's for one state of one specimen; and a scan's in s."""
-    from pneutouch.texture.scalogram import scalogram
-    from pneutouch.texture.scan import scan
-
     state = run.seen[0]
     rows = (SURFACE, Row(6.0, 3.0, 1.5, 2.0, 1.5))
     begin = time.process_time()
@@ -205,74 +206,76 @@ def advice(run: Any) -> list[dict[str, float]]:
     return found
 
 
-def chart(data: dict[str, Any]) -> str:
-    """Amplitudes over driving pressure, depth, pitch and preload."""
-    sweeps = data["sweeps"]
-    names = {
-        "pressure": ("driving pressure  (kPa)", ["3 mm, surface", "6 mm, 2 mm deep", "6 mm, 4 mm deep"]),
-        "depth": ("depth  (mm)", ["3 mm, 0 kPa", "3 mm, 22 kPa", "6 mm, 0 kPa", "6 mm, 22 kPa"]),
-        "pitch": ("pitch  (mm)", ["surface, 0 kPa", "surface, 22 kPa", "2 mm deep, 0 kPa", "2 mm deep, 22 kPa"]),
-        "preload": (
-            "preload  (N)",
-            ["3 mm surface, 0 kPa", "3 mm surface, 22 kPa", "6 mm, 2 mm deep, 0 kPa", "6 mm, 2 mm deep, 22 kPa"],
-        ),
+def pascals(data: dict[str, Any]) -> dict[str, dict[str, list[float]]]:
+    """By pattern of the specimen: amplitudes in Pa, soft and stiff, by finite elements and by the reduced model."""
+    states, scan = data["scan"]["states"], data["scan"]
+    at = {(row["depth"], row["radius"]): row for row in data["both"]}
+    radii = sorted({radius for _, radius in at}, reverse=True)
+    kinds = {
+        "surface (over pattern 2)": (0, "fe_3", 2.0),
+        "surface (over pattern 1)": (0, "fe_3", 4.0),
+        "pattern 2, 2 mm deep": (2, "fe_6", 2.0),
+        "pattern 1, 4 mm deep": (1, "fe_6", 4.0),
     }
-    colours = [INK, ACCENT, MUTED, "#3D8FBF"]
-    with figure(180, 130) as drawn:
-        axes = drawn.subplots(2, 2)
-        for ax, (key, (label, labels)) in zip(axes.ravel(), names.items(), strict=True):
-            for k, (values, name) in enumerate(zip(sweeps[key]["y"], labels, strict=True)):
-                ax.semilogy(sweeps[key]["x"], np.array(values, float), color=colours[k], ls=LINES[k], label=name)
-            ax.axhline(sweeps["noise"][0], color=MUTED, lw=0.6, ls=LINES[4])
-            ax.set(xlabel=label, ylabel="pressure amplitude  (Pa)", ylim=(0.02, None))
-            ax.legend(loc="best", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
-        return svg(drawn)
+    found = {}
+    for name, (number, key, depth) in kinds.items():
+        fe = [
+            1e3
+            * state["pressure_slope_kPa_per_mm"]
+            * scan["preload_N"]
+            * abs(at[depth, radius][key])
+            / (1 + state["stiffness_N_per_mm"] * at[depth, radius]["fe_mean"])
+            for state, radius in zip(states, radii, strict=True)
+        ]
+        reduced = [1e3 * state["patterns"][number]["model_amplitude_kPa"] for state in states]
+        found[name] = {"fe": fe, "reduced": reduced}
+    return found
 
 
-def check_chart(data: dict[str, Any]) -> str:
-    """The reduced model over the finite elements, sign and all."""
-    with figure(180, 78) as drawn:
-        axes = drawn.subplots(1, 2)
-        for ax, pitch in zip(axes, KINDS, strict=True):
-            rows = [row for row in data["single"] if row["pitch"] == pitch]
-            for k, radius in enumerate(sorted({row["radius"] for row in rows})):
-                mine = [row for row in rows if row["radius"] == radius]
-                depth, look = [row["depth"] for row in mine], {"color": (ACCENT, INK)[k], "marker": MARKERS[k]}
-                ax.semilogy(
-                    depth,
-                    [1e3 * abs(row["fe"]) for row in mine],
-                    ls=LINES[0],
-                    label=f"finite elements, patch {radius:.2f} mm",
-                    **look,
-                )
-                ax.semilogy(
-                    depth,
-                    [1e3 * abs(row["reduced"]) for row in mine],
-                    ls=LINES[2],
-                    mfc="white",
-                    label=f"reduced, patch {radius:.2f} mm",
-                    **look,
-                )
-            ax.set(xlabel="depth of the bars  (mm)", ylabel="compliance amplitude  (µm/N)")
-            ax.set_title(f"pitch {pitch:g} mm", fontsize=7.5)
-        drawn.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
-        return svg(drawn)
+def ratios(data: dict[str, Any]) -> dict[str, dict[str, list[float]]]:
+    """By pitch and patch: least and greatest amplitude of the reduced model over that of the finite elements."""
+    found: dict[str, dict[str, list[float]]] = {}
+    radii = [row["radius"] for row in data["single"]]
+    for pitch in KINDS:
+        for name, radius in (("small", min(radii)), ("large", max(radii))):
+            rows = [row for row in data["single"] if (row["pitch"], row["radius"]) == (pitch, radius)]
+            over = [row["reduced"] / row["fe"] for row in rows]
+            found.setdefault(f"{pitch:g}", {})[name] = [min(over), max(over)]
+    return found
 
 
-def main() -> None:
-    data = measure()
-    run = run_scan("texture-specimen", "paper-dome", library=Library((ROOT,)))
-    files = {
-        "texture.json": json.dumps(data, indent=1, sort_keys=True) + "\n",
-        "texture.svg": chart(data),
-        "texture-check.svg": check_chart(data),
-        "texture-scan.svg": spectra(run),
-        "texture.md": page(data),
+def softer(sweeps: dict[str, Any]) -> dict[str, int]:
+    """How many depths, pitches and preloads are drawn, and at how many the soft state shows more than the stiff one."""
+    pairs = [
+        (soft, stiff)
+        for name in ("depth", "pitch", "preload")
+        for k in (0, 2)
+        for soft, stiff in zip(sweeps[name]["y"][k], sweeps[name]["y"][k + 1], strict=True)
+        if soft is not None and stiff is not None
+    ]
+    return {"drawn": len(pairs), "better": sum(soft > stiff for soft, stiff in pairs)}
+
+
+def reduced(data: dict[str, Any]) -> dict[str, Any]:
+    """What the page states."""
+    found, sweeps = pascals(data), data["sweeps"]
+    gains = [amplitude["fe"][1] / amplitude["fe"][0] for amplitude in found.values()]
+    return {
+        "pascals": found,
+        "gains": [min(gains), max(gains)],
+        "ratios": ratios(data),
+        "soft": softer(sweeps),
+        "rise": [row[-1] / row[0] for row in sweeps["pressure"]["y"]],
+        "preload": [row[-1] / row[0] for row in sweeps["preload"]["y"]],
+        "plane_change": max(abs(row["coarse"] / row["fe"] - 1) for row in data["plane"]),
     }
-    for name, text in files.items():
-        (DOCS / name).write_text(text, encoding="utf-8")
-        print(f"wrote docs/background/{name}")
+
+
+def main(*words: str) -> None:
+    data = json.loads(STORED.read_text(encoding="utf-8")) if "stored" in words else measure()
+    data["summary"] = reduced(data)
+    STORED.write_text(json.dumps(data, indent=1, sort_keys=True) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    main(*sys.argv[1:])
