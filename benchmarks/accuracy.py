@@ -82,7 +82,9 @@ def methods(data: dict[str, Any]) -> Rows:
 
 def scenes(data: dict[str, Any]) -> Rows:
     """Every scene: its reference, the default on it, what the atlas answers and what ``auto`` took."""
-    by_method = {m: {row["scene"]: row for row in data["rows"] if row["method"] == m} for m in (DEFAULT, *MODEL_METHODS)}
+    by_method = {
+        m: {row["scene"]: row for row in data["rows"] if row["method"] == m} for m in (DEFAULT, *MODEL_METHODS)
+    }
     default, atlas, auto = by_method.values()
     return [
         {
@@ -102,7 +104,12 @@ def costs(data: dict[str, Any]) -> dict[str, float]:
     base = statistics.median(default.values())
     alone = [default[row["scene"]] / row["processor_s"] for row in of(data["rows"], ATLAS)]
     at_once = base / data["atlas_at_once_s"]
-    return {"default_s": base, "slowest_s": max(default.values()), "atlas": statistics.median(alone), "at_once": at_once}
+    return {
+        "default_s": base,
+        "slowest_s": max(default.values()),
+        "atlas": statistics.median(alone),
+        "at_once": at_once,
+    }
 
 
 def programs(data: dict[str, Any]) -> dict[str, Any]:
@@ -115,7 +122,9 @@ def programs(data: dict[str, Any]) -> dict[str, Any]:
         for key in ("solve_s", "whole_s"):
             ours, theirs = peers.cheapest(rows, OURS, key), peers.cheapest(rows, program, key)
             shares[program][key] = ours[key] / theirs[key] if ours and theirs else None
-    runs = [row | {key: row[f"{key}_s"] / base["solve_s"] for key in ("solve", "whole")} for row in rows] if base else []
+    runs = (
+        [row | {key: row[f"{key}_s"] / base["solve_s"] for key in ("solve", "whole")} for row in rows] if base else []
+    )
     return {"runs": runs, "shares": shares, "missing": data["missing"]}
 
 

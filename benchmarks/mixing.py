@@ -13,7 +13,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from benchmarks.mixing_laws import HARDNESS_READ, LONG_TERM, SOFT_HARDNESS, TENSION_INTERCEPT, TENSION_SLOPE, stiff_moduli
+from benchmarks.mixing_laws import (
+    HARDNESS_READ,
+    LONG_TERM,
+    SOFT_HARDNESS,
+    TENSION_INTERCEPT,
+    TENSION_SLOPE,
+    stiff_moduli,
+)
 from benchmarks.mixing_theory import THRESHOLD, VOXEL_THRESHOLD
 from pneutouch.arrays import Array
 from pneutouch.catalogue import Library
@@ -168,9 +175,7 @@ def spread(name: str, at: Array, found: MixingCurves, used: str, library: Librar
     """How far the sensitivity by one curve is off that by the farthest of the others, over some fractions."""
     known = at <= next(iter(found.laws.values())).curve.common_top + 1e-9
     inside = at[known]
-    by_curve = {
-        key: sensitivities(law.modulus_at(inside).tolist(), library)[:, 0] for key, law in found.laws.items()
-    }
+    by_curve = {key: sensitivities(law.modulus_at(inside).tolist(), library)[:, 0] for key, law in found.laws.items()}
     off = np.max([np.abs(np.log(values / by_curve[used])) for values in by_curve.values()], axis=0)
     row = {"fractions": name, "number": int(at.size), "to": float(at[-1]), "unknown": int((~known).sum())}
     return {**row, "median": float(np.exp(np.median(off))), "worst": float(np.exp(off.max()))}

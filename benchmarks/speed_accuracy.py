@@ -10,14 +10,17 @@ from typing import Any
 import numpy as np
 
 from benchmarks.methods import (
-    Answer, membrane_answer, solid_answer, solid_limit,
     ATLAS,
     AUTO,
     MODEL_METHODS,
+    Answer,
     atlas_answer,
     atlas_limit,
     auto_answer,
+    membrane_answer,
     seconds_at_once,
+    solid_answer,
+    solid_limit,
     why_no_answer,
 )
 from benchmarks.scenes import SCENES, Scene

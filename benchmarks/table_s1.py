@@ -82,6 +82,7 @@ class CellRow:
     sensitivity: dict[Assumptions, float]
     ends: dict[Assumptions, tuple[float, str]]
 
+
 FACTORS = {
     "friction 0.3": Assumptions(friction=0.3),
     "friction 0.6": Assumptions(friction=0.6),

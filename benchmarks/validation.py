@@ -212,7 +212,9 @@ def references(data: dict[str, Any]) -> list[dict[str, Any]]:
     pressed = [row[3::2] for row in data["pressed_membrane"]]
     off_axis, friction = (json.loads(each.STORED.read_text()) for each in (off_axis_calculix, calculix_friction_half))
     three = [greatest([[x] for x in calculix_friction_half.differences(friction, key)])[0] for key in FRICTION_FIGURES]
-    aside = [greatest([[x] for x in off_axis_calculix.differences(off_axis, key)])[0] for key in off_axis_calculix.FIGURES]
+    aside = [
+        greatest([[x] for x in off_axis_calculix.differences(off_axis, key)])[0] for key in off_axis_calculix.FIGURES
+    ]
     balls, limit = data["balls"], data["calculix"]
     inflation = [abs(limit["calculix_kPa"] / limit["solid_kPa"] - 1)] if limit else []
     rows = [

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 
 import pytest
-from benchmarks.hardening_tables import wilson
+from benchmarks.hardening import wilson
 from benchmarks.mutant_sites import PACKAGE, changed, sites
 
 MODULE = '''

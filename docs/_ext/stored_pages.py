@@ -15,6 +15,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import gauges
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 DOCS = Path(__file__).resolve().parents[1]
@@ -77,7 +78,9 @@ def rule(count: int) -> str:
     return "|" + "---|" * count
 
 
-FILTERS = {each.__name__: each for each in (fixed, short, percent, change, hundredths, changes, column, sizes, cells, rule)}
+FILTERS = {
+    each.__name__: each for each in (fixed, short, percent, change, hundredths, changes, column, sizes, cells, rule)
+}
 FILTERS |= {"median": statistics.median}
 
 
@@ -92,7 +95,8 @@ def environment() -> Environment:
         keep_trailing_newline=True,
     )
     made.filters.update(FILTERS)
-    made.globals.update(stored=stored, rule=rule)
+    made.globals.update(stored=stored, rule=rule, gauges=gauges.gauges)
+    made.globals.update(gauge_table=gauges.table, gauge_sources=gauges.sources)
     return made
 
 
@@ -109,7 +113,9 @@ def render(path: str) -> str:
 def main(*words: str) -> int:
     """Write or check pages; the exit code."""
     wanted = [word for word in words if word != "--check"] or paths()
-    differ = [path for path in wanted if not (DOCS / path).is_file() or (DOCS / path).read_text("utf-8") != render(path)]
+    differ = [
+        path for path in wanted if not (DOCS / path).is_file() or (DOCS / path).read_text("utf-8") != render(path)
+    ]
     for path in differ:
         if "--check" not in words:
             (DOCS / path).write_text(render(path), encoding="utf-8")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 import pytest
-from benchmarks.hardening_tables import stored
+from benchmarks.hardening import stored
 from benchmarks.largest_inputs import CASES, measured
 
 from tests.fuzzing.targets import TARGETS

@@ -8,9 +8,10 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
+from stored_pages import stored
+
 from pictures.outcomes import draw_outcomes
 from pneutouch.report.style import ACCENT, FAINT, INK, LINES, MARKERS, MUTED, figure, svg
-from stored_pages import stored
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -178,7 +179,9 @@ OUTCOMES: dict[str, dict[str, Any]] = {
 def validity() -> str:
     """Outcome of every state, methods down and depths across."""
     rows = stored("validity")
-    methods, depths, walls = (list(dict.fromkeys(r[key] for r in rows)) for key in ("method", "depth_ratio", "wall_ratio"))
+    methods, depths, walls = (
+        list(dict.fromkeys(r[key] for r in rows)) for key in ("method", "depth_ratio", "wall_ratio")
+    )
     with figure(178, 215) as drawn:
         drawn.get_layout_engine().set(rect=(0, 0, 1, 0.965))  # type: ignore[union-attr]
         axes = drawn.subplots(len(methods), len(depths), sharex=True, sharey=True)

@@ -1,7 +1,4 @@
-"""Charts of the pages of docs/background that are written by hand: ``python -m pictures.background`` (some seconds).
-
-Each is drawn from what the code gives today; tests/report/test_background_charts.py compares the stored ones with it.
-"""
+"""Charts of what the code gives today, in some seconds: theory, uncertainty, relaxation, ageing, grades, the line."""
 
 from __future__ import annotations
 
@@ -10,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from benchmarks.dynamics import states
 
 from pictures import contact, off_axis
 from pneutouch.arrays import Array
@@ -18,11 +16,13 @@ from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.mechanics.exact_membrane import RISING_BRANCH
 from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.inflation import LIMIT_HEIGHT, LIMIT_PRESSURE, relative_pressure
+from pneutouch.mechanics.line.band import gain_at
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.uncertainty import batch_of, budget, document, model_errors
 from pneutouch.mechanics.viscous.describe import LOOP_SPEEDS, RAMP_SPEED
 from pneutouch.mechanics.viscous.prony import prony_series
 from pneutouch.mechanics.viscous.runs import loop, relaxation
+from pneutouch.report.response_chart import GainCurve, gain_chart
 from pneutouch.report.style import ACCENT, FAINT, INK, LINES, MARKERS, MUTED, figure, legend_above, plain_ticks, svg
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
@@ -227,22 +227,21 @@ def graded() -> str:
         return svg(drawn)
 
 
+def dynamics() -> str:
+    """The gain over frequency for three lengths of the tube."""
+    frequency = np.geomspace(0.1, 2000.0, 600)
+    known = states().items()
+    gains = [GainCurve(f"{length:g} mm", frequency, gain_at(s.dynamics, frequency)) for length, s in known]
+    return gain_chart(gains, (150.0, 80.0))
+
+
 CHARTS: dict[str, Callable[[], str]] = {
     "theory": theory,
     "uncertainty": uncertainty,
     "viscous": viscous,
     "ageing": ageing,
     "graded": graded,
+    "dynamics": dynamics,
     "contact": contact.chart,
     "off-axis": off_axis.chart,
 }
-
-
-def main() -> None:
-    for name, draw in CHARTS.items():
-        (DOCS / f"{name}.svg").write_text(draw(), encoding="utf-8")
-        print(f"wrote docs/background/{name}.svg")
-
-
-if __name__ == "__main__":
-    main()

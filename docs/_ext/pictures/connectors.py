@@ -29,6 +29,7 @@ def assembly(seat: str, port: str, mount: str) -> Assembly:
 
 
 def main() -> None:
+    """Draw and write it."""
     with figure(180, 105) as drawn:
         for ax, (seat, port, mount) in zip(drawn.subplots(2, 3).flat, SHOWN, strict=True):
             draw_section(ax, assembly(seat, port, mount))

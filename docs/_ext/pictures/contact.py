@@ -1,4 +1,4 @@
-"""The chart of docs/background/contact.md: the dome under four objects. `pictures.background` writes it."""
+"""The chart of docs/background/contact.md: the dome under four objects."""
 
 from __future__ import annotations
 

@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-
 from benchmarks.mixing import PRESSURES_KPA, RESINS, MixingCurves, curves, sensitivities
 from benchmarks.mixing_theory import THRESHOLD, hashin_shtrikman_low, percolation
+from stored_pages import stored
+
 from pneutouch.arrays import Array
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.mixture import ResolvedMixingCurve
 from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MARKERS, MUTED, figure, halo, plain_ticks, svg
-from stored_pages import stored
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -119,9 +119,7 @@ def _mark(ax: Axes, row: dict[str, Any], marker: str) -> None:
     for k in (0, 1):
         look = {"color": ACCENT if used else INK, "mfc": (ACCENT if used else INK) if k == 0 else "white"}
         label = row["name"] if k == 0 else None
-        ax.plot(
-            ends, values[:, k], marker=marker, ms=6 if used else 4, lw=0.9, ls=LINES[k], label=label, **look
-        )
+        ax.plot(ends, values[:, k], marker=marker, ms=6 if used else 4, lw=0.9, ls=LINES[k], label=label, **look)
 
 
 CHARTS: dict[str, Callable[[], str]] = {"mixing": mixing, "hard-resins": hard_resins}

@@ -1,4 +1,4 @@
-"""The chart of docs/background/off-axis.md: the error of the force read under other contacts. `pictures.background` writes it."""
+"""The chart of docs/background/off-axis.md: the error of the force read under other contacts."""
 
 from __future__ import annotations
 

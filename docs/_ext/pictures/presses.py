@@ -6,11 +6,11 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from stored_pages import stored
 
 from pictures.outcomes import draw_outcomes
 from pneutouch.arrays import Array
 from pneutouch.report.style import ACCENT, FAINT, INK, LINES, MARKERS, MUTED, figure, legend_above, svg
-from stored_pages import stored
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,7 +37,6 @@ OUTCOMES: dict[str, dict[str, Any]] = {
     "axisymmetric to 0.75 R0": {"marker": "o", "color": MUTED, "mfc": "white", "ms": 5},
     "no such state": {"marker": "_", "color": MUTED, "ms": 5},
 }
-
 
 
 def friction() -> str:
@@ -104,7 +103,9 @@ def _cells_panel(ax: Axes, rows: Rows, pressure: float) -> None:
             label = friction if friction == "grip" else f"friction {friction}"
             here = (k + _WIDTH * place, row["cells"][_KEYS[friction]][0])
             ax.plot(*here, mark, color=INK, mfc="white", mew=0.7, ms=3.6, ls="none", zorder=3, label=_once(k, label))
-        ax.plot(k, row["measured_kPa_per_N"], "D", color=ACCENT, ms=4.5, ls="none", zorder=2, label=_once(k, "measured"))
+        ax.plot(
+            k, row["measured_kPa_per_N"], "D", color=ACCENT, ms=4.5, ls="none", zorder=2, label=_once(k, "measured")
+        )
     ax.set_xticks(range(len(rows)), [row["material"].removesuffix("-DM") for row in rows], rotation=40, ha="right")
     ax.set(title=f"{pressure:g} kPa", xlabel="resin", ylim=(0, None))
 

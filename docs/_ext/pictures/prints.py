@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 from benchmarks.voxel_dither import METHODS, PITCH, radial
+from stored_pages import stored
 
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, figure, svg
-from stored_pages import stored
 
 OURS = "pneutouch"
 SHOWN = 0.19

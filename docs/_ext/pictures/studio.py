@@ -1,7 +1,7 @@
 """Pictures of the studio and of the tutorials: ``python -m pictures.studio [DIR]`` writes PNG files into docs/.
 
-Without DIR the studio's own, docs/howto/studio-*.png and docs/filmstrip.png, which needs a browser. DIR is the folder of
-``python -m tests.pages docs/tutorials/*.md --keep DIR``: with it the pictures of the tutorials, of what their commands wrote.
+Without DIR it makes the studio's own, docs/howto/studio-*.png and docs/filmstrip.png, and needs a browser. With the
+folder of ``python -m tests.pages docs/tutorials/*.md --keep DIR`` it makes those of the tutorials.
 """
 
 from __future__ import annotations

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import solve_triangular
 
-from release.tables.atlas.survey import Survey
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.recipe import STORED, AtlasAxes, AtlasRecipe, axes, flattened
 from pneutouch.mechanics.atlas.spline import SplineAxis
+from release.tables.atlas.survey import Survey
 
 _SMOOTH = 1.0e-5
 """Weight of the coefficients' roughness: decides only where no state supports them."""

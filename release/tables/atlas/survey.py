@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from release.tables.atlas.sampler import AtlasSampler, Equilibrium, SampledPress, survey_depths, survey_volumes
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.recipe import STORED, STRETCHES, AtlasRecipe
+from release.tables.atlas.sampler import AtlasSampler, Equilibrium, SampledPress, survey_depths, survey_volumes
 
 _NEAR_ZERO = 0.3
 """Below this share of the limit pressure, a pressure that rises as the plate goes up belongs to a buckled wall."""

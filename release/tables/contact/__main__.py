@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 from rich.progress import Progress
 
-from release.tables.contact.build import jobs, joined, solve
-from release.tables.contact.fingerprint import model_answers
-from release.tables.contact.press import DomeState
 from pneutouch.arrays import Array
 from pneutouch.mechanics.anywhere.recipe import RECIPE
 from pneutouch.mechanics.anywhere.table import SHIPPED, digest
+from release.tables.contact.build import jobs, joined, solve
+from release.tables.contact.fingerprint import model_answers
+from release.tables.contact.press import DomeState
 
 WORK = Path("outputs") / "contact-table"
 

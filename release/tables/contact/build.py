@@ -7,10 +7,10 @@ from itertools import product
 
 import numpy as np
 
-from release.tables.contact.press import DomeState, at_equal_reading, pressed
 from pneutouch.arrays import Array
 from pneutouch.mechanics.anywhere.recipe import PlaceTableRecipe
 from pneutouch.mechanics.anywhere.table import ContactPlaces, DomeConditions, PlaceTable
+from release.tables.contact.press import DomeState, at_equal_reading, pressed
 
 Tables = dict[str, Array]
 Solved = dict[tuple[str, DomeState], tuple[Array, Array]]

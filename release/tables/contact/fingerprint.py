@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from release.tables.contact.press import DomeState, pressed
 from pneutouch.arrays import Array
 from pneutouch.mechanics.anywhere.recipe import PlaceTableRecipe
+from release.tables.contact.press import DomeState, pressed
 
 _STATE = DomeState(0.15, 0.25, 0.12)
 _SCENES = ((0.0, 0.0, False), (1.0, 0.0, False), (1.0, 0.22, False), (1.0, 0.22, True))

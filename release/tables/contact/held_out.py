@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from release.tables.contact.press import DomeState, at_equal_reading, pressed
 from pneutouch.arrays import Array
 from pneutouch.mechanics.anywhere.recipe import PlaceTableRecipe
 from pneutouch.mechanics.anywhere.table import ContactPlaces, DomeConditions, PlaceTable
+from release.tables.contact.press import DomeState, at_equal_reading, pressed
 
 
 class HeldOutPress(NamedTuple):

@@ -1,4 +1,4 @@
-"""A picture of a good and a bad case of every print rule, with what the rule finds: ``python -m pictures.rules.draw``.
+"""A picture of a good and a bad case of every print rule, with what the rule finds: ``make rule-pictures``.
 
 It writes ``docs/reference/rules/``, of which the page of the rules is made; with names of rules, theirs alone.
 """

@@ -1,4 +1,4 @@
-"""The paper's membrane as a mesh: too coarse, crossing itself, parted from its connector, printed with its face down."""
+"""The paper's membrane as a mesh: too coarse, crossing itself, off its connector, printed with its face down."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ def _fitted(clearance: float) -> Case:
 
 
 def mould_filling() -> Pair:
-    """A pour channel through which the silicone runs in time, and one for a mould of sixteen domes that is too narrow."""
+    """A pour channel through which the silicone runs in time, and one that is too narrow for sixteen domes."""
     return (
         _poured("channel of 3.5 mm", "mould.sprue_diameter_mm=3.5"),
         _poured("channel of 0.8 mm, 16 domes", "mould.sprue_diameter_mm=0.8", "mould.cavities=16"),

@@ -1,12 +1,14 @@
-"""Write docs/reference/materials.md: ``python -m benchmarks.materials_page`` (a minute of processor time).
+"""Every elastomer in the paper's dome by its own law: ``python -m benchmarks.materials`` (a minute of processor time).
 
-``--reach`` prints how far the wall of the shipped domes is stretched instead (`pneutouch.bench.tensile.reach`).
+Writes docs/background/materials.json; ``--reach`` prints how far the wall of the shipped domes is stretched instead (`pneutouch.bench.tensile.reach`).
 """
 
 from __future__ import annotations
 
+import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -25,7 +27,7 @@ from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE, TEXT = ROOT / "docs/reference/materials.md", ROOT / "benchmarks/materials_text.md"
+STORED = ROOT / "docs" / "background" / "materials.json"
 PRESSURES_KPA = (0.0, 22.0)
 
 
@@ -66,81 +68,56 @@ def law_words(material: Material) -> tuple[str, str, str]:
     return f"{label}: {constants}", misfit, "" if law.largest_stretch is None else f"1 to {law.largest_stretch:g}"
 
 
-def table() -> str:
-    """One row a material."""
-    rows = [
-        [
-            "material",
-            "kind",
-            "mu, MPa",
-            "law, MPa",
-            "misfit",
-            "stretch",
-            *(f"S at {p:g} kPa, kPa/N" for p in PRESSURES_KPA),
-        ]
-    ]
-    rows[0].append("source")
-    rows.append(["---"] * len(rows[0]))
+def row(name: str, material: Material) -> dict[str, Any]:
+    """A material, its law, and its sensitivities."""
+    sensor, modulus = material_sensor(material), material.shear_modulus_MPa
+    law, misfit, stretch = law_words(material)
+    return {
+        "material": name,
+        "kind": material.kind_shown,
+        "modulus_MPa": modulus.nominal,
+        "law": law,
+        "misfit": misfit,
+        "stretch": stretch,
+        "sensitivity": [sensitivity(sensor, pressure) for pressure in PRESSURES_KPA],
+        "source": "database, below" if material.law is not None else modulus.source.split(":")[0].split(";")[0],
+    }
+
+
+def by_law(name: str, sensor: Sensor) -> dict[str, Any]:
+    """Sensitivity (kPa/N) and limits (kPa) by the fitted law and by the neo-Hookean one."""
+    other = sensor.replace(law=None, largest_stretch=None)
+    fitted, plain = (solid_result(one.replace(waves=0), np.array([0.0]), past_limit=1.0) for one in (sensor, other))
+    kpa = {key: value / KPA for key, value in fitted.limits.named() if key in ("law range", "limit point")}
+    return {
+        "material": name,
+        "law_kPa_per_N": fitted.states[0].figures.sensitivity_kPa_per_N,
+        "neo_hookean_kPa_per_N": plain.states[0].figures.sensitivity_kPa_per_N,
+        "law_limits_kPa": kpa,
+        "neo_hookean_limit_kPa": plain.limits.limit_point / KPA,
+    }
+
+
+def hardness() -> list[dict[str, Any]]:
+    """Young's modulus at small strain (MPa) and over Gent's, of materials with a Shore A hardness and a law or a note."""
+    found = []
     for name, material in materials().items():
-        sensor, modulus = material_sensor(material), material.shear_modulus_MPa
-        cells = [sensitivity(sensor, pressure) for pressure in PRESSURES_KPA]
-        source = "database, below" if material.law is not None else modulus.source.split(":")[0].split(";")[0]
-        rows.append([f"`{name}`", material.kind_shown, f"{modulus.nominal:.4g}", *law_words(material), *cells, source])
-    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+        if material.shore_a is not None and (material.is_cast or name == "TangoPlus"):
+            shore, young = material.shore_a.nominal, 3.0 * material_sensor(material).wall.hyperelastic.mu
+            found.append(
+                {"material": name, "shore_a": shore, "young_MPa": young, "over_gent": young / young_modulus(shore)}
+            )
+    return found
 
 
-def laws() -> str:
-    """Neo-Hookean against the fitted law, one row a material that has another one."""
-    rows = [
-        [
-            "material",
-            "S by the law",
-            "S, neo-Hookean",
-            "difference",
-            "limit of the law, kPa",
-            "limit point, neo-Hookean, kPa",
-        ]
-    ]
-    rows.append(["---"] * len(rows[0]))
-    for name, material in materials().items():
-        sensor = material_sensor(material)
-        if sensor.wall.law is None:
-            continue
-        other = sensor.replace(law=None, largest_stretch=None)
-        by_law, plain = (solid_result(one.replace(waves=0), np.array([0.0]), past_limit=1.0) for one in (sensor, other))
-        values = [one.states[0].figures.sensitivity_kPa_per_N for one in (by_law, plain)]
-        low, point = by_law.limits.law_range, by_law.limits.limit_point
-        named = [f"{low / KPA:.1f} (law range)"] if low is not None else []
-        named += [f"{point / KPA:.1f} (limit point)"] if point is not None else []
-        rows.append(
-            [
-                f"`{name}`",
-                *(f"{value:.3f}" for value in values),
-                f"{100 * (values[1] / values[0] - 1):+.1f} %",
-                ", ".join(named) or "none",
-                f"{plain.limits.limit_point / KPA:.1f}",
-            ]
-        )
-    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
-
-
-def hardness() -> str:
-    """Young's modulus at small strain over Gent's, one row a material with a Shore A hardness and a law or a note."""
-    rows = [["material", "Shore A", "E at small strain, MPa", "over Gent's"], ["---"] * 4]
-    for name, material in materials().items():
-        if material.shore_a is None or not (material.is_cast or name == "TangoPlus"):
-            continue
-        shore, young = material.shore_a.nominal, 3.0 * material_sensor(material).wall.hyperelastic.mu
-        rows.append([f"`{name}`", f"{shore:g}", f"{young:.3g}", f"{young / young_modulus(shore):.2f}"])
-    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
-
-
-def page() -> str:
-    """The page as it must be."""
-    text = TEXT.read_text(encoding="utf-8")
-    for key, make in (("{table}", table), ("{laws}", laws), ("{hardness}", hardness)):
-        text = text.replace(key, make())
-    return text
+def measure() -> dict[str, Any]:
+    """All numbers of the page."""
+    sensors = {name: material_sensor(material) for name, material in materials().items()}
+    return {
+        "materials": [row(name, material) for name, material in materials().items()],
+        "laws": [by_law(name, sensor) for name, sensor in sensors.items() if sensor.wall.law is not None],
+        "hardness": hardness(),
+    }
 
 
 def reach() -> list[str]:
@@ -164,4 +141,4 @@ if __name__ == "__main__":
     if "--reach" in sys.argv:
         sys.stdout.write("\n".join(reach()) + "\n")
     else:
-        PAGE.write_text(page(), encoding="utf-8")
+        STORED.write_text(json.dumps(measure(), indent=1) + "\n", encoding="utf-8")

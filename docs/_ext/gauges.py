@@ -1,29 +1,19 @@
-"""docs/reference/gauges.md from the files of the gauges: ``python -m benchmarks.gauges_page`` writes it."""
+"""Tables of docs/reference/gauges.md from the files of the gauges, for `stored_pages`."""
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 from pneutouch.catalogue import Library
 from pneutouch.spec.fields import declaration
 from pneutouch.spec.gauge import FIGURES, Gauge
 
-ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs/reference/gauges.md"
-TEXT = ROOT / "benchmarks/gauges_text.md"
-"""What the files do not hold: how gauges are used, three targets, how to add one; ``{table}`` and ``{sources}``."""
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def gauges() -> dict[str, Gauge]:
     """The shipped gauges by name."""
     return Library((ROOT,)).all("gauges", Gauge)
-
-
-def page() -> str:
-    """The page as it must be."""
-    text = TEXT.read_text(encoding="utf-8")
-    return text.replace("{table}", table(gauges())).replace("{sources}", "\n\n".join(map(sources, gauges().values())))
 
 
 def table(listed: dict[str, Gauge]) -> str:
@@ -59,8 +49,3 @@ def sources(gauge: Gauge) -> str:
         value = "**unknown**" if quantity is None else quantity.text()
         lines.append(f"| {label} | {value} | {gauge.unknown.get(key, '') if quantity is None else quantity.source} |")
     return "\n".join(lines)
-
-
-if __name__ == "__main__":
-    PAGE.write_text(page(), encoding="utf-8")
-    sys.stdout.write(f"{PAGE}\n")

@@ -1,9 +1,14 @@
-"""The exported model pressed in MuJoCo and the prediction; writes docs/howto/simulators.svg and the table of docs/howto/simulators.md."""
+"""The exported model pressed in MuJoCo beside the prediction: ``python -m benchmarks.simulators``.
+
+Writes docs/background/simulators.json and the chart docs/howto/simulators.svg.
+"""
 
 from __future__ import annotations
 
+import json
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import mujoco
@@ -16,9 +21,8 @@ from pneutouch.evaluation import evaluate
 from pneutouch.workflows.simulator import make_simulator, write_simulator
 from pneutouch.workflows.simulator.run import press_tables
 
-DOCS = Path(__file__).resolve().parents[1] / "docs" / "howto"
+DOCS = Path(__file__).resolve().parents[1] / "docs"
 DESIGN = "paper-dome"
-BEGIN, END = "<!-- comparison -->", "<!-- end of comparison -->"
 
 
 def main() -> None:
@@ -29,15 +33,13 @@ def main() -> None:
         folder = write_simulator(make_simulator(evaluation, "mujoco"), Path(made))
         figure, rows = _compared(folder, tables)
     mpl.rcParams["svg.hashsalt"] = "pneutouch"
-    figure.savefig(DOCS / "simulators.svg", metadata={"Date": None})
-    page = (DOCS / "simulators.md").read_text(encoding="utf-8")
-    before, after = page.split(BEGIN)[0], page.split(END)[1]
-    head = ["| driving pressure, kPa | force off by at most, % | pressure rise off by at most, % |", "|---|---|---|"]
-    text = "\n".join([f"MuJoCo {mujoco.__version__}, `{DESIGN}`, time step 2 ms:", "", *head, *rows])
-    (DOCS / "simulators.md").write_text(f"{before}{BEGIN}\n{text}\n{END}{after}", encoding="utf-8")
+    figure.savefig(DOCS / "howto" / "simulators.svg", metadata={"Date": None})
+    found = {"mujoco": mujoco.__version__, "design": DESIGN, "rows": rows}
+    (DOCS / "background" / "simulators.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
 
 
-def _compared(folder: Path, tables) -> tuple[Figure, list[str]]:
+def _compared(folder: Path, tables) -> tuple[Figure, list[dict[str, Any]]]:
+    """The chart, and the greatest differences in percent by driving pressure."""
     figure = Figure(figsize=(9, 5.5), layout="constrained")
     axes = figure.subplots(2, 2, sharex=True, height_ratios=(2, 1))
     rows = []
@@ -57,7 +59,7 @@ def _compared(folder: Path, tables) -> tuple[Figure, list[str]]:
             off = 100 * (points / PchipInterpolator(depth, curve)(travels) - 1)
             bottom.plot(travels, off, mark, ls="-", color=grey, mfc="none", ms=3, lw=0.7)
             worst.append(float(np.abs(off).max()))
-        rows.append(f"| {table.driving_pressure_kPa:g} | {worst[0]:.2f} | {worst[1]:.2f} |")
+        rows.append({"driving_pressure_kPa": table.driving_pressure_kPa, "force": worst[0], "rise": worst[1]})
     for (top, bottom), name in zip(axes.T, ("force on the plate, N", "pressure rise, kPa"), strict=True):
         top.set_ylabel(name)
         bottom.set(xlabel="plate travel, mm", ylabel="MuJoCo off by, %", ylim=(-1.1, 1.1))
