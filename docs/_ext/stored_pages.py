@@ -1,16 +1,14 @@
 """Fills the Markdown templates of docs/templates from stored measurements: ``make pages``.
 
-A template docs/templates/PATH.j2 is Jinja2 and becomes docs/PATH. In it ``stored("NAME")`` is docs/background/NAME.json,
-which a module of ``benchmarks`` wrote. ``python docs/_ext/stored_pages.py [PATH ...]`` writes the pages, or those of some
-paths such as ``background/atlas.md``; with ``--check`` it names the pages that differ and writes none.
+A template docs/templates/PATH.j2 is Jinja2 and becomes docs/PATH. In it ``stored("NAME")`` is
+docs/background/NAME.json, which a module of ``benchmarks`` wrote. ``python docs/_ext/stored_pages.py [PATH ...]`` writes
+all pages, or some such as ``background/atlas.md``; with ``--check`` it names the pages that differ and writes none.
 """
 
 from __future__ import annotations
 
 import json
-import statistics
 import sys
-from collections.abc import Iterable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -58,30 +56,12 @@ def changes(value: float | None, digits: int = 0) -> str:
     return "–" if value is None else f"{100 * value:+.{digits}f}"
 
 
-def column(rows: Iterable[dict[str, Any]], key: str) -> list[Any]:
-    """One figure of every row that has it."""
-    return [row[key] for row in rows if row.get(key) is not None]
-
-
-def sizes(values: Iterable[float]) -> list[float]:
-    """Absolute values."""
-    return [abs(value) for value in values]
-
-
-def cells(values: Sequence[object]) -> str:
-    """A row of a table."""
-    return f"| {' | '.join(map(str, values))} |"
-
-
 def rule(count: int) -> str:
     """The line below the head of a table of so many columns."""
     return "|" + "---|" * count
 
 
-FILTERS = {
-    each.__name__: each for each in (fixed, short, percent, change, hundredths, changes, column, sizes, cells, rule)
-}
-FILTERS |= {"median": statistics.median}
+FILTERS = {each.__name__: each for each in (fixed, short, percent, change, hundredths, changes)}
 
 
 @cache
@@ -110,12 +90,14 @@ def render(path: str) -> str:
     return environment().get_template(f"{path}.j2").render()
 
 
+def _current(path: str) -> str:
+    return (DOCS / path).read_text(encoding="utf-8") if (DOCS / path).is_file() else ""
+
+
 def main(*words: str) -> int:
     """Write or check pages; the exit code."""
     wanted = [word for word in words if word != "--check"] or paths()
-    differ = [
-        path for path in wanted if not (DOCS / path).is_file() or (DOCS / path).read_text("utf-8") != render(path)
-    ]
+    differ = [path for path in wanted if _current(path) != render(path)]
     for path in differ:
         if "--check" not in words:
             (DOCS / path).write_text(render(path), encoding="utf-8")

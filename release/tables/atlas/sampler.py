@@ -30,8 +30,8 @@ _LOST_AT_CONTACT = 0.5
 """Work unaccounted for in one step, as a share of it, beyond which the step has changed branch; the first step, from a
 point of contact, is only known coarsely."""
 _SUCTION = 2.0e-3
-"""States are kept down to this share of the limit pressure below zero, no further: sucked off the plate the wall answers
-with another, softer stiffness, and the kink there would spoil the smooth side."""
+"""States are kept down to this share of the limit pressure below zero, no further: sucked off the plate the wall
+answers with another, softer stiffness, and the kink there would spoil the smooth side."""
 
 
 def survey_volumes(recipe: AtlasRecipe) -> Array:
@@ -182,7 +182,7 @@ class AtlasSampler:
         )
 
     def reachable(self, solution: Equilibrium) -> bool:
-        """Whether a trapped gas can hold the state, started at rest or above with the plate no lower than the box allows.
+        """Whether a trapped gas can hold the state, started at rest or above, the plate no lower than the box allows.
 
         The stiffest gas starts as full as that depth lets it, with no dead volume and the greatest ambient pressure:
         p + pa = (p1 + pa) V1/V, dp/dV = -(p + pa)/V.

@@ -22,7 +22,7 @@ _NEAR_ZERO = 0.3
 class Survey:
     """All states solved for one wall ratio.
 
-    free_volume, free_apex: the free inflation curve from nu = 0 on, (n,). limit_volume, limit_pressure: the limit point.
+    free_volume, free_apex: the free inflation curve from nu = 0 on, (n,). limit_volume, limit_pressure: limit point.
     volume, height, energy, pressure, force, stiffness (dp/dV at a fixed plate): (m,). fields: (len(STORED), m).
     """
 
@@ -43,7 +43,10 @@ class Survey:
 
 
 def survey(wall_ratio: float, recipe: AtlasRecipe) -> Survey:
-    """Solve the solid for every reachable state of one wall ratio. Raises ComputationError where the dome itself fails."""
+    """Solve the solid for every reachable state of one wall ratio.
+
+    Raises ComputationError where the dome itself fails.
+    """
     sampler = AtlasSampler(wall_ratio, recipe)
     rows = [_down(sampler, sampler.touching(free)) for free in sampler.free]
     nodes = [node for row in rows for node in row.values()]
@@ -61,7 +64,7 @@ def survey(wall_ratio: float, recipe: AtlasRecipe) -> Survey:
 
 
 def _fold(sampler: AtlasSampler, presses: list[SampledPress]) -> tuple[float, Array]:
-    """Where the sheet of states ends by buckling: the depth below the unloaded apex at which a vented press does, and the
+    """Edge of the sheet of states by buckling: the depth below the unloaded apex at which a vented press buckles, and the
     least volume at depths beyond; (recipe.fold_depths,).
 
     The ends of the presses are points of that edge; where no press has ended, the lowest press is.

@@ -27,7 +27,7 @@ def central(recipe: PlaceTableRecipe, state: DomeState) -> tuple[Array, Array]:
 
 
 def leaning(recipe: PlaceTableRecipe, state: DomeState) -> tuple[Array, Array]:
-    """What a lean changes of a dome's: logarithms (curvatures, leans, levels) and highest levels (curvatures, leans)."""
+    """Changes by a lean: logarithms (curvatures, leans, levels) and highest levels (curvatures, leans)."""
     plate = pressed(recipe, state, 0.0, 0.0, cells=recipe.cells)
     logs = np.zeros((len(recipe.leaning_curvatures), len(recipe.leans), len(recipe.levels)))
     reach = np.zeros(logs.shape[:2])
@@ -41,7 +41,7 @@ def leaning(recipe: PlaceTableRecipe, state: DomeState) -> tuple[Array, Array]:
 
 
 def edges(recipe: PlaceTableRecipe, state: DomeState, leans: Sequence[float]) -> tuple[Array, Array]:
-    """Of the presses of a dome by edges: logarithms (curvatures, leans, levels) and highest levels (curvatures, leans)."""
+    """Presses by edges: logarithms (curvatures, leans, levels) and highest levels (curvatures, leans)."""
     plate = pressed(recipe, state, 0.0, 0.0, cells=recipe.cells)
     rows = [
         [at_equal_reading(recipe, plate, pressed(recipe, state, bend, lean, lying=True)) for lean in leans]
