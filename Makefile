@@ -41,7 +41,7 @@ review: $(VENV)/.dev
 # Times of single jobs over those of others in the same run; and of the commands over the import of their libraries.
 ratios: $(VENV)/.dev
 	$(BIN)/python -m benchmarks.ratios
-	$(BIN)/python -m benchmarks.start_up
+	$(BIN)/python -m benchmarks.ratios start-up
 
 check-slow: $(VENV)/.dev
 	$(BIN)/python -m pytest -m slow -n 2 --dist worksteal
@@ -84,11 +84,11 @@ $(VENV)/fuzz/.atheris: $(VENV)/.dev
 
 # Faults in mechanics, printability and bench, drawn at random, and whether the everyday tests notice them.
 mutants: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.mutants --count 120 --seed 5 --calls outputs/calls.json --out outputs/mutants-5.json
+	OMP_NUM_THREADS=1 $(BIN)/python -m tests.mutants --count 120 --seed 5 --calls outputs/calls.json --out outputs/mutants-5.json
 
 # The studio in use for an hour, in a browser.
 soak: $(VENV)/.dev
-	$(BIN)/python -m benchmarks.studio_soak --minutes 60
+	$(BIN)/python -m tests.studio.soak --minutes 60
 
 # The figures of paper/paper.md, from stored ones.
 paper: $(VENV)/.run

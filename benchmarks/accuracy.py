@@ -6,20 +6,18 @@ docs/background/accuracy.json, of which accuracy.md and speed-against-accuracy.m
 
 from __future__ import annotations
 
-import json
 import statistics
 import sys
 from collections import Counter
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from benchmarks import full_depth, off_axis_calculix, paper, peers, speed_accuracy, validity
-from benchmarks.methods import ATLAS, MODEL_METHODS
+from benchmarks.methods import ATLAS
 from benchmarks.scenes import SCENES
+from benchmarks.store import store, stored
 
-DOCS = Path(__file__).resolve().parents[1] / "docs" / "background"
 DEFAULT, OURS = "solid default", "pneutouch"
 CUT = 0.8
 """A range shorter than this share of the reference's counts as cut: an event that the reference does not have."""
@@ -31,11 +29,6 @@ ERRORS = ("apex_error", "limit_error", "force_error", "sensitivity_error")
 Rows = list[dict[str, Any]]
 
 
-def stored(name: str) -> Any:
-    """A stored measurement."""
-    return json.loads((DOCS / f"{name}.json").read_text(encoding="utf-8"))
-
-
 def measure() -> None:
     """Measure and store everything that takes minutes."""
     paper.main()
@@ -44,7 +37,7 @@ def measure() -> None:
     programs = peers.measure(1e-3 * sensor["reference"]["limit_pressure_kPa"])
     found = {"speed-accuracy": speeds, "peers": programs, "validity": validity.measure()}
     for name, data in (*found.items(), ("full-depth", full_depth.measure())):
-        (DOCS / f"{name}.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+        store(name, data)
 
 
 def of(rows: Rows, method: str) -> Rows:
@@ -81,21 +74,8 @@ def methods(data: dict[str, Any]) -> Rows:
 
 
 def scenes(data: dict[str, Any]) -> Rows:
-    """Every scene: its reference, the default on it, what the atlas answers and what ``auto`` took."""
-    by_method = {
-        m: {row["scene"]: row for row in data["rows"] if row["method"] == m} for m in (DEFAULT, *MODEL_METHODS)
-    }
-    default, atlas, auto = by_method.values()
-    return [
-        {
-            "scene": scene["scene"],
-            "reference": scene["reference"],
-            "default": default[scene["scene"]],
-            "atlas": atlas[scene["scene"]],
-            "auto": auto[scene["scene"]],
-        }
-        for scene in data["scenes"]
-    ]
+    """Every scene by its name, with the error of the default's sensitivity."""
+    return [{"scene": row["scene"], "error": row["sensitivity_error"]} for row in of(data["rows"], DEFAULT)]
 
 
 def costs(data: dict[str, Any]) -> dict[str, float]:
@@ -291,7 +271,7 @@ def reduced() -> dict[str, Any]:
 def main(*words: str) -> None:
     if "stored" not in words:
         measure()
-    (DOCS / "accuracy.json").write_text(json.dumps(reduced(), indent=1) + "\n", encoding="utf-8")
+    store("accuracy", reduced())
 
 
 if __name__ == "__main__":

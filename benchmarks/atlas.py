@@ -6,7 +6,6 @@ stored errors anew.
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from collections import Counter
@@ -14,11 +13,11 @@ from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from multiprocessing import get_context
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from benchmarks.store import store, stored
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
 from pneutouch.mechanics.atlas.recipe import RECIPE, axes
@@ -35,7 +34,6 @@ from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid_states import curve_between, reported_events
 from pneutouch.units import KPA
 
-STORED = Path(__file__).resolve().parents[1] / "docs" / "background" / "atlas.json"
 COUNT, SEED = 500, 2000
 KEYS = ("wall", "share", "ambient", "dead", "depth")
 ERRORS = {
@@ -268,9 +266,9 @@ def reduced(data: dict[str, Any]) -> dict[str, Any]:
 
 
 def main(*words: str) -> None:
-    data = json.loads(STORED.read_text(encoding="utf-8")) if "stored" in words else measure()
+    data = stored("atlas") if "stored" in words else measure()
     data["summary"] = reduced(data)
-    STORED.write_text(json.dumps(data) + "\n", encoding="utf-8")
+    store("atlas", data, None)
 
 
 if __name__ == "__main__":

@@ -1,21 +1,20 @@
 """The press with friction by CalculiX in three dimensions (an optional peer, found on PATH).
 
 ``python -m benchmarks.calculix_friction_half`` presses the paper's dome in FLX9960 centrally with the axisymmetric solid and
-with half a dome of C3D20R cells, each with its own gas. Stores docs/background/friction-calculix.json. CalculiX counts slip from the beginning of its computation (`calculix_grip`): the coefficient is one at
+with half a dome of C3D20R cells, each with its own gas. Stores docs/background/friction-calculix.json. CalculiX counts slip from the beginning of its computation (`calculix_friction`): the coefficient is one at
 which nearly all points slip.
 """
 
 from __future__ import annotations
 
-import json
 import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from benchmarks.calculix_half import HalfPress
 from benchmarks.scenes import paper
+from benchmarks.store import store
 from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.contact import Plate
@@ -25,8 +24,6 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.units import KPA
 
-ROOT = Path(__file__).resolve().parents[1]
-STORED = ROOT / "docs" / "background" / "friction-calculix.json"
 SENSOR = paper(0.91)
 DEPTH, STEPS = 2.4, 2
 CELLS = (36, 2, 6)
@@ -76,10 +73,8 @@ def main(*cells: int) -> None:
     """All coefficients, and one table."""
     mesh = (cells[0], cells[1], cells[2]) if cells else CELLS
     rows = [{"friction": friction, **row} for friction in COEFFICIENTS for row in compared(friction, mesh)]
-    for row in rows:
-        print(" ".join(f"{name}={value:.5g}" for name, value in row.items()))
     data = {"cells": list(mesh), "rows": rows}
-    STORED.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    store("friction-calculix", data)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ docs/background/coverage.json; with ``stored`` the table is reduced anew.
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
@@ -16,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.store import store, stored
 from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.figure import BY_KEY, FIGURES, RESOLVED
@@ -32,7 +32,6 @@ from pneutouch.units import KPA
 RESINS = ("TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985", "FLX9995")
 PRESSURES = (0.0, 22.0)
 CAMPAIGNS, SPECIMENS, RUNS = 200, 3, 3
-STORED = Path(__file__).resolve().parents[1] / "docs" / "background" / "coverage.json"
 
 RATE, LOOP_RATE = 100.0, 2000.0
 """Hz: that of the blocks to which any faster record is averaged before it is looked at; a loop is short, and recorded faster."""
@@ -147,14 +146,14 @@ def table(resins: dict[str, Any]) -> list[dict[str, Any]]:
 
 def main(*words: str) -> None:
     if "stored" in words:
-        found = json.loads(STORED.read_text(encoding="utf-8"))
+        found = stored("coverage")
         campaigns, resins = found["campaigns"], found["resins"]
     else:
         campaigns = int(words[0]) if words else CAMPAIGNS
         with ProcessPoolExecutor(2) as pool:
             resins = dict(zip(RESINS, pool.map(counted, RESINS, [campaigns] * len(RESINS)), strict=True))
     data = {"campaigns": campaigns, "resins": resins, "table": table(resins)}
-    STORED.write_text(json.dumps(data, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+    store("coverage", data)
 
 
 if __name__ == "__main__":

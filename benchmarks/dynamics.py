@@ -5,11 +5,10 @@ Writes docs/background/dynamics.json (seconds).
 
 from __future__ import annotations
 
-import json
 import math
-from pathlib import Path
 from typing import Any
 
+from benchmarks.store import store
 from pneutouch.catalogue.scene import DEFAULT
 from pneutouch.evaluation.dynamics import DynamicState
 from pneutouch.evaluation.evaluate import evaluate
@@ -18,8 +17,6 @@ from pneutouch.mechanics.line.band import band_figures
 from pneutouch.mechanics.line.cascade import GasLine
 from pneutouch.mechanics.line.dynamics import SensorDynamics
 from pneutouch.mechanics.line.elements import Duct, GasVolume
-
-STORED = Path(__file__).parents[1] / "docs" / "background" / "dynamics.json"
 
 LENGTHS = (50.0, 300.0, 1000.0)
 """Tubes of the chart, mm."""
@@ -80,4 +77,4 @@ def measure() -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    STORED.write_text(json.dumps(measure(), indent=1) + "\n", encoding="utf-8")
+    store("dynamics", measure())

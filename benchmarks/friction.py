@@ -6,16 +6,15 @@ the random presses of which it times friction, and what they come to.
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, NamedTuple
 from unittest import mock
 
 import numpy as np
 
+from benchmarks.store import LIBRARY, store
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.paper_sensor import material_sensor
@@ -28,7 +27,6 @@ from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.units import KPA
 
-STORED = Path(__file__).resolve().parents[1] / "docs" / "background" / "friction.json"
 RESINS = ("TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985")
 WALL, PRESSURES = 1.5, (0.0, 22 * KPA)
 
@@ -86,11 +84,6 @@ def summary(rows: list[FrictionCost]) -> dict[str, float]:
     }
 
 
-def label(friction: float) -> str:
-    """A coefficient as the tables show it."""
-    return "grip" if np.isinf(friction) else f"{friction:g}"
-
-
 def scene(modulus: float, pressure: float) -> Scene:
     """The paper's dome in a modulus (MPa) at a driving pressure (MPa)."""
     solid = SolidModel(dome(RADIUS, WALL), neo_hookean(modulus), base=RigidBase())
@@ -134,7 +127,7 @@ def _steps() -> list[dict[str, Any]]:
         values = [_slope(press(one, friction, BEFORE_EVENTS, steps), steps // 14) for steps in STEPS]
         with mock.patch("pneutouch.mechanics.solid.friction_path.TANGENTIAL", 1.0):
             values.append(_slope(press(one, friction, BEFORE_EVENTS), 1))
-        name = f"{modulus:g} MPa, {pressure / KPA:g} kPa, {label(friction)}"
+        name = f"{modulus:g} MPa, {pressure / KPA:g} kPa, {'grip' if np.isinf(friction) else friction}"
         rows.append({"press": name, "sensitivity_kPa_per_N": values})
     return rows
 
@@ -197,7 +190,7 @@ def main(*words: str) -> None:
             print(" ".join(f"{value:.3g}" for value in row), flush=True)
         print(summary(rows))
     else:
-        STORED.write_text(json.dumps(measure(Library.default()), indent=1) + "\n", encoding="utf-8")
+        store("friction", measure(LIBRARY))
 
 
 if __name__ == "__main__":

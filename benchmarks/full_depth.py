@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import time
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from benchmarks.scenes import PAPER
 from benchmarks.speed_accuracy import REFINEMENTS, extrapolate
+from benchmarks.store import store
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import state_at
@@ -22,7 +21,6 @@ from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid_states import KINDS, curve_between
 from pneutouch.units import KPA
 
-STORED = Path(__file__).resolve().parents[1] / "docs" / "background" / "full-depth.json"
 FLANGE = 2.25
 """Width and thickness of the flange of a glued seat around this wall, mm."""
 SHALLOW = 5.75
@@ -106,4 +104,4 @@ def _stored(press: FullDepthPress, unit: float) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    STORED.write_text(json.dumps(measure(), indent=1) + "\n", encoding="utf-8")
+    store("full-depth", measure())

@@ -1,7 +1,7 @@
 """Bounds of every reader, and what fuzzing, mutation testing and the soak come to: ``python -m benchmarks.hardening``.
 
 Writes docs/background/hardening.json from the constants of the code and from what the tests of the tests have stored
-(`benchmarks.mutants`, `benchmarks.largest_inputs`, `benchmarks.studio_soak`, ``tests.fuzzing``).
+(``tests.mutants``, ``tests.fuzzing``).
 """
 
 from __future__ import annotations
@@ -9,11 +9,12 @@ from __future__ import annotations
 import json
 import math
 import tomllib
-from pathlib import Path
 from typing import Any
 
-from benchmarks.mutant_sites import PARTS
-from benchmarks.mutants import FOLDERS
+from tests.mutants.__main__ import FOLDERS
+from tests.mutants.sites import PARTS
+
+from benchmarks.store import DOCS, store, stored
 from pneutouch.bench.blocks import MOST_BLOCKS
 from pneutouch.export import threemf_package as package
 from pneutouch.export.voxels.png import MOST_PIXELS
@@ -26,8 +27,7 @@ from pneutouch.tables.read import MOST_NUMBERS
 from pneutouch.tables.text import LONGEST_LINE
 from pneutouch.workflows.sweep.dataset import MOST_BYTES as MOST_DATASET
 
-DOCS = Path(__file__).resolve().parents[1] / "docs" / "background"
-READ = Path(__file__).with_name("mutants_read.toml")
+READ = DOCS.parents[1] / "tests" / "mutants" / "read.toml"
 
 
 def bounds() -> list[tuple[str, str]]:
@@ -66,11 +66,6 @@ def bounds() -> list[tuple[str, str]]:
         ("exported design, question of the page (JSON)", f"{LARGEST_BODY // 1024} KiB"),
         ("file given to the page", f"{LARGEST_FILE // mib} MiB, 256 MiB in all"),
     ]
-
-
-def stored(name: str) -> Any:
-    """A stored measurement."""
-    return json.loads((DOCS / name).read_text(encoding="utf-8"))
 
 
 def wilson(part: int, whole: int) -> tuple[float, float]:
@@ -119,7 +114,7 @@ def counted(rows: list[Any], read: dict[Any, Any]) -> dict[str, int]:
 
 def fuzzed() -> dict[str, Any]:
     """Totals of the fuzzing, and the readers in which it found something."""
-    rows = stored("fuzzing.json")
+    rows = stored("fuzzing")
     totals = {key: sum(row[key] for row in rows.values()) for key in ("runs", "seconds", "kept", "kept_bytes")}
     found = {name: row["findings"] for name, row in rows.items() if row["findings"]}
     return {**totals, "readers": len(rows), "findings": found}
@@ -127,7 +122,7 @@ def fuzzed() -> dict[str, Any]:
 
 def main() -> None:
     found = {"bounds": bounds(), "fuzzing": fuzzed(), "mutation": mutation()}
-    (DOCS / "hardening.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    store("hardening", found)
 
 
 if __name__ == "__main__":

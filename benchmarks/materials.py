@@ -5,15 +5,13 @@ Writes docs/background/materials.json; ``--reach`` prints how far the wall of th
 
 from __future__ import annotations
 
-import json
 import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.store import LIBRARY, store
 from pneutouch.bench.tensile.fit import LawForm
-from pneutouch.catalogue import Library
 from pneutouch.errors import BeyondLimitError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.limits import Limits
@@ -26,14 +24,12 @@ from pneutouch.mechanics.uncertainty.hardness import young_modulus
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
-ROOT = Path(__file__).resolve().parents[1]
-STORED = ROOT / "docs" / "background" / "materials.json"
 PRESSURES_KPA = (0.0, 22.0)
 
 
 def materials() -> dict[str, Material]:
     """The shipped elastomers by name, printed ones first, soft ones first."""
-    every = Library((ROOT,)).all("materials", Material)
+    every = LIBRARY.all("materials", Material)
     soft = {name: one for name, one in every.items() if one.shear_modulus_MPa is not None and one.kind == "elastomer"}
     return dict(sorted(soft.items(), key=lambda item: (item[1].is_cast, item[1].shear_modulus_MPa.nominal)))
 
@@ -141,4 +137,4 @@ if __name__ == "__main__":
     if "--reach" in sys.argv:
         sys.stdout.write("\n".join(reach()) + "\n")
     else:
-        STORED.write_text(json.dumps(measure(), indent=1) + "\n", encoding="utf-8")
+        store("materials", measure())

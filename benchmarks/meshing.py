@@ -5,25 +5,22 @@
 
 from __future__ import annotations
 
-import json
 import statistics
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.store import LIBRARY, store
 from pneutouch.body import Frame, Solid
-from pneutouch.catalogue import Library, load_scene
+from pneutouch.catalogue import load_scene
 from pneutouch.export.brep import exact_solid
 from pneutouch.meridian import Arc, Meridian
 from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes
 
-ROOT = Path(__file__).resolve().parents[1]
-STORED = ROOT / "docs" / "background" / "meshing.json"
 BODIES = {
     "membrane": ("paper-dome", []),
     "connector": ("paper-dome", []),
@@ -192,14 +189,13 @@ def compared(rows: list[Row]) -> dict[str, list[float]]:
 
 
 def main() -> None:
-    library = Library((ROOT,))
     found: dict[str, list[Row]] = {}
     for label, (design, chosen) in BODIES.items():
-        assembly = assemble(load_scene(design, parse_changes(chosen), library))
+        assembly = assemble(load_scene(design, parse_changes(chosen), LIBRARY))
         found[label] = measure(assembly.solid(label.split(",")[0]))
     bodies = {label: [asdict(row) for row in rows] for label, rows in found.items()}
     data = {"bodies": bodies, "compared": {label: compared(rows) for label, rows in found.items()}}
-    STORED.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    store("meshing", data)
 
 
 if __name__ == "__main__":

@@ -6,22 +6,22 @@ every published shear modulus of FLX9985 and FLX9995 predicts.
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-
-from benchmarks.mixing_laws import (
+from release.tables.mixing_laws import (
     HARDNESS_READ,
     LONG_TERM,
     SOFT_HARDNESS,
     TENSION_INTERCEPT,
     TENSION_SLOPE,
+    THRESHOLD,
+    VOXEL_THRESHOLD,
     stiff_moduli,
 )
-from benchmarks.mixing_theory import THRESHOLD, VOXEL_THRESHOLD
+
+from benchmarks.store import LIBRARY, store
 from pneutouch.arrays import Array
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixing
@@ -34,8 +34,6 @@ from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 from pneutouch.workflows.coupons.blends import FRACTIONS
 
-ROOT = Path(__file__).resolve().parents[1]
-STORED = ROOT / "docs" / "background" / "mixing.json"
 SOFT, STIFF = "TangoPlus", "VeroClear"
 WHERE = (0.03, 0.06, 0.1, 0.15, 0.2, 0.3)
 WHOLE_LEVELS = 24
@@ -230,7 +228,7 @@ def measure(library: Library) -> dict[str, Any]:
 
 
 def main() -> None:
-    STORED.write_text(json.dumps(measure(Library((ROOT,))), indent=1) + "\n", encoding="utf-8")
+    store("mixing", measure(LIBRARY))
 
 
 if __name__ == "__main__":

@@ -8,13 +8,13 @@ from __future__ import annotations
 import json
 import statistics
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from benchmarks.scenes import MOONEY_RIVLIN_AGILUS30, OGDEN_AGILUS30, PAPER
+from benchmarks.store import LIBRARY, store
 from pneutouch.catalogue import Library
 from pneutouch.evaluation.table_s1 import PRESSURES, SHIPPED, compute_errors, fingerprint, measured
 from pneutouch.mechanics import predict
@@ -27,9 +27,6 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA, ML
-
-ROOT = Path(__file__).resolve().parents[1]
-STORED = ROOT / "docs" / "background" / "paper.json"
 
 METHODS = {
     "variational": ("membrane", "variational"),
@@ -188,10 +185,9 @@ def other_laws(found: dict[str, Curve]) -> list[dict[str, Any]]:
 
 
 def main() -> None:
-    library = Library((ROOT,))
-    ship_errors(library)
-    found = {"contact": contact(library), "cap": cap(), "laws": other_laws(curves())}
-    STORED.write_text(json.dumps(found) + "\n", encoding="utf-8")
+    ship_errors(LIBRARY)
+    found = {"contact": contact(LIBRARY), "cap": cap(), "laws": other_laws(curves())}
+    store("paper", found, None)
 
 
 if __name__ == "__main__":

@@ -6,15 +6,14 @@ of ``benchmarks.sway_calculix``.
 
 from __future__ import annotations
 
-import json
 import statistics
 import sys
 from collections import Counter
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.store import store, stored
 from pneutouch.errors import PneutouchError
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.harmonics import HarmonicSolid
@@ -27,7 +26,6 @@ from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.supply import Regulator
 from pneutouch.mechanics.solid.sway import unstable_waves
 
-DOCS = Path(__file__).resolve().parents[1] / "docs" / "background"
 PUBLISHED = 0.8
 """Share of the classical pressure at which a clamped hemisphere buckles (arXiv 2412.15066)."""
 
@@ -163,13 +161,12 @@ def reduced(data: dict[str, Any], calculix: dict[str, Any]) -> dict[str, Any]:
 
 
 def main(*words: str) -> None:
-    calculix = json.loads((DOCS / "sway-calculix.json").read_text(encoding="utf-8"))
     if "stored" in words:
-        data = json.loads((DOCS / "sway.json").read_text(encoding="utf-8"))
+        data = stored("sway")
     else:
         data = {"map": mapped(), "refinement": refinement(), "hemisphere": [buckling(ratio) for ratio in SHELLS]}
-    data["summary"] = reduced(data, calculix)
-    (DOCS / "sway.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    data["summary"] = reduced(data, stored("sway-calculix"))
+    store("sway", data)
 
 
 if __name__ == "__main__":

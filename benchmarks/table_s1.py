@@ -7,18 +7,17 @@
 from __future__ import annotations
 
 import itertools
-import json
 import os
 import sys
 from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from benchmarks.paper import OTHER_SOURCE, resins
+from benchmarks.store import LIBRARY, store, stored
 from benchmarks.validation import PRINTED_FLANGE
 from pneutouch.arrays import Array
 from pneutouch.catalogue import Library
@@ -30,8 +29,6 @@ from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA, ML
 
-ROOT = Path(__file__).resolve().parents[1]
-STORED = ROOT / "docs" / "background" / "table-s1.json"
 FRICTIONS = (0.0, 0.3, 0.6, 1.0, np.inf)
 RIMS = ("base plane", "as printed", "no base")
 DEAD_VOLUMES_ML = (0.0, 0.2)
@@ -260,9 +257,9 @@ def _fit(rows: list[CellRow], assumed: Assumptions) -> dict[str, Any]:
 
 
 def main(*words: str) -> None:
-    found = json.loads(STORED.read_text("utf-8"))["cells"] if "stored" in words else raw(cells(Library((ROOT,))))
+    found = stored("table-s1")["cells"] if "stored" in words else raw(cells(LIBRARY))
     data = {"summary": reduced(read(found)), "cells": found}
-    STORED.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    store("table-s1", data)
 
 
 if __name__ == "__main__":

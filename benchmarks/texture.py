@@ -5,17 +5,15 @@ Writes docs/background/texture.json; with ``stored`` it reduces the stored numbe
 
 from __future__ import annotations
 
-import json
 import sys
 import time
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.store import LIBRARY, store, stored
 from benchmarks.strip import AGILUS, Row, Strip, harmonic
 from pneutouch.arrays import Array
-from pneutouch.catalogue import Library
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.uncertainty import batch_of
 from pneutouch.texture.scalogram import scalogram
@@ -27,8 +25,6 @@ from pneutouch.workflows.scan.document import document
 from pneutouch.workflows.scan.run import ScanOptions, run_scan
 from pneutouch.workflows.scan.separate import separating
 
-ROOT = Path(__file__).resolve().parents[1]
-STORED = ROOT / "docs" / "background" / "texture.json"
 CELL, LENGTH, HEIGHT = 0.5, 24.0, 8.0
 DEPTHS, KINDS = (0.0, 1.0, 2.0, 3.0), {3.0: (1.5, 1.0), 6.0: (3.0, 1.5)}
 SURFACE = Row(3.0, 1.5, 1.0, 0.0, 0.75)
@@ -39,8 +35,7 @@ _DIGITS = 5
 
 def measure() -> dict[str, Any]:
     """All numbers of the page."""
-    library = Library((ROOT,))
-    run = run_scan("texture-specimen", "paper-dome", library=library)
+    run = run_scan("texture-specimen", "paper-dome", library=LIBRARY)
     radii = [seen.touch.contact_radius for seen in run.seen if seen.touch is not None]
     return {
         "scan": document(run),
@@ -50,7 +45,7 @@ def measure() -> dict[str, Any]:
         "speed": speed(run),
         "sweeps": sweeps(run),
         "advice": advice(run),
-        "separate": separating("texture-specimen", "paper-dome", "3@0,6@2", ScanOptions(), library=library),
+        "separate": separating("texture-specimen", "paper-dome", "3@0,6@2", ScanOptions(), library=LIBRARY),
     }
 
 
@@ -272,9 +267,9 @@ def reduced(data: dict[str, Any]) -> dict[str, Any]:
 
 
 def main(*words: str) -> None:
-    data = json.loads(STORED.read_text(encoding="utf-8")) if "stored" in words else measure()
+    data = stored("texture") if "stored" in words else measure()
     data["summary"] = reduced(data)
-    STORED.write_text(json.dumps(data, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+    store("texture", data)
 
 
 if __name__ == "__main__":

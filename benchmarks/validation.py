@@ -6,11 +6,9 @@ Writes docs/background/validation.json. Friction and contact off the axis in thr
 
 from __future__ import annotations
 
-import json
 import shutil
 import statistics
 import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,15 +20,13 @@ from benchmarks.contact_references import balls
 from benchmarks.methods import solid_limit
 from benchmarks.paper import OTHER_SOURCE, Cell, table_s1
 from benchmarks.scenes import PAPER, Scene
+from benchmarks.store import LIBRARY, store, stored
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-
-ROOT = Path(__file__).resolve().parents[1]
-STORED = ROOT / "docs" / "background" / "validation.json"
 
 SPHERES = ((1.0, 2.0), (10.0, 11.0), (9.25, 10.75), (8.5, 10.0))
 """Inner and outer radii of the thick spheres."""
@@ -196,7 +192,7 @@ def measure() -> dict[str, Any]:
         "incompressibility": incompressibility(),
         "invariances": invariances(),
         "calculix": calculix(),
-        "dead_volumes": dead_volumes(Library((ROOT,))),
+        "dead_volumes": dead_volumes(LIBRARY),
     }
 
 
@@ -210,29 +206,21 @@ def references(data: dict[str, Any]) -> list[dict[str, Any]]:
     pressure, height = data["thin_walls"]["extrapolated"]
     spheres = [[row[3] / row[2] - 1, row[5] / row[4] - 1] for row in data["spheres"]]
     pressed = [row[3::2] for row in data["pressed_membrane"]]
-    off_axis, friction = (json.loads(each.STORED.read_text()) for each in (off_axis_calculix, calculix_friction_half))
+    off_axis, friction = stored("off-axis-calculix"), stored("friction-calculix")
     three = [greatest([[x] for x in calculix_friction_half.differences(friction, key)])[0] for key in FRICTION_FIGURES]
     aside = [
         greatest([[x] for x in off_axis_calculix.differences(off_axis, key)])[0] for key in off_axis_calculix.FIGURES
     ]
     balls, limit = data["balls"], data["calculix"]
     inflation = [abs(limit["calculix_kPa"] / limit["solid_kPa"] - 1)] if limit else []
+    membrane = [abs(pressure / 1.57537 - 1), abs(height / 1.69 - 1)]
+    shell = [max(map(abs, balls["shell"][-1]["sheared"]))]
     rows = [
         ("thick spheres", "exact", "limit pressure, stretch", greatest(spheres)),
-        (
-            "thin membrane, inflated",
-            "exact",
-            "limit pressure, height, extrapolated to no wall",
-            [abs(pressure / 1.57537 - 1), abs(height / 1.69 - 1)],
-        ),
+        ("thin membrane, inflated", "exact", "limit pressure, height, extrapolated to no wall", membrane),
         ("thin membrane, pressed by a plate", "exact", "cavity pressure, force, contact radius", greatest(pressed)),
         ("Hertz, smallest contact", "exact", "force", [abs(balls["hertz"][-1][1])]),
-        (
-            "pressurised shell with shear, wall of 0.0025 R",
-            "exact",
-            "first stiffness under a ball",
-            [max(map(abs, balls["shell"][-1]["sheared"]))],
-        ),
+        ("pressurised shell with shear, wall of 0.0025 R", "exact", "first stiffness under a ball", shell),
         ("CalculiX, inflation", "program", "limit pressure", inflation),
         ("CalculiX in 3D, friction", "program", "force, pressure rise", three),
         ("CalculiX in 3D, off the axis", "program", "force, sideways force, pressure rise", aside),
@@ -242,11 +230,11 @@ def references(data: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def main(*words: str) -> None:
-    data = json.loads(STORED.read_text(encoding="utf-8")) if "stored" in words else measure()
+    data = stored("validation") if "stored" in words else measure()
     cells = [row["errors"] for row in data["dead_volumes"]["rows"] if row["resin"] != OTHER_SOURCE]
     data["dead_volumes"]["medians"] = [statistics.median(map(abs, column)) for column in zip(*cells, strict=True)]
     data["references"] = references(data)
-    STORED.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    store("validation", data)
 
 
 if __name__ == "__main__":

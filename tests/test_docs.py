@@ -10,28 +10,21 @@ import pytest
 from benchmarks import accuracy, calculix_friction_half, coverage, off_axis_calculix, paper, peers
 from benchmarks.felupe_sweep import felupe_limit
 from benchmarks.meshing import OURS, manifold_solid, plain_grid
-from benchmarks.off_axis_scenes import SCENES as OFF_AXIS
 from benchmarks.scenes import PAPER, SCENES
 from benchmarks.speed_accuracy import METHODS, extrapolate, limit, run
+from benchmarks.store import stored
 from benchmarks.sway import DEAD, RESINS, inflated, pressed, zero
 from pictures.accuracy import front
 
 from pneutouch.bench.figure import BY_KEY
-from tests.conftest import ROOT
-
-DOCS = ROOT / "docs" / "background"
-
-
-def stored(name: str):
-    return json.loads((DOCS / name).read_text(encoding="utf-8"))
 
 
 def test_the_reduced_accuracy_is_that_of_the_stored_measurements():
-    assert json.loads(json.dumps(accuracy.reduced())) == stored("accuracy.json")
+    assert json.loads(json.dumps(accuracy.reduced())) == stored("accuracy")
 
 
 def test_every_model_meets_table_s1_as_stored(library):
-    found, known = paper.contact(library), stored("paper.json")["contact"]
+    found, known = paper.contact(library), stored("paper")["contact"]
     for key in ("median_of_twelve", "median_of_ten", "median_of_fourteen"):
         assert found[key] == pytest.approx(known[key], rel=1e-5)
     assert known["median_of_twelve"]["solid"] < 0.09
@@ -39,7 +32,7 @@ def test_every_model_meets_table_s1_as_stored(library):
         assert one["errors"] == pytest.approx(other["errors"], rel=1e-4, abs=1e-5)
 
 
-@pytest.mark.parametrize("work", stored("accuracy.json")["work"], ids=lambda work: work["title"])
+@pytest.mark.parametrize("work", stored("accuracy")["work"], ids=lambda work: work["title"])
 def test_every_kind_of_work_has_ours_and_a_peer_each_with_time_and_error(work):
     assert {point["way"].startswith("pneutouch") for point in work["points"]} == {True, False}
     for point in work["points"]:
@@ -52,7 +45,7 @@ def test_every_kind_of_work_has_ours_and_a_peer_each_with_time_and_error(work):
 @pytest.mark.parametrize("scene", SCENES[:8:3], ids=lambda scene: scene.name)
 def test_stored_errors_are_what_the_methods_give_today(scene):
     """Times aside, a row follows from the code: sensitivity, range and limit pressure again, on the same range."""
-    data = stored("speed-accuracy.json")
+    data = stored("speed-accuracy")
     truth = next(s["reference"] for s in data["scenes"] if s["scene"] == scene.name)
     for method in ("membrane variational", "solid 12 x 1", "solid default"):
         row = next(r for r in data["rows"] if (r["scene"], r["method"]) == (scene.name, method))
@@ -66,7 +59,7 @@ def test_stored_errors_are_what_the_methods_give_today(scene):
 
 
 def test_every_scene_and_method_is_charted_and_the_reference_knows_its_error():
-    data = stored("speed-accuracy.json")
+    data = stored("speed-accuracy")
     assert len(SCENES) >= 12
     assert {(r["scene"], r["method"]) for r in data["rows"]} == {(s.name, m) for s in SCENES for m in METHODS}
     assert all(s["reference"]["sensitivity_error"] < 0.005 for s in data["scenes"])
@@ -91,7 +84,7 @@ def test_the_front_keeps_what_nothing_beats():
 
 def test_ours_and_felupe_agree_on_the_limit_pressure():
     ours, _ = peers.solve(peers.OURS, 24, 2)
-    truth = stored("peers.json")["reference_limit_kPa"] * 1e-3
+    truth = stored("peers")["reference_limit_kPa"] * 1e-3
     assert ours == pytest.approx(truth, rel=2e-4)
     pytest.importorskip("felupe", reason="FElupe is an optional peer")
     theirs, _ = felupe_limit(PAPER, 8, 1, mixed=True, count=8)
@@ -99,7 +92,7 @@ def test_ours_and_felupe_agree_on_the_limit_pressure():
 
 
 def test_mesh_tables_keep_every_tolerance_and_beat_the_peers():
-    data = stored("meshing.json")["bodies"]
+    data = stored("meshing")["bodies"]
     assert len(data) == 3
     for rows in data.values():
         ours = {row["tolerance"]: row for row in rows if row["method"] == OURS}
@@ -125,7 +118,7 @@ def test_the_peers_are_given_a_fair_outline(evaluated):
 
 def test_intervals_of_simulated_campaigns_hold_what_they_say():
     """Every figure's intervals hold the truth in 90 to 99 % of the campaigns."""
-    data = stored("coverage.json")
+    data = stored("coverage")
     assert data["table"] == coverage.table(data["resins"])
     assert set(data["resins"]) == set(coverage.RESINS) and data["campaigns"] == 200
     for key in BY_KEY:
@@ -138,7 +131,7 @@ def test_intervals_of_simulated_campaigns_hold_what_they_say():
 
 def test_domes_sway_and_thin_shells_buckle_where_others_find_it():
     """Thin clamped hemispheres buckle within 5 % of the published share, and nearer to it the thinner they are."""
-    data, calculix = stored("sway.json"), stored("sway-calculix.json")
+    data, calculix = stored("sway"), stored("sway-calculix")
     # The critical depth of the solid is within 2 % of that of CalculiX in three dimensions.
     assert calculix["solid_events_mm"]["sway"] == pytest.approx(zero(calculix["rows"]), rel=0.02)
     # The sideways stiffness of the dome is that of CalculiX in three dimensions until it falls steeply.
@@ -151,7 +144,7 @@ def test_domes_sway_and_thin_shells_buckle_where_others_find_it():
 
 def test_presses_off_the_axis_agree_with_calculix_in_three_dimensions():
     """Force, sideways force and pressure rise within 2 %."""
-    data = stored("off-axis-calculix.json")
+    data = stored("off-axis-calculix")
     pressed = [[row for row in scene["rows"] if "travel_mm" not in row] for scene in data]
     assert data and all(len(rows) == 2 for rows in pressed)
     # One scene goes on sideways, with friction.
@@ -172,8 +165,8 @@ def test_presses_off_the_axis_agree_with_calculix_in_three_dimensions():
 )
 def test_a_press_compared_with_calculix_is_what_the_code_gives_today(name):
     """And what it gives today is within 2 % of CalculiX."""
-    scene = next(scene for scene in OFF_AXIS if scene.name == name)
-    rows = next(known["rows"] for known in stored("off-axis-calculix.json") if known["scene"] == name)
+    scene = next(scene for scene in off_axis_calculix.SCENES if scene.name == name)
+    rows = next(known["rows"] for known in stored("off-axis-calculix") if known["scene"] == name)
     for place, row in zip(scene.pressed().places[1:], rows, strict=True):
         today = off_axis_calculix.figures(place.force, place.sideways, place.pressure - scene.driving)
         known = [figure for figure in today if off_axis_calculix.compares(row, figure)]
@@ -185,18 +178,18 @@ def test_a_press_compared_with_calculix_is_what_the_code_gives_today(name):
 
 def test_a_press_off_the_axis_takes_a_tenth_of_the_time_of_calculix_at_equal_error():
     """For each mesh of CalculiX there is an answer that is as good."""
-    data = stored("off-axis-calculix.json")
+    data = stored("off-axis-calculix")
     timed = accuracy.off_axis(data)
     assert len(timed) > 1
     for scene in timed:
         cells = next(one["cells"] for one in data if one["scene"] == scene["scene"])
         assert len(scene["shares"]) == len(cells)
-        assert max(one["share"] for one in scene["shares"]) < accuracy.OFF_AXIS_TARGET
+        assert max(one["share"] for one in scene["shares"]) < accuracy.off_axis_calculix.SCENES_TARGET
 
 
 def test_presses_with_friction_agree_with_calculix_in_three_dimensions():
     """Force and pressure rise within 1 %."""
-    data = stored("friction-calculix.json")
+    data = stored("friction-calculix")
     assert len(data["rows"]) == len(calculix_friction_half.COEFFICIENTS) * calculix_friction_half.STEPS
     for figure in ("force_N", "rise_kPa"):
         assert max(map(abs, calculix_friction_half.differences(data, figure))) < 0.01, figure
@@ -209,7 +202,7 @@ def test_the_map_of_axisymmetry_is_what_the_code_gives_today():
         ("TangoPlus, 0.17 MPa", 0.12, "sealed, no dead volume"),
     ):
         place = {"resin": resin, "wall_ratio": ratio, "limit_fraction": 0.0, "gas": gas}
-        (row,) = [row for row in stored("sway.json")["map"] if place.items() <= row.items()]
+        (row,) = [row for row in stored("sway")["map"] if place.items() <= row.items()]
         outcome, depth, _ = pressed(*inflated(ratio, RESINS[resin]), 0.0, DEAD[gas])
         assert (outcome, depth) == (row["outcome"], pytest.approx(row["depth_ratio"], abs=2e-3))
 

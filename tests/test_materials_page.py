@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
-from benchmarks.materials import STORED, hardness, law_words, materials, measure
+from benchmarks.materials import hardness, law_words, materials, measure
+from benchmarks.store import stored
 
-KNOWN = json.loads(STORED.read_text(encoding="utf-8"))
+KNOWN = stored("materials")
 
 
 @pytest.mark.slow

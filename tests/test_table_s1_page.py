@@ -5,12 +5,13 @@ import json
 import numpy as np
 import pytest
 from benchmarks.paper import resins
-from benchmarks.table_s1 import ALL, STORED, Assumptions, ranked, read, reduced, resin_rows, spread
+from benchmarks.store import stored
+from benchmarks.table_s1 import ALL, Assumptions, ranked, read, reduced, resin_rows, spread
 
 from pneutouch.catalogue import Library
 from tests.conftest import ROOT
 
-KNOWN = json.loads(STORED.read_text(encoding="utf-8"))
+KNOWN = stored("table-s1")
 ROWS = read(KNOWN["cells"])
 
 
@@ -29,10 +30,10 @@ def test_the_summary_is_that_of_the_stored_cells():
 )
 def test_cells_are_what_the_solid_gives_today(assumed):
     soft = resins(Library((ROOT,)))[0]
-    for row, stored in zip(resin_rows(soft, (assumed,)), ROWS, strict=False):
-        assert (row.material, row.pressure_kPa) == (stored.material, stored.pressure_kPa)
-        assert row.sensitivity[assumed] == pytest.approx(stored.sensitivity[assumed], rel=1e-4)
-        assert row.ends[assumed][0] == pytest.approx(stored.ends[assumed][0], abs=0.01)
+    for row, known in zip(resin_rows(soft, (assumed,)), ROWS, strict=False):
+        assert (row.material, row.pressure_kPa) == (known.material, known.pressure_kPa)
+        assert row.sensitivity[assumed] == pytest.approx(known.sensitivity[assumed], rel=1e-4)
+        assert row.ends[assumed][0] == pytest.approx(known.ends[assumed][0], abs=0.01)
 
 
 def test_air_softens_the_reading_of_every_cell():

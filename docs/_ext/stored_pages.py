@@ -1,8 +1,8 @@
 """Fills the Markdown templates of docs/templates from stored measurements: ``make pages``.
 
 A template docs/templates/PATH.j2 is Jinja2 and becomes docs/PATH. In it ``stored("NAME")`` is
-docs/background/NAME.json, which a module of ``benchmarks`` wrote. ``python docs/_ext/stored_pages.py [PATH ...]`` writes
-all pages, or some such as ``background/atlas.md``; with ``--check`` it names the pages that differ and writes none.
+docs/background/NAME.json, which a module of ``benchmarks`` wrote. ``python docs/_ext/stored_pages.py [PATH ...]``
+writes all pages, or some such as ``background/atlas.md``; with ``--check`` it names those that differ and writes none.
 """
 
 from __future__ import annotations

@@ -9,7 +9,8 @@ import tomllib
 import numpy as np
 import pytest
 from benchmarks import mixing
-from benchmarks.mixing import RESINS, STIFF, STORED
+from benchmarks.mixing import RESINS, STIFF
+from benchmarks.store import stored
 
 from pneutouch.catalogue import load_scene
 from tests.conftest import ROOT
@@ -31,7 +32,7 @@ def close(one, other):
 
 def test_the_stored_numbers_are_those_of_today(library):
     found = json.loads(json.dumps(mixing.measure(library)))
-    assert close(found, json.loads(STORED.read_text(encoding="utf-8")))
+    assert close(found, stored("mixing"))
 
 
 @pytest.mark.parametrize("name", RESINS)

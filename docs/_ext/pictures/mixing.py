@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from benchmarks.mixing import PRESSURES_KPA, RESINS, MixingCurves, curves, sensitivities
-from benchmarks.mixing_theory import THRESHOLD, hashin_shtrikman_low, percolation
+from release.tables.mixing_laws import THRESHOLD, hashin_shtrikman_low, percolation
 from stored_pages import stored
 
 from pneutouch.arrays import Array

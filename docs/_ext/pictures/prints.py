@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from benchmarks.voxel_dither import METHODS, PITCH, radial
+from benchmarks.voxels import METHODS, PITCH, radial
 from stored_pages import stored
 
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, figure, svg

@@ -64,8 +64,8 @@ def survey(wall_ratio: float, recipe: AtlasRecipe) -> Survey:
 
 
 def _fold(sampler: AtlasSampler, presses: list[SampledPress]) -> tuple[float, Array]:
-    """Edge of the sheet of states by buckling: the depth below the unloaded apex at which a vented press buckles, and the
-    least volume at depths beyond; (recipe.fold_depths,).
+    """Edge of the sheet of states: the depth below the unloaded apex at which a vented press buckles, and the least
+    volume at depths beyond; (recipe.fold_depths,).
 
     The ends of the presses are points of that edge; where no press has ended, the lowest press is.
     """

@@ -13,8 +13,9 @@ from release.tables.contact.press import DomeState, at_equal_reading, pressed
 
 
 class HeldOutPress(NamedTuple):
-    """A dome and a contact, an edge where it is ``lying``; the logarithm of the force at the recipe's levels by the model
-    and by the table, (levels,) each, NaN beyond the highest level that the object reaches; and that level by both."""
+    """A dome and a contact, an edge where it is ``lying``; the logarithm of the force at the recipe's levels by the
+    model and by the table, (levels,) each, NaN beyond the highest level that the object reaches; and that level by
+    both."""
 
     state: DomeState
     curvature: float

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 
 import pytest
-from benchmarks import voxel_dither as dither
-from benchmarks.voxel_raster import CONTAINED, OURS, SLICED, TRIMESH, boundary, exact
+from benchmarks import voxels as dither
+from benchmarks.voxels import CONTAINED, OURS, SLICED, TRIMESH, boundary, exact
 
 from pneutouch.body.section import SolidSection
 from pneutouch.catalogue import load_scene

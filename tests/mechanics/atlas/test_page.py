@@ -6,7 +6,8 @@ import json
 
 import numpy as np
 import pytest
-from benchmarks.atlas import SEED, STORED, compare, random_cases, reduced
+from benchmarks import store
+from benchmarks.atlas import SEED, compare, random_cases, reduced
 from benchmarks.methods import ATLAS, AUTO, atlas_answer, atlas_limit, auto_answer, why_no_answer
 from benchmarks.scenes import SCENES
 from benchmarks.speed_accuracy import limit, run
@@ -15,7 +16,7 @@ from pictures.presses import greatest
 
 @pytest.fixture(scope="module")
 def stored():
-    return json.loads(STORED.read_text(encoding="utf-8"))
+    return store.stored("atlas")
 
 
 def test_the_summary_is_that_of_the_stored_errors(stored):

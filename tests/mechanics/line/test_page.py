@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
-from benchmarks.dynamics import STORED, measure
+from benchmarks.dynamics import measure
+from benchmarks.store import stored
 
 
 def test_peaks_and_tubes_are_those_of_today():
-    found, known = measure(), json.loads(STORED.read_text(encoding="utf-8"))
+    found, known = measure(), stored("dynamics")
     for one, other in zip(found["peaks"], known["peaks"], strict=True):
         assert one == pytest.approx(other)
         # Published and computed first peaks.

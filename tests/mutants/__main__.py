@@ -1,4 +1,4 @@
-"""Random faults in the code, one at a time, and whether the tests notice: ``python -m benchmarks.mutants --count 200 --seed 1``.
+"""Random faults in the code, one at a time, and whether the tests notice: ``python -m tests.mutants --count 200 --seed 1``.
 
 A fault is a node of the syntax tree of a module of mechanics, printability or bench, each drawn with the same chance. The
 tests are the everyday ones of `TESTS` that call the function, then the others of their files, those that take least first. Each runs
@@ -17,8 +17,8 @@ from typing import Any
 
 import pytest
 
-from benchmarks.mutant_runs import MOST, Calls, Driver, cold
-from benchmarks.mutant_sites import PACKAGE, ROOT, Site, changed, every_site
+from tests.mutants.runs import MOST, Calls, Driver, cold
+from tests.mutants.sites import PACKAGE, ROOT, Site, changed, every_site
 
 DOCS = ROOT / "docs" / "background"
 FOLDERS = "mechanics bench printability selection evaluation texture stability api catalogue cli export workflows"

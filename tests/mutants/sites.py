@@ -1,4 +1,4 @@
-"""Where a fault can be put into a module, and the module with it: `benchmarks.mutants`."""
+"""Where a fault can be put into a module, and the module with it: `tests.mutants`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "generator" / "pneutouch"
 PARTS = ("mechanics", "printability", "bench")
 

@@ -1,4 +1,4 @@
-"""The faults of benchmarks.mutants: where they are drawn, what they change, and the interval of a share."""
+"""The faults that are drawn: where they are drawn, what they change, and the interval of a share."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import ast
 
 import pytest
 from benchmarks.hardening import wilson
-from benchmarks.mutant_sites import PACKAGE, changed, sites
+
+from tests.mutants.sites import PACKAGE, changed, sites
 
 MODULE = '''
 from typing import TYPE_CHECKING

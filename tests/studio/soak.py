@@ -1,4 +1,4 @@
-"""The studio in use for a long time: ``python -m benchmarks.studio_soak [--minutes 60]``.
+"""The studio in use for a long time: ``python -m tests.studio.soak [--minutes 60]``.
 
 Random acts of a user, with a second between them: sliders, other designs, a value that is refused, undo, redo, reset, pins, areas, the
 page left and opened again. Each must be answered, and nothing may fail in the page or the process. Stores ten times what the page
@@ -17,11 +17,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 from playwright.sync_api import Page
+
 from tests.browser import Pages, launched
 from tests.studio.kept import Kept
 from tests.studio.served import Studio, move, served
 
-STORED = Path(__file__).resolve().parents[1] / "docs" / "background" / "soak.json"
+STORED = Path(__file__).resolve().parents[2] / "docs" / "background" / "soak.json"
 
 ANSWERED = (
     "(() => { const status = document.getElementById('status');"

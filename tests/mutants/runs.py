@@ -1,4 +1,4 @@
-"""The tests of a changed module, each change in a forked process of one that has collected them: `benchmarks.mutants`."""
+"""The tests of a changed module, each change in a forked process of one that has collected them: `tests.mutants`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from typing import Any
 
 import pytest
 
-from benchmarks.mutant_sites import PACKAGE, PARTS, Site, changed
+from tests.mutants.sites import PACKAGE, PARTS, Site, changed
 
 Calls = dict[str, tuple[float, list[str]]]
 """Of every test that passes: processor time in seconds, and the functions of ``PARTS`` that it calls."""

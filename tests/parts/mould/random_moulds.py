@@ -1,6 +1,6 @@
 """Moulds of random cast designs: closed, apart, no undercut, volumes exact.
 
-``python -m benchmarks.moulds [COUNT [SEAT]]``. The designs are drawn with a fixed seed over what a design file may
+``python -m tests.parts.mould.random_moulds [COUNT [SEAT]]``. The designs are drawn with a fixed seed over what a design file may
 state of a membrane and its mould.
 """
 
@@ -108,4 +108,4 @@ def table(checks: list[MouldCheck]) -> str:
 if __name__ == "__main__":
     chosen = sys.argv[2] if len(sys.argv) > 2 else "glued-flange"
     drawn = random_moulds(int(sys.argv[1]) if len(sys.argv) > 1 else COUNT, seat=chosen)
-    print(table([checked(mould) for mould in drawn]))
+    sys.stdout.write(table([checked(mould) for mould in drawn]) + "\n")

@@ -1,4 +1,4 @@
-"""Files of the greatest size that each reader takes: `benchmarks.largest_inputs`."""
+"""Files of the greatest size that each reader takes: `tests.fuzzing.largest`."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from tests.fuzzing.seeds import seeds
 
 from pneutouch.export.voxels.png import MOST_PIXELS, encode, table
 from pneutouch.spec.files import MOST_BYTES
 from pneutouch.studio.guard import LARGEST_BODY
+from tests.fuzzing.seeds import seeds
 
 PARQUET, WORKBOOK, MODEL = 1.0e9, 99e6, 255 * 2**20
 """Bytes unpacked: just within the bounds of the readers."""

@@ -1,4 +1,4 @@
-"""What the largest input of each reader takes: ``python -m benchmarks.largest_inputs [READER ...]``.
+"""What the largest input of each reader takes: ``python -m tests.fuzzing.largest [READER ...]``.
 
 Peak memory is that of a new process, above what it has after a small input. Processor time is stated over that of ``json.loads`` for as
 many bytes as the input has unpacked, in the same run: a list of numbers, 20 MB. Stores both in docs/background/largest-inputs.json.
@@ -16,13 +16,12 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from tests.fuzzing import largest_files as files
 from tests.fuzzing.judge import forget_peak, peak
 from tests.fuzzing.seeds import seeds
 from tests.fuzzing.targets import TARGETS
 
-from benchmarks import largest_files as files
-
-STORED = Path(__file__).resolve().parents[1] / "docs" / "background" / "largest-inputs.json"
+STORED = Path(__file__).resolve().parents[2] / "docs" / "background" / "largest-inputs.json"
 
 
 class Case(NamedTuple):
