@@ -127,7 +127,8 @@ def _steps() -> list[dict[str, Any]]:
         values = [_slope(press(one, friction, BEFORE_EVENTS, steps), steps // 14) for steps in STEPS]
         with mock.patch("pneutouch.mechanics.solid.friction_path.TANGENTIAL", 1.0):
             values.append(_slope(press(one, friction, BEFORE_EVENTS), 1))
-        name = f"{modulus:g} MPa, {pressure / KPA:g} kPa, {'grip' if np.isinf(friction) else friction}"
+        how = "grip" if np.isinf(friction) else f"{friction:g}"
+        name = f"{modulus:g} MPa, {pressure / KPA:g} kPa, {how}"
         rows.append({"press": name, "sensitivity_kPa_per_N": values})
     return rows
 

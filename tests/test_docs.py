@@ -184,7 +184,7 @@ def test_a_press_off_the_axis_takes_a_tenth_of_the_time_of_calculix_at_equal_err
     for scene in timed:
         cells = next(one["cells"] for one in data if one["scene"] == scene["scene"])
         assert len(scene["shares"]) == len(cells)
-        assert max(one["share"] for one in scene["shares"]) < accuracy.off_axis_calculix.SCENES_TARGET
+        assert max(one["share"] for one in scene["shares"]) < accuracy.OFF_AXIS_TARGET
 
 
 def test_presses_with_friction_agree_with_calculix_in_three_dimensions():
