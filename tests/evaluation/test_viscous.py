@@ -166,9 +166,7 @@ def test_the_line_on_ageing(library):
     assert relaxation.ageing_line(replace(sheet, ageing=unknown)).endswith("is not known.")
 
 
-@pytest.mark.parametrize(
-    "table", [agilus_table, wall_table, pytest.param(friction_table, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("table", [agilus_table, wall_table, pytest.param(friction_table, marks=pytest.mark.slow)])
 def test_the_page_has_the_tables_of_today(table):
     assert "\n".join(table(Library((ROOT,)))) in (ROOT / "docs" / "background" / "viscous.md").read_text(
         encoding="utf-8"
