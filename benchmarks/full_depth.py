@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -30,21 +29,9 @@ MESHES = (*COARSE, *REFINEMENTS)
 PRESSURES = (0.0, 22 * KPA)
 
 
-@dataclass(frozen=True)
-class FullDepthPress:
-    """One press: cells, processor time, sensitivities in kPa/N to 5.75 mm and to the whole depth (nan: not reached),
-    and what happened: the end of the path, and where the wall lies down on its base."""
-
-    mesh: tuple[int | None, int | None]
-    cells: int
-    seconds: float
-    shallow: float
-    deep: float
-    happened: str
-
-
-def pressed(mesh: tuple[int | None, int | None], pressure: float, held: str, base: bool) -> FullDepthPress:
-    """TangoPlus on one mesh at a driving pressure (MPa); ``held``: "base plane" or "printed"."""
+def pressed(mesh: tuple[int | None, int | None], pressure: float, held: str, base: bool) -> dict[str, Any]:
+    """TangoPlus on one mesh at a driving pressure (MPa): cells, processor time, sensitivities to 5.75 mm and to the whole
+    depth (None: not reached), and the events on the way; ``held``: "base plane" or "printed"."""
     s, start = PAPER, time.process_time()
     size = (s.dome.inner_radius, s.dome.wall_thickness)
     printed = held == "printed"
@@ -58,19 +45,23 @@ def pressed(mesh: tuple[int | None, int | None], pressure: float, held: str, bas
     seconds = time.process_time() - start
     last = run.path[-1].indentation
 
-    def slope(depth: float) -> float:
+    def slope(depth: float) -> float | None:
         if last < depth - 1e-9:
-            return np.nan
+            return None
         grid = np.linspace(0.0, depth, s.protocol.steps + 1)
         force, rise = curve_between(run.path, grid)
         found = figures(grid, force, rise / KPA)
-        return np.nan if found is None else found.sensitivity_kPa_per_N
+        return None if found is None else found.sensitivity_kPa_per_N
 
     kinds = ("base", "overhang", "clamp_fold", "snap", "lost")
     events = [f"{KINDS[e.kind][0]} {e.indentation:.2f}" for e in run.events if e.kind in kinds]
-    return FullDepthPress(
-        mesh, len(body.cells), seconds, slope(SHALLOW), slope(press.depth), ", ".join(events) or "none"
-    )
+    return {
+        "mesh": "default" if mesh[0] is None else f"{mesh[0]} x {mesh[1]}",
+        "cells": len(body.cells),
+        "processor_s": seconds,
+        "sensitivity_kPa_per_N": [slope(SHALLOW), slope(press.depth)],
+        "happened": ", ".join(events) or "none",
+    }
 
 
 def measure() -> list[dict[str, Any]]:
@@ -82,25 +73,19 @@ def measure() -> list[dict[str, Any]]:
             for base in (False, True):
                 fine = MESHES if held == "base plane" and base else COARSE
                 presses = [pressed(mesh, pressure, held, base) for mesh in fine]
-                unit = unit or presses[0].seconds
+                unit = unit or presses[0]["processor_s"]
                 group: dict[str, Any] = {"held": held, "base": base, "driving_pressure_kPa": 1e3 * pressure}
-                group["presses"] = [_stored(press, unit) for press in presses]
+                group["presses"] = [_rounded(one, unit) for one in presses]
                 if fine is MESHES:
-                    value, error = extrapolate(*(np.array([p.shallow, p.deep]) for p in presses[-3:]))
+                    value, error = extrapolate(*(np.array(one["sensitivity_kPa_per_N"]) for one in presses[-3:]))
                     group["extrapolated"] = [[float(v), float(e / v)] for v, e in zip(value, error, strict=True)]
                 groups.append(group)
     return groups
 
 
-def _stored(press: FullDepthPress, unit: float) -> dict[str, Any]:
-    shallow, deep = (None if np.isnan(x) else round(x, 4) for x in (press.shallow, press.deep))
-    return {
-        "mesh": "default" if press.mesh[0] is None else f"{press.mesh[0]} x {press.mesh[1]}",
-        "cells": press.cells,
-        "time_ratio": round(press.seconds / unit, 1),
-        "sensitivity_kPa_per_N": [shallow, deep],
-        "happened": press.happened,
-    }
+def _rounded(press: dict[str, Any], unit: float) -> dict[str, Any]:
+    shown = [None if value is None else round(value, 4) for value in press["sensitivity_kPa_per_N"]]
+    return {**press, "sensitivity_kPa_per_N": shown, "time_ratio": round(press["processor_s"] / unit, 1)}
 
 
 if __name__ == "__main__":
