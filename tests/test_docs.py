@@ -7,7 +7,17 @@ import math
 
 import numpy as np
 import pytest
-from benchmarks import accuracy, calculix_friction_half, coverage, off_axis_calculix, paper, peers
+from benchmarks import (
+    accuracy,
+    calculix_friction_half,
+    coverage,
+    hardening,
+    off_axis_calculix,
+    paper,
+    peers,
+    sway,
+    validation,
+)
 from benchmarks.felupe_sweep import felupe_limit
 from benchmarks.meshing import OURS, manifold_solid, plain_grid
 from benchmarks.scenes import PAPER, SCENES
@@ -19,8 +29,18 @@ from pictures.accuracy import front
 from pneutouch.bench.figure import BY_KEY
 
 
-def test_the_reduced_accuracy_is_that_of_the_stored_measurements():
-    assert json.loads(json.dumps(accuracy.reduced())) == stored("accuracy")
+@pytest.mark.parametrize(
+    ("name", "key", "reduced"),
+    [
+        ("accuracy", None, accuracy.reduced),
+        ("hardening", None, hardening.reduced),
+        ("sway", "summary", lambda: sway.reduced(stored("sway"), stored("sway-calculix"))),
+        ("validation", "references", lambda: validation.references(stored("validation"))),
+    ],
+)
+def test_what_pages_state_follows_from_the_stored_measurements(name, key, reduced):
+    known = stored(name)
+    assert json.loads(json.dumps(reduced())) == (known if key is None else known[key])
 
 
 def test_every_model_meets_table_s1_as_stored(library):
