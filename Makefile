@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo docs test pytest lint review ratios check-slow chart table-s1-page materials-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page background-charts atlas atlas-page contact-table simulator-page overview-page dist sbom audit pythons fuzz mutants soak paper lock clean
+.PHONY: venv demo docs test pytest lint review ratios check-slow pages charts pictures rule-pictures atlas contact-table dist sbom audit pythons fuzz mutants soak paper lock clean
 
 venv: $(VENV)/.dev
 
@@ -41,7 +41,7 @@ review: $(VENV)/.dev
 # Times of single jobs over those of others in the same run; and of the commands over the import of their libraries.
 ratios: $(VENV)/.dev
 	$(BIN)/python -m benchmarks.ratios
-	$(BIN)/python -m benchmarks.start_up
+	$(BIN)/python -m benchmarks.ratios start-up
 
 check-slow: $(VENV)/.dev
 	$(BIN)/python -m pytest -m slow -n 2 --dist worksteal
@@ -84,11 +84,11 @@ $(VENV)/fuzz/.atheris: $(VENV)/.dev
 
 # Faults in mechanics, printability and bench, drawn at random, and whether the everyday tests notice them.
 mutants: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.mutants --count 120 --seed 5 --calls outputs/calls.json --out outputs/mutants-5.json
+	OMP_NUM_THREADS=1 $(BIN)/python -m tests.mutants --count 120 --seed 5 --calls outputs/calls.json --out outputs/mutants-5.json
 
 # The studio in use for an hour, in a browser.
 soak: $(VENV)/.dev
-	$(BIN)/python -m benchmarks.studio_soak --minutes 60
+	$(BIN)/python -m tests.studio.soak --minutes 60
 
 # The figures of paper/paper.md, from stored ones.
 paper: $(VENV)/.run
@@ -108,65 +108,27 @@ lock:
 clean:
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache
 
-# Speed against accuracy, measured now; writes docs/background/accuracy.md and validation.md with their charts.
-chart: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.chart
+# The pages that are templates, from stored measurements. `python -m benchmarks.NAME` measures, and stores docs/background/NAME.json.
+pages: $(VENV)/.dev
+	$(BIN)/python docs/_ext/stored_pages.py
 
-# All kinds of work on one page, from stored measurements; those of selection and sweep: python -m benchmarks.search.
-overview-page: $(VENV)/.dev
-	$(BIN)/python -m benchmarks.overview_page
+# The charts of docs/background, from the same measurements and from what the code gives in seconds.
+charts: $(VENV)/.dev
+	PYTHONPATH=docs/_ext OMP_NUM_THREADS=1 $(BIN)/python -m pictures
 
-# Friction between wall and plate: sensitivity, the loop it makes, convergence and time; writes docs/background/friction.md and its chart.
-friction-page: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.friction_page
+# A good and a bad case of every print rule, with what the rule finds; some minutes.
+rule-pictures: $(VENV)/.dev
+	PYTHONPATH=docs/_ext OMP_NUM_THREADS=1 $(BIN)/python -m pictures.rules.draw
 
-# All elastomers with their laws and what they make of the paper's dome; writes docs/reference/materials.md.
-materials-page: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.materials_page
+# The studio's screens, in a browser, and the connectors.
+pictures: $(VENV)/.dev
+	PYTHONPATH=docs/_ext $(BIN)/python -m pictures.studio
+	PYTHONPATH=docs/_ext $(BIN)/python -m pictures.connectors
 
-# The paper's Table S1 under what the paper leaves open; writes docs/background/table-s1.md and its chart.
-table-s1-page: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.table_s1_page
-
-# The print meshes compared with other kernels; writes docs/background/meshing.md and its chart.
-chart-meshes: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.mesh_page
-
-# The scan model and finite elements on Figure 9 of the paper; writes docs/background/texture.md and its charts.
-texture-page: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.texture_page
-
-# How often the intervals of simulated campaigns hold the truth; writes docs/background/coverage.json and the table of docs/howto/measuring.md.
-coverage-page: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.coverage
-
-# Where a pressed dome leaves its axis; writes docs/background/sway.md with its map. CalculiX's part: python -m benchmarks.sway_calculix.
-sway-page: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.sway_page
-
-# The charts of pages of docs/background that are written by hand: theory, uncertainty, relaxation, ageing, grades, contact.
-background-charts: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.background_charts
-
-# The mixing curve between its bounds; writes docs/background/mixing.md and its chart.
-mixing-page: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.mixing_page
-
-# The shipped table of the solid's answers; goes on where it was stopped. Its page presses 2,000 sensors by both.
+# The shipped table of the solid's answers; goes on where it was stopped.
 atlas: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.atlas
-
-atlas-page: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.atlas_page
+	OMP_NUM_THREADS=1 $(BIN)/python -m release.tables.atlas
 
 # The shipped table of contact that is not central; goes on where it was stopped.
 contact-table: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.contact_table
-
-# Voxel stacks: the dithers and the rasters, measured; writes docs/background/voxels.md and its pictures.
-voxel-page: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.voxel_page
-
-# The exported model pressed in MuJoCo; writes the chart and the table of docs/howto/simulators.md.
-simulator-page: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.simulator_page
+	OMP_NUM_THREADS=1 $(BIN)/python -m release.tables.contact

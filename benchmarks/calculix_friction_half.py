@@ -1,23 +1,20 @@
 """The press with friction by CalculiX in three dimensions (an optional peer, found on PATH).
 
 ``python -m benchmarks.calculix_friction_half`` presses the paper's dome in FLX9960 centrally with the axisymmetric solid and
-with half a dome of C3D20R cells, each with its own gas. Stores docs/background/friction-calculix.json, and writes its section into
-docs/background/validation.md. CalculiX counts slip from the beginning of its computation (`calculix_grip`): the coefficient is one at
+with half a dome of C3D20R cells, each with its own gas. Stores docs/background/friction-calculix.json. CalculiX counts slip from the beginning of its computation (`calculix_friction`): the coefficient is one at
 which nearly all points slip.
 """
 
 from __future__ import annotations
 
-import json
 import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from benchmarks.calculix_half import HalfPress
-from benchmarks.page_section import replace_section
 from benchmarks.scenes import paper
+from benchmarks.store import store
 from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.contact import Plate
@@ -27,9 +24,6 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.units import KPA
 
-ROOT = Path(__file__).resolve().parents[1]
-STORED, PAGE = ROOT / "docs" / "background" / "friction-calculix.json", ROOT / "docs" / "background" / "validation.md"
-HEADING = "## CalculiX: friction in three dimensions"
 SENSOR = paper(0.91)
 DEPTH, STEPS = 2.4, 2
 CELLS = (36, 2, 6)
@@ -70,29 +64,6 @@ def compared(friction: float, cells: tuple[int, int, int]) -> list[dict[str, flo
     ]
 
 
-def section(data: dict[str, Any]) -> list[str]:
-    """The lines of the comparison for a page."""
-    rows = data["rows"]
-    force, rise = (differences(data, figure) for figure in ("force_N", "rise_kPa"))
-    return [
-        HEADING,
-        "",
-        "The paper's dome in FLX9960 without its base, pressed centrally by a plate: the axisymmetric solid on its default mesh, "
-        f"and half a dome of {' x '.join(map(str, data['cells']))} C3D20R cells at the pressure that Boyle's law gives in its own "
-        "volume. CalculiX counts slip from the beginning of its computation; the coefficient is therefore one at which nearly all points slip ([friction.md](friction.md#calculix)). "
-        "`python -m benchmarks.calculix_friction_half` computes the section.",
-        "",
-        "| friction | mm | force N | CalculiX | pressure rise kPa | CalculiX |",
-        "|---|---|---|---|---|---|",
-        *(
-            f"| {row['friction']:g} | {row['depth_mm']:g} | {row['solid_force_N']:.4g} | {by_force:+.1%} | "
-            f"{row['solid_rise_kPa']:.4g} | {by_rise:+.1%} |"
-            for row, by_force, by_rise in zip(rows, force, rise, strict=True)
-        ),
-        "",
-    ]
-
-
 def differences(data: dict[str, Any], figure: str) -> list[float]:
     """CalculiX over the solid, less 1, in every row."""
     return [row[f"calculix_{figure}"] / row[f"solid_{figure}"] - 1.0 for row in data["rows"]]
@@ -102,11 +73,8 @@ def main(*cells: int) -> None:
     """All coefficients, and one table."""
     mesh = (cells[0], cells[1], cells[2]) if cells else CELLS
     rows = [{"friction": friction, **row} for friction in COEFFICIENTS for row in compared(friction, mesh)]
-    for row in rows:
-        print(" ".join(f"{name}={value:.5g}" for name, value in row.items()))
     data = {"cells": list(mesh), "rows": rows}
-    STORED.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
-    replace_section(PAGE, section(data))
+    store("friction-calculix", data)
 
 
 if __name__ == "__main__":

@@ -1,12 +1,11 @@
 """Do stated intervals hold what they say? Simulated campaigns of the paper, read and made figures, against their truth.
 
 Each campaign: seven resins, three specimens, two driving pressures, three steps runs, one loop and one relaxation run. Writes
-docs/background/coverage.json and the table of docs/howto/measuring.md.
+docs/background/coverage.json; with ``stored`` the table is reduced anew.
 """
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
@@ -16,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.chart import DOCS
+from benchmarks.store import store, stored
 from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.figure import BY_KEY, FIGURES, RESOLVED
@@ -33,8 +32,6 @@ from pneutouch.units import KPA
 RESINS = ("TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985", "FLX9995")
 PRESSURES = (0.0, 22.0)
 CAMPAIGNS, SPECIMENS, RUNS = 200, 3, 3
-PAGE, MARKS = DOCS.parent / "howto" / "measuring.md", ("<!-- coverage -->", "<!-- end of coverage -->")
-STORED = DOCS / "coverage.json"
 
 RATE, LOOP_RATE = 100.0, 2000.0
 """Hz: that of the blocks to which any faster record is averaged before it is looked at; a loop is short, and recorded faster."""
@@ -132,36 +129,32 @@ def counted(resin: str, campaigns: int = CAMPAIGNS) -> dict[str, dict[str, dict[
     }
 
 
-def table(data: dict[str, Any]) -> list[str]:
-    """How often the interval of each figure held its true value: over all cells, and in the best and worst of them."""
+def table(resins: dict[str, Any]) -> list[dict[str, Any]]:
+    """How often the interval of each figure held its true value: over all cells, and in the worst and the best of them."""
     cells: dict[str, list[tuple[float, str]]] = {}
-    for resin, pressures in data["resins"].items():
+    for resin, pressures in resins.items():
         for pressure, figures in pressures.items():
             for key, entry in figures.items():
                 cells.setdefault(key, []).append((entry["held"], f"{resin}, {pressure} kPa"))
-    rows = ["| figure | held | least, where | most |", "|---|---|---|---|"]
-    for figure in FIGURES:
-        if figure.key in cells:
-            found = cells[figure.key]
-            mean, (least, where) = float(np.mean([held for held, _ in found])), min(found)
-            rows.append(f"| `{figure.key}` | {mean:.1%} | {least:.1%}, {where} | {max(found)[0]:.1%} |")
+    rows = []
+    for figure in (figure for figure in FIGURES if figure.key in cells):
+        found = cells[figure.key]
+        (least, where), mean = min(found), float(np.mean([held for held, _ in found]))
+        rows.append({"figure": figure.key, "held": mean, "least": least, "where": where, "most": max(found)[0]})
     return rows
 
 
-def write_page(data: dict[str, Any]) -> None:
-    """Put the table between the page's marks."""
-    text = PAGE.read_text(encoding="utf-8")
-    head, tail = text.split(MARKS[0])[0], text.split(MARKS[1])[1]
-    PAGE.write_text("\n".join([head + MARKS[0], "", *table(data), "", MARKS[1] + tail]), encoding="utf-8")
-
-
-def main(campaigns: int = CAMPAIGNS) -> None:
-    with ProcessPoolExecutor(2) as pool:
-        found: dict[str, Any] = dict(zip(RESINS, pool.map(counted, RESINS, [campaigns] * len(RESINS)), strict=True))
-    STORED.write_text(
-        json.dumps({"campaigns": campaigns, "resins": found}, indent=1, sort_keys=True) + "\n", encoding="utf-8"
-    )
+def main(*words: str) -> None:
+    if "stored" in words:
+        found = stored("coverage")
+        campaigns, resins = found["campaigns"], found["resins"]
+    else:
+        campaigns = int(words[0]) if words else CAMPAIGNS
+        with ProcessPoolExecutor(2) as pool:
+            resins = dict(zip(RESINS, pool.map(counted, RESINS, [campaigns] * len(RESINS)), strict=True))
+    data = {"campaigns": campaigns, "resins": resins, "table": table(resins)}
+    store("coverage", data)
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else CAMPAIGNS)
+    main(*sys.argv[1:])

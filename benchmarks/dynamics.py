@@ -1,23 +1,22 @@
-"""Figures and chart of docs/background/dynamics.md: ``python -m benchmarks.dynamics`` prints the tables and draws the chart."""
+"""The line from cavity to gauge against published peaks, and by the length of its tube: ``python -m benchmarks.dynamics``.
+
+Writes docs/background/dynamics.json (seconds).
+"""
 
 from __future__ import annotations
 
 import math
-from pathlib import Path
+from typing import Any
 
-import numpy as np
-
+from benchmarks.store import store
 from pneutouch.catalogue.scene import DEFAULT
 from pneutouch.evaluation.dynamics import DynamicState
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.line.air import AirState
-from pneutouch.mechanics.line.band import band_figures, gain_at
+from pneutouch.mechanics.line.band import band_figures
 from pneutouch.mechanics.line.cascade import GasLine
 from pneutouch.mechanics.line.dynamics import SensorDynamics
 from pneutouch.mechanics.line.elements import Duct, GasVolume
-from pneutouch.report.response_chart import GainCurve, gain_chart
-
-DOCS = Path(__file__).parents[1] / "docs" / "background"
 
 LENGTHS = (50.0, 300.0, 1000.0)
 """Tubes of the chart, mm."""
@@ -35,14 +34,13 @@ BERGH_TIJDEMAN = (
 read off point by point in the repository pjsjipt/TubePressure.jl (MIT)."""
 
 
-def peaks() -> list[str]:
-    """The table of published peaks."""
-    rows = ["| radius, mm | length, mm | volume, mL | published | computed |", "| --- | --- | --- | --- | --- |"]
+def peaks() -> list[list[float]]:
+    """Radius, length and volume (mm, mL) of each published peak, and the peak (Hz) and its gain, published and computed."""
+    rows = []
     for radius, length, volume, peak, gain in BERGH_TIJDEMAN:
         line = GasLine((Duct(length, radius), GasVolume(volume)), AirState(0.101325, 288.15))
         got = band_figures(SensorDynamics(GasVolume(1.0), line, math.inf))
-        computed = f"{got.resonance:.1f} Hz, {got.resonance_gain:.2f}"
-        rows.append(f"| {radius:g} | {length:g} | {volume / 1e3:g} | {peak:g} Hz, {gain:.2f} | {computed} |")
+        rows.append([radius, length, volume / 1e3, peak, gain, got.resonance, got.resonance_gain])
     return rows
 
 
@@ -56,30 +54,27 @@ def states() -> dict[float, DynamicState]:
     }
 
 
-def tubes(known: dict[float, DynamicState]) -> list[str]:
-    """The table of tube lengths."""
-    rows = [
-        "| tube, mm | first resonance (gain) | within 3 dB | within 5 % | delay | rise, 10 to 90 % | fast over slow |",
-        "| --- | --- | --- | --- | --- | --- | --- |",
+def tubes(known: dict[float, DynamicState]) -> list[dict[str, float]]:
+    """Resonance (Hz), bands (Hz), delay and rise (ms), and the fast reading over the slow one, by length of the tube."""
+    return [
+        {
+            "tube_mm": length,
+            "resonance_Hz": state.band.resonance,
+            "resonance_gain": state.band.resonance_gain,
+            "bandwidth_Hz": state.band.bandwidth,
+            "within_tolerance_Hz": state.band.within_tolerance,
+            "delay_ms": 1e3 * state.step.delay,
+            "rise_ms": 1e3 * state.step.rise_time,
+            "fast_over_slow": state.dynamics.fast_gas,
+        }
+        for length, state in known.items()
     ]
-    for length, state in known.items():
-        band, step = state.band, state.step
-        rows.append(
-            f"| {length:g} | {band.resonance:.0f} Hz ({band.resonance_gain:.1f}) | {band.bandwidth:.0f} Hz | "
-            f"{band.within_tolerance:.1f} Hz | {1e3 * step.delay:.2f} ms | {1e3 * step.rise_time:.2f} ms | "
-            f"{state.dynamics.fast_gas:.2f} |"
-        )
-    return rows
 
 
-def chart(known: dict[float, DynamicState]) -> str:
-    """The gain over frequency for the tube lengths, SVG."""
-    frequency = np.geomspace(0.1, 2000.0, 600)
-    gains = [GainCurve(f"{length:g} mm", frequency, gain_at(s.dynamics, frequency)) for length, s in known.items()]
-    return gain_chart(gains, (150.0, 80.0))
+def measure() -> dict[str, Any]:
+    """All numbers of the page's tables."""
+    return {"peaks": peaks(), "tubes": tubes(states())}
 
 
 if __name__ == "__main__":
-    known = states()
-    (DOCS / "dynamics.svg").write_text(chart(known), encoding="utf-8")
-    print("\n".join([*peaks(), "", *tubes(known)]))
+    store("dynamics", measure())

@@ -1,18 +1,31 @@
-"""Meshing one membrane and keeping the tolerance: ours beside other kernels, time beside measured deviation."""
+"""Print meshes that keep a tolerance: ours beside other kernels, time beside measured deviation.
+
+``python -m benchmarks.meshing`` writes docs/background/meshing.json.
+"""
 
 from __future__ import annotations
 
 import statistics
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
+from benchmarks.store import LIBRARY, store
 from pneutouch.body import Frame, Solid
+from pneutouch.catalogue import load_scene
 from pneutouch.export.brep import exact_solid
 from pneutouch.meridian import Arc, Meridian
+from pneutouch.parts import assemble
+from pneutouch.spec.read import parse_changes
+
+BODIES = {
+    "membrane": ("paper-dome", []),
+    "connector": ("paper-dome", []),
+    "connector, side port": ("stiff-dome", ["connector.port=thread-M5", "connector.mount=robot-50-4-M6"]),
+}
 
 TOLERANCES = (0.1, 0.05, 0.016, 0.005)
 FINER = (0.0016, 0.0008, 0.0004)
@@ -165,3 +178,25 @@ def _row(solid: Solid, method: str, tolerance: float, mesh: tuple[np.ndarray, np
         float(solid.distance(part).max()) for part in np.array_split(points, max(1, len(points) // 200_000))
     )
     return Row(solid.name, method, tolerance, 1e3 * seconds, len(triangles), deviation, volume / solid.volume - 1)
+
+
+def compared(rows: list[Row]) -> dict[str, list[float]]:
+    """Least and greatest time of ours over that of manifold3d, and of CadQuery over ours at the same measured error."""
+    ours = {row.tolerance: row for row in rows if row.method == OURS}
+    alone = [ours[row.tolerance].milliseconds / row.milliseconds for row in rows if row.method == MANIFOLD]
+    kernels = [ratio for t in TOLERANCES if (ratio := same_error(rows, t, "CadQuery")) is not None]
+    return {"manifold": [min(alone), max(alone)], "cadquery": [min(kernels), max(kernels)]}
+
+
+def main() -> None:
+    found: dict[str, list[Row]] = {}
+    for label, (design, chosen) in BODIES.items():
+        assembly = assemble(load_scene(design, parse_changes(chosen), LIBRARY))
+        found[label] = measure(assembly.solid(label.split(",")[0]))
+    bodies = {label: [asdict(row) for row in rows] for label, rows in found.items()}
+    data = {"bodies": bodies, "compared": {label: compared(rows) for label, rows in found.items()}}
+    store("meshing", data)
+
+
+if __name__ == "__main__":
+    main()

@@ -3,29 +3,172 @@
 ``python -m benchmarks.off_axis_calculix [SCENE ...]`` presses the paper's sensor in the scenes of these numbers, or in all
 of them, with the harmonic solid and with half a dome of C3D20R cells, without the base. Compared are the force, the
 sideways force and the pressure rise of both, each with its own gas, and their processor times. Stores
-docs/background/off-axis-calculix.json, and writes its section into docs/background/validation.md
-(``python -m benchmarks.pages.validation_text`` renews the whole page from what is stored).
+docs/background/off-axis-calculix.json.
 """
 
 from __future__ import annotations
 
-import json
 import sys
-from pathlib import Path
-from typing import Any
+import time
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from benchmarks.off_axis_scenes import SCENES, OffAxisScene
-from benchmarks.page_section import replace_section
+from benchmarks.calculix_half import INNER, WALL, HalfPress
+from benchmarks.scenes import paper
+from benchmarks.store import store, stored
+from pneutouch.arrays import Array
+from pneutouch.mechanics.harmonic.press import OffAxisPress
+from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject, Surface
+from pneutouch.mechanics.solid.contact import Plate
+from pneutouch.mechanics.solid.indent import PressSettings
+from pneutouch.mechanics.solid.indenter import ball, cylinder, edge
+from pneutouch.mechanics.solid.inflate import state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.units import KPA
 
-ROOT = Path(__file__).resolve().parents[1]
-STORED, PAGE = ROOT / "docs" / "background" / "off-axis-calculix.json", ROOT / "docs" / "background" / "validation.md"
-HEADING = "## CalculiX: contact off the axis"
 FIGURES = ("force_N", "sideways_N", "rise_kPa")
 _STRAIGHT = 1e-4
 """A sideways force below this share of the force is that of a scene with a second plane of symmetry: it is not compared."""
+
+ORDER = 6
+_PLATE = 16.0
+"""Half the width of the plate of CalculiX, mm."""
+_BESIDE = -2.0
+"""Where objects begin along y, mm: they reach over the plane of symmetry, y = 0."""
+
+
+class Place(NamedTuple):
+    """Where the object stands, and what is found there: depth and travel along x (mm), force and its part along x (N),
+    gauge pressure (MPa)."""
+
+    depth: float
+    travel: float
+    force: float
+    sideways: float
+    pressure: float
+
+
+class OurPress(NamedTuple):
+    """The object at first contact, the harmonic solid's places from there on, and its processor time (s), from the mesh
+    to the last."""
+
+    surface: Surface
+    places: list[Place]
+    seconds: float
+
+
+@dataclass(frozen=True)
+class OffAxisScene:
+    """An object at any height, R0, the driving pressure (MPa), the edges of the object's cells (mm), and the cells of
+    CalculiX's dome, along the arc, through the wall and around half the axis, on a mesh or on coarser and finer ones;
+    those in the upper half of the arc are ``closer`` times shorter than below. Compared at half of ``depth`` and at it,
+    and where a travel follows at ``stops`` of ten equal parts of it. ``increment``: see `HalfPress`. ``order``: of the
+    harmonics. ``steps``: to half of the depth. ``modulus``: shear modulus, MPa. ``symmetric``: about the plane x = 0 too.
+    ``others``: orders and cells by which the harmonic solid is timed and compared, too."""
+
+    name: str
+    surface: Surface
+    driving: float
+    edges: tuple[Array, Array]
+    meshes: tuple[tuple[int, int, int], ...]
+    closer: float = 1.0
+    depth: float = 4.0
+    increment: float = 0.5
+    order: int = ORDER
+    friction: float = 0.0
+    modulus: float = 0.17
+    symmetric: bool = False
+    steps: int = 1
+    travel: float = 0.0
+    stops: tuple[int, ...] = (2, 5, 10)
+    others: tuple[tuple[int, tuple[int, int]], ...] = ()
+
+    def pressed(self, order: int | None = None, cells: tuple[int, int] | tuple[()] = ()) -> OurPress:
+        """The harmonic solid, with another order or other cells along the arc and through the wall."""
+        begun = time.process_time()
+        solid = SolidModel(dome(INNER, WALL, *cells), paper(self.modulus).wall.hyperelastic)
+        settings = PressSettings(self.depth, 2 * self.steps, friction=self.friction, gauge_range=np.inf)
+        free, probe = state_at(solid, self.driving), StrainProbe(solid)
+        press = OffAxisPress(solid, free, settings, self.surface, probe, self.travel, self.symmetric)
+        path = press.run(order or self.order)
+        states = path.states[:: self.steps]
+        places = [Place(s.indentation, 0.0, s.force, s.sideways, s.pressure) for s in states]
+        moved = [path.shear.states[stop] for stop in self.stops] if path.shear else []
+        places += [Place(self.depth, s.travel, s.force, s.sideways, self.driving + s.rise) for s in moved]
+        return OurPress(press.surface, places, time.process_time() - begun)
+
+    def half(self, ours: OurPress, cells: tuple[int, int, int]) -> HalfPress:
+        """CalculiX's half dome with the object and to the places of the harmonic solid."""
+        sensor = paper(self.modulus)
+        return HalfPress(
+            ours.surface,
+            self.edges,
+            self.driving,
+            np.array([place.depth for place in ours.places if not place.travel]),
+            cells,
+            self.closer,
+            self.friction,
+            self.increment,
+            wall=(sensor.wall.shear_modulus, sensor.wall.poisson_ratio),
+            travels=tuple(place.travel for place in ours.places if place.travel),
+        )
+
+
+def _kpa(driving: float) -> str:
+    return f"{driving / KPA:g} kPa"
+
+
+def _plate(tilt: float, driving: float, *meshes: tuple[int, int, int]) -> OffAxisScene:
+    leaning = PlacedObject(Plate(0.0, np.inf, 1.0), 0.0, float(np.radians(tilt)))
+    edges = (np.array([-_PLATE, _PLATE]), np.array([_BESIDE, _PLATE]))
+    return OffAxisScene(f"plate tilted by {tilt:g} degrees, {_kpa(driving)}", leaning, driving, edges, meshes)
+
+
+def _ball(radius: float, offset: float, driving: float, *meshes: tuple[int, int, int]) -> OffAxisScene:
+    placed = PlacedObject(ball(radius).scaled(1.0 / INNER), offset / INNER)
+    across = 0.9 * radius * np.linspace(-1.0, 1.0, 13)
+    edges = (offset + across, np.append(across[5], across[6:]))
+    name = f"ball of {radius:g} mm radius, {offset:g} mm off the axis, {_kpa(driving)}"
+    return OffAxisScene(name, placed, driving, edges, meshes, closer=1.5, increment=0.25)
+
+
+def _lying(word: str, radius: float, offset: float, driving: float, *meshes: tuple[int, int, int]) -> OffAxisScene:
+    body = (edge if word == "edge" else cylinder)(radius).scaled(1.0 / INNER)
+    across = offset + 0.9 * radius * np.linspace(-1.0, 1.0, 13)
+    where = f"{offset:g} mm off the axis" if offset else "across the middle"
+    name = f"{word} of {radius:g} mm radius, {where}, {_kpa(driving)}"
+    edges = (across, np.array([_BESIDE, _PLATE]))
+    return OffAxisScene(name, LyingObject(body, offset / INNER), driving, edges, meshes, closer=1.5)
+
+
+def _sheared(friction: float, modulus: float, *meshes: tuple[int, int, int]) -> OffAxisScene:
+    """A level plate: under one that leans, or a ball beside the axis, CalculiX counts as slip how far the object came
+    sideways along its own surface before a point touched."""
+    name = f"level plate, friction {friction:g}, wall of {modulus:g} MPa, 0 kPa, then sideways"
+    scene = replace(_plate(0.0, 0.0, *meshes), name=name, friction=friction, modulus=modulus)
+    return replace(scene, depth=1.2, steps=4, travel=0.2, stops=(5, 10))
+
+
+OTHERS = ((4, (12, 1)), (4, (24, 2)), (ORDER, (24, 2)))
+"""Orders, and cells along the arc and through the wall, by which the harmonic solid is timed."""
+EVEN_OTHERS = ((8, (48, 2)), (12, (24, 2)), (16, (24, 2)))
+"""The same in a scene that is symmetric about two planes."""
+
+SCENES = (
+    _plate(10.0, 0.0, (28, 2, 6), (40, 2, 6)),
+    replace(_plate(10.0, 22.0 * KPA, (28, 2, 6)), others=OTHERS),
+    _ball(6.0, 3.0, 0.0, (24, 2, 10), (32, 2, 12)),
+    _ball(6.0, 3.0, 22.0 * KPA, (26, 2, 10)),
+    _plate(20.0, 0.0, (28, 2, 6)),
+    _ball(12.0, 4.0, 0.0, (26, 2, 10)),
+    replace(_lying("edge", 5.0, 0.0, 0.0, (36, 2, 8)), order=8, symmetric=True, increment=0.25, others=EVEN_OTHERS),
+    replace(_lying("edge", 5.0, 2.5, 0.0, (24, 2, 10)), order=12, increment=0.25),
+    _sheared(0.3, 0.91, (28, 2, 6)),
+)
 
 
 def compared(scene: OffAxisScene) -> dict[str, Any]:
@@ -73,71 +216,6 @@ def figures(force: float, sideways: float, rise: float) -> dict[str, float]:
     return dict(zip(FIGURES, (float(force), float(sideways), float(rise) / KPA), strict=True))
 
 
-def section(data: list[dict[str, Any]]) -> list[str]:
-    """The lines of the comparison for a page."""
-    worst = {figure: max(map(abs, differences(data, figure))) for figure in FIGURES}
-    orders = " or ".join(map(str, sorted({scene["harmonics"] for scene in data})))
-    refined = " and ".join(f"{_times(s['cells'][-2])} to {_times(s['cells'][-1])}" for s in data if len(s["cells"]) > 1)
-    return [
-        HEADING,
-        "",
-        f"The paper's sensor without its base: the harmonic solid (M = {orders}, 24 x 2 cells), and half a dome of C3D20R cells. "
-        "CalculiX has no gas; its pressure is that which Boyle's law gives in the volume that it finds. Columns "
-        '"CalculiX": difference of CalculiX on its finest mesh from the figure left of it. Last column: greatest change of the three '
-        f"figures by refinement in CalculiX, where it was run on two meshes ({refined}). [off-axis.md](off-axis.md#calculix) explains "
-        "the differences. `python -m benchmarks.off_axis_calculix` computes the section.",
-        "",
-        "| scene | mm | force N | CalculiX | sideways N | CalculiX | pressure rise kPa | CalculiX | refinement |",
-        "|---|---|---|---|---|---|---|---|---|",
-        *(_line(scene, row) for scene in data for row in scene["rows"]),
-        "",
-        f"Greatest differences: force {worst['force_N']:.1%}, sideways force {worst['sideways_N']:.1%}, pressure rise "
-        f"{worst['rise_kPa']:.1%}.",
-        "",
-        *_cost_lines(data),
-    ]
-
-
-def _cost_lines(data: list[dict[str, Any]]) -> list[str]:
-    """M, the finest mesh of CalculiX and the processor times, of scenes that have them."""
-    timed = [scene for scene in data if "calculix_cost" in scene]
-    if not timed:
-        return []
-    lines = [
-        f"| {scene['scene']} | {scene['harmonics']} | {_times(scene['cells'][-1])} | "
-        f"{scene['calculix_cost'][-1]['processor_s'] / scene['harmonic_processor_s']:.0f} | "
-        f"{scene['calculix_cost'][-1]['raised_share']:.0%} |"
-        for scene in timed
-    ]
-    return [
-        "Processor times: one thread, one machine, one program after the other; CalculiX's is that of its whole process. The last column "
-        "is the share of its Newton iterations that went to the second pressure, from which Boyle's law follows. Times at equal error: "
-        "[accuracy.md](accuracy.md#contact-off-the-axis-time-at-equal-error).",
-        "",
-        "| scene | M | CalculiX's cells | CalculiX's time over that of the harmonic solid | second pressure |",
-        "|---|---|---|---|---|",
-        *lines,
-        "",
-    ]
-
-
-def _times(cells: list[int]) -> str:
-    return " x ".join(map(str, cells))
-
-
-def _line(scene: dict[str, Any], row: dict[str, Any]) -> str:
-    ours, fine = row["harmonic"], row["calculix"][-1]
-    known = [figure for figure in FIGURES if compares(row, figure)]
-    pairs = [
-        f"{ours[figure]:.4g} | {fine[figure] / ours[figure] - 1.0:+.1%}" if figure in known else "0 |"
-        for figure in FIGURES
-    ]
-    changes = [abs(fine[figure] / coarse[figure] - 1.0) for coarse in row["calculix"][-2:-1] for figure in known]
-    settled = f"{max(changes):.1%}" if changes else ""
-    where = f"{row['depth_mm']:g}" + (f", {row['travel_mm']:g} sideways" if "travel_mm" in row else "")
-    return f"| {scene['scene']} | {where} | {' | '.join(pairs)} | {settled} |"
-
-
 def compares(row: dict[str, Any], figure: str) -> bool:
     """Whether a figure of a row is compared: a sideways force that symmetry forbids is not."""
     ours = row["harmonic"]
@@ -152,13 +230,12 @@ def differences(data: list[dict[str, Any]], figure: str) -> list[float]:
 
 def main(*numbers: int) -> None:
     """The scenes of the numbers, from 1, or all; the others as they are stored."""
-    stored = {scene["scene"]: scene for scene in (json.loads(STORED.read_text("utf-8")) if STORED.exists() else [])}
+    known = {scene["scene"]: scene for scene in stored("off-axis-calculix")}
     for number in numbers or range(1, len(SCENES) + 1):
         scene = SCENES[number - 1]
-        stored[scene.name] = compared(scene)
-        data = [stored[scene.name] for scene in SCENES if scene.name in stored]
-        STORED.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
-    replace_section(PAGE, section(json.loads(STORED.read_text("utf-8"))))
+        known[scene.name] = compared(scene)
+        data = [known[scene.name] for scene in SCENES if scene.name in known]
+        store("off-axis-calculix", data)
 
 
 if __name__ == "__main__":

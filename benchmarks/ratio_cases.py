@@ -9,12 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from pneutouch.catalogue import Library, load_scene
+from benchmarks.store import LIBRARY, ROOT
+from pneutouch.catalogue import load_scene
 from pneutouch.units import KPA
 
 Pair = tuple[Callable[[], object], Callable[[], object]]
-ROOT = Path(__file__).resolve().parents[1]
-LIBRARY = Library((ROOT,))
 
 
 def check_of_a_sensor(folder: Path) -> Pair:

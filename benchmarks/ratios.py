@@ -1,7 +1,9 @@
 """Processor time of single jobs over that of something else done in the same run: ``python -m benchmarks.ratios [NAME ...]``.
 
 Work and measure run in turn, each once for the caches and then three times; the least of each is compared. So a ratio
-holds on a slow or a loaded machine too. Exits 1 where one is above its bound. Start-up: ``benchmarks.start_up``.
+holds on a slow or a loaded machine too. Exits 1 where one is above its bound. With ``start-up [RUNS]`` the
+processor time of every command over that of importing its libraries: each runs in turn in a process of its own with one
+thread, and the medians are compared, so that a slow minute of the machine counts for all.
 """
 
 from __future__ import annotations
@@ -12,6 +14,9 @@ import os
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ[_name] = "1"
 
+import resource  # noqa: E402
+import statistics  # noqa: E402
+import subprocess  # noqa: E402
 import sys  # noqa: E402
 import tempfile  # noqa: E402
 import time  # noqa: E402
@@ -40,6 +45,22 @@ RATIOS: dict[str, tuple[Callable[[Path], cases.Pair], float]] = {
 }
 """Maker of work and measure, given an empty folder, and the ratio that must not be passed."""
 
+NUMERICS = "import numpy, scipy.linalg"
+DRAWING = "import cadquery, matplotlib.pyplot, trimesh, numpy, scipy.linalg"
+NOTHING = "import sys"
+WORDS = "import typer, pydantic"
+README_TARGET = "--sensitivity 1.9 --at 12 --force-range 15 --max-diameter 25"
+
+COMMANDS: dict[str, tuple[list[str], str, float]] = {
+    "build paper-dome": (["-m", "pneutouch", "build", "paper-dome", "--out", "{out}"], DRAWING, 2.0),
+    "predict paper-dome": (["-m", "pneutouch", "predict", "paper-dome"], NUMERICS, 4.0),
+    "predict --model atlas": (["-m", "pneutouch", "predict", "paper-dome", "--model", "atlas"], NUMERICS, 2.5),
+    "select": (["-m", "pneutouch", "select", *README_TARGET.split()], NUMERICS, 5.0),
+    "--help": (["-m", "pneutouch", "--help"], WORDS, 2.5),
+    "import pneutouch": (["-c", "import pneutouch"], NOTHING, 1.5),
+}
+"""Arguments of Python by name, the imports each is compared with, and the ratio it must not pass."""
+
 
 def seconds(job: Callable[[], object]) -> float:
     start = time.process_time()
@@ -67,8 +88,46 @@ def measure(make: Callable[[Path], cases.Pair]) -> tuple[float, float]:
     return min(time for time, _ in times), min(time for _, time in times)
 
 
+def processor_seconds(arguments: list[str], compiled: str) -> float:
+    """User and system time of a Python process, s; ``compiled`` is the folder of compiled modules.
+
+    Raises CalledProcessError where the process fails.
+    """
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    environment |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONPYCACHEPREFIX": compiled}
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run([sys.executable, *arguments], check=True, capture_output=True, env=environment)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def start_up(runs: int) -> dict[str, float]:
+    """Median processor time of every command and every import, s."""
+    with tempfile.TemporaryDirectory() as out, tempfile.TemporaryDirectory() as compiled:
+        jobs = {name: [word.format(out=out) for word in words] for name, (words, _, _) in COMMANDS.items()}
+        jobs |= {text: ["-c", text] for text in (NUMERICS, DRAWING, NOTHING, WORDS)}
+        for arguments in jobs.values():
+            processor_seconds(arguments, compiled)  # compiles the modules, as an installed package is
+        times = [
+            {name: processor_seconds(arguments, compiled) for name, arguments in jobs.items()} for _ in range(runs)
+        ]
+    return {name: statistics.median(each[name] for each in times) for name in jobs}
+
+
+def start_up_table(seconds: dict[str, float]) -> str:
+    """The ratios as text, one command a line."""
+    rows = [
+        f"{name:24}{seconds[name]:8.3f}{seconds[over]:8.3f}{seconds[name] / seconds[over]:8.2f}{most:8.1f}"
+        for name, (_, over, most) in COMMANDS.items()
+    ]
+    return "\n".join([f"{'':24}{'s':>8}{'imports':>8}{'ratio':>8}{'at most':>8}", *rows])
+
+
 def main(names: list[str]) -> int:
-    """Print one line a ratio; 1 where one is above its bound."""
+    """Print one line a ratio, or the table of the commands; 1 where a ratio is above its bound."""
+    if names[:1] == ["start-up"]:
+        print(start_up_table(start_up(int(names[1]) if len(names) > 1 else 7)))
+        return 0
     worst = 0
     print(f"{'':58}{'s':>9}{'over s':>9}{'ratio':>9}{'at most':>9}")
     for name, (make, most) in RATIOS.items():

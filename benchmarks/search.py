@@ -7,7 +7,6 @@ extrapolated; its time is processor time on one core, whole calls. Writes docs/b
 from __future__ import annotations
 
 import itertools
-import json
 import os
 import platform
 import re
@@ -21,15 +20,15 @@ import numpy as np
 from scipy.optimize import brentq
 
 import pneutouch as pt
-from benchmarks.answer import solid_answer
+from benchmarks.methods import solid_answer
 from benchmarks.scenes import Scene
+from benchmarks.store import store
 from pneutouch.errors import PneutouchError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA
 
-STORED = Path(__file__).resolve().parents[1] / "docs" / "background" / "search.json"
 RESINS = ("TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970")
 WIDEST_MM = 25.0
 TARGETS = ((3.0, 10.0), (1.9, 12.0), (1.4, 15.0), (2.2, 5.0))
@@ -177,9 +176,7 @@ def machine() -> str:
 
 def main() -> None:
     data = {"machine": machine(), "searches": list(searches()), "sweeps": list(sweeps())}
-    STORED.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
-    for row in (*data["searches"], *data["sweeps"]):
-        print(row)
+    store("search", data)
 
 
 if __name__ == "__main__":

@@ -9,15 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.answer import Answer, membrane_answer, solid_answer, solid_limit
-from benchmarks.models import (
+from benchmarks.methods import (
     ATLAS,
     AUTO,
     MODEL_METHODS,
+    Answer,
     atlas_answer,
     atlas_limit,
     auto_answer,
+    membrane_answer,
     seconds_at_once,
+    solid_answer,
+    solid_limit,
     why_no_answer,
 )
 from benchmarks.scenes import SCENES, Scene
@@ -150,20 +153,6 @@ def compare(method: str, scene: Scene, answer: Answer, truth: Reference) -> dict
     return {key: None if isinstance(value, float) and np.isnan(value) else value for key, value in row.items()}
 
 
-FIGURES = (
-    "range_end_mm",
-    "ends",
-    "compared_to_mm",
-    "range_share",
-    "sensitivity_kPa_per_N",
-    "own_sensitivity_kPa_per_N",
-    "sensitivity_error",
-    "force_error",
-    "apex_error",
-    "limit_error",
-)
-
-
 def model_note(method: str, scene: Scene) -> dict[str, str]:
     """What the table states of a model on a scene: why it has no answer, or which one was chosen."""
     if method == ATLAS and atlas_answer(scene) is None:
@@ -216,7 +205,7 @@ def measure(scenes: tuple[Scene, ...] = SCENES) -> dict[str, Any]:
                 answers[method] = run(method, scene)
                 seconds[method].append(time.process_time() - start)
         for method, answer in answers.items():
-            blank = {"method": method, "scene": scene.name, **dict.fromkeys(FIGURES), "processor_s": None}
+            blank = {"method": method, "scene": scene.name, "processor_s": None}
             taken = {"processor_s": statistics.median(seconds[method])}
             row = blank if answer is None else {**compare(method, scene, answer, truths[scene.name]), **taken}
             rows.append({**row, **model_note(method, scene)})

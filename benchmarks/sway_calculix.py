@@ -8,7 +8,6 @@ follows from the second variation of the solid. Writes docs/background/sway-calc
 
 from __future__ import annotations
 
-import json
 import subprocess
 import sys
 import tempfile
@@ -17,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.scenes import PAPER
+from benchmarks.store import store
 from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.banded import solve
 from pneutouch.mechanics.solid.contact import Plate
@@ -28,7 +28,6 @@ from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate
 from pneutouch.mechanics.solid.supply import Regulator
 
-ROOT = Path(__file__).resolve().parents[1]
 RADIUS, WALL, DEPTH = PAPER.dome.inner_radius, PAPER.dome.wall_thickness, 6.66
 SENSOR_DEPTH = 6.94
 """How far the solid goes, mm: past the sway, which CalculiX only comes near."""
@@ -196,11 +195,7 @@ def main(arc: int = 24, through: int = 2, around: int = 10) -> None:
     ]
     events = {event.kind: event.indentation for event in run.events if event.kind in ("sway", "lobes")}
     data = {"cells": [arc, through, around], "solid_events_mm": events, "rows": rows}
-    (ROOT / "docs" / "background" / "sway-calculix.json").write_text(
-        json.dumps(data, indent=1) + "\n", encoding="utf-8"
-    )
-    for row in rows:
-        print(" ".join(f"{name}={value:.5g}" for name, value in row.items()))
+    store("sway-calculix", data)
 
 
 if __name__ == "__main__":

@@ -1,21 +1,26 @@
-"""Write docs/background/validation.md: the solid against exact results, other programs and the paper's table."""
+"""The solid against exact results, CalculiX and the paper's table: ``python -m benchmarks.validation``.
+
+Writes docs/background/validation.json. Friction and contact off the axis in three dimensions have modules of their own
+(`calculix_friction_half`, `off_axis_calculix`); with ``stored`` only what all of them come to is reduced anew.
+"""
 
 from __future__ import annotations
 
-import json
 import shutil
-from pathlib import Path
+import statistics
+import sys
 from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from benchmarks import calculix_friction_half, off_axis_calculix
 from benchmarks.calculix_sweep import calculix_limit
 from benchmarks.contact_references import balls
-from benchmarks.pages import validation_text
+from benchmarks.methods import solid_limit
+from benchmarks.paper import OTHER_SOURCE, Cell, table_s1
 from benchmarks.scenes import PAPER, Scene
-from benchmarks.speed_accuracy import solid_limit
-from benchmarks.theory import Cell, table_s1
+from benchmarks.store import LIBRARY, store, stored
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.indent import PressSettings, indent
@@ -23,11 +28,10 @@ from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 
-ROOT = Path(__file__).resolve().parents[1]
-
 SPHERES = ((1.0, 2.0), (10.0, 11.0), (9.25, 10.75), (8.5, 10.0))
 """Inner and outer radii of the thick spheres."""
 
+FRICTION_FIGURES = ("force_N", "rise_kPa")
 DEAD_VOLUMES_ML = (0.0, 0.1, 0.2, 0.5, 1.0, 2.0)
 
 PRINTED_FLANGE = (2.25, 2.25)
@@ -188,14 +192,50 @@ def measure() -> dict[str, Any]:
         "incompressibility": incompressibility(),
         "invariances": invariances(),
         "calculix": calculix(),
-        "dead_volumes": dead_volumes(Library((ROOT,))),
+        "dead_volumes": dead_volumes(LIBRARY),
     }
 
 
-def main() -> None:
-    validation_text.STORED.write_text(json.dumps(measure(), indent=1) + "\n", encoding="utf-8")
-    validation_text.main()
+def greatest(rows: list[list[float]]) -> list[float]:
+    """Greatest absolute value of each column."""
+    return [max(map(abs, column)) for column in zip(*rows, strict=True)]
+
+
+def references(data: dict[str, Any]) -> list[dict[str, Any]]:
+    """Every comparison: kind of reference, what is compared, and the greatest relative difference of each figure."""
+    pressure, height = data["thin_walls"]["extrapolated"]
+    spheres = [[row[3] / row[2] - 1, row[5] / row[4] - 1] for row in data["spheres"]]
+    pressed = [row[3::2] for row in data["pressed_membrane"]]
+    off_axis, friction = stored("off-axis-calculix"), stored("friction-calculix")
+    three = [greatest([[x] for x in calculix_friction_half.differences(friction, key)])[0] for key in FRICTION_FIGURES]
+    aside = [
+        greatest([[x] for x in off_axis_calculix.differences(off_axis, key)])[0] for key in off_axis_calculix.FIGURES
+    ]
+    balls, limit = data["balls"], data["calculix"]
+    inflation = [abs(limit["calculix_kPa"] / limit["solid_kPa"] - 1)] if limit else []
+    membrane = [abs(pressure / 1.57537 - 1), abs(height / 1.69 - 1)]
+    shell = [max(map(abs, balls["shell"][-1]["sheared"]))]
+    rows = [
+        ("thick spheres", "exact", "limit pressure, stretch", greatest(spheres)),
+        ("thin membrane, inflated", "exact", "limit pressure, height, extrapolated to no wall", membrane),
+        ("thin membrane, pressed by a plate", "exact", "cavity pressure, force, contact radius", greatest(pressed)),
+        ("Hertz, smallest contact", "exact", "force", [abs(balls["hertz"][-1][1])]),
+        ("pressurised shell with shear, wall of 0.0025 R", "exact", "first stiffness under a ball", shell),
+        ("CalculiX, inflation", "program", "limit pressure", inflation),
+        ("CalculiX in 3D, friction", "program", "force, pressure rise", three),
+        ("CalculiX in 3D, off the axis", "program", "force, sideways force, pressure rise", aside),
+        ("Table S1 of the paper, twelve cells", "measured", "sensitivity", data["dead_volumes"]["medians"][:1]),
+    ]
+    return [dict(zip(("name", "kind", "figures", "differences"), row, strict=True)) for row in rows if row[-1]]
+
+
+def main(*words: str) -> None:
+    data = stored("validation") if "stored" in words else measure()
+    cells = [row["errors"] for row in data["dead_volumes"]["rows"] if row["resin"] != OTHER_SOURCE]
+    data["dead_volumes"]["medians"] = [statistics.median(map(abs, column)) for column in zip(*cells, strict=True)]
+    data["references"] = references(data)
+    store("validation", data)
 
 
 if __name__ == "__main__":
-    main()
+    main(*sys.argv[1:])

@@ -1,1 +1,1 @@
-"""What a release is checked and accompanied by: ``make sbom``, ``make pythons``, ``make paper``."""
+"""Tools of a release: its checks, what accompanies it (``make sbom pythons paper``), and builders of shipped tables."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from benchmarks.store import stored
+
 from tests.conftest import ROOT
 
 TEXT = (ROOT / "paper/paper.md").read_text()
@@ -21,17 +23,16 @@ def test_every_figure_is_one_that_the_repository_makes():
     assert re.findall(r"\]\(([\w-]+\.png)\)", TEXT) == made
 
 
-def test_numbers_are_those_of_the_pages():
-    accuracy = (ROOT / "docs/background/accuracy.md").read_text()
-    validation = (ROOT / "docs/background/validation.md").read_text()
-    solid, variational = re.search(r"solid \*\*([\d.]+)%\*\*, membrane variational (\d+)%", accuracy).groups()
-    assert f"is {variational} % for a variational" in TEXT and f"and {solid} % for the finite elements" in TEXT
-    every, relaxed = re.search(r"all fourteen cells is (\d+)%, and that of the ten .*? ([\d.]+)%\.", accuracy).groups()
-    words = " ".join(TEXT.split())
-    assert f"is {every} % (fourteen cells)" in words and f"it is {relaxed} % (ten cells)" in words
+def test_numbers_are_the_stored_ones():
+    contact, words = stored("paper")["contact"], " ".join(TEXT.split())
+    twelve = contact["median_of_twelve"]
+    assert f"is {100 * twelve['variational']:.0f} % for a variational" in words
+    assert f"and {100 * twelve['solid']:.1f} % for the finite elements" in words
+    every, relaxed = (contact[f"median_of_{count}"]["solid"] for count in ("fourteen", "ten"))
+    assert f"is {100 * every:.0f} % (fourteen cells)" in words and f"it is {100 * relaxed:.1f} % (ten cells)" in words
     for name in ("README.md", "docs/background/limits.md"):
-        assert re.search(rf"{every} %( for all|\. The other two)", (ROOT / name).read_text()), name
-    errors = re.findall(r"^\| FLX9995-DM \|.*?\*?\| [\d.]+ \| \+(\d+)% \|", accuracy, re.M)[:2]
-    assert "off by {} % and {} %".format(*errors) in " ".join(TEXT.split())
-    for number in re.search(r"converges: ([\d.]+) kPa, against ([\d.]+) kPa here", validation).groups():
-        assert f"{number} kPa" in TEXT
+        assert re.search(rf"{100 * every:.0f} %( for all|\. The other two)", (ROOT / name).read_text()), name
+    errors = [100 * cell["errors"]["solid"] for cell in contact["cells"] if cell["material"] == "FLX9995-DM"]
+    assert "off by {:.0f} % and {:.0f} %".format(*errors) in words
+    for limit in stored("validation")["calculix"].values():
+        assert f"{limit:.3f} kPa" in words

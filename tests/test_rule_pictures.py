@@ -8,8 +8,8 @@ import shutil
 from functools import cache
 
 import pytest
-from benchmarks.rule_exhibits import EXHIBITS
-from benchmarks.rule_pictures import FOLDER, RECORD, SIDES, picture, picture_name, recorded
+from pictures.rules import EXHIBITS
+from pictures.rules.draw import FOLDER, RECORD, SIDES, picture, picture_name, recorded
 from reference_pages import rules
 from reference_pages.markdown import cell, plain
 
@@ -79,7 +79,5 @@ def test_every_limit_of_a_size_states_its_source():
 @pytest.mark.parametrize("rule", [r if r in EVERYDAY else pytest.param(r, marks=pytest.mark.slow) for r in NAMES])
 def test_findings_and_pictures_are_what_the_code_gives_today(rule):
     for side, case in zip(SIDES, EXHIBITS[rule](), strict=True):
-        assert json.loads(json.dumps(recorded(case))) == STORED[rule][side], (
-            f"{rule}: python -m benchmarks.rule_pictures"
-        )
+        assert json.loads(json.dumps(recorded(case))) == STORED[rule][side], f"{rule}: make rule-pictures"
         assert picture(case, side) + "\n" == (FOLDER / picture_name(rule, side)).read_text(encoding="utf-8"), rule

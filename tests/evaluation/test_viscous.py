@@ -22,7 +22,7 @@ from pneutouch.mechanics.viscous.known import ageing_ratio
 from pneutouch.output.files import json_bytes
 from pneutouch.report import relaxation
 from tests.conftest import ROOT
-from tests.mechanics.viscous.tables import PAPER_RESINS, agilus_table, friction_table, paper_table, resin, wall_table
+from tests.mechanics.viscous.tables import PAPER_RESINS, agilus_table, friction_table, resin, wall_table
 
 
 @pytest.fixture(scope="module")
@@ -166,9 +166,7 @@ def test_the_line_on_ageing(library):
     assert relaxation.ageing_line(replace(sheet, ageing=unknown)).endswith("is not known.")
 
 
-@pytest.mark.parametrize(
-    "table", [agilus_table, wall_table, paper_table, pytest.param(friction_table, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("table", [agilus_table, wall_table, pytest.param(friction_table, marks=pytest.mark.slow)])
 def test_the_page_has_the_tables_of_today(table):
     assert "\n".join(table(Library((ROOT,)))) in (ROOT / "docs" / "background" / "viscous.md").read_text(
         encoding="utf-8"

@@ -11,7 +11,7 @@ from pneutouch.workflows.simulator.run import press_tables
 
 mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed; the development lock has it")
 
-from benchmarks.mujoco_press import clear, drop, module_of, press  # noqa: E402
+from benchmarks.simulators import clear, drop, module_of, press  # noqa: E402
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from pneutouch.workflows.simulator import make_simulator, write_simulator
 
 mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed; the development lock has it")
 
-from benchmarks.mujoco_press import clear, module_of  # noqa: E402
+from benchmarks.simulators import clear, module_of  # noqa: E402
 
 PENDULUM = """<mujoco><worldbody><body><joint type="hinge" axis="0 1 0"/><geom size="0.1" pos="0.3 0 0"/></body></worldbody>
 <sensor><user dim="1"/></sensor></mujoco>"""

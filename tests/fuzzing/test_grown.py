@@ -16,7 +16,7 @@ SIZE, MOST = 150, 2.2
 """Entries of the smaller input; and the calls for twice as many, over those for it."""
 
 BINARY = ("run-xlsx", "run-parquet", "run-tdms", "dataset", "slice")
-"""Compiled libraries read these: their calls are not seen. `benchmarks.largest_inputs` measures them."""
+"""Compiled libraries read these: their calls are not seen. `tests.fuzzing.largest` measures them."""
 
 
 def calls(target: Target, content: bytes, folder: Path) -> int:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import sys
 
 import pytest
-from benchmarks.hardening_tables import stored
-from benchmarks.largest_inputs import CASES, measured
+from benchmarks.store import stored
 
+from tests.fuzzing.largest import CASES, measured
 from tests.fuzzing.targets import TARGETS
 
 pytestmark = [
@@ -21,7 +21,7 @@ SHARE, FIXED = 1.5, 64.0
 KNOWN = {(name, case.words): case for name, cases in CASES.items() for case in cases}
 
 
-@pytest.mark.parametrize("row", stored("largest-inputs.json"), ids=lambda row: f"{row['reader']}, {row['input']}")
+@pytest.mark.parametrize("row", stored("largest-inputs"), ids=lambda row: f"{row['reader']}, {row['input']}")
 def test_the_largest_input_takes_no_more_memory_than_stated(row, tmp_path):
     case = KNOWN[row["reader"], row["input"]]
     if library := TARGETS[case.target].library:
@@ -33,4 +33,4 @@ def test_the_largest_input_takes_no_more_memory_than_stated(row, tmp_path):
 
 
 def test_every_stated_input_is_measured():
-    assert {(row["reader"], row["input"]) for row in stored("largest-inputs.json")} == set(KNOWN)
+    assert {(row["reader"], row["input"]) for row in stored("largest-inputs")} == set(KNOWN)

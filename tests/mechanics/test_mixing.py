@@ -7,30 +7,28 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from benchmarks.mixing_laws import (
+from hypothesis import given
+from hypothesis import strategies as st
+from release.tables.mixing_laws import (
     HARDNESS_READ,
     LONG_TERM,
     PLACING,
     SOFT_HARDNESS,
     TENSION_SLOPE,
+    THRESHOLD,
+    VOXEL_THRESHOLD,
     by_hardness,
     by_mixture_tool,
     by_tension,
     fraction_of,
-    placings,
-    stiff_moduli,
-)
-from benchmarks.mixing_theory import (
-    THRESHOLD,
-    VOXEL_THRESHOLD,
     hashin_shtrikman_high,
     hashin_shtrikman_low,
     percolation,
+    placings,
     reuss,
+    stiff_moduli,
     voigt,
 )
-from hypothesis import given
-from hypothesis import strategies as st
 
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.mixture import mixing

@@ -1,6 +1,6 @@
 """The page of every print rule, with a picture of a good and of a bad case and what the rule finds in the bad one.
 
-The pictures and findings are those that ``python -m benchmarks.rule_pictures`` writes.
+The pictures and findings are those that ``make rule-pictures`` writes.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ def _sizes(printer: Printer, limit: str) -> list[tuple[str, FeatureSize]]:
 def _picture(name: str, side: str, label: str) -> str:
     file = f"{anchor(name)}-{side}.svg"
     if not (PICTURES / file).is_file():
-        raise FileNotFoundError(f"{file}: run python -m benchmarks.rule_pictures")
+        raise FileNotFoundError(f"{file}: run make rule-pictures")
     return f"![{side}: {plain(label)}](../rules/{file})"
 
 

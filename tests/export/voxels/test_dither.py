@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from benchmarks.voxel_dither import FRACTIONS, SHAPE, blue_noise, radial, white_noise, worst_cube
+from benchmarks.voxels import FRACTIONS, SHAPE, blue_noise, radial, white_noise, worst_cube
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.ndimage import binary_erosion, generate_binary_structure

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from benchmarks.contact_table_build.press import DomeState, at_equal_reading, pressed
+from release.tables.contact.press import DomeState, at_equal_reading, pressed
 
 from pneutouch.mechanics.anywhere.conditions import batch_conditions, covered, outside, state_conditions
 from pneutouch.mechanics.anywhere.reading import ball_places, edge_places, force_logs, place_uncertainty, plate_places
@@ -120,7 +120,7 @@ def test_ambient_pressure_and_dead_volume_enter_by_the_gas_stiffness_alone(wall,
     """The same stiffness from little air at a low pressure and from much at a high one: one force at equal reading."""
     logs = []
     for ambient in (0.05, 0.8):
-        monkeypatch.setattr("benchmarks.contact_table_build.press._AMBIENT", ambient)
+        monkeypatch.setattr("release.tables.contact.press._AMBIENT", ambient)
         state = DomeState(wall, 0.1, 0.1)
         plate, ball = (pressed(RECIPE, state, curvature, 0.0) for curvature in (0.0, 2.0))
         logs.append(at_equal_reading(RECIPE, plate, ball)[0])

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from benchmarks.contact_table_build.build import central, edges
-from benchmarks.contact_table_build.fingerprint import model_answers
-from benchmarks.contact_table_build.held_out import compared, drawn
-from benchmarks.contact_table_build.press import DomeState, at_equal_reading, pressed
 from hypothesis import given
 from hypothesis import strategies as st
+from release.tables.contact.build import central, edges
+from release.tables.contact.fingerprint import model_answers
+from release.tables.contact.held_out import compared, drawn
+from release.tables.contact.press import DomeState, at_equal_reading, pressed
 from scipy.interpolate import CubicHermiteSpline
 
 from pneutouch.mechanics.anywhere.reading import TABLE_ERROR

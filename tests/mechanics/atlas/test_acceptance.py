@@ -7,7 +7,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from benchmarks.atlas_presses import Gap, compare_all, random_cases
+from benchmarks.atlas import Gap, compare_all, random_cases
 
 from pneutouch.mechanics.models import TABULATION
 

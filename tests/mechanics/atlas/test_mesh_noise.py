@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from benchmarks.atlas_presses import Case
+from benchmarks.atlas import Case
 
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.indent import PressSettings, indent

@@ -1,4 +1,4 @@
-"""docs/background/atlas.md is made of its stored numbers, and those are what both say today."""
+"""The stored numbers of docs/background/atlas.md are what the solid and the atlas give today."""
 
 from __future__ import annotations
 
@@ -6,25 +6,25 @@ import json
 
 import numpy as np
 import pytest
-from benchmarks import atlas_page
-from benchmarks.atlas_presses import compare, random_cases
-from benchmarks.models import ATLAS, AUTO, atlas_answer, atlas_limit, auto_answer, why_no_answer
+from benchmarks import store
+from benchmarks.atlas import SEED, compare, random_cases, reduced
+from benchmarks.methods import ATLAS, AUTO, atlas_answer, atlas_limit, auto_answer, why_no_answer
 from benchmarks.scenes import SCENES
 from benchmarks.speed_accuracy import limit, run
+from pictures.presses import greatest
 
 
 @pytest.fixture(scope="module")
 def stored():
-    return json.loads((atlas_page.DOCS / "atlas.json").read_text(encoding="utf-8"))
+    return store.stored("atlas")
 
 
-def test_the_page_is_made_of_the_stored_numbers(stored):
-    assert (atlas_page.DOCS / "atlas.md").read_text(encoding="utf-8") == atlas_page.page(stored)
-    assert "(atlas.svg)" in atlas_page.page(stored) and (atlas_page.DOCS / "atlas.svg").is_file()
+def test_the_summary_is_that_of_the_stored_errors(stored):
+    assert json.loads(json.dumps(reduced(stored))) == stored["summary"]
 
 
 def test_stored_errors_are_what_both_say_today(stored):
-    cases = random_cases(stored["requested"], atlas_page.SEED)
+    cases = random_cases(stored["requested"], SEED)
     for number in (3, len(cases) // 3, len(cases) - 2):
         gap = compare(cases[number])
         assert gap is not None
@@ -37,7 +37,7 @@ def test_stored_errors_are_what_both_say_today(stored):
 def test_a_map_cell_holds_the_greatest_of_its_errors():
     x, y, error = np.array([0.1, 0.2, 0.9]), np.array([0.1, 0.3, 0.9]), np.array([1.0, 3.0, 2.0])
     edges = np.array([0.0, 0.5, 1.0])
-    cells = atlas_page._greatest(x, y, error, edges, edges)
+    cells = greatest(x, y, error, edges, edges)
     assert cells[0, 0] == 3.0 and cells[1, 1] == 2.0
     assert np.isnan(cells[0, 1]) and np.isnan(cells[1, 0])
 

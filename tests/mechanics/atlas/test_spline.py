@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from benchmarks.atlas_build.fit import roughness
 from hypothesis import given
 from hypothesis import strategies as st
+from release.tables.atlas.fit import roughness
 from scipy.interpolate import BSpline
 
 from pneutouch.mechanics.atlas.spline import SplineAxis, pieces

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchmarks.atlas_build import stale
+from release.tables.atlas import stale
 
 from pneutouch.mechanics.atlas.recipe import RECIPE, STORED, AtlasRecipe, axes
 from pneutouch.mechanics.atlas.table import SHIPPED, shipped

@@ -6,8 +6,7 @@ import shutil
 
 import numpy as np
 import pytest
-from benchmarks.calculix_friction import calculix_press, solid_press
-from benchmarks.calculix_grip import calculix_held
+from benchmarks.calculix_friction import calculix_held, calculix_press, solid_press
 from benchmarks.scenes import paper
 
 pytestmark = [

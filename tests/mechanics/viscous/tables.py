@@ -106,16 +106,6 @@ def wall_table(library: Library) -> list[str]:
     return rows
 
 
-def paper_table(library: Library) -> list[str]:
-    """Every resin of the paper: its measured hysteresis, and that nothing is predicted."""
-    rows = [_row(["resin", "measured at 0 kPa (Table S1)", "predicted"]), _row(["---"] * 3)]
-    for name in PAPER_RESINS:
-        material = resin(library, name)
-        said = "no relaxation data" if not material.relaxation else "data: see above"
-        rows.append(_row([material.title, f"{material.measured.hysteresis_percent.nominal:g} %", said]))
-    return rows
-
-
 def ageing_shift_as_measured(material: Material, ratio: float) -> tuple[float, float]:
     """Mean change of the sensitivity curve, and of its size, over the mean aged curve: as Supplement E normalises."""
     fresh = material_sensor(material)

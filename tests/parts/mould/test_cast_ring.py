@@ -9,7 +9,6 @@ from dataclasses import replace
 import cadquery as cq
 import numpy as np
 import pytest
-from benchmarks.moulds import checked, random_moulds
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -28,6 +27,7 @@ from pneutouch.printability.subject import PrintSubject
 from pneutouch.printability.view import PrintView
 from pneutouch.report.mould import mould_rows, mould_section
 from pneutouch.workflows.build.mould import exploded
+from tests.parts.mould.random_moulds import checked, random_moulds
 
 CAST = {
     "membrane": {"material": "DragonSkin20"},

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchmarks.moulds import checked, random_moulds
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -27,6 +26,7 @@ from pneutouch.parts.mould.screws import SCREW
 from pneutouch.printability.measure.mould import cavity_match, overlaps, undercuts
 from pneutouch.printability.rules.contact_faces import overlap_volume, shared_area
 from pneutouch.units import ML
+from tests.parts.mould.random_moulds import checked, random_moulds
 from tests.parts.space import measured_volume
 
 CAST = {"membrane": {"material": "DragonSkin20"}, "print": {"profile": "silicone-casting"}}

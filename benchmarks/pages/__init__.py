@@ -1,1 +1,0 @@
-"""Sections of docs/background/accuracy.md: text and figures from what the benchmarks measured."""

@@ -1,0 +1,24 @@
+"""Stored measurements: docs/background/NAME.json, of which the pages are filled."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from pneutouch.catalogue import Library
+
+ROOT = Path(__file__).resolve().parents[1]
+DOCS = ROOT / "docs" / "background"
+LIBRARY = Library((ROOT,))
+"""The shipped files, without those of a user."""
+
+
+def stored(name: str) -> Any:
+    """A stored measurement."""
+    return json.loads((DOCS / f"{name}.json").read_text(encoding="utf-8"))
+
+
+def store(name: str, data: Any, indent: int | None = 1) -> None:
+    """Store a measurement."""
+    (DOCS / f"{name}.json").write_text(json.dumps(data, indent=indent) + "\n", encoding="utf-8")

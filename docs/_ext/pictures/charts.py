@@ -1,0 +1,14 @@
+"""Every chart of docs/background by its name, from stored measurements or from what the code gives in seconds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from pictures.accuracy import CHARTS as ACCURACY
+from pictures.background import CHARTS as BACKGROUND
+from pictures.mixing import CHARTS as MIXING
+from pictures.presses import CHARTS as PRESSES
+from pictures.prints import CHARTS as PRINTS
+from pictures.texture import CHARTS as TEXTURE
+
+CHARTS: dict[str, Callable[[], str]] = {**ACCURACY, **BACKGROUND, **MIXING, **PRESSES, **PRINTS, **TEXTURE}
