@@ -27,10 +27,10 @@ from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.solid.indent import PressSettings, indent
+from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid_states import curve_between, reported_events
 from pneutouch.units import KPA
 

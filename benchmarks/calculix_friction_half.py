@@ -17,11 +17,11 @@ from benchmarks.scenes import paper
 from benchmarks.store import store
 from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.object_contact import Plate
 from pneutouch.units import KPA
 
 SENSOR = paper(0.91)

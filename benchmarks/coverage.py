@@ -18,11 +18,10 @@ import numpy as np
 from benchmarks.store import store, stored
 from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.figure import BY_KEY, FIGURES, RESOLVED
+from pneutouch.bench.figures import BY_KEY, FIGURES, RESOLVED, RunGroup, summarize
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.simulate import SimulatedSpecimens, SimulationTruth, population, press_curves, simulate_run
 from pneutouch.bench.simulate.curve import PressCurve, PressCurves
-from pneutouch.bench.summary import RunGroup, summarize
 from pneutouch.catalogue import Library
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.paper_sensor import material_sensor

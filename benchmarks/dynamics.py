@@ -13,10 +13,9 @@ from pneutouch.catalogue.scene import DEFAULT
 from pneutouch.evaluation.dynamics import DynamicState
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.line.air import AirState
-from pneutouch.mechanics.line.band import band_figures
-from pneutouch.mechanics.line.cascade import GasLine
-from pneutouch.mechanics.line.dynamics import SensorDynamics
+from pneutouch.mechanics.line.dynamics import GasLine, SensorDynamics
 from pneutouch.mechanics.line.elements import Duct, GasVolume
+from pneutouch.mechanics.line.transient import band_figures
 
 LENGTHS = (50.0, 300.0, 1000.0)
 """Tubes of the chart, mm."""

@@ -21,10 +21,10 @@ from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.solid.friction_loop import friction_loop
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent
+from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import FreeState, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.units import KPA
 
 RESINS = ("TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985")

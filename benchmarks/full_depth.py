@@ -12,11 +12,10 @@ from benchmarks.speed_accuracy import REFINEMENTS, extrapolate
 from benchmarks.store import store
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.solid.indent import PressSettings, indent
+from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import state_at
-from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.mesh import dome, printed_dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.printed import printed_dome
-from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid_states import KINDS, curve_between
 from pneutouch.units import KPA
 

@@ -16,12 +16,11 @@ from tests.mutants.sites import PARTS
 
 from benchmarks.store import DOCS, store, stored
 from pneutouch.bench.blocks import MOST_BLOCKS
-from pneutouch.export import threemf_package as package
+from pneutouch.export import threemf_read as package
 from pneutouch.export.voxels.png import MOST_PIXELS
 from pneutouch.spec.files import MOST_BYTES
 from pneutouch.spec.tasks import MOST_TASKS
-from pneutouch.studio.guard import LARGEST_BODY
-from pneutouch.studio.uploads import LARGEST_FILE
+from pneutouch.studio.guard import LARGEST_BODY, LARGEST_FILE
 from pneutouch.tables import parquet_table, xlsx_table
 from pneutouch.tables.read import MOST_NUMBERS
 from pneutouch.tables.text import LONGEST_LINE

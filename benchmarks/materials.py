@@ -1,6 +1,6 @@
 """Every elastomer in the paper's dome by its own law: ``python -m benchmarks.materials`` (a minute of processor time).
 
-Writes docs/background/materials.json; ``--reach`` prints how far the wall of the shipped domes is stretched instead (`pneutouch.bench.tensile.reach`).
+Writes docs/background/materials.json; ``--reach`` prints how far the wall of the shipped domes is stretched instead (`pneutouch.bench.tensile.choose`).
 """
 
 from __future__ import annotations
@@ -15,12 +15,11 @@ from pneutouch.bench.tensile.fit import LawForm
 from pneutouch.errors import BeyondLimitError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.limits import Limits
-from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.paper_sensor import material_sensor, young_modulus
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indent import indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid_states import press_settings, solid_probe, solid_result
-from pneutouch.mechanics.uncertainty.hardness import young_modulus
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 

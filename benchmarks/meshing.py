@@ -16,9 +16,9 @@ import numpy as np
 from benchmarks.store import LIBRARY, store
 from pneutouch.body import Frame, Solid
 from pneutouch.catalogue import load_scene
-from pneutouch.export.brep import exact_solid
-from pneutouch.meridian import Arc, Meridian
+from pneutouch.export.step import exact_solid
 from pneutouch.parts import assemble
+from pneutouch.shape.meridian import Arc, Meridian
 from pneutouch.spec.read import parse_changes
 
 BODIES = {

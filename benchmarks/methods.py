@@ -10,8 +10,7 @@ import numpy as np
 
 from benchmarks.scenes import Scene
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.batches import batch_of
-from pneutouch.mechanics.atlas.press import AtlasPress
+from pneutouch.mechanics.atlas.press import AtlasPress, batch_of
 from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, EDGE, ENDS, OUTSIDE, respond
 from pneutouch.mechanics.atlas.table import AtlasSlices, shipped
 from pneutouch.mechanics.atlas_states import outside_atlas

@@ -25,14 +25,13 @@ from benchmarks.store import LIBRARY, store
 from pneutouch.arrays import Array
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixing
-from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.uncertainty.hardness import young_modulus
+from pneutouch.mechanics.paper_sensor import material_sensor, young_modulus
 from pneutouch.selection.mixes import LEVELS, levels
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
-from pneutouch.workflows.coupons.blends import FRACTIONS
+from pneutouch.workflows.coupons.order import FRACTIONS
 
 SOFT, STIFF = "TangoPlus", "VeroClear"
 WHERE = (0.03, 0.06, 0.1, 0.15, 0.2, 0.3)

@@ -21,12 +21,12 @@ from benchmarks.store import store, stored
 from pneutouch.arrays import Array
 from pneutouch.mechanics.harmonic.press import OffAxisPress
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject, Surface
-from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.indent import PressSettings
 from pneutouch.mechanics.solid.indenter import ball, cylinder, edge
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.object_contact import Plate
 from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.units import KPA
 

@@ -20,7 +20,7 @@ def check_of_a_sensor(folder: Path) -> Pair:
     from pneutouch.evaluation.subject import subject_of
     from pneutouch.parts import assemble
     from pneutouch.printability import check
-    from pneutouch.printability.rules.contact_faces import overlap_volume
+    from pneutouch.printability.rules.faces import overlap_volume
 
     scene = load_scene("stiff-dome", None, LIBRARY)
     subject = subject_of(assemble(scene))
@@ -112,7 +112,7 @@ def budgets(folder: Path) -> Pair:
 def relaxation_and_loops(folder: Path) -> Pair:
     from tests.mechanics.viscous.test_follow import SENSOR, A
 
-    from pneutouch.mechanics.atlas.batches import batch_of
+    from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.atlas.respond import respond
     from pneutouch.mechanics.viscous.runs import loop, relaxation
 
@@ -182,7 +182,7 @@ def fit_of_curves(folder: Path) -> Pair:
     from tests.bench.calibrate.test_fit import TRUTH
 
     from pneutouch.bench.calibrate import NAMES, Observations, fit
-    from pneutouch.mechanics.atlas.batches import batch_of
+    from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.atlas.respond import respond
 
     pressures = np.linspace(0, 22, 10)
@@ -195,7 +195,7 @@ def fit_of_curves(folder: Path) -> Pair:
 
 def voxels(folder: Path) -> Pair:
     from pneutouch.parts import assemble
-    from pneutouch.workflows.build.voxels import plan_voxels, write_voxels
+    from pneutouch.workflows.build_voxels import plan_voxels, write_voxels
 
     plan = plan_voxels(assemble(load_scene("graded-dome", None, LIBRARY)), mode="High Mix", library=LIBRARY)
     grid, rng = plan.job.raster, np.random.default_rng(1)

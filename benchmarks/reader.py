@@ -9,7 +9,7 @@ from pathlib import Path
 
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.export.reader.render import c_name, table_bytes
-from pneutouch.workflows.reader import make_reader
+from pneutouch.workflows.export_reader import make_reader
 
 READINGS = 2_000_000
 

@@ -18,8 +18,7 @@ from scipy.interpolate import PchipInterpolator
 
 from benchmarks.store import ROOT, store
 from pneutouch.evaluation import evaluate
-from pneutouch.workflows.simulator import make_simulator, write_simulator
-from pneutouch.workflows.simulator.run import press_tables
+from pneutouch.workflows.export_reader import make_simulator, press_tables, write_simulator
 
 DESIGN = "paper-dome"
 GRAVITY = 9.81

@@ -16,14 +16,14 @@ import numpy as np
 from benchmarks.store import store, stored
 from pneutouch.errors import PneutouchError
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.harmonics import HarmonicSolid
+from pneutouch.mechanics.solid.cavity import Regulator
 from pneutouch.mechanics.solid.indent import PressSettings, indent
+from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import Inflation, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, minimise
-from pneutouch.mechanics.solid.rigid_base import RigidBase
-from pneutouch.mechanics.solid.supply import Regulator
+from pneutouch.mechanics.solid.second_variation import HarmonicSolid
 from pneutouch.mechanics.solid.sway import unstable_waves
 
 PUBLISHED = 0.8

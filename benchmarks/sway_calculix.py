@@ -19,14 +19,14 @@ from benchmarks.scenes import PAPER
 from benchmarks.store import store
 from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.banded import solve
-from pneutouch.mechanics.solid.contact import Plate
-from pneutouch.mechanics.solid.harmonics import HarmonicSolid
+from pneutouch.mechanics.solid.cavity import Regulator
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate
-from pneutouch.mechanics.solid.supply import Regulator
+from pneutouch.mechanics.solid.object_contact import Plate
+from pneutouch.mechanics.solid.second_variation import HarmonicSolid
 
 RADIUS, WALL, DEPTH = PAPER.dome.inner_radius, PAPER.dome.wall_thickness, 6.66
 SENSOR_DEPTH = 6.94

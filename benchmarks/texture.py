@@ -21,9 +21,9 @@ from pneutouch.texture.scan import scan
 from pneutouch.texture.separate import BarPattern, amplitudes, noise_amplitude, recommend
 from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate, amplitude
 from pneutouch.units import KPA
-from pneutouch.workflows.scan.document import document
-from pneutouch.workflows.scan.run import ScanOptions, run_scan
-from pneutouch.workflows.scan.separate import separating
+from pneutouch.workflows.scan import ScanOptions, run_scan
+from pneutouch.workflows.scan_document import document
+from pneutouch.workflows.scan_separate import separating
 
 CELL, LENGTH, HEIGHT = 0.5, 24.0, 8.0
 DEPTHS, KINDS = (0.0, 1.0, 2.0, 3.0), {3.0: (1.5, 1.0), 6.0: (3.0, 1.5)}

@@ -23,10 +23,10 @@ from pneutouch.body.section import SolidSection
 from pneutouch.catalogue import load_scene
 from pneutouch.export.voxels.bluenoise import thresholds
 from pneutouch.export.voxels.raster import Raster, raster
-from pneutouch.export.voxels.read import read_stack
+from pneutouch.export.voxels.stack import read_stack
 from pneutouch.parts import assemble
-from pneutouch.workflows.build.voxels import plan_voxels, write_voxels
-from pneutouch.workflows.show.voxels import draw
+from pneutouch.workflows.build_voxels import plan_voxels, write_voxels
+from pneutouch.workflows.show import draw
 
 PITCH = (25.4 / 600, 25.4 / 300, 0.027)
 SHAPE = (96, 64, 128)

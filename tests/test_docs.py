@@ -26,7 +26,7 @@ from benchmarks.store import stored
 from benchmarks.sway import DEAD, RESINS, inflated, pressed, zero
 from pictures.accuracy import front
 
-from pneutouch.bench.figure import BY_KEY
+from pneutouch.bench.figures import BY_KEY
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ from pneutouch.errors import (
     one_line,
     shown,
 )
-from pneutouch.mechanics.solid.errors import NoConvergenceError
+from pneutouch.mechanics.solid.newton import NoConvergenceError
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import validate
 

@@ -11,7 +11,7 @@ from pneutouch.formats import format_of
 
 
 def test_figures_nested_too_deep_are_refused(tmp_path):
-    from pneutouch.workflows.driving.leak import _of_campaign
+    from pneutouch.workflows.driving.pressures import _of_campaign
 
     path = tmp_path / "figures.json"
     path.write_text("[" * 100_000)
@@ -38,7 +38,7 @@ STATED = '{"format": "pneutouch/prediction/1", %s}'
 
 @pytest.mark.parametrize("text", ["[" * 100_000, "[]", "1", "{", STATED % '"model": "solid"', STATED % '"states": [1]'])
 def test_a_forged_prediction_of_a_build_is_refused(text, tmp_path):
-    from pneutouch.workflows.compare.predicted import of_build
+    from pneutouch.workflows.compare import of_build
 
     with pytest.raises(InputError, match="is not as this version writes it"):
         of_build(forged(tmp_path, prediction_json=text))
@@ -58,7 +58,7 @@ GROUP = '{"format": "pneutouch/figures/1", "design": "a", "simulated": 0, "runs"
     ],
 )
 def test_forged_figures_of_a_campaign_are_refused(figures, points, tmp_path):
-    from pneutouch.workflows.compare.measured import measured_columns
+    from pneutouch.workflows.compare_measured import measured_columns
 
     with pytest.raises(InputError, match=r"figures.json is not as this version writes it"):
         measured_columns(forged(tmp_path, figures_json=figures, points_csv=points))
@@ -66,7 +66,7 @@ def test_forged_figures_of_a_campaign_are_refused(figures, points, tmp_path):
 
 @pytest.mark.parametrize(("value", "pressure"), [("NaN", "12"), ("Infinity", "12"), ("0.1", "inf"), ('"nan"', "12")])
 def test_a_leak_that_is_no_number_is_refused_and_not_read_as_none(value, pressure, tmp_path):
-    from pneutouch.workflows.driving.leak import _of_campaign
+    from pneutouch.workflows.driving.pressures import _of_campaign
 
     path = tmp_path / "figures.json"
     entry = '{"unit": "kPa/min", "value": %s, "figure": "leak, %s kPa"}'
@@ -91,7 +91,7 @@ def test_a_leak_that_is_no_number_is_refused_and_not_read_as_none(value, pressur
     ],
 )
 def test_figures_of_another_kind_are_refused_where_they_are_read(figure, tmp_path):
-    from pneutouch.workflows.compare.measured import measured_columns
+    from pneutouch.workflows.compare_measured import measured_columns
     from tests.fuzzing.seeds import MEASUREMENT, POINTS
 
     def columns(entry):

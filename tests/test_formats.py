@@ -14,14 +14,12 @@ from pneutouch.errors import InputError
 from pneutouch.export.reader.reading import FORMAT, ForceReader
 from pneutouch.export.reader.render import SCHEMA
 from pneutouch.formats import FORMATS, check_format, format_of, problem_of, versioned
-from pneutouch.output.files import check_writable
-from pneutouch.output.manifest import with_manifest
+from pneutouch.output.files import check_writable, with_manifest
 from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.read import read_toml, validate
-from pneutouch.workflows.compare.folder import manifest_of
-from pneutouch.workflows.compare.measured import measured_columns
-from pneutouch.workflows.compare.predicted import of_build
-from pneutouch.workflows.driving.leak import read_leak
+from pneutouch.workflows.compare import of_build
+from pneutouch.workflows.compare_measured import manifest_of, measured_columns
+from pneutouch.workflows.driving.pressures import read_leak
 from pneutouch.workflows.sweep.dataset import stored_dataset, stored_fingerprint
 from tests.conftest import ROOT
 

@@ -11,10 +11,10 @@ import pneutouch
 PACKAGE = Path(pneutouch.__file__).parent
 
 LAYERS = [
-    {"errors", "formats", "wording", "holding", "units", "arrays", "rounding", "packing", "tables"},
+    {"errors", "formats", "wording", "stopping", "units", "arrays", "rounding", "packing", "tables"},
     {"spec"},
     {"catalogue"},
-    {"meridian"},
+    {"shape"},
     {"body"},
     {"parts", "mechanics"},
     {"printability", "selection", "bench", "texture"},
@@ -59,12 +59,10 @@ def test_imports_run_one_way():
 
 
 DRAWN_FROM = {
-    "pneutouch.mechanics.curve_outcome",
     "pneutouch.mechanics.prediction",
     "pneutouch.mechanics.uncertainty.record",
-    "pneutouch.evaluation.chart_data",
-    "pneutouch.evaluation.comparison_record",
     "pneutouch.evaluation.sheet_data",
+    "pneutouch.evaluation.comparison_record",
 }
 """Modules of records, which is all that `report` may import of the layers that compute."""
 

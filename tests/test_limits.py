@@ -93,7 +93,7 @@ def test_a_keyword_without_end_is_refused():
 
 @pytest.mark.parametrize("deep", [[None], [[[{"a": None}, None]]], {"a": [None]}])
 def test_runs_of_the_page_that_no_campaign_file_can_hold_are_refused(deep, tmp_path):
-    from pneutouch.studio.campaign import write_runs
+    from pneutouch.studio.measured import write_runs
 
     with pytest.raises(InputError, match="not a run of a campaign file"):
         write_runs(tmp_path, [{"file": "a.csv", "sensor": deep}])
@@ -177,7 +177,7 @@ def test_a_slice_without_pixels_is_refused_before_its_rows_are_unpacked(columns,
 @pytest.mark.parametrize("key", ["dpi", "pixels", "pixel_um"])
 @pytest.mark.parametrize("value", [[1], [1, 2, 3], ["1", 2], [None, None]])
 def test_a_stack_whose_pairs_are_none_is_refused(key, value, tmp_path):
-    from pneutouch.export.voxels.read import read_stack
+    from pneutouch.export.voxels.stack import read_stack
     from tests.fuzzing.seeds import seeds
 
     content = json.loads(seeds("stack")[0])

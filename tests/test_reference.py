@@ -21,7 +21,7 @@ from pneutouch.cli.commands import COMMANDS
 from pneutouch.schemas import document_kinds, schema_of
 from pneutouch.schemas.files import _MODELS
 from pneutouch.spec.fields import declarations, table_of
-from pneutouch.spec.quantity import Quantity
+from pneutouch.spec.values import Quantity
 from tests.schemas.test_files import tables
 
 NAMES = [name for entries in COMMANDS.values() for name in entries]

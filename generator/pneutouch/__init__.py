@@ -12,10 +12,17 @@ _HOMES = {
     "api.results": ("CheckResult", "Result"),
     "api.search": ("Selection", "select", "sweep"),
     "api.comparison": ("Comparison", "compare"),
-    "api.measuring": ("FittedSensor", "calibrate", "characterize", "plan", "scan", "simulate"),
-    "api.signals": ("respond",),
-    "api.materials": ("fit_material",),
-    "api.listing": ("Listing", "calibrations", "designs", "gauges", "materials", "printers"),
+    "api.measuring": (
+        "FittedSensor",
+        "calibrate",
+        "characterize",
+        "fit_material",
+        "plan",
+        "respond",
+        "scan",
+        "simulate",
+    ),
+    "api.show": ("Listing", "calibrations", "designs", "gauges", "materials", "printers"),
     "errors": ("ComputationError", "InputError", "PneutouchError", "RuleBrokenError"),
 }
 __all__ = [*sorted(name for names in _HOMES.values() for name in names), "__version__"]

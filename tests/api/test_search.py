@@ -6,7 +6,7 @@ import pytest
 import xarray
 
 import pneutouch as pt
-from pneutouch.api.unmet import unmet_lines
+from pneutouch.api.search import unmet_lines
 
 
 def test_a_selection_is_the_command_lines_and_its_designs_meet_the_target(printed):

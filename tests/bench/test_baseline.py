@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pneutouch.bench.contact import baseline
+from pneutouch.bench.first_contact import baseline
 
 
 def blocks(time, force, pressure):

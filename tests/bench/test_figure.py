@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.bench.figure import BY_KEY, FIGURES, FIRST, _relaxation, run_figures
+from pneutouch.bench.figures import BY_KEY, FIGURES, FIRST, _relaxation, run_figures
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.spec.campaign import CampaignRun
 from pneutouch.units import KPA

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.bench.interval import mean_of, spread_between, spread_within
+from pneutouch.bench.statistics import mean_of, spread_between, spread_within
 
 TRIALS = 1500
 

@@ -11,10 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.outliers import outliers
-from pneutouch.bench.plausible import ExpectedRun, check_leak, check_plausible
 from pneutouch.bench.reading import LEAK, PLATE, read_blocks
 from pneutouch.bench.record import MeasuredCurve
+from pneutouch.bench.run_checks import ExpectedRun, check_leak, check_plausible, outliers
 from pneutouch.bench.source import identify
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap, Rig

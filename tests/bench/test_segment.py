@@ -11,8 +11,8 @@ import pytest
 
 from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.curve import LOADING_POINTS, curve_of
+from pneutouch.bench.first_contact import excursions, position_noise
 from pneutouch.bench.protocol import HOLD, protocol
-from pneutouch.bench.segment import excursions, position_noise
 from pneutouch.errors import InputError
 from pneutouch.mechanics.response import figures
 from pneutouch.spec.campaign import Rig

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.blocks import blocks_of
-from pneutouch.bench.curve import curve_of
+from pneutouch.bench.curve import MOST, curve_of
 from pneutouch.bench.reading import PLATE, read_blocks
 from pneutouch.bench.record import SuspectInterval
 from pneutouch.bench.source import identify
-from pneutouch.bench.suspect import MOST
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap, Rig
 from tests.bench.curves import FILE, curve, whys

@@ -22,9 +22,9 @@ from pneutouch.bench.simulate import (
     simulate_run,
     specimen_figures,
 )
-from pneutouch.bench.simulate.inject import line_pressure, sensor_pressure
-from pneutouch.bench.simulate.parameter import parameters
-from pneutouch.bench.simulate.run import _lagging, _shut_in, within
+from pneutouch.bench.simulate.curve import line_pressure, sensor_pressure
+from pneutouch.bench.simulate.runs import _lagging, _shut_in, within
+from pneutouch.bench.simulate.scatter import parameters
 from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.units import KPA
 from tests.bench.truths import NO_WALL, R0, ends, line, rng

@@ -22,7 +22,7 @@ from pneutouch.bench.simulate import (
 )
 from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.bench.simulate.scatter import ageing_factor, stiffened
-from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.units import KPA
 from tests.bench.truths import NO_WALL, R0, ends, rng

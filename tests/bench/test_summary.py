@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from pneutouch.bench.figures import FRESH, summarize
 from pneutouch.bench.record import MeasuredCurve
-from pneutouch.bench.summary import FRESH, summarize
 from pneutouch.spec.campaign import CampaignRun
 from pneutouch.units import KPA
 

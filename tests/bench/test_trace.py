@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.blocks import blocks_of
-from pneutouch.bench.record import MeasuredCurve, SuspectInterval
-from pneutouch.bench.trace import MOST, trace
-from pneutouch.report.evidence import evidence_svg
+from pneutouch.bench.record import MOST, MeasuredCurve, SuspectInterval, trace
+from pneutouch.report.fit_charts import evidence_svg
 from pneutouch.units import KPA
 from tests.bench.rig import run_of
 

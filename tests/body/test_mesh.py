@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.body import Bore, Solid
-from pneutouch.body.revolve import circle_count, revolve, widen
-from pneutouch.meridian import Arc, Line, Meridian
+from pneutouch.body.shapes import circle_count, revolve, widen
+from pneutouch.shape.meridian import Arc, Line, Meridian
 from pneutouch.spec.material import Material
 
 TOLERANCES = (0.1, 0.05, 0.016, 0.005)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pneutouch.body import Bore
-from pneutouch.body.outline import _cut, mesh_outline, section_outline
+from pneutouch.body.section import _cut, mesh_outline, section_outline
 from pneutouch.catalogue import load_scene
 from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes

@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 
 from pneutouch.body.section import SolidSection, Window
 from pneutouch.catalogue import load_scene
-from pneutouch.meridian import Arc, Line
-from pneutouch.meridian.crossings import crossings, encloses, rises
 from pneutouch.parts import assemble
+from pneutouch.shape.meridian import Arc, Line, crossings, encloses, rises
 from pneutouch.spec.read import parse_changes
 
 CASES = {

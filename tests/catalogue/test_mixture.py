@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import PchipInterpolator
 
-from pneutouch.catalogue.along import ArcProfile
-from pneutouch.catalogue.mixture import mixed_material, mixing
+from pneutouch.catalogue.mixture import ArcProfile, mixed_material, mixing
 from pneutouch.errors import InputError
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.paper_sensor import material_sensor

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from pneutouch.catalogue import Library, user_folder
-from pneutouch.catalogue.places import shipped_root
+from pneutouch.catalogue.library import shipped_root
 from tests.conftest import ROOT
 
 
@@ -18,7 +18,7 @@ def checkout(tmp_path):
     """A folder that looks like a checkout of the program, with its shipped designs."""
     place = tmp_path / "checkout"
     (place / "generator/pneutouch/catalogue").mkdir(parents=True)
-    shutil.copy(ROOT / "generator/pneutouch/catalogue/places.py", place / "generator/pneutouch/catalogue")
+    shutil.copy(ROOT / "generator/pneutouch/catalogue/library.py", place / "generator/pneutouch/catalogue")
     shutil.copytree(ROOT / "designs", place / "designs")
     return place
 

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from pneutouch.cli import calibrate, simulate
 from pneutouch.cli.app import app
-from pneutouch.cli.calibrate_text import calibration_text
+from pneutouch.cli.calibrate import calibration_text
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.calibrate.fit import observations_of
@@ -144,7 +144,7 @@ def unfitted(monkeypatch):
     def fail(*given, **more):
         raise AssertionError("the fit began")
 
-    monkeypatch.setattr("pneutouch.workflows.calibrate.run.calibrate", fail)
+    monkeypatch.setattr("pneutouch.workflows.calibrate.calibrate.calibrate", fail)
 
 
 def test_a_second_campaign_of_the_sensor_is_refused_before_the_fit(campaign, place, unfitted):
@@ -179,7 +179,7 @@ def soft(monkeypatch):
         curves = tuple(replace(curve, run=run) for run, curve in made)
         return sensor, replace(seen, curves=curves, injections=()), notes
 
-    monkeypatch.setattr("pneutouch.workflows.calibrate.run.observations_of", exchanged)
+    monkeypatch.setattr("pneutouch.workflows.calibrate.calibrate.observations_of", exchanged)
 
 
 def test_a_fit_that_is_no_calibration_is_reported(campaign, place, soft):
@@ -212,7 +212,7 @@ def stretched(monkeypatch):
             )
             return sensor, replace(seen, curves=tuple(curves)), notes
 
-        monkeypatch.setattr("pneutouch.workflows.calibrate.run.observations_of", exchanged)
+        monkeypatch.setattr("pneutouch.workflows.calibrate.calibrate.observations_of", exchanged)
 
     return stretch
 

@@ -14,7 +14,7 @@ from pneutouch.cli.characterize import _report_next
 from pneutouch.cli.entry import app
 from pneutouch.errors import InputError
 from pneutouch.mechanics.models import USUAL
-from pneutouch.workflows.characterize import run as characterizing
+from pneutouch.workflows.characterize import campaign as characterizing
 
 SET = ["contact.tilt_deg=10"]
 

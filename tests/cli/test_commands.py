@@ -180,7 +180,7 @@ def test_an_output_that_is_a_file_is_refused_before_any_work(command, tmp_path, 
     def work(*_, **__):
         raise AssertionError("the rules are checked")
 
-    monkeypatch.setattr("pneutouch.workflows.build.run.refuse", work)
+    monkeypatch.setattr("pneutouch.workflows.build.refuse", work)
     (tmp_path / "file").write_text("x")
     result = command("build", "paper-dome", "--out", str(tmp_path / "file"))
     assert result.returncode == 2
@@ -196,7 +196,7 @@ def modules_after(*words):
 
 
 def rooms(modules):
-    """Second parts of the names of our own modules: pneutouch.mechanics.gas is of mechanics."""
+    """Second parts of the names of our own modules: pneutouch.mechanics.membrane_contact is of mechanics."""
     return {name.split(".")[1] for name in modules if name.startswith("pneutouch.")}
 
 

@@ -7,7 +7,7 @@ import json
 import pytest
 
 import pneutouch as pt
-from pneutouch.cli.driving_text import schedule_text
+from pneutouch.cli.driving import schedule_text
 
 ZERO = ("--model", "atlas")
 

@@ -150,7 +150,7 @@ def test_a_damaged_journal_is_left_aside(tmp_path, command):
 
 
 def test_shipped_files_obey_the_rule_of_names():
-    from pneutouch.spec.names import name_of
+    from pneutouch.spec.values import name_of
 
     for path in (*ROOT.glob("designs/**/*.toml"), *ROOT.glob("docs/examples/*.toml")):
         assert name_of(path) == path.stem

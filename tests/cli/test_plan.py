@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from pneutouch.cli import plan, simulate
 from pneutouch.cli.app import app
-from pneutouch.cli.plan_text import plan_text
+from pneutouch.cli.plan import plan_text
 from pneutouch.formats import format_of
 
 assert plan and simulate

@@ -21,9 +21,9 @@ from pneutouch.spec.campaign import Campaign, ColumnMap
 from pneutouch.spec.read import validate
 from pneutouch.tables.unit_words import UNITS
 from pneutouch.workflows.characterize import parse_columns
-from pneutouch.workflows.characterize.reading import with_reading
-from pneutouch.workflows.simulate.options import SimulationOptions
-from pneutouch.workflows.simulate.run import simulate
+from pneutouch.workflows.characterize.load import with_reading
+from pneutouch.workflows.simulate import simulate
+from pneutouch.workflows.simulate_inputs import SimulationOptions
 from tests.conftest import ROOT
 from tests.tables.instruments import INSTRUMENTS, logger, zwick
 

@@ -13,8 +13,8 @@ from pneutouch.cli import scan as command
 from pneutouch.cli.app import app
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.units import KPA
-from pneutouch.workflows.scan.run import ScanOptions
-from pneutouch.workflows.scan.separate import separating
+from pneutouch.workflows.scan import ScanOptions
+from pneutouch.workflows.scan_separate import separating
 from tests.schemas.held import hold, hold_folder
 
 ASKED = ["scan", "texture-specimen", "--design", "paper-dome"]

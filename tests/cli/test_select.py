@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from pneutouch.cli.app import app
 from pneutouch.spec.target import Target, TargetFigures
 from pneutouch.workflows.select.base import base_scene
-from pneutouch.workflows.select.words import mount_note
+from pneutouch.workflows.select.document import mount_note
 
 ASKED = ["select", "--sensitivity", "1.9", "--at", "12", "--force-range", "15", "--max-diameter", "25"]
 

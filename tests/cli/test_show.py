@@ -87,9 +87,7 @@ def test_build_from_a_3mf_gives_the_same_bytes_in_a_folder_whose_library_changed
 
 def test_another_version_is_said_on_stderr(command, built_file, tmp_path, monkeypatch):
     """What a rebuild writes is tested elsewhere: here nothing is written."""
-    monkeypatch.setattr(
-        "pneutouch.workflows.build.run.build", lambda evaluation, out, report: out / evaluation.scene.name
-    )
+    monkeypatch.setattr("pneutouch.workflows.build.build", lambda evaluation, out, report: out / evaluation.scene.name)
     with_recipe(tmp_path / "sensor.3mf", tmp_path / "old.3mf", lambda recipe: recipe.update(version="0.0.7"))
     result = command("build", "old.3mf", "--json")
     assert result.returncode == 0, result.stderr

@@ -184,7 +184,7 @@ def test_every_command_is_stopped():
 
 
 def test_a_stop_is_held_back_while_files_move(tmp_path):
-    from pneutouch.holding import temporary_folder, uninterrupted
+    from pneutouch.stopping import temporary_folder, uninterrupted
 
     done = []
     with pytest.raises(KeyboardInterrupt), temporary_folder(within=tmp_path) as folder:

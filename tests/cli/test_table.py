@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pneutouch.cli.table import table_text
+from pneutouch.cli.terminal import table_text
 
 
 def test_tables_keep_to_the_width_and_lose_no_word():

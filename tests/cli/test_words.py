@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pneutouch.cli.select_fields import SELECT_FIELDS
+from pneutouch.cli.select import SELECT_FIELDS
 from pneutouch.errors import InputError
 
 

@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from pneutouch.catalogue import load_scene
+from pneutouch.catalogue.library import elastomers
 from pneutouch.catalogue.listing import listing
 from pneutouch.errors import InputError
-from pneutouch.evaluation.elastomers import elastomers
 from pneutouch.evaluation.evaluate import evaluate
-from pneutouch.output.recipe import BuildRecipe, evaluate_recipe
-from pneutouch.output.recipe_read import read_recipe
+from pneutouch.output.recipe import BuildRecipe, evaluate_recipe, read_recipe
 from pneutouch.spec.design import CALIBRATION
 from tests.evaluation.calibrated import AT, CONTENT, DEAD, changed, held, library_of, predicted
 
@@ -92,7 +91,7 @@ def test_a_damaged_file_is_refused(content, why, library, tmp_path):
 
 def test_a_recipe_carries_it_and_is_the_same_again(place, tmp_path):
     from pneutouch.export.threemf_read import Package
-    from pneutouch.output.manifest import input_hash
+    from pneutouch.output.files import input_hash
 
     recipe = BuildRecipe.of(predicted(place))
     assert recipe.inputs()["calibration"]["source"]["digest"] == "ab" * 32
@@ -138,7 +137,7 @@ def test_a_campaign_names_it_and_a_build_of_it_has_a_name_of_its_own(place, tmp_
 
 
 def test_the_recipe_of_a_calibrated_build_is_shown(place):
-    from pneutouch.cli.show_text import _recipe
+    from pneutouch.cli.show import _recipe
 
     inputs = {"design": {"calibration": "mine", "membrane": {"material": "TangoPlus", "wall_thickness_mm": None}}}
     inputs |= {"model": None, "closure": None, "clamp": None, "tolerance": None, "compared_resins": []}
@@ -149,7 +148,7 @@ def test_the_recipe_of_a_calibrated_build_is_shown(place):
 
 @pytest.mark.parametrize("simulated", [False, True])
 def test_text_and_sheet_state_the_specimen_and_that_data_are_simulated(simulated, library, tmp_path):
-    from pneutouch.cli.text import prediction_text
+    from pneutouch.cli.prediction_text import prediction_text
     from pneutouch.evaluation.document import full_document
     from pneutouch.evaluation.sheet import sheet_data
     from pneutouch.report.sheet import content_of

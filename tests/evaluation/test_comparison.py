@@ -9,8 +9,16 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import InputError
-from pneutouch.evaluation.comparison import ComparedFigure, ComparedSensor, ComparedState, comparison_document, labelled
-from pneutouch.evaluation.correlation import SourceEffect, effects_of, variance_of_ratio
+from pneutouch.evaluation.comparison import (
+    ComparedFigure,
+    ComparedSensor,
+    ComparedState,
+    SourceEffect,
+    comparison_document,
+    effects_of,
+    labelled,
+    variance_of_ratio,
+)
 from pneutouch.evaluation.uncertainty import known
 from pneutouch.mechanics.uncertainty.neighbours import log_figures, moved
 from pneutouch.mechanics.uncertainty.source import DEAD, FIGURE, FIGURES, INPUTS

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 from pneutouch.evaluation import evaluate
-from pneutouch.evaluation.tuning import curve, under_contact
+from pneutouch.evaluation.charts import curve, under_contact
 from pneutouch.evaluation.uncertainty import documents, known
 from pneutouch.mechanics.contact_correction import plate_alone
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indenter import ball, cone
 from pneutouch.mechanics.solid_states import solid_states
-from pneutouch.mechanics.uncertainty import FIGURES, INPUTS, ContactModel, batch_of, contact_presses
-from pneutouch.mechanics.uncertainty.contact import SPREAD
+from pneutouch.mechanics.uncertainty import FIGURES, INPUTS, ContactModel, batch_of, contact_model
+from pneutouch.mechanics.uncertainty.contact_model import SPREAD
 from pneutouch.mechanics.uncertainty.neighbours import log_figures
 from pneutouch.mechanics.uncertainty.source import CONTACT_FIGURES, DEAD, SENSITIVITY
 from pneutouch.spec.material import Material
@@ -105,9 +105,9 @@ def test_the_ends_are_solved_and_the_highest_left_out_where_it_is_not_reached(mo
         asked.append(tuple(round(p / KPA) for p in pressures))
         return np.full((len(FIGURES), len(pressures)), 0.0 if max(pressures) <= top_kPa * KPA else np.nan)
 
-    monkeypatch.setattr(contact_presses, "pressed_logs", logs_of)
+    monkeypatch.setattr(contact_model, "pressed_logs", logs_of)
     sensor = evaluated("paper-dome", model="atlas").sensor
-    contact_presses.solved_at(sensor, [p * KPA for p in (0, 10, 20, 30)], [], least=2)
+    contact_model.solved_at(sensor, [p * KPA for p in (0, 10, 20, 30)], [], least=2)
     assert asked == tried
 
 

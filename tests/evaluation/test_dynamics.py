@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pneutouch.cli.dynamics_text import dynamics_lines
+from pneutouch.cli.prediction_text import dynamics_lines
 from pneutouch.evaluation.dynamics import GAUGE_RATE, dynamics_document, free_compliance, line_of
 from pneutouch.evaluation.evaluate import evaluate
 

@@ -7,7 +7,7 @@ import pytest
 from pneutouch.evaluation.document import curves_document
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.sheet import sheet_data
-from pneutouch.report.mixing_curves import curves_section
+from pneutouch.report.conditions import curves_section
 from pneutouch.spec.read import parse_changes
 
 SHALLOW = ["indentation.depth_mm=3", "indentation.steps=6", "pneumatics.driving_pressures_kPa=[0, 12]"]

@@ -5,17 +5,17 @@ import pytest
 
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.scene import load_scene
-from pneutouch.cli.text import _sheared
+from pneutouch.cli.prediction_text import _sheared
 from pneutouch.errors import InputError
+from pneutouch.evaluation.calibrated import check_fitted
 from pneutouch.evaluation.contact_object import object_section
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
-from pneutouch.evaluation.fitted import check_fitted
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.harmonic.press import OffAxisPress
 from pneutouch.mechanics.models import USUAL, models_for
 from pneutouch.parts import assemble
-from pneutouch.report.off_axis import SHEAR as SHEAR_HEAD
-from pneutouch.report.off_axis import shear_rows
+from pneutouch.report.conditions import SHEAR as SHEAR_HEAD
+from pneutouch.report.conditions import shear_rows
 from pneutouch.workflows.select.base import check_central
 
 BALL = {"contact.object": "ball", "contact.ball_radius_mm": 8.0, "contact.offset_mm": 2.0}

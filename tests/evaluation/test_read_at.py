@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.bench.figure import line_figures
-from pneutouch.evaluation.read_at import figures_at
+from pneutouch.bench.figures import line_figures
+from pneutouch.evaluation.comparison import figures_at
 from pneutouch.mechanics.response import figures
 
 TRAVEL = np.linspace(0.0, 7.0, 29)

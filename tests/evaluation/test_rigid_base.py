@@ -5,7 +5,7 @@ import pytest
 
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
-from pneutouch.mechanics.solid.rigid_base import RigidBase
+from pneutouch.mechanics.solid.indenter import RigidBase
 
 OFF = {"contact.base": False}
 

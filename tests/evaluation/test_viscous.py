@@ -12,15 +12,15 @@ import pypdfium2
 import pytest
 
 from pneutouch.catalogue import Library
-from pneutouch.cli.text import prediction_text
+from pneutouch.cli.prediction_text import prediction_text
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.document import full_document, viscous
 from pneutouch.evaluation.relaxation import ageing_data, viscous_data, viscous_runs
 from pneutouch.evaluation.sheet import sheet_data
-from pneutouch.mechanics.viscous.known import ageing_ratio
+from pneutouch.mechanics.viscous.prony import ageing_ratio
 from pneutouch.output.files import json_bytes
-from pneutouch.report import relaxation
+from pneutouch.report import curves
 from tests.conftest import ROOT
 from tests.mechanics.viscous.tables import PAPER_RESINS, agilus_table, friction_table, resin, wall_table
 
@@ -129,7 +129,7 @@ def test_the_flag_reaches_the_prediction(command):
 
 def test_the_sheets_section_has_the_figures_of_the_prediction(agilus):
     data = viscous_data(agilus.viscous_runs)
-    section = relaxation.section(data, "Ageing: not known.")
+    section = curves.section(data, "Ageing: not known.")
     rows = iter(section["rows"])
     for state in viscous(agilus)["states"]:
         for one in state["by_source"]:
@@ -144,26 +144,26 @@ def test_the_sheets_section_has_the_figures_of_the_prediction(agilus):
     assert any("dogbone" in note for note in section["notes"]) and any(
         "1904.11888" in note for note in section["notes"]
     )
-    assert relaxation.held_chart(data, (86.0, 62.0)) == relaxation.held_chart(data, (86.0, 62.0))
-    assert relaxation.loop_chart(data, (86.0, 62.0)).count("<path") > 4
+    assert curves.held_chart(data, (86.0, 62.0)) == curves.held_chart(data, (86.0, 62.0))
+    assert curves.loop_chart(data, (86.0, 62.0)).count("<path") > 4
 
 
 def test_a_run_that_stops_is_told_in_the_section_and_not_drawn(agilus):
     sensor = agilus.sensor.replace(gauge_limit=0.03)
     data = viscous_data(viscous_runs(agilus.prediction, agilus.scene.membrane_material, sensor))
-    section = relaxation.section(data, "")
+    section = curves.section(data, "")
     assert any("gauge range" in note for note in section["notes"])
     assert any("–" in row for row in section["rows"])
-    assert "<svg" in relaxation.held_chart(data, (86.0, 62.0)) and "<svg" in relaxation.loop_chart(data, (86.0, 62.0))
+    assert "<svg" in curves.held_chart(data, (86.0, 62.0)) and "<svg" in curves.loop_chart(data, (86.0, 62.0))
 
 
 def test_the_line_on_ageing(library):
     tango = evaluate("paper-dome", model="atlas", library=library)
     sheet = sheet_data(tango, "")
-    line = relaxation.ageing_line(sheet)
+    line = curves.ageing_line(sheet)
     assert "27.6 to 29.5" in line and "+8.3%" in line and "14.76 %, sign not given" in line
     unknown = ageing_data(tango.prediction, resin(library, "Agilus30"), tango.sensor)
-    assert relaxation.ageing_line(replace(sheet, ageing=unknown)).endswith("is not known.")
+    assert curves.ageing_line(replace(sheet, ageing=unknown)).endswith("is not known.")
 
 
 @pytest.mark.parametrize("table", [agilus_table, wall_table, pytest.param(friction_table, marks=pytest.mark.slow)])

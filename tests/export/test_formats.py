@@ -12,9 +12,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from pneutouch.export.brep import exact_solid
-from pneutouch.export.step import step
-from pneutouch.export.step_text import canonical
+from pneutouch.export.step import canonical, exact_solid, step
 from pneutouch.export.threemf import threemf
 
 lib3mf = pytest.importorskip("lib3mf")

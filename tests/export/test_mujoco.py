@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
-from pneutouch.workflows.simulator import make_simulator, write_simulator
-from pneutouch.workflows.simulator.run import press_tables
+from pneutouch.workflows.export_reader import make_simulator, press_tables, write_simulator
 
 mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed; the development lock has it")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.workflows.simulator import make_simulator, write_simulator
+from pneutouch.workflows.export_reader import make_simulator, write_simulator
 
 mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed; the development lock has it")
 

@@ -12,9 +12,8 @@ import pytest
 import trimesh
 
 from pneutouch.errors import InputError
-from pneutouch.export.simulator.inertia import ball_inertia, inertia_of
-from pneutouch.export.simulator.model import moving_share
-from pneutouch.workflows.simulator import make_simulator, write_simulator
+from pneutouch.export.simulator.model import ball_inertia, inertia_of, moving_share
+from pneutouch.workflows.export_reader import make_simulator, write_simulator
 
 
 @pytest.fixture(scope="module")

@@ -8,9 +8,9 @@ import json
 import numpy as np
 import pytest
 
-from pneutouch.export import view
-from pneutouch.export.view import ShadedBody, shaded, view_data
-from pneutouch.report.shown import GRADE_COLOURS, shown
+from pneutouch.export import scene
+from pneutouch.export.scene import ShadedBody, shaded, view_data
+from pneutouch.report.pictures import GRADE_COLOURS, shown
 
 
 def unpacked(part, reach, middle):
@@ -39,7 +39,7 @@ def test_the_view_holds_the_bodies(evaluated):
 def test_a_body_of_many_triangles_is_split(monkeypatch, evaluated):
     (membrane, _) = shown(evaluated("paper-dome", model="atlas").assembly, 100)
     whole = json.loads(view_data([membrane]))
-    monkeypatch.setattr(view, "_MOST", 100)
+    monkeypatch.setattr(scene, "_MOST", 100)
     parts = json.loads(view_data([membrane]))["bodies"]
     assert len(parts) == -(-len(membrane.corners) // 100)
     count = sum(len(base64.b64decode(part["triangles"])) for part in parts)

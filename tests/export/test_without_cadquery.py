@@ -9,7 +9,7 @@ from importlib.metadata import PackageNotFoundError
 import pytest
 
 from pneutouch.export.step import step_obstacle
-from pneutouch.output import manifest
+from pneutouch.output import files
 
 WHY = 'CadQuery is not installed; pip install "pneutouch[cad]" adds it'
 
@@ -17,14 +17,14 @@ WHY = 'CadQuery is not installed; pip install "pneutouch[cad]" adds it'
 @pytest.fixture
 def no_cadquery(monkeypatch):
     """The state of an installation without the extra."""
-    installed = manifest.importlib.metadata.version
+    installed = files.importlib.metadata.version
 
     def version(name):
         if name in ("cadquery", "cadquery-ocp"):
             raise PackageNotFoundError(name)
         return installed(name)
 
-    monkeypatch.setattr(manifest.importlib.metadata, "version", version)
+    monkeypatch.setattr(files.importlib.metadata, "version", version)
     for name in [name for name in sys.modules if name.partition(".")[0] in ("cadquery", "OCP")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "cadquery", None)

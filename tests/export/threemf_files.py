@@ -12,7 +12,7 @@ from urllib.parse import quote, unquote
 
 import lib3mf
 
-from pneutouch.output.manifest import input_hash
+from pneutouch.output.files import input_hash
 
 MODEL = "3D/3dmodel.model"
 

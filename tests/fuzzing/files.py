@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 from pneutouch.catalogue import DesignSource, Library, load_scene
-from pneutouch.catalogue.cached_library import CachedLibrary
+from pneutouch.catalogue.library import CachedLibrary
 from pneutouch.spec.read import read_toml, validate
 from tests.fuzzing.place import ROOT
 
@@ -32,7 +32,7 @@ def read_design(path: Path) -> object:
 
 
 def read_specimen(path: Path) -> object:
-    from pneutouch.workflows.specimen.load import load_specimen
+    from pneutouch.workflows.specimen.draw import load_specimen
 
     return load_specimen(str(path), {}, library())
 
@@ -44,7 +44,7 @@ def read_target(path: Path) -> object:
 
 
 def read_sweep(path: Path) -> object:
-    from pneutouch.workflows.sweep.read import plan_of_file
+    from pneutouch.workflows.sweep.plan import plan_of_file
 
     return plan_of_file(path)
 
@@ -62,7 +62,7 @@ def read_tasks(path: Path) -> object:
 
 
 def read_campaign(path: Path) -> object:
-    from pneutouch.spec.campaign_file import campaign_of, design_of
+    from pneutouch.spec.campaign import campaign_of, design_of
 
     campaign, folder = campaign_of(path)
     return design_of(campaign, folder)
@@ -84,7 +84,7 @@ def read_run(path: Path) -> object:
 
 def read_threemf(path: Path) -> object:
     from pneutouch.export.threemf_read import read_threemf
-    from pneutouch.output.recipe_read import read_recipe
+    from pneutouch.output.recipe import read_recipe
 
     return read_recipe(read_threemf(path))
 
@@ -92,8 +92,8 @@ def read_threemf(path: Path) -> object:
 def read_recipe(path: Path) -> object:
     """A recipe as the text that a 3MF holds, with the hash that belongs to it where it has one."""
     from pneutouch.export.threemf_read import Package
-    from pneutouch.output.manifest import input_hash
-    from pneutouch.output.recipe_read import read_recipe
+    from pneutouch.output.files import input_hash
+    from pneutouch.output.recipe import read_recipe
 
     text = path.read_bytes().decode("utf-8", "replace")
     try:
@@ -126,13 +126,13 @@ def read_slice(path: Path) -> object:
 
 
 def read_stack(path: Path) -> object:
-    from pneutouch.export.voxels.read import read_stack
+    from pneutouch.export.voxels.stack import read_stack
 
     return read_stack(path.parent)
 
 
 def read_leak(path: Path) -> object:
-    from pneutouch.workflows.driving.leak import _of_campaign
+    from pneutouch.workflows.driving.pressures import _of_campaign
 
     return _of_campaign(path, "paper-dome")
 
@@ -141,7 +141,7 @@ def read_prediction(path: Path) -> object:
     """The prediction of an output folder, by one who makes its manifest agree with it."""
     from pneutouch.formats import format_of
     from pneutouch.output.files import MANIFEST, digest
-    from pneutouch.workflows.compare.predicted import of_build
+    from pneutouch.workflows.compare import of_build
     from tests.fuzzing.seeds import recipe
 
     inputs, version, stated = recipe()
@@ -161,7 +161,7 @@ def read_figures(path: Path) -> object:
     """The figures of a folder of results, likewise."""
     from pneutouch.formats import format_of
     from pneutouch.output.files import MANIFEST, digest
-    from pneutouch.workflows.compare.measured import measured_columns
+    from pneutouch.workflows.compare_measured import measured_columns
     from tests.fuzzing.seeds import POINTS
 
     (path.parent / "points.csv").write_bytes(POINTS)

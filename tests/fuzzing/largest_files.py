@@ -158,7 +158,9 @@ def journal(path: Path) -> None:
 
 
 def exported(path: Path) -> None:
-    _values(path, b'{"format": "pneutouch/exported-design/1", "version": "1.0", "base": "paper-dome", "values": {"a": ""')
+    _values(
+        path, b'{"format": "pneutouch/exported-design/1", "version": "1.0", "base": "paper-dome", "values": {"a": ""'
+    )
 
 
 def question(path: Path) -> None:

@@ -13,7 +13,7 @@ from tests.fuzzing.files import library
 
 
 def read_exported(path: Path) -> object:
-    from pneutouch.studio.opening import open_file
+    from pneutouch.studio.opened_design import open_file
 
     files = [{"name": path.name, "path": str(path)}]
     return open_file({"files": files, "bases": _bases()}, path.parent, lambda done, total, what: None)
@@ -42,7 +42,7 @@ def _answers() -> Any:
 
 def read_search(path: Path) -> object:
     from pneutouch.studio.question import Question
-    from pneutouch.studio.target import target_of
+    from pneutouch.studio.search import target_of
 
     return target_of(Question.of(_body(path)), _bases())
 
@@ -50,7 +50,7 @@ def read_search(path: Path) -> object:
 def _body(path: Path) -> Any:
     from starlette.requests import Request
 
-    from pneutouch.studio.body import json_body
+    from pneutouch.studio.question import json_body
 
     async def receive() -> dict[str, Any]:
         return {"type": "http.request", "body": path.read_bytes(), "more_body": False}
@@ -74,7 +74,7 @@ def read_measured(path: Path) -> object:
     measuring._numbers(content, "hold_out_kPa")
     runs = content.get("runs")
     if isinstance(runs, list) and all(isinstance(run, dict) for run in runs):
-        from pneutouch.studio.campaign import write_runs
+        from pneutouch.studio.measured import write_runs
 
         write_runs(path.parent, runs)
     return content

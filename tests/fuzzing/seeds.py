@@ -198,7 +198,7 @@ def _evaluated() -> Evaluation:
 @cache
 def recipe() -> tuple[dict[str, Any], str, str]:
     """Inputs of the recipe of the paper's sensor, its version and its hash."""
-    from pneutouch.output.manifest import input_hash
+    from pneutouch.output.files import input_hash
     from pneutouch.output.recipe import BuildRecipe
 
     known = BuildRecipe.of(_evaluated())
@@ -220,7 +220,7 @@ def _prediction() -> bytes:
 def _threemf() -> bytes:
     from urllib.parse import quote
 
-    from pneutouch.export.threemf_metadata import NAMESPACE
+    from pneutouch.export.threemf import NAMESPACE
 
     model = MODEL.format(space=NAMESPACE, recipe=quote(_recipe()), hash=recipe()[2])
     named = {"[Content_Types].xml": TYPES, "_rels/.rels": RELATIONS, "3D/3dmodel.model": model}

@@ -10,11 +10,11 @@ from scipy.interpolate import CubicSpline
 
 from pneutouch.errors import BeyondLimitError
 from pneutouch.mechanics import predict
-from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas_states import atlas_result, meets_ring, outside_atlas
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
-from pneutouch.mechanics.solid.rigid_base import RigidBase
+from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid_states import solid_result
 
 SENSOR = Sensor(

@@ -11,11 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.mechanics import predict as predict_with
-from pneutouch.mechanics.cap import pressed_cap
-from pneutouch.mechanics.contact import press
-from pneutouch.mechanics.gas import TrappedGas
 from pneutouch.mechanics.inflation import relative_height
-from pneutouch.mechanics.membrane_energy import energy
+from pneutouch.mechanics.membrane_contact import TrappedGas, energy, press, pressed_cap
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 
 predict = partial(predict_with, model="membrane")

@@ -9,17 +9,19 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from pneutouch.errors import ComputationError
-from pneutouch.mechanics.exact_membrane import RISING_BRANCH, height_errors, limit_point_errors
 from pneutouch.mechanics.inflation import (
     LIMIT_HEIGHT,
     LIMIT_PRESSURE,
+    RISING_BRANCH,
+    height_errors,
+    limit_point_errors,
     pressure,
     relative_height,
     relative_pressure,
     thickness_stretch,
 )
-from pneutouch.mechanics.membrane_energy import energy as wall_energy
-from pneutouch.mechanics.membrane_energy import energy_slope
+from pneutouch.mechanics.membrane_contact import energy as wall_energy
+from pneutouch.mechanics.membrane_contact import energy_slope
 from tests.mechanics.exact_membrane import inflated, limit_point
 
 MODULI = {

@@ -32,8 +32,8 @@ from release.tables.mixing_laws import (
 
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.mixture import mixing
-from pneutouch.mechanics.uncertainty.hardness import young_modulus
-from pneutouch.workflows.coupons.blends import FRACTIONS
+from pneutouch.mechanics.paper_sensor import young_modulus
+from pneutouch.workflows.coupons.order import FRACTIONS
 from tests.conftest import ROOT
 
 LIBRARY = Library((ROOT,))

@@ -10,7 +10,7 @@ from pneutouch.mechanics.limits import Limits
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import Rating, rated_pressure, rating
 from pneutouch.mechanics.uncertainty import ModelErrors, batch_of, budget
-from pneutouch.mechanics.uncertainty.limit import LIMIT
+from pneutouch.mechanics.uncertainty.propagate import LIMIT
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.units import KPA
 from tests.mechanics.uncertainty.designs import NUMERICAL, materials

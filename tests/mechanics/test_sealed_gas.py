@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.predict import predict
 from pneutouch.mechanics.sealed_gas import SealedGas, conductance_of_cap
-from pneutouch.mechanics.uncertainty.gas_notes import gas_notes
+from pneutouch.mechanics.uncertainty.document import gas_notes
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 

@@ -11,9 +11,9 @@ import pytest
 from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.evaluation.table_s1 import SHIPPED, compute_errors, fingerprint, sensitivity_error
 from pneutouch.mechanics import predict
-from pneutouch.mechanics.solid.rigid_base import RigidBase
+from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.spec.material import Material
-from pneutouch.spec.quantity import Quantity
+from pneutouch.spec.values import Quantity
 from tests.mechanics.test_contact import PAPER
 
 

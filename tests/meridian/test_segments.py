@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.meridian import Arc, Line, Meridian, sample
-from pneutouch.meridian.sampling import chords
+from pneutouch.shape.meridian import Arc, Line, Meridian, chords, sample
 
 coordinate = st.floats(-20, 20)
 positive = st.floats(0.5, 20)

@@ -8,7 +8,7 @@ import tomllib
 import pytest
 
 from pneutouch.catalogue import Library
-from pneutouch.catalogue.examples import COMMANDS, examples
+from pneutouch.catalogue.library import COMMANDS, examples
 from tests.conftest import ROOT
 
 

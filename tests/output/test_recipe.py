@@ -11,19 +11,17 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from pneutouch.catalogue import KINDS, Library, ResolvedDesign, load_scene
+from pneutouch.catalogue.library import elastomers
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
-from pneutouch.evaluation.elastomers import elastomers
 from pneutouch.evaluation.evaluate import PredictionOptions
 from pneutouch.export.threemf import threemf
 from pneutouch.export.threemf_read import Package, read_threemf
-from pneutouch.output.manifest import input_hash as hash_of
-from pneutouch.output.recipe import BuildRecipe, evaluate_recipe, scene_kinds
-from pneutouch.output.recipe_read import read_recipe
+from pneutouch.output.files import input_hash as hash_of
+from pneutouch.output.recipe import BuildRecipe, evaluate_recipe, read_recipe, scene_kinds
 from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes
-from pneutouch.workflows.build import build
-from pneutouch.workflows.build.run import input_hash
+from pneutouch.workflows.build import build, input_hash
 from tests.conftest import ROOT
 from tests.export.threemf_files import recipe_in
 

@@ -6,7 +6,7 @@ import numpy as np
 from manifold3d import Manifold, Mesh64, OpType
 
 from pneutouch.body import Frame, Turned
-from pneutouch.parts.trace import trace
+from pneutouch.shape.meridian import trace
 
 _FINE = 0.003
 _HAIR = 1e-6

@@ -11,13 +11,13 @@ import pytest
 
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
-from pneutouch.export.brep import exact_solid
-from pneutouch.meridian import Arc
+from pneutouch.export.step import exact_solid
 from pneutouch.parts.coupons import COUPONS, CouponContext, dumbbell, gauge
 from pneutouch.parts.coupons.leak_cap import cap
 from pneutouch.parts.coupons.volume_plug import cavity_size, cavity_volume
 from pneutouch.parts.layout import lay_out
 from pneutouch.parts.membrane import membrane_meridian
+from pneutouch.shape.meridian import Arc
 from pneutouch.spec.read import parse_changes
 from tests.catalogue.store import CAST
 from tests.conftest import ROOT

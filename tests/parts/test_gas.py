@@ -98,7 +98,7 @@ def test_dead_volume_counts_connector_and_tube_and_the_tube_named(library):
 def test_exact_volumes_are_those_of_the_cad_kernel(port, seat, mount):
     import cadquery as cq
 
-    from pneutouch.export.brep import exact_solid
+    from pneutouch.export.step import exact_solid
 
     made = assembly(port, seat, mount)
     # Open CASCADE approximates the curves where round bores meet round walls.

@@ -9,7 +9,7 @@ import pytest
 
 from pneutouch.catalogue import load_scene
 from pneutouch.parts import assemble
-from pneutouch.printability.check import RULES
+from pneutouch.printability.rulebook import RULES
 from tests.conftest import ROOT
 
 TEXT = (ROOT / "docs/howto/printing.md").read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ import pytest
 from pneutouch.printability import PrintSubject
 from pneutouch.printability.rules import casting
 from pneutouch.printability.view import PrintView, WettedSurface
-from pneutouch.spec.quantity import Quantity
+from pneutouch.spec.values import Quantity
 from tests.printability.gallery import material, printer
 from tests.printability.working import dome
 

@@ -12,7 +12,7 @@ from pneutouch.body import Body
 from pneutouch.catalogue import load_scene
 from pneutouch.errors import InputError
 from pneutouch.parts import assemble
-from pneutouch.printability.deep import inspect, least_angles
+from pneutouch.printability.inspection import inspect, least_angles
 from tests.printability.gallery import body_of, box, rod
 from tests.printability.test_rules import LIBRARY
 

@@ -7,8 +7,9 @@ from functools import cache
 import pytest
 
 from pneutouch.printability import Joint, PrintSubject, check
-from pneutouch.printability.check import RULES
-from pneutouch.printability.rules import cleaning, contact_faces, matte
+from pneutouch.printability.rulebook import RULES
+from pneutouch.printability.rules.cleaning import check_cleaning
+from pneutouch.printability.rules.faces import check_contact_faces, check_matte
 from pneutouch.printability.view import PrintView
 from tests.printability.gallery import BAD, GOOD, ball, box, item, one, rod, taper, two
 from tests.printability.working import WORKING
@@ -86,13 +87,17 @@ def joined(share):
 
 @pytest.mark.parametrize(
     ("rule", "make", "kept", "broken"),
-    [(cleaning, bend, 0.5, 1.5), (matte, roofed, 0.008, 0.012), (contact_faces, joined, 0.9995, 0.995)],
+    [
+        (check_cleaning, bend, 0.5, 1.5),
+        (check_matte, roofed, 0.008, 0.012),
+        (check_contact_faces, joined, 0.9995, 0.995),
+    ],
     ids=["hidden", "matte", "joint"],
 )
 def test_a_rule_by_itself_turns_at_its_limit(rule, make, kept, broken):
     """2 mm3 out of sight, 1 % of a sensing face, and 99.9 % of a joint."""
-    assert rule.check(PrintView(make(kept))) == []
-    assert len(rule.check(PrintView(make(broken)))) == 1
+    assert rule(PrintView(make(kept))) == []
+    assert len(rule(PrintView(make(broken)))) == 1
 
 
 def test_every_rule_has_an_exhibit():

@@ -13,8 +13,7 @@ from manifold3d import Manifold
 from pneutouch.parts.coupons import COUPONS, CouponContext
 from pneutouch.parts.coupons.gauge import HOLES, PINS, SLOTS, WALLS
 from pneutouch.printability import PrintItem
-from pneutouch.printability.measure.cavities import NARROW, balls, pockets, seen, supported, unseen
-from pneutouch.printability.measure.voxels import build_frame, fill
+from pneutouch.printability.measure.cavities import NARROW, balls, build_frame, fill, pockets, seen, supported, unseen
 from pneutouch.printability.view import NARROW as NARROW_HOLE
 from pneutouch.printability.view import PrintPart
 from tests.printability.gallery import ball, box, cup, item, material, meander, printer, prism, rod

@@ -8,8 +8,7 @@ import pytest
 
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.parts.mould import MouldAssembly, mould_of
-from pneutouch.printability.check import RULES
-from pneutouch.printability.mould import MOULD_RULES, check_mould, mould_subject
+from pneutouch.printability.rulebook import MOULD_RULES, RULES, check_mould, mould_subject
 from pneutouch.printability.subject import PrintSubject
 from pneutouch.printability.view import PrintView
 from pneutouch.spec.read import parse_changes
@@ -40,7 +39,7 @@ def test_of_edges_and_meshes_a_mould_has_errors_alone(rule, monkeypatch):
     made = mould()
     (holes,) = [finding for finding in check_mould(made) if finding.rule == "holes"][:1]
     fault, remark = (replace(holes, rule=rule, severity=severity) for severity in ("error", "warning"))
-    monkeypatch.setattr("pneutouch.printability.mould.check", lambda subject: [remark, fault, holes])
+    monkeypatch.setattr("pneutouch.printability.rulebook.check", lambda subject: [remark, fault, holes])
     listed = check_mould(made)
     assert listed[0] == fault and holes in listed and remark not in listed
 

@@ -6,8 +6,7 @@ import manifold3d
 import numpy as np
 import pytest
 
-from pneutouch.printability.measure.samples import sample
-from pneutouch.printability.measure.surface import SurfaceMesh
+from pneutouch.printability.measure.surface import SurfaceMesh, sample
 
 SIDES = (20.0, 12.0, 6.0)
 

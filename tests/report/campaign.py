@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
+from pneutouch.bench.figures import RunGroup, summarize
 from pneutouch.bench.record import MeasuredCurve, SuspectInterval
-from pneutouch.bench.summary import RunGroup, summarize
 from pneutouch.catalogue import Library, load_scene
+from pneutouch.evaluation.charts import in_resin
 from pneutouch.evaluation.evaluate import sensor_of
-from pneutouch.evaluation.variants import in_resin
 from pneutouch.mechanics.atlas_states import atlas_result
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.parts import assemble

@@ -14,17 +14,15 @@ from pneutouch.evaluation.charts import tradeoff, tuning
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.uncertainty import batch_of
-from pneutouch.report.certainty import SENSITIVITY, ends, shares
+from pneutouch.report.certainty import OTHERS, SENSITIVITY, ends, ranked, share_bars, shares
 from pneutouch.report.curves import sensitivities
-from pneutouch.report.shares import OTHERS, ranked, share_bars
-from pneutouch.report.tradeoff import tradeoff_chart
-from pneutouch.report.tuning import tuning_chart
+from pneutouch.report.tradeoff import tradeoff_chart, tuning_chart
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 from pneutouch.workflows.select.charts import tradeoff as selected_tradeoff
 from pneutouch.workflows.select.charts import tuning as selected_tuning
 from pneutouch.workflows.select.charts import write_charts
-from pneutouch.workflows.select.run import select
+from pneutouch.workflows.select.select import select
 
 SIZE = (86.0, 62.0)
 TARGET = {

@@ -162,7 +162,7 @@ def page(monkeypatch):
 
 @pytest.mark.slow
 def test_sheet_and_text_warn_of_the_sway(evaluated, page):
-    from pneutouch.cli.text import prediction_text
+    from pneutouch.cli.prediction_text import prediction_text
     from pneutouch.evaluation.document import full_document
 
     # A wall that passes through its base sways; one that lies down on it does not: docs/background/sway.md.

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from pneutouch.report.gauge import gauge_range
+from pneutouch.report.conditions import gauge_range
 from pneutouch.spec.gauge import Gauge
 
 _COLUMN = 12

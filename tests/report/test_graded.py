@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from pneutouch.evaluation.charts import in_resin
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.sheet import constant_membranes, sheet_data
-from pneutouch.evaluation.variants import in_resin
-from pneutouch.report.graded_sheet import CAPTIONS, graded_figures
+from pneutouch.report.graded import CAPTIONS, graded_figures
 from pneutouch.spec.read import parse_changes
 
 SHALLOW = ["indentation.depth_mm=3", "indentation.steps=6", "pneumatics.driving_pressures_kPa=[0, 12]"]

@@ -3,9 +3,9 @@
 import pytest
 
 from pneutouch.catalogue import load_scene
-from pneutouch.evaluation.pour import silicone_pour
+from pneutouch.evaluation.sheet import silicone_pour
 from pneutouch.parts import assemble
-from pneutouch.report.making import making, making_title
+from pneutouch.report.print_sheet import making, making_title
 
 
 def steps(name, changes=None):

@@ -10,16 +10,14 @@ import numpy as np
 import pypdfium2
 import pytest
 
-from pneutouch.bench.figure import FIGURES
+from pneutouch.bench.figures import FIGURES
 from pneutouch.bench.record import SuspectInterval
-from pneutouch.report.measured import Verdict, definition
-from pneutouch.report.measured.head import tiles, verdict
+from pneutouch.report.measured import Verdict, tables
+from pneutouch.report.measured.head import MINUS, between, difference, number, signed, tiles, verdict
 from pneutouch.report.measured.panels import panels_of
 from pneutouch.report.measured.plots import responses
 from pneutouch.report.measured.sheet import measured_datasheet
-from pneutouch.report.measured.slow import loops
-from pneutouch.report.measured.tables import MOST, failures, resin_table, specimens
-from pneutouch.report.measured.words import MINUS, between, difference, number, signed
+from pneutouch.report.measured.tables import MOST, failures, loops, resin_table, specimens
 
 from .campaign import INJECTIONS, RESINS, VERDICTS, measured_of
 
@@ -87,7 +85,7 @@ def test_every_figure_stands_on_the_sheet_with_its_meaning(said):
     for text in said:
         for figure in FIGURES:
             assert figure.name in text
-            assert definition.LINES[figure.key] in text
+            assert tables.LINES_OF[figure.key] in text
 
 
 def test_figures_are_those_of_the_groups_with_interval_and_difference(campaign, said):
@@ -249,7 +247,7 @@ def test_tiles_name_the_worst_group(campaign):
 def test_docs_define_every_figure_with_its_key(root):
     text = (root / "docs" / "howto" / "measuring.md").read_text(encoding="utf-8")
     section = text[text.index("## Definitions") :]
-    assert set(definition.LINES) == {figure.key for figure in FIGURES}
+    assert set(tables.LINES_OF) == {figure.key for figure in FIGURES}
     for figure in FIGURES:
         row = next(line for line in section.splitlines() if f"`{figure.key}`" in line)
         cells = re.split(r"(?<!\\)\|", row)[1:-1]

@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pneutouch.evaluation.chart_data import PressedView
-from pneutouch.report.pressed import caption, pressed_figure, pressed_files
+from pneutouch.evaluation.sheet_data import PressedView
+from pneutouch.report.pictures import caption, pressed_figure, pressed_files
 
 RADIUS = 10.0
 

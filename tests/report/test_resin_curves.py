@@ -10,21 +10,21 @@ from pneutouch.report import curves
 
 def test_a_resin_that_cannot_be_solved_does_not_stop_the_sheet(evaluated, library, monkeypatch):
     from pneutouch.errors import ComputationError
-    from pneutouch.evaluation import variants
+    from pneutouch.evaluation import charts
     from pneutouch.spec.material import Material
 
     def fail(*words, **options):
         raise ComputationError("no equilibrium")
 
-    monkeypatch.setattr(variants, "predict", fail)
+    monkeypatch.setattr(charts, "predict", fail)
     materials = library.all("materials", Material)
     outside = evaluated("paper-dome").sensor.replace(flange=(3.0, 1.5))
-    assert variants.resin_curves(outside, materials, 0.02, "solid", None) == {}
+    assert charts.resin_curves(outside, materials, 0.02, "solid", None) == {}
 
 
 def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library):
-    from pneutouch.evaluation.elastomers import elastomers
-    from pneutouch.evaluation.variants import in_resin, resin_curves
+    from pneutouch.catalogue.library import elastomers
+    from pneutouch.evaluation.charts import in_resin, resin_curves
     from pneutouch.mechanics.atlas.respond import respond
     from pneutouch.mechanics.uncertainty import batch_of
 
@@ -42,7 +42,7 @@ def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library
 
 
 def test_a_resin_outside_the_atlas_is_drawn_by_the_solid_and_the_caption_says_so(evaluated, library):
-    from pneutouch.evaluation.variants import resin_curves
+    from pneutouch.evaluation.charts import resin_curves
     from pneutouch.spec.material import Material
 
     tango, hard = (library.load("materials", name) for name in ("TangoPlus", "FLX9960"))
@@ -58,7 +58,7 @@ def test_a_resin_outside_the_atlas_is_drawn_by_the_solid_and_the_caption_says_so
 
 
 def test_seven_resins_are_compared_and_stop_at_their_own_limits(evaluated, library):
-    from pneutouch.evaluation.variants import resin_curves
+    from pneutouch.evaluation.charts import resin_curves
     from pneutouch.mechanics.limits import limits
     from pneutouch.spec.material import Material
 
@@ -78,7 +78,7 @@ def test_seven_resins_are_compared_and_stop_at_their_own_limits(evaluated, libra
 )
 def test_curves_under_friction_are_the_solids_within_a_percent(resin, model, evaluated, library):
     """Between the pressures at which they were solved; the hard resin's ranges end by an event."""
-    from pneutouch.evaluation.variants import in_resin, resin_curves
+    from pneutouch.evaluation.charts import in_resin, resin_curves
     from pneutouch.mechanics.solid_states import solid_states
 
     material = library.load("materials", resin)

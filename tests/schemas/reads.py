@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch.catalogue import KINDS, Library
-from pneutouch.catalogue.examples import examples
+from pneutouch.catalogue.library import examples
 from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.coupon import read_results
 from pneutouch.spec.read import read_toml, validate
@@ -19,7 +19,7 @@ from pneutouch.spec.target import Target
 from pneutouch.spec.tasks import TaskFile
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.spec.tray import Tray
-from pneutouch.workflows.sweep.read import plan_of_file
+from pneutouch.workflows.sweep.plan import plan_of_file
 from tests.conftest import ROOT
 from tests.evaluation.calibrated import CONTENT
 from tests.stability.fuzz.cases import RESULTS

@@ -21,7 +21,7 @@ from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.spec.target import Target
 from pneutouch.workflows.build import build
 from pneutouch.workflows.select.document import write_choice
-from pneutouch.workflows.select.run import SelectionRun, select
+from pneutouch.workflows.select.select import SelectionRun, select
 from tests.catalogue.store import printed_combinations
 from tests.conftest import ROOT
 from tests.selection.targets import target

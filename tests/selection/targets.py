@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from pneutouch.spec.target import Given, Setting, Target, TargetFigures, Weights
-from pneutouch.workflows.select.run import SelectionRun, select
+from pneutouch.workflows.select.select import SelectionRun, select
 
 FINGERTIP = {"sensitivity_kPa_per_N": 1.9, "driving_pressure_kPa": 12.0, "force_range_N": 15.0, "max_diameter_mm": 25.0}
 """The first thing people ask for."""

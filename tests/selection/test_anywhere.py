@@ -12,14 +12,13 @@ import pytest
 from pneutouch.cli.app import app
 from pneutouch.errors import InputError
 from pneutouch.mechanics.uncertainty import measured_errors
+from pneutouch.selection.candidates import margins
 from pneutouch.selection.choose import choose, places, searched
-from pneutouch.selection.pool import margins
 from pneutouch.spec.material import Material
 from pneutouch.spec.target import Given, Setting, Target, TargetFigures, Weights
 from pneutouch.workflows.select.base import base_scene
-from pneutouch.workflows.select.candidate_uncertainty import sensitivity_uncertainties
-from pneutouch.workflows.select.connector import base_sensor
-from pneutouch.workflows.select.run import _resins, problem_of, select
+from pneutouch.workflows.select.checks import base_sensor, sensitivity_uncertainties
+from pneutouch.workflows.select.select import _resins, problem_of, select
 
 FIGURES = TargetFigures(sensitivity_kPa_per_N=1.9, driving_pressure_kPa=12, force_range_N=15, max_diameter_mm=25)
 """The target of docs/background/off-axis.md."""

@@ -14,7 +14,7 @@ from pneutouch.selection.contact_search import ROUNDS
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.select.charts import tradeoff
 from pneutouch.workflows.select.document import document, write_choice
-from pneutouch.workflows.select.run import SelectionRun, select
+from pneutouch.workflows.select.select import SelectionRun, select
 from tests.selection.targets import answer, target
 
 GRIP = "contact.friction=inf"

@@ -10,9 +10,8 @@ import pytest
 from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.charts import resized, tradeoff_problem
 from pneutouch.mechanics.atlas_states import atlas_result
-from pneutouch.selection.contact_front import contact_front, place
-from pneutouch.selection.contact_trial import SolvedStates, tried
-from pneutouch.selection.front import front
+from pneutouch.selection.contact_search import SolvedStates, tried
+from pneutouch.selection.front import contact_front, front, place
 
 
 def problem_of(evaluation, pressure: float, *resins: str):

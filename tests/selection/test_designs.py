@@ -12,7 +12,7 @@ from pneutouch.mechanics import predict
 from pneutouch.spec.read import parse_changes
 from pneutouch.units import KPA
 from pneutouch.workflows.select.document import document
-from pneutouch.workflows.select.run import SelectionRun, select
+from pneutouch.workflows.select.select import SelectionRun, select
 from tests.selection.targets import FINGERTIP, answer, target
 
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from pneutouch.selection.candidates import evaluated, margins
 from pneutouch.selection.front import front
-from pneutouch.selection.pool import evaluated, margins
 from pneutouch.selection.problem import SelectionProblem
 from tests.selection.targets import FINGERTIP, answer
 

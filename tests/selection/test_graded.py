@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from pneutouch.catalogue import Library
-from pneutouch.selection.grade_search import GradeSearch, GradeTarget, GradeTrial, grade_search, shares
+from pneutouch.selection.graded import GradeSearch, GradeTarget, GradeTrial, grade_search, shares
 from pneutouch.selection.mixes import levels
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
-from pneutouch.workflows.select.mix import pair_of
-from pneutouch.workflows.select.run import select
+from pneutouch.workflows.select.base import pair_of
+from pneutouch.workflows.select.select import select
 
 LEVELS = np.array([0.0, 0.17, 0.4, 0.67])
 SAME = GradeTarget(1.9, 0.02, (0.0, 0.022), 0.02, None, False)

@@ -8,7 +8,7 @@ import pytest
 
 from pneutouch.cli.select_text import selection_text
 from pneutouch.errors import InputError
-from pneutouch.selection.missed import missed_percent
+from pneutouch.selection.choose import missed_percent
 from pneutouch.workflows.select.document import document
 from tests.selection.targets import FINGERTIP, answer
 

@@ -12,9 +12,9 @@ from pneutouch.catalogue import Library, load_scene
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes
-from pneutouch.workflows.select import run as workflow
+from pneutouch.workflows.select import select as workflow
+from pneutouch.workflows.select.checks import Judgement, judge, source_of
 from pneutouch.workflows.select.document import document
-from pneutouch.workflows.select.passing import Judgement, judge, source_of
 from tests.conftest import ROOT
 from tests.selection.passes import LIBRARY, tally
 from tests.selection.targets import FINGERTIP, answer

@@ -9,13 +9,12 @@ import pytest
 
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics import predict
-from pneutouch.mechanics.atlas.inflated import least_limit
+from pneutouch.mechanics.atlas.table import least_limit
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.selection.pool import evaluated, margins
-from pneutouch.selection.rated import rated
+from pneutouch.selection.candidates import evaluated, margins, rated
 from pneutouch.units import KPA
+from pneutouch.workflows.select.checks import source_of
 from pneutouch.workflows.select.document import document, would_need
-from pneutouch.workflows.select.passing import source_of
 from tests.mechanics.uncertainty.designs import materials
 from tests.selection.targets import FINGERTIP, answer
 

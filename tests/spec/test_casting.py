@@ -2,9 +2,9 @@
 
 import pytest
 
+from pneutouch.catalogue.library import alike, elastomers
 from pneutouch.catalogue.listing import listing
 from pneutouch.errors import InputError
-from pneutouch.evaluation.elastomers import alike, elastomers
 from pneutouch.spec.material import HyperelasticLaw, Material
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import validate

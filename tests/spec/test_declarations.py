@@ -9,9 +9,9 @@ import pytest
 
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declarations, table_of
-from pneutouch.spec.quantity import Quantity
 from pneutouch.spec.read import validate
-from pneutouch.spec.template import design_template
+from pneutouch.spec.toml_text import design_template
+from pneutouch.spec.values import Quantity
 
 TABLES = [table for table in DesignFile.model_fields if table_of(DesignFile, table)]
 FIELDS = [(table, entry) for table in TABLES for entry in declarations(table_of(DesignFile, table))]

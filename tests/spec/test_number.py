@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from pneutouch.errors import InputError
-from pneutouch.spec.number import finite_numbers, is_finite, plain_number, plain_numbers
+from pneutouch.spec.values import finite_numbers, is_finite, plain_number, plain_numbers
 
 
 @pytest.mark.parametrize(("text", "value"), [("10", 10), (" -1.5 ", -1.5), ("+.5", 0.5), ("1e-3", 1e-3), ("2.", 2)])

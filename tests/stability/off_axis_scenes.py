@@ -16,16 +16,15 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.mechanics.harmonic import settling
+from pneutouch.mechanics.harmonic.friction_path import ENDED_BEFORE, STEPS
 from pneutouch.mechanics.harmonic.press import OffAxisPath
-from pneutouch.mechanics.harmonic.shear import ENDED_BEFORE, STEPS
 from pneutouch.mechanics.harmonic_states import off_axis_press
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.events import DETAIL, OBJECT_EDGE
-from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, RigidObject, ball, cylinder, edge
+from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, RigidBase, RigidObject, ball, cylinder, edge
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.stress import StrainProbe
 from tests.stability.random_scenes import ENDS, MOST_NEWTON_STEPS, RADIUS, newton_steps, sensors
 

@@ -13,10 +13,10 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.banded import solve
+from pneutouch.mechanics.solid.cavity import Regulator, Supply
 from pneutouch.mechanics.solid.elements import IntegrationScheme
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, SolverState, evaluate, full_tangent
-from pneutouch.mechanics.solid.supply import Regulator, Supply
 
 Converged = Callable[[SolverState], bool]
 

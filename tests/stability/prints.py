@@ -8,13 +8,13 @@ import numpy as np
 
 from pneutouch.body import Body
 from pneutouch.catalogue import Library, load_scene
+from pneutouch.catalogue.library import elastomers
 from pneutouch.errors import InputError
-from pneutouch.evaluation.elastomers import elastomers
 from pneutouch.evaluation.subject import subject_of
 from pneutouch.export.threemf import threemf
 from pneutouch.parts import Assembly, assemble
 from pneutouch.printability import Finding, check
-from pneutouch.printability.rules.contact_faces import overlap_volume
+from pneutouch.printability.rules.faces import overlap_volume
 from pneutouch.spec.read import parse_changes
 from tests.conftest import ROOT
 

@@ -24,11 +24,19 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid import friction_newton, newton
 from pneutouch.mechanics.solid.events import BREAKS_CURVE, DETAIL, OBJECT_EDGE
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent
-from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, ProfileVertex, RigidObject, ball, cone, profile, ring
+from pneutouch.mechanics.solid.indenter import (
+    CELLS_PER_RADIUS,
+    ProfileVertex,
+    RigidBase,
+    RigidObject,
+    ball,
+    cone,
+    profile,
+    ring,
+)
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.spec.material import Material
 
 #: Domes, and presses of each.

@@ -11,12 +11,12 @@ import pytest
 
 from pneutouch.errors import ComputationError, InputError
 from pneutouch.mechanics.laws import mooney_rivlin, neo_hookean, ogden, yeoh
-from pneutouch.mechanics.solid.errors import UnreachableLoadError
 from pneutouch.mechanics.solid.events import BREAKS_CURVE
 from pneutouch.mechanics.solid.indent import PressSettings
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.newton import UnreachableLoadError
 from tests.stability.truth import ENDS_BRANCH, Study, free_unbalance, other_branch
 
 MU, R0 = 0.17, 9.25

@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.errors import UnreachableLoadError
+from pneutouch.mechanics.solid.cavity import Regulator
 from pneutouch.mechanics.solid.indent import PressSettings
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.newton import SolidScene
-from pneutouch.mechanics.solid.supply import Regulator
+from pneutouch.mechanics.solid.newton import SolidScene, UnreachableLoadError
 from tests.stability.plain import newton
 from tests.stability.truth import Study, free_unbalance
 

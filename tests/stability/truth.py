@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.solid.contact import RIM, Plate
+from pneutouch.mechanics.solid.cavity import Gas, Regulator
 from pneutouch.mechanics.solid.events import SolidEvent
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
 from pneutouch.mechanics.solid.inflate import FreeState
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, SolverState, evaluate, full_tangent, minimise
-from pneutouch.mechanics.solid.supply import Gas, Regulator
+from pneutouch.mechanics.solid.object_contact import RIM, Plate
 
 #: Events that end a path because the branch ends there.
 ENDS_BRANCH = ("snap", "clamp_fold")

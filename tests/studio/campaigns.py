@@ -7,8 +7,8 @@ from typing import Any
 
 from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.catalogue import Library
-from pneutouch.workflows.simulate.options import SimulationOptions
-from pneutouch.workflows.simulate.run import simulate
+from pneutouch.workflows.simulate import simulate
+from pneutouch.workflows.simulate_inputs import SimulationOptions
 
 SMALL = SimulationOptions(
     specimens=1,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign_file import campaign_of
-from pneutouch.studio.campaign import placed, write_runs
+from pneutouch.spec.campaign import campaign_of
+from pneutouch.studio.measured import placed, write_runs
 
 LONG = ["x" * 300, "a/" * 20 + "b.csv"]
 PLAN = '[[runs]]\nfile = "runs/a.csv"\nsensor = "A"\nresin = "TangoPlus"\n'

@@ -16,10 +16,10 @@ from starlette.testclient import TestClient
 
 from pneutouch.errors import InputError
 from pneutouch.studio.building import build_design
-from pneutouch.studio.desk import Desk
 from pneutouch.studio.guard import HEADERS, SHEET, Guard
+from pneutouch.studio.job_routes import Desk
 from pneutouch.studio.jobs import Job, Jobs
-from pneutouch.workflows.build.contents import CONTENTS, described
+from pneutouch.workflows.build import CONTENTS, described
 from tests.conftest import ROOT
 from tests.studio.conftest import HOME, PORT, TOKEN
 from tests.studio.test_guard import ASK

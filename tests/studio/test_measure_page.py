@@ -8,7 +8,7 @@ import zipfile
 
 import pytest
 
-from pneutouch.catalogue.places import HOME
+from pneutouch.catalogue.library import HOME
 from tests.bench.rig import small, write
 from tests.browser import until
 from tests.studio.access import violations

@@ -8,7 +8,7 @@ import shutil
 
 import pytest
 
-from pneutouch.catalogue.places import HOME
+from pneutouch.catalogue.library import HOME
 from pneutouch.errors import InputError
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.studio import measuring

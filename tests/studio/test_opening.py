@@ -14,7 +14,7 @@ from pneutouch.errors import InputError
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.studio.faults import fault_document
-from pneutouch.studio.opening import open_file
+from pneutouch.studio.opened_design import open_file
 from pneutouch.studio.question import Question
 from pneutouch.studio.server import bases_of
 from tests.conftest import ROOT

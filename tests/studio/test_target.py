@@ -15,12 +15,12 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declarations, table_of
 from pneutouch.spec.read import validate
 from pneutouch.spec.target import Target
+from pneutouch.studio.candidate import state_of
 from pneutouch.studio.faults import fault_document
 from pneutouch.studio.question import Question
+from pneutouch.studio.search import target_of
 from pneutouch.studio.server import bases_of
-from pneutouch.studio.state import state_of
-from pneutouch.studio.target import target_of
-from pneutouch.workflows.select.passing import assigned
+from pneutouch.workflows.select.checks import assigned
 from tests.conftest import ROOT
 from tests.studio.asked import FIELDS, asked, opened
 from tests.studio.served import is_declared
@@ -207,7 +207,7 @@ STATED = {
     ids=["a grade", "resins", "processes"],
 )
 def test_the_words_of_a_target_give_it_to_the_command(content, command, monkeypatch):
-    from pneutouch.cli.select_fields import target_words
+    from pneutouch.cli.select import target_words
 
     taken = []
 
@@ -215,7 +215,7 @@ def test_the_words_of_a_target_give_it_to_the_command(content, command, monkeypa
         taken.append(target)
         raise InputError("taken")
 
-    monkeypatch.setattr("pneutouch.workflows.select.gauged.select", take)
+    monkeypatch.setattr("pneutouch.workflows.select.processes.select", take)
     monkeypatch.setattr("pneutouch.workflows.select.processes.select_processes", take)
     monkeypatch.setattr("pneutouch.workflows.select.graded.select_graded", take)
     target = Target.model_validate(content)

@@ -13,7 +13,7 @@ from pneutouch.spec.read import validate
 from pneutouch.studio.question import Question
 from pneutouch.studio.search import search
 from pneutouch.studio.server import bases_of
-from pneutouch.workflows.select.passing import assigned
+from pneutouch.workflows.select.checks import assigned
 from tests.conftest import ROOT
 from tests.studio.asked import FIELDS, asked, opened
 

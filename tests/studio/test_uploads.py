@@ -7,8 +7,8 @@ import asyncio
 import pytest
 
 from pneutouch.errors import InputError
-from pneutouch.studio import uploads as kept
-from pneutouch.studio.uploads import Uploads
+from pneutouch.studio import guard as kept
+from pneutouch.studio.guard import Uploads
 from tests.studio.conftest import HOME
 
 SENT = {"Origin": HOME, "Content-Type": "application/octet-stream"}

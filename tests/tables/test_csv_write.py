@@ -5,7 +5,7 @@ import io
 
 import pytest
 
-from pneutouch.tables.csv_write import csv_bytes, safe_cell
+from pneutouch.tables.csv_table import csv_bytes, safe_cell
 
 
 @pytest.mark.parametrize("text", ["=cmd|' /C calc'!A0", "+1+1", "-2+3", "@SUM(A1)", "\t=1", "\r=1", "  =1", "＝1+1"])

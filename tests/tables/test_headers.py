@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from pneutouch.bench.headers import meaning_of
 from pneutouch.bench.reading import PLATE
-from pneutouch.bench.source import identify
+from pneutouch.bench.source import identify, meaning_of
 from pneutouch.bench.tensile.read import _facts
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap
-from pneutouch.spec.number import plain_number
-from pneutouch.tables.cells import score
+from pneutouch.spec.values import plain_number
+from pneutouch.tables.layout import score
 from pneutouch.tables.read import whole
 from pneutouch.tables.unit_words import UNITS, unit_of
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pneutouch.errors import InputError
-from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.texture.contact import touch, touches
 from pneutouch.texture.scan import Recorder, ScanPath, gain, pressure_amplitude, record, scan
@@ -153,7 +153,7 @@ def test_scan_refuses_paths_noise_and_pitches():
 
 
 def test_noise_amplitude_is_what_white_noise_reads_as():
-    from pneutouch.texture.morse import time_average
+    from pneutouch.texture.scalogram import time_average
 
     values = np.random.default_rng(3).standard_normal((40, 6000))
     found = time_average(values, 200.0, np.array([1.0, 2.0]))
@@ -183,7 +183,7 @@ def test_separation_takes_the_states_that_lean_most():
 
 @pytest.mark.parametrize("seed", range(1, 6))
 def test_the_stiff_state_shows_both_patterns_whatever_the_noise(seed, library):
-    from pneutouch.workflows.scan.run import ScanOptions, run_scan
+    from pneutouch.workflows.scan import ScanOptions, run_scan
 
     (seen,) = run_scan(
         "texture-specimen", "paper-dome", ScanOptions(pressures=(0.022,), seed=seed), library=library
@@ -194,7 +194,7 @@ def test_the_stiff_state_shows_both_patterns_whatever_the_noise(seed, library):
 
 
 def test_a_sensor_held_at_a_force_rises_over_a_bar(library):
-    from pneutouch.workflows.scan.run import ScanOptions, run_scan
+    from pneutouch.workflows.scan import ScanOptions, run_scan
 
     run = run_scan("texture-specimen", "paper-dome", ScanOptions(pressures=(0.022,), control="force"), library=library)
     scan = run.seen[0].scan

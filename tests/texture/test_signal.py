@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import InputError
-from pneutouch.texture.record import RecordColumns, read_signal
-from pneutouch.texture.signal import signal
+from pneutouch.texture.signal import RecordColumns, read_signal, signal
 
 GOOD = "time_s,pressure_kPa,force_N\n" + "".join(f"{0.1 * k:.1f},{1 + 0.01 * k},0\n" for k in range(10))
 

@@ -106,7 +106,7 @@ def test_patterns_an_octave_apart_are_found_whatever_the_noise(colour):
 
 
 def test_the_floor_of_white_noise_is_what_the_wavelet_passes_of_it():
-    from pneutouch.texture.morse import time_average
+    from pneutouch.texture.scalogram import time_average
 
     floors, true = [], []
     for seed in range(8):
@@ -119,7 +119,7 @@ def test_the_floor_of_white_noise_is_what_the_wavelet_passes_of_it():
 @pytest.mark.parametrize("power", [0.0, -2.0, -1.0])
 def test_the_fit_recovers_a_known_density(power):
     """Noise of density f^power drawn a hundred times: the mean of the fits is that density within a tenth."""
-    from pneutouch.texture.background import fitter
+    from pneutouch.texture.detect import fitter
 
     count = int(RATE * SECONDS)
     used = fitter(count, RATE, 0.2, 6.0, np.array([0.667]), np.array([1.333]), 0.15)

@@ -12,8 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.errors import InputError
-from pneutouch.texture.morse import HIGHEST_SHARE, MORSE, VOICES, time_average, transform, voices
-from pneutouch.texture.scalogram import ridge, scalogram
+from pneutouch.texture.scalogram import HIGHEST_SHARE, MORSE, VOICES, ridge, scalogram, time_average, transform, voices
 from pneutouch.texture.signal import Signal, decimated
 from tests.texture.make_reference import AT, FREQUENCY, RATE, values
 

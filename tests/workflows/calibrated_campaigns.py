@@ -9,19 +9,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pneutouch.bench.calibrate.discrepancy import FLOOR
+from pneutouch.bench.calibrate.model import FLOOR
 from pneutouch.bench.simulate import ModelDeviation, ScatterModel, SimulationTruth
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.models import NUMERICAL
-from pneutouch.mechanics.uncertainty.sources.build import GAUGE
 from pneutouch.mechanics.uncertainty.sources.calibrated import FORCE_GAUGE
+from pneutouch.mechanics.uncertainty.sources.model import GAUGE
 from pneutouch.spec.read import assignments
 from pneutouch.spec.toml_text import toml_text
-from pneutouch.workflows.calibrate.run import CalibrationOptions, run_calibration
-from pneutouch.workflows.simulate.options import SimulationOptions
-from pneutouch.workflows.simulate.run import simulate
+from pneutouch.workflows.calibrate.calibrate import CalibrationOptions, run_calibration
+from pneutouch.workflows.simulate import simulate
+from pneutouch.workflows.simulate_inputs import SimulationOptions
 
 MEASURED, UNSEEN = (0.0, 6.0, 12.0), 9.0
 DESIGN, DEAD = "paper-dome", {"pneumatics.dead_volume_mL": 0.3}

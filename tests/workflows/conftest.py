@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from pneutouch.workflows.build.voxels import plan_voxels, write_voxels
+from pneutouch.workflows.build_voxels import plan_voxels, write_voxels
 from tests.export.voxels.small import small_assembly
 
 

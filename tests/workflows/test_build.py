@@ -180,7 +180,7 @@ def test_a_folder_that_cannot_be_written_is_an_input_error():
 
 
 def test_input_hash_changes_with_the_inputs_alone(evaluated):
-    from pneutouch.workflows.build.run import input_hash
+    from pneutouch.workflows.build import input_hash
 
     assert input_hash(evaluated("paper-dome")) == input_hash(evaluated("paper-dome"))
     assert input_hash(evaluated("paper-dome")) != input_hash(evaluated("paper-dome", "membrane.inner_radius_mm=9.26"))

@@ -18,11 +18,18 @@ from pneutouch.output.files import digest, json_bytes
 from pneutouch.parts import assemble
 from pneutouch.spec.campaign import Campaign, CampaignRun
 from pneutouch.units import KPA
-from pneutouch.workflows.calibrate.files import CampaignSource, calibration_content, prepare, save, write_calibration
+from pneutouch.workflows.calibrate.calibrate import with_further_tests
+from pneutouch.workflows.calibrate.files import (
+    CampaignSource,
+    calibration_content,
+    check_place,
+    check_unlike,
+    prepare,
+    save,
+    write_calibration,
+)
 from pneutouch.workflows.calibrate.fit import calibrate, observations_of
-from pneutouch.workflows.calibrate.further import with_further_tests
-from pneutouch.workflows.calibrate.place import check_place, check_unlike
-from pneutouch.workflows.compare.run import compare
+from pneutouch.workflows.compare import compare
 from tests.bench.calibrate.sensors import curves, injections, softer
 
 SOURCE = CampaignSource("ab" * 32)

@@ -12,13 +12,13 @@ from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.catalogue import DesignSource, Library
 from pneutouch.cli.compare_text import comparison_text
 from pneutouch.errors import InputError
-from pneutouch.report.compared import words
+from pneutouch.report import comparison_words
 from pneutouch.spec.toml_text import toml_text
-from pneutouch.workflows.characterize.run import characterize
-from pneutouch.workflows.characterize.run import write as write_measured
+from pneutouch.workflows.characterize.campaign import characterize
+from pneutouch.workflows.characterize.campaign import write as write_measured
 from pneutouch.workflows.compare import compare, write
-from pneutouch.workflows.simulate.options import SimulationOptions
-from pneutouch.workflows.simulate.run import simulate
+from pneutouch.workflows.simulate import simulate
+from pneutouch.workflows.simulate_inputs import SimulationOptions
 from tests.mechanics.test_rating import calibrated
 
 RIG = SimulationOptions(
@@ -141,7 +141,7 @@ def test_the_sheet_is_written_whole_and_the_same_twice(tmp_path, results, librar
     text = " ".join(page.get_textpage().get_text_range() for page in pdf)
     # Both are marked, as every sheet of simulated data; the note among the assumptions would be read last.
     mark = "SIMULATED DATA: paper-dome-campaign-measured: a program made these runs"
-    assert words.marks(result.document) == [f"{mark}; no sensor was measured."]
+    assert comparison_words.marks(result.document) == [f"{mark}; no sensor was measured."]
     assert mark in page and mark in text.replace("\r\n", " ")
     assert comparison_text(result.document).splitlines()[3].startswith(mark)
     for word in ("paper-dome", "thick", "membrane.wall_thickness_mm", "exceeds", "sensitivity, kPa/N"):
@@ -177,5 +177,5 @@ def test_what_cannot_be_compared_is_refused(built, library):
 @pytest.mark.parametrize(("kind", "how"), [("measured", "a program made"), ("design", "calibrated on simulated runs")])
 def test_what_rests_on_simulated_runs_is_marked(kind, how):
     document = {"compared": [{"label": "A", "kind": kind, "simulated": True}, {"label": "B", "simulated": False}]}
-    (mark,) = words.marks(document)
+    (mark,) = comparison_words.marks(document)
     assert mark.startswith(f"SIMULATED DATA: A: {how}")

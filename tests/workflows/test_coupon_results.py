@@ -7,17 +7,15 @@ import datetime
 import numpy as np
 import pytest
 
-from pneutouch.bench.machine import smallest_sound
+from pneutouch.bench.coupons import smallest_sound
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.parts import assemble
 from pneutouch.spec.coupon import GaugeSize, read_results
 from pneutouch.spec.toml_text import toml_text
-from pneutouch.workflows.coupons.order import CouponOptions, order
-from pneutouch.workflows.coupons.profile import HEAD
-from pneutouch.workflows.coupons.results import enter_results
-from pneutouch.workflows.coupons.template import results_template
+from pneutouch.workflows.coupons.order import CouponOptions, order, results_template
+from pneutouch.workflows.coupons.results import HEAD, enter_results
 from tests.conftest import ROOT
 
 LIBRARY = Library((ROOT,))

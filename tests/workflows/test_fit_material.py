@@ -8,7 +8,7 @@ import tomllib
 import numpy as np
 import pytest
 
-from pneutouch.bench.tensile.uniaxial import tension
+from pneutouch.bench.tensile.fit import tension
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.solid_states import solid_result

@@ -11,10 +11,10 @@ from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.read import validate
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
-from pneutouch.workflows.plan.run import PAPER, paper_rig
-from pneutouch.workflows.select.gauged import select
-from pneutouch.workflows.simulate.options import SimulationOptions
-from pneutouch.workflows.simulate.run import simulate
+from pneutouch.workflows.plan import PAPER, paper_rig
+from pneutouch.workflows.select.processes import select
+from pneutouch.workflows.simulate import simulate
+from pneutouch.workflows.simulate_inputs import SimulationOptions
 
 AMBIENT = 101.325 * KPA
 

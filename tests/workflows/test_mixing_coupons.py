@@ -13,16 +13,13 @@ import pytest
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.mixture import mixed_material, mixing
 from pneutouch.errors import InputError
-from pneutouch.mechanics.uncertainty.hardness import shore_a
+from pneutouch.mechanics.paper_sensor import shore_a
 from pneutouch.spec.coupon import read_results
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.toml_text import toml_text
-from pneutouch.workflows.coupons.blends import FRACTIONS
-from pneutouch.workflows.coupons.build import build_coupons
-from pneutouch.workflows.coupons.lay import lay
-from pneutouch.workflows.coupons.order import CouponOptions, order
+from pneutouch.workflows.coupons.build import build_coupons, lay
+from pneutouch.workflows.coupons.order import FRACTIONS, CouponOptions, order, results_template
 from pneutouch.workflows.coupons.results import enter_results
-from pneutouch.workflows.coupons.template import results_template
 from tests.conftest import ROOT
 from tests.export.threemf_files import MODEL, parts_of, read_strictly
 from tests.workflows.test_coupon_results import specimen

@@ -16,9 +16,8 @@ from pneutouch.evaluation.resins import pressed, resins_of
 from pneutouch.spec.campaign import Campaign, Rig
 from pneutouch.spec.read import validate
 from pneutouch.units import KPA, ML
-from pneutouch.workflows.plan.expected import curve_warnings, injection, leak_limit, points, travel_warnings
-from pneutouch.workflows.plan.run import make_plan, plated_tests, rig_of, write_plan
-from pneutouch.workflows.plan.steps import steps_of
+from pneutouch.workflows.plan import make_plan, plated_tests, rig_of, steps_of, write_plan
+from pneutouch.workflows.plan_expected import curve_warnings, injection, leak_limit, points, travel_warnings
 
 R0 = 9.25
 PLATED = ("steps", "saturation", "loop", "relaxation")

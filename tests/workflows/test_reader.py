@@ -17,7 +17,7 @@ from pneutouch.export.reader.reading import ForceReader, Status
 from pneutouch.export.reader.render import MOST_TABLES, table_bytes
 from pneutouch.mechanics import predict
 from pneutouch.units import KPA
-from pneutouch.workflows.reader import make_reader, write_reader
+from pneutouch.workflows.export_reader import make_reader, write_reader
 
 c_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="no C compiler (gcc) on this machine")
 

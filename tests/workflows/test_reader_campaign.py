@@ -13,10 +13,10 @@ from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.spec.read import assignments
 from pneutouch.spec.toml_text import toml_text
-from pneutouch.workflows.calibrate.run import CalibrationOptions, run_calibration
-from pneutouch.workflows.reader import make_reader
-from pneutouch.workflows.simulate.options import SimulationOptions
-from pneutouch.workflows.simulate.run import simulate
+from pneutouch.workflows.calibrate.calibrate import CalibrationOptions, run_calibration
+from pneutouch.workflows.export_reader import make_reader
+from pneutouch.workflows.simulate import simulate
+from pneutouch.workflows.simulate_inputs import SimulationOptions
 
 UNSEEN_KPA, REST = 9.0, 25
 DEAD = {"pneumatics.dead_volume_mL": 0.3}

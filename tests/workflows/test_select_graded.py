@@ -14,7 +14,7 @@ import pneutouch as pt
 from pneutouch.catalogue import Library
 from pneutouch.cli.app import app
 from pneutouch.evaluation.evaluate import evaluate
-from pneutouch.selection.grade_search import cost
+from pneutouch.selection.graded import cost
 from pneutouch.spec.target import Target
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.select.graded import select_graded

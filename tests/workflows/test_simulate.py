@@ -14,14 +14,13 @@ import pytest
 from pneutouch.bench.protocol import protocol
 from pneutouch.bench.simulate import SimulationTruth, press_curves
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import Campaign
-from pneutouch.spec.campaign_file import campaign_of, design_of
+from pneutouch.spec.campaign import Campaign, campaign_of, design_of
 from pneutouch.spec.read import validate
 from pneutouch.spec.toml_text import toml_text
-from pneutouch.workflows.plan.run import make_plan, write_plan
-from pneutouch.workflows.simulate import run as simulation
-from pneutouch.workflows.simulate.options import KINDS, SimulationOptions
-from pneutouch.workflows.simulate.run import simulate
+from pneutouch.workflows import simulate as simulation
+from pneutouch.workflows.plan import make_plan, write_plan
+from pneutouch.workflows.simulate import simulate
+from pneutouch.workflows.simulate_inputs import KINDS, SimulationOptions
 
 R0 = 9.25
 ASKED = SimulationOptions(

@@ -14,13 +14,12 @@ from typer.testing import CliRunner
 from pneutouch.catalogue import load_scene
 from pneutouch.cli.app import app
 from pneutouch.errors import InputError, RuleBrokenError
-from pneutouch.export.voxels.manifest import MANIFEST
-from pneutouch.export.voxels.read import read_stack
+from pneutouch.export.voxels.stack import MANIFEST, read_stack
 from pneutouch.output.files import digest
 from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes
-from pneutouch.workflows.build.voxels import plan_voxels, write_voxels
-from pneutouch.workflows.show.voxels import show_stack
+from pneutouch.workflows.build_voxels import plan_voxels, write_voxels
+from pneutouch.workflows.show import show_stack
 from tests.export.voxels.small import SETS, small_assembly
 from tests.running import files_of_at_most
 

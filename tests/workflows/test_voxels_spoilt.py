@@ -10,9 +10,8 @@ import pytest
 from PIL import Image
 
 from pneutouch.errors import InputError
-from pneutouch.export.voxels.manifest import MANIFEST
 from pneutouch.export.voxels.png import encode, table
-from pneutouch.export.voxels.read import read_stack
+from pneutouch.export.voxels.stack import MANIFEST, read_stack
 
 
 def other_slice(folder, number, change):
@@ -111,7 +110,7 @@ def test_fewer_than_thirty_slices_are_refused(stack):
     manifest = json.loads((stack / MANIFEST).read_text())
     for number in range(29, manifest["layers"]):
         (stack / f"graded-dome_{number}.png").unlink()
-    from pneutouch.export.voxels.manifest import whole_hash
+    from pneutouch.export.voxels.stack import whole_hash
 
     kept = manifest["slices"][:29]
     (stack / MANIFEST).write_text(json.dumps({**manifest, "layers": 29, "slices": kept, "sha256": whole_hash(kept)}))

@@ -10,19 +10,17 @@ import numpy as np
 from benchmarks.dynamics import states
 
 from pictures import contact, off_axis
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, hermite
 from pneutouch.catalogue import Library
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
-from pneutouch.mechanics.exact_membrane import RISING_BRANCH
-from pneutouch.mechanics.hermite import hermite
-from pneutouch.mechanics.inflation import LIMIT_HEIGHT, LIMIT_PRESSURE, relative_pressure
-from pneutouch.mechanics.line.band import gain_at
+from pneutouch.mechanics.inflation import LIMIT_HEIGHT, LIMIT_PRESSURE, RISING_BRANCH, relative_pressure
+from pneutouch.mechanics.line.transient import gain_at
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.uncertainty import batch_of, budget, document, model_errors
 from pneutouch.mechanics.viscous.describe import LOOP_SPEEDS, RAMP_SPEED
 from pneutouch.mechanics.viscous.prony import prony_series
 from pneutouch.mechanics.viscous.runs import loop, relaxation
-from pneutouch.report.response_chart import GainCurve, gain_chart
+from pneutouch.report.fit_charts import GainCurve, gain_chart
 from pneutouch.report.style import ACCENT, FAINT, INK, LINES, MARKERS, MUTED, figure, legend_above, plain_ticks, svg
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.anywhere import contact_chart
-from pneutouch.evaluation.chart_data import ContactChart, ContactRow
+from pneutouch.evaluation.sheet_data import ContactChart, ContactRow
 from pneutouch.report.style import ACCENT, FAINT, INK, MARKERS, figure, svg
 
 

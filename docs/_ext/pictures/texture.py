@@ -10,8 +10,8 @@ from stored_pages import stored
 
 from pneutouch.catalogue import Library
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, figure, svg
-from pneutouch.workflows.scan.document import spectra
-from pneutouch.workflows.scan.run import run_scan
+from pneutouch.workflows.scan import run_scan
+from pneutouch.workflows.scan_document import spectra
 
 ROOT = Path(__file__).resolve().parents[3]
 

@@ -10,7 +10,7 @@ from pneutouch.schemas.shape import unit_of
 from pneutouch.spec.fields import Table
 from pneutouch.spec.mixing import MixingCurve, MixingPoint
 from pneutouch.spec.printer import FeatureSize, Printer
-from pneutouch.spec.quantity import Quantity
+from pneutouch.spec.values import Quantity
 from reference_pages import markdown
 from reference_pages.markdown import code, plain, table
 

@@ -10,8 +10,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from pneutouch.printability.check import RULES
-from pneutouch.printability.mould import MOULD_RULES
+from pneutouch.printability.rulebook import MOULD_RULES, RULES
 from pneutouch.printability.rules import feature_sizes, voxels
 from pneutouch.spec.printer import FeatureSize, Printer
 from reference_pages import markdown

@@ -13,7 +13,7 @@ from pneutouch.api.prediction import Prediction
 from pneutouch.errors import InputError
 from pneutouch.evaluation.comparison_record import RowRecord
 from pneutouch.mechanics.models import model_options
-from pneutouch.report.compared import words
+from pneutouch.report import comparison_words
 from pneutouch.spec.design import DesignFile
 from pneutouch.workflows.compare import CompareResult, write
 from pneutouch.workflows.compare import compare as run
@@ -35,7 +35,7 @@ class Comparison(show.Shown):
     @property
     def labels(self) -> tuple[str, ...]:
         """Names of the columns, each another."""
-        return tuple(words.labels(self._result.document))
+        return tuple(comparison_words.labels(self._result.document))
 
     def to_frame(self) -> DataFrame:
         """A row a figure and driving pressure (None: of the whole sensor); columns ``value``, ``low`` and ``high`` of
@@ -75,9 +75,13 @@ class Comparison(show.Shown):
         return [*inputs, *(self._row(row) for row in figures)]
 
     def _row(self, row: RowRecord) -> tuple[str, ...]:
-        at = "" if row["driving_pressure_kPa"] is None else f" {words.heading(row['driving_pressure_kPa'])}"
-        values = [f"{value} ({ends})" if ends else value for value, ends in words.figure_cells(row)]
-        return (f"{row['name']}{at}", *values, *(f"{p}, {word}" for p, _, word in words.difference_cells(row)))
+        at = "" if row["driving_pressure_kPa"] is None else f" {comparison_words.heading(row['driving_pressure_kPa'])}"
+        values = [f"{value} ({ends})" if ends else value for value, ends in comparison_words.figure_cells(row)]
+        return (
+            f"{row['name']}{at}",
+            *values,
+            *(f"{p}, {word}" for p, _, word in comparison_words.difference_cells(row)),
+        )
 
     def _head(self) -> str:
         return f"Comparison of {', '.join(self.labels)}"

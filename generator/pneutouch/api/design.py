@@ -1,4 +1,7 @@
-"""A design as an object: keyword arguments in, predictions, findings and print files out."""
+"""A design as an object: keyword arguments in, predictions, findings and print files out.
+
+Drawings of a design for your own figures: its section, and that of the mould it is cast in.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pneutouch.api import pictures, show
+from pneutouch.api import show
 from pneutouch.api.driving import DrivingResult, tasks_of
 from pneutouch.api.fields import WHERE, changes, keywords, named_by_keyword, plain
 from pneutouch.api.prediction import Prediction
@@ -24,13 +27,54 @@ from pneutouch.output.new import write_design
 from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.material import Material
-from pneutouch.spec.names import plain_name
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import override
-from pneutouch.spec.template import design_template
+from pneutouch.spec.toml_text import design_template
+from pneutouch.spec.values import plain_name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+
+def plot_section(assembly: Assembly, ax: Axes | None) -> Axes:
+    """The hatched section of all bodies through the x axis, lengths in mm; returns the axes."""
+    from pneutouch.report.section import draw_section
+
+    ax = _axes(ax)
+    draw_section(ax, assembly)
+    return _scaled(ax)
+
+
+def plot_mould(assembly: Assembly, ax: Axes | None, labels: bool) -> Axes:
+    """One cavity of the closed mould in section, turned over as it is poured; returns the axes. Raises InputError."""
+    from pneutouch.report.mould import draw_mould
+
+    if assembly.mould is None:
+        raise InputError(
+            "the membrane is printed, not cast: it has no mould",
+            key="profile",
+            value=assembly.scene.design.print.profile,
+            remedy='give a printer of moulds, such as profile="silicone-casting"',
+        )
+    ax = _axes(ax)
+    draw_mould(ax, assembly.mould, labels)
+    return _scaled(ax)
+
+
+def _axes(ax: Axes | None) -> Axes:
+    if ax is not None:
+        return ax
+    from matplotlib import pyplot
+
+    made: Axes = pyplot.subplots()[1]
+    return made
+
+
+def _scaled(ax: Axes) -> Axes:
+    ax.set_aspect("equal")
+    ax.autoscale_view()
+    ax.set(xlabel="x (mm)", ylabel="z (mm)")
+    return ax
 
 
 def pressures_changed(driving_pressures_kPa: float | Iterable[float] | None) -> dict[str, Any]:
@@ -198,7 +242,7 @@ class Design(show.Shown):
 
         ``model`` as for `predict`, but None is "auto".
         """
-        from pneutouch.workflows.reader import make_reader, write_reader
+        from pneutouch.workflows.export_reader import make_reader, write_reader
 
         options = model_options(model or (None if tolerance else "auto"), tolerance)
         with named_by_keyword():
@@ -222,14 +266,14 @@ class Design(show.Shown):
 
     def plot_section(self, ax: Axes | None = None) -> Axes:
         """Draw the hatched section of all bodies through the axis, lengths in mm; returns the axes."""
-        return pictures.plot_section(self.assembly, ax)
+        return plot_section(self.assembly, ax)
 
     def plot_mould(self, ax: Axes | None = None, *, labels: bool = True) -> Axes:
         """Draw one cavity of the closed mould in section, turned over as it is poured, lengths in mm; returns the axes.
 
         Raises InputError for a membrane that is printed.
         """
-        return pictures.plot_mould(self.assembly, ax, labels)
+        return plot_mould(self.assembly, ax, labels)
 
     def to_dict(self) -> dict[str, Any]:
         """The tables of the design file, every field with its value."""

@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from pneutouch.errors import InputError, PneutouchError, nearest, shown
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
-from pneutouch.spec.number import finite_numbers, is_finite
+from pneutouch.spec.values import finite_numbers, is_finite
 
 WHERE = "the keyword arguments"
 """Stands for the file where values are keyword arguments; `named_by_keyword` takes it out of an error."""

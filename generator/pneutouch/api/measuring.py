@@ -1,4 +1,9 @@
-"""Scans, and campaigns: planned, simulated, read and fitted."""
+"""Scans, and campaigns: planned, simulated, read and fitted.
+
+Simulated signals of a step or a sine.
+
+A material of a laboratory's own, from its tensile or puck test.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +13,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.api.design import Design, source_of
-from pneutouch.api.fields import named_by_keyword, numbers_of, path_of, paths_of, texts_of
+from pneutouch.api.fields import named_by_keyword, number_of, numbers_of, path_of, paths_of, texts_of
 from pneutouch.api.results import Result
-from pneutouch.errors import shown
+from pneutouch.errors import InputError, shown
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.calibrate.run import CalibrationOutcome
+    from pneutouch.workflows.calibrate.calibrate import CalibrationOutcome
+    from pneutouch.workflows.fitted_material import FittedMaterial
+
 
 _DATA = "give a campaign's folder, its file or that of one run"
 
@@ -37,9 +44,8 @@ def scan(
     are measured signals (CSV). Raises InputError if the scan cannot be.
     """
     from pneutouch.texture.scan import NOISE
-    from pneutouch.workflows.scan.document import document
-    from pneutouch.workflows.scan.run import ScanOptions, run_scan
-    from pneutouch.workflows.scan.write import write_scan
+    from pneutouch.workflows.scan import ScanOptions, run_scan
+    from pneutouch.workflows.scan_document import document, write_scan
 
     pressures_kPa = numbers_of(driving_pressures_kPa, "driving_pressures_kPa", alone=True)
     noises_kPa = () if noise_kPa is None else numbers_of([noise_kPa], "noise_kPa")
@@ -55,7 +61,7 @@ def plan(
     design: Design | str | Path, *, resins: str | Sequence[str] = (), specimens: int = 3, rig: str | Path | None = None
 ) -> Result:
     """Plan a measurement campaign: runs, steps, and what to expect. ``rig`` is a TOML file; None: the paper's rig."""
-    from pneutouch.workflows.plan.run import make_plan, rig_of, write_plan
+    from pneutouch.workflows.plan import make_plan, rig_of, write_plan
 
     file = None if rig is None else path_of(rig, "rig", "give the path of a TOML file")
     with named_by_keyword():
@@ -91,8 +97,8 @@ def simulate(
     """
     from pneutouch.bench.simulate import SimulationTruth
     from pneutouch.mechanics.models import USUAL
-    from pneutouch.workflows.simulate.options import SimulationOptions
-    from pneutouch.workflows.simulate.run import simulate as run
+    from pneutouch.workflows.simulate import simulate as run
+    from pneutouch.workflows.simulate_inputs import SimulationOptions
 
     pressures_kPa = (
         None
@@ -137,8 +143,8 @@ def characterize(
     ``failures``.
     """
     from pneutouch.mechanics.models import USUAL
-    from pneutouch.workflows.characterize.run import characterize as run
-    from pneutouch.workflows.characterize.run import write
+    from pneutouch.workflows.characterize.campaign import characterize as run
+    from pneutouch.workflows.characterize.campaign import write
 
     target_file = None if target is None else path_of(target, "target", "give the path of a target file")
     with named_by_keyword():
@@ -164,7 +170,7 @@ class FittedSensor(Result):
 
         Never over another calibration unless ``replace``. Raises InputError.
         """
-        from pneutouch.workflows.calibrate.run import save_calibration
+        from pneutouch.workflows.calibrate.calibrate import save_calibration
 
         with named_by_keyword():
             return save_calibration(self._outcome, None if name is None else str(name), replace=replace)
@@ -193,7 +199,7 @@ def calibrate(
     the name ``save`` (None: of design and sensor), never over another unless ``replace``. The design with it is
     ``design.replace(calibration=result.name)``. ``columns`` and ``file_format`` are as for `characterize`.
     """
-    from pneutouch.workflows.calibrate.run import CalibrationOptions, run_calibration
+    from pneutouch.workflows.calibrate.calibrate import CalibrationOptions, run_calibration
 
     source = None if design is None else source_of(design)
     names, held = texts_of(fit, "fit"), numbers_of(hold_out_kPa, "hold_out_kPa")
@@ -208,3 +214,82 @@ def _reading(
     columns: Mapping[str, Mapping[str, Any]] | None, file_format: Mapping[str, Any] | None
 ) -> dict[str, Mapping[str, Any]]:
     return {"columns": columns or {}, "format": file_format or {}}
+
+
+def respond(
+    design: Design | str | Path,
+    *,
+    step_N: float | None = None,
+    step_mm: float | None = None,
+    sine_Hz: float | None = None,
+    peak_N: float | None = None,
+    peak_mm: float | None = None,
+    duration_s: float | None = None,
+    seed: int = 0,
+    model: str | None = None,
+) -> Result:
+    """Simulate a step of force or travel, or a sine from no load to a peak, through wall, gas, line and gauge.
+
+    Without a size it is half of the range, without ``sine_Hz`` a step. ``duration_s`` None: 1 s, or ten cycles;
+    ``seed`` is that of the gauge's noise. `Result.save` writes the signals. Raises InputError for
+    a load beyond the range.
+    """
+    from pneutouch.evaluation.evaluate import evaluate
+    from pneutouch.mechanics.models import model_options
+    from pneutouch.workflows.respond import Load, run_respond
+    from pneutouch.workflows.respond_document import document, write_respond
+
+    sizes = {"step_N": step_N, "step_mm": step_mm, "peak_N": peak_N, "peak_mm": peak_mm}
+    given = {key: value for key, size in sizes.items() if (value := number_of(size, key)) is not None}
+    frequency_Hz, length_s = number_of(sine_Hz, "sine_Hz"), number_of(duration_s, "duration_s")
+    wrong = [key for key in given if key.startswith("step") == (sine_Hz is not None)]
+    if wrong or len(given) > 1:
+        remedy = "give one of `peak_N` and `peak_mm` with `sine_Hz`, or one of `step_N` and `step_mm` without"
+        raise InputError("these sizes do not go together", key=(wrong or list(given))[0], remedy=remedy)
+    key, size = next(iter(given.items()), ("", None))
+    with named_by_keyword():
+        evaluation = evaluate(source_of(design), **model_options(model, None))
+        run = run_respond(evaluation, Load(size, key.endswith("mm"), frequency_Hz, length_s), seed)
+    return Result(f"Response of {evaluation.scene.name}", document(run), partial(write_respond, run))
+
+
+def fit_material(
+    data: str | Path | Sequence[str | Path],
+    name: str,
+    *,
+    like: str | None = None,
+    density_g_per_cm3: float | None = None,
+    shore_a: Sequence[float] = (),
+    gauge_length_mm: float | None = None,
+    width_mm: float | None = None,
+    thickness_mm: float | None = None,
+    puck_mm: tuple[float, float] | None = None,
+    bonded: bool = False,
+    stretch_to: float | None = None,
+    slack: float | None = None,
+    lab: str | None = None,
+) -> Result:
+    """Fit a hyperelastic law to a tensile test (one file a specimen) or, with ``puck_mm``, to a puck test.
+
+    ``puck_mm`` is its diameter and thickness. Nothing is written before `Result.save`, which writes the material file
+    into the user's folder and plot and figures into the folder given. Raises InputError for data that make no law.
+    """
+    from pneutouch.bench.tensile.puck import PuckSize
+    from pneutouch.bench.tensile.read import SpecimenSize
+    from pneutouch.workflows.fit_material import document
+    from pneutouch.workflows.fit_material import fit_material as run
+    from pneutouch.workflows.fitted_material import FitOptions, MaterialFacts
+
+    files = paths_of(data, "data", "give the path of a table, or a list of such paths")
+    size = SpecimenSize(gauge_length_mm, width_mm, thickness_mm)
+    puck = None if puck_mm is None else PuckSize(*puck_mm, bonded)
+    facts = MaterialFacts(like, density_g_per_cm3, tuple(shore_a), lab)
+    with named_by_keyword():
+        fitted = run(FitOptions(files, name, size, puck, stretch_to, slack, facts))
+    return Result(f"Material {name}", document(fitted), partial(_written, fitted))
+
+
+def _written(fitted: FittedMaterial, out: Path) -> Path:
+    from pneutouch.workflows.fit_material import write_material
+
+    return write_material(fitted, out)[0]

@@ -1,35 +1,130 @@
-"""Many designs: those that meet a target, and all those of a grid."""
+"""Many designs: those that meet a target, and all those of a grid.
+
+Reasons why a selection found no design, in short lines made from its document.
+
+A design that is given as an object in place of its name.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.api import show
 from pneutouch.api.design import Design, source_of
 from pneutouch.api.fields import WHERE, changes, named_by_keyword, path_of
-from pneutouch.api.given_base import given_base, with_base_named
-from pneutouch.api.unmet import unmet_lines
-from pneutouch.catalogue import DesignSource, ResolvedDesign
-from pneutouch.catalogue.examples import read_given
-from pneutouch.errors import InputError
-from pneutouch.holding import temporary_folder
+from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
+from pneutouch.catalogue.library import read_given
+from pneutouch.errors import InputError, PneutouchError
+from pneutouch.output.new import new_changed
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, validate
 from pneutouch.spec.target import Target
+from pneutouch.stopping import temporary_folder
 from pneutouch.wording import counted
+from pneutouch.workflows.select.checks import assigned
 from pneutouch.workflows.select.document import document
-from pneutouch.workflows.select.gauged import select as run_select
 from pneutouch.workflows.select.graded import select_graded
 from pneutouch.workflows.select.graded_document import graded_document
-from pneutouch.workflows.select.passing import assigned
+from pneutouch.workflows.select.processes import select as run_select
 from pneutouch.workflows.select.processes import select_processes
 
 if TYPE_CHECKING:
     import xarray
 
     from pneutouch.parts import Assembly
+
+
+def unmet_lines(document: dict[str, Any]) -> list[str]:
+    """The nearest design and its misses, the requirements whose removal admits one, and the designs that a check
+    rejects."""
+    if "processes" in document:
+        by_process = document["processes"].items()
+        return [
+            *(f"{process}: {line}" for process, one in by_process if not one["met"] for line in unmet_lines(one)),
+            *(f"{process}: {why}" for process, why in document["left_out"].items()),
+        ]
+    if "nearest_constant_mix" in document:
+        return _of_grade(document)
+    lines = [f"rejected: {_size(each['design'])}: {each['reason']}" for each in document["rejected"]]
+    nearest = document["nearest"]
+    if nearest is not None:
+        missed = [
+            f"{name}{', not known' if percent is None else f' by {percent:.3g} %'}"
+            for name, percent in nearest["misses_percent"].items()
+        ]
+        lines.append(f"nearest: {_size(nearest)}: misses {', '.join(missed) or 'nothing once rounded'}")
+    if not document["rejected"]:
+        dropped = document["dropped_requirements"]
+        lines += [f"drop the requirement on {each['requirement']}: {each['attainable']}" for each in dropped]
+        lines += [] if dropped else ["no design fits with any single requirement dropped"]
+    return lines
+
+
+def _of_grade(document: dict[str, Any]) -> list[str]:
+    """The nearest grade: each share of a tolerance or limit that is used by more than the whole."""
+    if document["rejected"]:
+        return [f"rejected: {document['rejected']}"]
+    best = document["design"]
+    used = ", ".join(f"{name} by {100 * (share - 1):.3g} %" for name, share in best["share_used"].items() if share > 1)
+    return [f"nearest grade: {best['reason'] or f'beyond what is allowed: {used}'}"]
+
+
+def _size(design: dict[str, Any]) -> str:
+    radius_mm, wall_mm = show.short(design["inner_radius_mm"]), show.short(design["wall_thickness_mm"])
+    return f"{design['material']}, R0 {radius_mm} mm, t0 {wall_mm} mm"
+
+
+def with_base_named(fields: Mapping[str, Any]) -> tuple[dict[str, Any], Design | None]:
+    """Keyword arguments of a target with a base that is a design named by its name, and that design."""
+    setting = fields.get("setting")
+    inner = setting.get("base") if isinstance(setting, Mapping) else None
+    if isinstance(inner, Design) and isinstance(setting, Mapping):
+        return {**fields, "setting": {**setting, "base": inner.name}}, inner
+    base = fields.get("base")
+    return ({**fields, "base": base.name}, base) if isinstance(base, Design) else (dict(fields), None)
+
+
+class GivenBase:
+    """A library that has a design by its name, and the words in place of the file that holds it meanwhile."""
+
+    def __init__(self, design: Design | None, folder: Path) -> None:
+        self._folder, self._design, self.library = folder, design, Library.default()
+        if design is not None:
+            new_changed(design.source, design.name, folder / "designs")
+            self.library = Library((folder, *self.library.folders))
+
+    def named(self, document: dict[str, Any]) -> dict[str, Any]:
+        """A document of a selection whose ``base`` names the design."""
+        if "processes" in document:
+            return {**document, "processes": {key: self.named(one) for key, one in document["processes"].items()}}
+        if self._design is None or not self._holds(document["base"]):
+            return document
+        where = self._design.source.where
+        return {**document, "base": self._design.name if where == WHERE else where}
+
+    def blame(self, error: PneutouchError) -> None:
+        """Name the design's own file, or none, in an error."""
+        for each in (error, *error.others):
+            if self._design is not None and each.file is not None and self._holds(each.file):
+                each.file = self._design.source.where
+
+    def _holds(self, file: str) -> bool:
+        return Path(file).is_relative_to(self._folder)
+
+
+@contextmanager
+def given_base(design: Design | None) -> Iterator[GivenBase]:
+    """The library of a selection on a design; None: as it is."""
+    with temporary_folder() as folder:
+        base = GivenBase(design, folder)
+        try:
+            yield base
+        except PneutouchError as error:
+            base.blame(error)
+            raise
 
 
 class Selection(show.Shown):
@@ -123,7 +218,7 @@ def sweep(
 
     from pneutouch.workflows.sweep import plan_of_grid
     from pneutouch.workflows.sweep import sweep as run
-    from pneutouch.workflows.sweep.run import ComputeResources
+    from pneutouch.workflows.sweep.execute import ComputeResources
 
     with named_by_keyword(), temporary_folder() as folder:
         values = changes(DesignFile, fields)

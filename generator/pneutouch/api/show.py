@@ -1,4 +1,7 @@
-"""Text and pictures of objects in a notebook: at most ten lines of text, or a table with a picture."""
+"""Text and pictures of objects in a notebook: at most ten lines of text, or a table with a picture.
+
+Names of the designs, calibrations, materials, printers and gauges that a user can give.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
 
+from pneutouch.catalogue.listing import listing
 from pneutouch.spec.fields import declarations
 
 if TYPE_CHECKING:
     from pneutouch.parts import Assembly
+
 
 LINES, WIDTH, ROWS = 10, 110, 40
 """Most lines of a text, their most letters, and most rows of a table in a notebook."""
@@ -102,3 +107,46 @@ def table_rows(file: BaseModel) -> list[tuple[str, str]]:
         for name, content in file
         if isinstance(content, BaseModel)
     ]
+
+
+class Listing(Shown, dict[str, str]):
+    """Titles by name."""
+
+    def _head(self) -> str:
+        return f"{len(self)} names"
+
+    def _rows(self) -> list[Any]:
+        return list(self.items())
+
+
+def designs() -> Listing:
+    """The designs: the user's and the shipped ones."""
+    return _listed("designs")
+
+
+def materials() -> Listing:
+    """The cured materials."""
+    return _listed("materials")
+
+
+def calibrations() -> Listing:
+    """The calibrations of sensors, which ``design.replace(calibration=NAME)`` takes."""
+    return _listed("calibrations")
+
+
+def printers() -> Listing:
+    """The printers."""
+    return _listed("printers")
+
+
+def gauges() -> Listing:
+    """The pressure gauges, which ``design.replace(gauge=NAME)`` takes."""
+    return _listed("gauges")
+
+
+def _listed(kind: str) -> Listing:
+    """Titles by name; for a file that cannot be read its error in place of the title."""
+    listed = Listing()
+    for entry in listing(kind)[kind]:
+        listed[entry["name"]] = f"cannot be read: {entry['error']}" if "error" in entry else entry["title"]
+    return listed

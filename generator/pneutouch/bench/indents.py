@@ -6,9 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.bench.blocks import GAP
-from pneutouch.bench.contact import BEFORE, Baseline, ContactOnset, baseline, first_baseline, onsets, threshold
+from pneutouch.bench.first_contact import (
+    BEFORE,
+    Baseline,
+    ContactOnset,
+    Excursion,
+    baseline,
+    excursions,
+    first_baseline,
+    onsets,
+    threshold,
+)
 from pneutouch.bench.record import Blocks, MeasuredIndentation
-from pneutouch.bench.segment import Excursion, excursions
 
 READ, READ_LONGEST = 0.25, 1.0
 """The read window is the last quarter of the hold, at most its last second: our choice, the paper does not state it. A

@@ -6,23 +6,28 @@ The names are loaded when they are first used: to list names needs none of what 
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pneutouch.catalogue.campaign_design import known_design
-    from pneutouch.catalogue.library import KINDS, Library
-    from pneutouch.catalogue.places import user_folder
+    from pneutouch.catalogue.library import KINDS, Library, user_folder
     from pneutouch.catalogue.scene import (
         DEFAULT,
         DesignSource,
         ResolvedDesign,
         check_scene,
+        known_design,
         load_scene,
         split_calibration,
     )
 
 _HOMES = {
-    "campaign_design": ("known_design",),
-    "library": ("KINDS", "Library"),
-    "places": ("user_folder",),
-    "scene": ("DEFAULT", "DesignSource", "ResolvedDesign", "check_scene", "load_scene", "split_calibration"),
+    "library": ("KINDS", "Library", "user_folder"),
+    "scene": (
+        "DEFAULT",
+        "DesignSource",
+        "ResolvedDesign",
+        "check_scene",
+        "known_design",
+        "load_scene",
+        "split_calibration",
+    ),
 }
 
 __all__ = [

@@ -1,29 +1,122 @@
 """The library: every kind of thing is a folder of TOML files, and a file's name is the thing's name.
 
 Files in the user's folder come before the shipped ones, so a lab's own printer profile overrides ours.
+
+A library that reads every file once: the points of a sweep name the same few materials, printers and parts, and a
+selection needs every resin several times.
+
+Folders of the files: the user's, and the shipped one.
+
+The shipped examples of files that commands take, other than designs: targets, trays, sweeps and campaigns.
+
+The elastomers of a library that a design is compared with.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from pydantic import BaseModel
 
-from pneutouch.catalogue.examples import example_remedy
-from pneutouch.catalogue.places import PACKAGE, shipped_root, user_folder
 from pneutouch.errors import InputError, nearest, one_line
 from pneutouch.spec.design import DesignFile
-from pneutouch.spec.files import is_file
+from pneutouch.spec.files import exists, is_file
 from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.material import Material
 from pneutouch.spec.mixing import MixingCurve
 from pneutouch.spec.part import MOUNTS, PORTS, SEATS, Tube
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import read_toml, validate
+
+HOME = "PNEUTOUCH_HOME"
+"""Environment variable that names the user's folder."""
+
+IN_CHECKOUT = "user"
+"""The user's folder inside a checkout of the program, whose own ``designs`` are the shipped ones; git ignores it."""
+
+PACKAGE = Path(__file__).resolve().parents[1]
+_CHECKOUT = PACKAGE.parents[1]
+
+
+def shipped_root() -> Path:
+    """The folder of the shipped files, ``designs`` and ``printprofiles``: the installed data, else the checkout."""
+    installed = PACKAGE / "data"
+    return installed if installed.is_dir() else _CHECKOUT
+
+
+def user_folder() -> Path:
+    """The folder that holds the user's ``designs``, ``calibrations`` and ``printprofiles``.
+
+    It is ``$PNEUTOUCH_HOME``, else the working folder; in a checkout of the program, whose folders of these names are
+    shipped, it is ``user/``. Relative where it is found from the working folder, so that messages stay short.
+    """
+    named = os.environ.get(HOME)
+    if named:
+        return Path(named).expanduser()
+    return Path(IN_CHECKOUT) if _is_checkout(Path()) else Path()
+
+
+def _is_checkout(folder: Path) -> bool:
+    """True if a folder is a checkout of the program: this one, or another one if the program is installed."""
+    return (folder / "generator/pneutouch/catalogue" / Path(__file__).name).is_file()
+
+
+FOLDER = "docs/examples"
+
+_KINDS = {"target": "target", "entry": "tray", "grid": "sweep", "point": "sweep", "runs": "campaign"}
+"""Kind of file by a key that only files of this kind have."""
+
+COMMANDS = {"target": "select", "tray": "tray", "sweep": "sweep", "campaign": "characterize"}
+"""The command that takes a kind."""
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """An example: its file, the kind of file it is, and its title, which is its first line."""
+
+    path: Path
+    kind: str
+    title: str
+
+
+def examples() -> dict[str, Example]:
+    """The shipped examples by name."""
+    return {path.stem: _example(path) for path in sorted((shipped_root() / FOLDER).glob("*.toml"))}
+
+
+def example_remedy(name: str) -> str | None:
+    """Command that copies the example of this name, given when a file was expected; None if there is no such
+    example."""
+    name = name.removesuffix(".toml")
+    example = examples().get(name)
+    if example is None:
+        return None
+    what = f"a {example.kind} file for {COMMANDS[example.kind]}"
+    return f"the example of this name, {what}, is copied by `pneutouch new --from {name}`"
+
+
+def read_given(path: Path, otherwise: str) -> dict[str, Any]:
+    """Content of a TOML file that a user gave. Raises InputError; for a missing file its remedy is the example of this
+    name, if there is one, else ``otherwise``."""
+    try:
+        return read_toml(path)
+    except InputError as error:
+        if not exists(path):
+            error.remedy = example_remedy(str(path)) or otherwise
+        raise
+
+
+def _example(path: Path) -> Example:
+    content = read_toml(path)
+    kind = next(kind for key, kind in _KINDS.items() if key in content)
+    title, _, _ = path.read_text(encoding="utf-8").partition("\n")[0].removeprefix("# ").partition(": ")
+    return Example(path, kind, title)
+
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -160,3 +253,45 @@ class Library:
 def is_specimen(content: dict[str, Any]) -> bool:
     """True if the content of a design file is that of a specimen: it has a [block] table."""
     return "block" in content
+
+
+@dataclass(frozen=True)
+class CachedLibrary(Library):
+    """A library over ``folders`` that do not change while it is used; the objects that it returns are immutable and
+    shared."""
+
+    _files: dict[str, dict[str, Path]] = field(default_factory=dict, repr=False, compare=False)
+    _things: dict[tuple[str, str], Any] = field(default_factory=dict, repr=False, compare=False)
+
+    def paths(self, kind: str) -> dict[str, Path]:
+        """Names of one kind with their files, sorted by name."""
+        if kind not in self._files:
+            self._files[kind] = super().paths(kind)
+        return self._files[kind]
+
+    def load(self, kind: str, name: str, *, file: str | None = None, key: str | None = None) -> Any:
+        """Load one thing by name; raises InputError as a library does."""
+        if (kind, name) not in self._things:
+            self._things[kind, name] = super().load(kind, name, file=file, key=key)
+        return self._things[kind, name]
+
+
+Resins = dict[str, Material]
+"""Materials by name."""
+
+
+def elastomers(library: Library, casting: bool = False) -> Resins:
+    """Every printed elastomer of a library, by name; with ``casting`` those that are cast as well.
+
+    A cast design needs both: the paper measured printed ones alone, and the model's error is taken from them.
+    """
+    materials = library.all("materials", Material)
+    soft = {name: material for name, material in materials.items() if material.kind == "elastomer"}
+    return {name: material for name, material in soft.items() if casting or not material.is_cast}
+
+
+def alike(printer: Printer, resins: Resins) -> Resins:
+    """Resins made as the membrane of a printer is: all printed ones, or those of a casting profile."""
+    if not printer.is_casting:
+        return {name: material for name, material in resins.items() if not material.is_cast}
+    return {name: material for name, material in resins.items() if printer.mode_for(material) is not None}

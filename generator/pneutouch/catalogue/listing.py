@@ -2,15 +2,14 @@
 
 from typing import Any
 
-from pneutouch.catalogue.examples import examples
-from pneutouch.catalogue.library import KINDS, Library
+from pneutouch.catalogue.library import KINDS, Library, examples
 from pneutouch.errors import InputError, nearest
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.material import Material
 from pneutouch.spec.mixing import MixingCurve
-from pneutouch.spec.names import name_of
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.specimen import Specimen
+from pneutouch.spec.values import name_of
 
 _GROUPS = {
     "designs": ["designs"],

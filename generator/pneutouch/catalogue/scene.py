@@ -1,4 +1,7 @@
-"""A scene: a design file with every name in it resolved, and checked against one another."""
+"""A scene: a design file with every name in it resolved, and checked against one another.
+
+The design that a campaign names, which must be there.
+"""
 
 from __future__ import annotations
 
@@ -7,22 +10,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pneutouch.catalogue.cast_ring import check_cast_ring
-from pneutouch.catalogue.gauge import named_gauge
 from pneutouch.catalogue.library import Library
 from pneutouch.catalogue.mixture import mixed_material
-from pneutouch.catalogue.named_parts import mount_of, tube_of
-from pneutouch.catalogue.runs import cannot_run
+from pneutouch.catalogue.parts import check_cast_ring, mount_of, named_gauge, tube_of
+from pneutouch.catalogue.printers import cannot_run
 from pneutouch.errors import InputError, shown
+from pneutouch.spec.campaign import CAMPAIGN, Campaign, design_of
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import MaterialKind
 from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
-from pneutouch.spec.names import name_of
 from pneutouch.spec.part import AnyMount, AnySeat, CastRing, GluedFlange, OnePiece, Port, Tube
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.spec.read import Changes, override, read_toml, validate
+from pneutouch.spec.values import name_of
 
 if TYPE_CHECKING:
     from pneutouch.spec.calibration import SensorCalibration
@@ -292,3 +294,20 @@ def _check_calibration(scene: ResolvedDesign) -> None:
             value=name,
             remedy="calibrate a sensor of this membrane, or take the calibration's resin, radius and wall",
         )
+
+
+def known_design(campaign: Campaign, folder: Path, library: Library) -> str | None:
+    """The design that a campaign names, as a command takes it; None if it names none.
+
+    Raises InputError for one that is not there, with the campaign's file and key.
+    """
+    name = design_of(campaign, folder)
+    if name is not None:
+        try:
+            DesignSource.of(name, library)
+        except InputError as error:
+            # An error on what is in the design's file names that file.
+            if error.file is None:
+                error.file, error.key, error.value = str(folder / CAMPAIGN), "design", campaign.design
+            raise
+    return name

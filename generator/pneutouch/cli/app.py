@@ -10,12 +10,11 @@ import typer
 
 from pneutouch import __version__
 from pneutouch.cli.commands import CHANGES, Commands
-from pneutouch.cli.complete import assignment, names
-from pneutouch.cli.percent import error_in_percent
+from pneutouch.cli.complete import assignment, error_in_percent, names
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify, put
 from pneutouch.errors import ComputationError, InputError, PneutouchError
-from pneutouch.holding import refuse_stopped
+from pneutouch.stopping import refuse_stopped
 
 app = typer.Typer(
     cls=Commands,
@@ -223,7 +222,7 @@ def predict(
         if json:
             print_json(document)
         else:
-            from pneutouch.cli.text import prediction_text
+            from pneutouch.cli.prediction_text import prediction_text
 
             echo(prediction_text(document))
 
@@ -241,7 +240,7 @@ def list_(
     """List designs, specimens, examples, calibrations, materials, mixing curves, printers, gauges and parts."""
     with reporting():
         from pneutouch.catalogue.listing import listing
-        from pneutouch.cli.text import listing_text
+        from pneutouch.cli.prediction_text import listing_text
 
         content = listing(kind)
         if json:

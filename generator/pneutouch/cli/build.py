@@ -28,14 +28,13 @@ from pneutouch.cli.app import (
     reporting,
 )
 from pneutouch.cli.complete import names
-from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, notify
+from pneutouch.cli.terminal import echo, notify, report_next, set_words
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.evaluate import Evaluation
     from pneutouch.printability import Finding
-    from pneutouch.workflows.build.voxels import VoxelPlan
+    from pneutouch.workflows.build_voxels import VoxelPlan
 
 _FLAGS = {
     "set_": "--set",
@@ -143,7 +142,7 @@ def check(
                 findings = [*evaluation.findings, *(evaluation.deep_findings() if deep else [])]
                 curves = curves_document(evaluation)
                 if voxels:
-                    from pneutouch.workflows.build.voxels import plan_voxels
+                    from pneutouch.workflows.build_voxels import plan_voxels
 
                     findings += plan_voxels(evaluation.assembly).findings
         broken = any(finding.severity == "error" for finding in findings)
@@ -152,7 +151,7 @@ def check(
             listed = [f.document() for f in findings]
             print_json({"design": design, "passed": not broken, "findings": listed, **by_curve})
         else:
-            from pneutouch.cli.text import findings_text
+            from pneutouch.cli.prediction_text import findings_text
 
             echo(findings_text(findings))
             if not broken:
@@ -173,7 +172,7 @@ def _evaluated(
     from pneutouch.catalogue import DesignSource, Library
     from pneutouch.evaluation.evaluate import evaluate
     from pneutouch.mechanics.models import model_options
-    from pneutouch.spec.names import plain_name
+    from pneutouch.spec.values import plain_name
 
     source = DesignSource.of(design, Library.default())
     source = source if name is None else replace(source, name=plain_name(name))
@@ -183,7 +182,7 @@ def _evaluated(
 def _calibrated_name(design: str, changed: dict[str, Any]) -> str | None:
     """Name of the build of a calibrated sensor, which is not the design's; None without calibration."""
     from pneutouch.catalogue import DesignSource, Library
-    from pneutouch.workflows.build.naming import calibrated_name
+    from pneutouch.workflows.build import calibrated_name
 
     return calibrated_name(DesignSource.of(design, Library.default()), changed)
 
@@ -207,8 +206,8 @@ def _build_specimen(design: str, out: Path, changed: dict[str, Any], name: str |
 
 def _build_sensor(evaluation: Evaluation, out: Path) -> tuple[Path, list[Finding]]:
     from pneutouch.output.files import check_writable
-    from pneutouch.workflows.build.run import STEPS
-    from pneutouch.workflows.build.run import build as run
+    from pneutouch.workflows.build import STEPS
+    from pneutouch.workflows.build import build as run
 
     check_writable(out / evaluation.scene.name)
     with _progress(STEPS) as report:
@@ -220,7 +219,7 @@ def _report(findings: Sequence[Finding], folder: Path) -> None:
     """Report on stderr the findings, and which files a build left out, and why: STEP where CadQuery is missing."""
     from json import loads
 
-    from pneutouch.cli.text import finding_line
+    from pneutouch.cli.prediction_text import finding_line
     from pneutouch.output.files import MANIFEST
 
     for finding in findings:
@@ -234,7 +233,7 @@ def _report(findings: Sequence[Finding], folder: Path) -> None:
 
 def _planned(evaluation: Evaluation, out: Path, mode: str | None) -> VoxelPlan:
     """The plan of the voxel stack; its errors are reported before anything is built."""
-    from pneutouch.workflows.build.voxels import check_stack_folder, plan_voxels, stack_folder
+    from pneutouch.workflows.build_voxels import check_stack_folder, plan_voxels, stack_folder
 
     plan = plan_voxels(evaluation.assembly, mode=mode)
     plan.refuse()
@@ -243,8 +242,8 @@ def _planned(evaluation: Evaluation, out: Path, mode: str | None) -> VoxelPlan:
 
 
 def _write_voxels(plan: VoxelPlan, evaluation: Evaluation, out: Path) -> Path:
-    from pneutouch.workflows.build.run import input_hash
-    from pneutouch.workflows.build.voxels import write_voxels
+    from pneutouch.workflows.build import input_hash
+    from pneutouch.workflows.build_voxels import write_voxels
 
     with bar("slicing voxels") as report:
         folder, notes = write_voxels(plan, out, input_hash(evaluation), report)
@@ -257,9 +256,8 @@ def _from_3mf(file: str, context: typer.Context, name: str | None) -> Evaluation
     """Evaluate the recipe of a 3MF; reports on stderr the programs and libraries that had another version when it was
     made."""
     from pneutouch.export.threemf_read import read_threemf
-    from pneutouch.output.recipe import evaluate_recipe
-    from pneutouch.output.recipe_read import other_versions, read_recipe
-    from pneutouch.spec.names import plain_name
+    from pneutouch.output.recipe import evaluate_recipe, other_versions, read_recipe
+    from pneutouch.spec.values import plain_name
 
     why = "a 3MF: its recipe fixes the design and the model; build from a design file to change them"
     refuse_flags(context, _FLAGS, why, file)

@@ -1,18 +1,23 @@
-"""``pneutouch calibrate``: fit the model to the sensor in hand."""
+"""``pneutouch calibrate``: fit the model to the sensor in hand.
+
+A calibration as text for people.
+"""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
 from pneutouch.cli.complete import names
-from pneutouch.cli.declared import with_fields
-from pneutouch.cli.next_step import report_next, set_words
-from pneutouch.cli.reading import READING_FIELDS, ColumnsOption, reading_of, reading_text
+from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, reading_of, reading_text, with_fields
 from pneutouch.cli.simulate import numbers
-from pneutouch.cli.terminal import echo, notify
+from pneutouch.cli.terminal import echo, notify, report_next, set_words, table_text
 from pneutouch.spec.campaign import Campaign
+from pneutouch.wording import counted
+
+if TYPE_CHECKING:
+    from pneutouch.workflows.calibrate.record import EstimateRecord, OutcomeRecord, ResponseRecord
 
 
 @app.command()
@@ -53,7 +58,7 @@ def calibrate(
     """Fit modulus, wall, dead volume and contact offset to a sensor's runs."""
     with reporting():
         from pneutouch.cli.progress import bar
-        from pneutouch.workflows.calibrate.run import CalibrationOptions, run_calibration
+        from pneutouch.workflows.calibrate.calibrate import CalibrationOptions, run_calibration
 
         held = numbers("--hold-out", ",".join(hold_out or ()))
         options = CalibrationOptions(
@@ -67,8 +72,6 @@ def calibrate(
         if json:
             print_json(document)
         else:
-            from pneutouch.cli.calibrate_text import calibration_text
-
             echo(calibration_text(document))
             plain, name = outcome.design_given, document["calibration"]
             words = ("compare", plain, f"{plain}@{name}") if name else ("predict", plain)
@@ -77,3 +80,53 @@ def calibrate(
             raise typer.Exit(3)
         if document["calibration"] is None:
             raise typer.Exit(1)
+
+
+def calibration_text(document: "OutcomeRecord") -> str:
+    """The estimates and the design's values, the goodness of the fit, warnings, notes, and the files written."""
+    from pneutouch.workflows.characterize.load import same_failures
+
+    rows = [
+        [e["key"], f"{e['value']:.4g}", _interval(e), f"designed {e['designed']:.4g}"] for e in document["estimates"]
+    ]
+    fit = document["fit"]
+    head = (
+        f"{document['sensor']}, {document['design']}: {counted(document['runs'], 'curve')}, "
+        f"{counted(document['injections'], 'injection')}, {counted(fit['points_used'], 'value')}"
+    )
+    chi = fit["chi_squared_per_degree"]
+    parts = [
+        head,
+        table_text([], rows),
+        "" if chi is None else f"chi-squared per degree of freedom: {chi:.2f}",
+        _response(document["response"]),
+        "\n".join(f"warning: {warning}" for warning in document["warnings"]),
+        "\n".join(f"note: {note}" for note in document["notes"]),
+        "\n".join(f"not used: {files}: {why}" for files, why in same_failures(document["failures"])),
+        "\n".join(f"written: {path}" for path in document["written"]),
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _response(response: "list[ResponseRecord]") -> str:
+    if not response:
+        return "no curves: the model's error in sensitivity stays that of the resin"
+    head = ["kPa", "force times", "pressure rise times", "sensitivity", "error left in it"]
+    rows = [
+        [
+            f"{row['driving_pressure_kPa']:g}",
+            f"{row['force_factor']:.4f}",
+            f"{row['pressure_factor']:.4f}",
+            f"{row['pressure_factor'] / row['force_factor'] - 1:+.1%}",
+            f"{row['sensitivity_error_relative']:.1%}",
+        ]
+        for row in response
+    ]
+    return f"correction of the fitted model (errors are standard uncertainties):\n{table_text(head, rows)}"
+
+
+def _interval(estimate: "EstimateRecord") -> str:
+    interval = estimate["interval_95"]
+    if interval is None:
+        return "on its bound, no interval" if estimate["on_bound"] else "no interval"
+    return f"95 %: {interval[0]:.4g} to {interval[1]:.4g}"

@@ -1,4 +1,7 @@
-"""``pneutouch characterize``: measured data to figures, compared with the predicted ones."""
+"""``pneutouch characterize``: measured data to figures, compared with the predicted ones.
+
+A characterization as text.
+"""
 
 from functools import partial
 from pathlib import Path
@@ -9,14 +12,14 @@ import typer
 from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
 from pneutouch.cli.commands import option
 from pneutouch.cli.complete import names
-from pneutouch.cli.declared import with_fields
-from pneutouch.cli.next_step import report_next, set_words
-from pneutouch.cli.reading import READING_FIELDS, ColumnsOption, reading_of, reading_text, reading_words
-from pneutouch.cli.terminal import echo, notify
+from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, reading_of, reading_text, reading_words, with_fields
+from pneutouch.cli.terminal import echo, notify, report_next, set_words
 from pneutouch.spec.campaign import Campaign
+from pneutouch.wording import SIMULATED
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.characterize.run import CharacterizationResult
+    from pneutouch.workflows.characterize.campaign import CharacterizationResult
+
 
 DesignOption = Annotated[
     str | None,
@@ -58,9 +61,9 @@ def characterize(
         from pneutouch.cli.progress import bar
         from pneutouch.errors import InputError, nearest
         from pneutouch.mechanics.models import USUAL
-        from pneutouch.workflows.characterize.reading import same_failures
-        from pneutouch.workflows.characterize.run import EVIDENCE, write
-        from pneutouch.workflows.characterize.run import characterize as run
+        from pneutouch.workflows.characterize.campaign import EVIDENCE, write
+        from pneutouch.workflows.characterize.campaign import characterize as run
+        from pneutouch.workflows.characterize.load import same_failures
 
         if evidence not in EVIDENCE:
             raise InputError(f"--evidence {evidence}: unknown.{nearest(evidence, EVIDENCE)}")
@@ -71,8 +74,6 @@ def characterize(
         if json:
             print_json({**outcome.document, "folder": str(folder)})
         else:
-            from pneutouch.cli.characterize_text import measured_text
-
             echo(measured_text(outcome.document))
             echo(f"\n{folder}")
         if outcome.read_as:
@@ -108,3 +109,52 @@ def _report_next(
         # The campaign's own assignments belong to the design that it names.
         given = [] if design else campaign.assignments
         report_next("compare", outcome.design_given, folder, *set_words([*given, *(set_ or ())]))
+
+
+def measured_text(document: dict[str, Any]) -> str:
+    """A table a group: measured with its interval, and the prediction; then the warnings."""
+    head = f"{document['title']}: measured on {document['design']}, predicted by {document['model']}"
+    lines = [head + (f"  {SIMULATED}" if document["simulated"] else "")]
+    for group in document["groups"]:
+        lines += ["", *_group(group)]
+    for entry in document["target"]:
+        word = {True: "met", False: "NOT met", None: "not decided"}[entry["passed"]]
+        lines.append(f"\ntarget {word}: {entry['what']}: required {entry['required']}, measured {entry['measured']}")
+    for change in document["ageing"]:
+        lines.append(
+            f"\nageing: {change['resin']}, {change['driving_pressure_kPa']:g} kPa, {change['age']}: "
+            f"{change['sensitivity_change_percent']:+.1f} %"
+        )
+    for entry in document["injections"]:
+        error = "" if entry["standard_error"] is None else f" ± {entry['standard_error']:.2g}"
+        lines.append(f"\n{entry['sensor']}: {entry['figure']} {entry['value']:.4g}{error} {entry['unit']}")
+    lines += _warnings(document["runs"])
+    lines += [f"\nquestion: {entry['file']}: {entry['question']} The run is used." for entry in document["questions"]]
+    return "\n".join(lines)
+
+
+def _warnings(runs: list[dict[str, Any]]) -> list[str]:
+    """Counts of the parts of the records that were left out, and of those that are noted but used."""
+    every = [warning for run in runs for warning in run["warnings"] if warning["kind"] != "note"]
+    left = sum(not warning["used"] for warning in every)
+    if not every:
+        return []
+    words = f"{left} doubtful parts of the records left out, {len(every) - left} noted and used"
+    return [f"\n{words}; see figures.json and evidence/"]
+
+
+def _group(group: dict[str, Any]) -> list[str]:
+    from pneutouch.bench.figures import BY_KEY
+
+    sensors = ", ".join(group["sensors"])
+    lines = [f"{group['resin']}, {group['age']}, {group['driving_pressure_kPa']:g} kPa: {sensors}"]
+    if group["why_not_predicted"]:
+        lines.append(f"  not predicted: {group['why_not_predicted']}")
+    for key, entry in group["figures"].items():
+        figure = BY_KEY[key]
+        interval = "" if entry["low"] is None else f"{entry['low']:.4g} to {entry['high']:.4g}"
+        line = f"  {figure.name:<48} {entry['value']:>9.4g}  {interval:<22} {figure.unit}"
+        if "predicted" in entry:
+            line += f"  (predicted {entry['predicted']['value']:.4g})"
+        lines.append(line.rstrip())
+    return lines

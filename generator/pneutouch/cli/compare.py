@@ -19,8 +19,7 @@ from pneutouch.cli.app import (
     reporting,
 )
 from pneutouch.cli.complete import names
-from pneutouch.cli.next_step import report_next, set_words
-from pneutouch.cli.terminal import echo
+from pneutouch.cli.terminal import echo, report_next, set_words
 
 
 @app.command()

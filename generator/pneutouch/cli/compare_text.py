@@ -1,23 +1,23 @@
 """Output of ``compare`` for people."""
 
-from pneutouch.cli.table import table_text
+from pneutouch.cli.terminal import table_text
 from pneutouch.evaluation.comparison_record import ColumnRecord, ComparisonRecord, RowRecord
-from pneutouch.report.compared import words
+from pneutouch.report import comparison_words
 
 
 def comparison_text(document: ComparisonRecord) -> str:
     """Differences, every figure with its interval, those that exceed their uncertainty, and the assumptions."""
-    labels = words.labels(document)
+    labels = comparison_words.labels(document)
     lines = [f"{one['label']}: {one['kind']}{_from(one)}" for one in document["compared"]]
-    lines += words.marks(document)
-    inputs = words.input_rows(document)
+    lines += comparison_words.marks(document)
+    inputs = comparison_words.input_rows(document)
     if inputs:
         lines += ["", table_text(["inputs that differ", *labels], inputs)]
-    for pressure_kPa in words.pressures(document):
+    for pressure_kPa in comparison_words.pressures(document):
         rows = [_row(row) for row in document["figures"] if row["driving_pressure_kPa"] == pressure_kPa]
-        head = [words.heading(pressure_kPa), *labels, *_difference_heads(labels)]
+        head = [comparison_words.heading(pressure_kPa), *labels, *_difference_heads(labels)]
         lines += ["", table_text(head, rows)]
-    lines += ["", *words.summary(document), ""]
+    lines += ["", *comparison_words.summary(document), ""]
     return "\n".join([*lines, document["criterion"], *document["notes"]])
 
 
@@ -30,9 +30,9 @@ def _from(one: ColumnRecord) -> str:
 
 
 def _row(row: RowRecord) -> list[str]:
-    values = [f"{value} ({interval})" if interval else value for value, interval in words.figure_cells(row)]
+    values = [f"{value} ({interval})" if interval else value for value, interval in comparison_words.figure_cells(row)]
     differences = [
         f"{percent} ({interval}): {word}" if interval else f"{percent}: {word}" if percent != word else word
-        for percent, interval, word in words.difference_cells(row)
+        for percent, interval, word in comparison_words.difference_cells(row)
     ]
-    return [words.figure_name(row), *values, *differences]
+    return [comparison_words.figure_name(row), *values, *differences]

@@ -1,4 +1,7 @@
-"""``pneutouch coupons``: test prints, and what a lab measured on them."""
+"""``pneutouch coupons``: test prints, and what a lab measured on them.
+
+Measurements of coupons, as text for people.
+"""
 
 from __future__ import annotations
 
@@ -9,12 +12,12 @@ import typer
 
 from pneutouch.cli.app import JsonOption, app, print_json, reporting
 from pneutouch.cli.complete import coupon_names, names
-from pneutouch.cli.next_step import report_next
 from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo
+from pneutouch.cli.terminal import echo, report_next, table_text
 
 if TYPE_CHECKING:
     from pneutouch.workflows.coupons.order import CouponOptions
+
 
 _FLAGS = {
     "profile": "--profile",
@@ -99,8 +102,6 @@ def _enter(path: Path, out: Path | None, given: dict[str, Any], json: bool) -> N
     if json:
         print_json(document)
     else:
-        from pneutouch.cli.coupons_text import results_text
-
         echo(results_text(document))
 
 
@@ -124,3 +125,42 @@ def _options(given: dict[str, Any]) -> CouponOptions:
 def _words(given: list[str] | None) -> list[str]:
     """Words of a flag that may be repeated or hold several, parted by commas."""
     return [word.strip() for text in given or [] for word in text.split(",") if word.strip()]
+
+
+def results_text(document: dict[str, Any]) -> str:
+    """The figures, what each profile changes, the files written, and remarks."""
+    figures = [
+        [
+            f["about"],
+            f["name"],
+            f"{f['value']:.4g}",
+            "" if f["spread"] is None else f"± {f['spread']:.2g}",
+            _count(f["count"]),
+        ]
+        for f in document["figures"]
+    ]
+    changes = [
+        [change["key"], _shown(change["before"]), "->", _shown(change["after"])] for change in document["changes"]
+    ]
+    parts = [
+        table_text([], figures),
+        table_text([], changes),
+        "\n".join(f"written: {path}" for path in document["written"]),
+        "\n".join(f"note: {note}" for note in document["notes"]),
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _count(count: int | None) -> str:
+    return "" if count is None else f"n = {count}"
+
+
+def _shown(quantity: dict[str, Any] | None) -> str:
+    """The number of a quantity, or the least size of a feature."""
+    if quantity is None:
+        return "not known"
+    if "recommended" in quantity:
+        return f"{quantity['least']:g}" if "least" in quantity else "not known"
+    if "value" in quantity:
+        return f"{quantity['value']:g}"
+    return f"{quantity['low']:g} to {quantity['high']:g}"

@@ -1,4 +1,7 @@
-"""``pneutouch predict DESIGN --for FIGURE=VALUE``: the driving pressure that gives a figure."""
+"""``pneutouch predict DESIGN --for FIGURE=VALUE``: the driving pressure that gives a figure.
+
+Driving pressures as text.
+"""
 
 from __future__ import annotations
 
@@ -8,9 +11,9 @@ from typing import Any
 
 import typer
 
-from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, put
+from pneutouch.cli.terminal import echo, put, report_next, set_words, table_text
+from pneutouch.rounding import tenths_below
 
 
 def report_driving(
@@ -40,8 +43,6 @@ def report_driving(
     if json:
         put(json_bytes(document).decode())
     else:
-        from pneutouch.cli.driving_text import schedule_text
-
         echo(schedule_text(document))
     _next(design, document, words)
     if not schedule.reached:
@@ -63,3 +64,136 @@ def _next(design: str, document: dict[str, Any], words: tuple[list[str] | None, 
     stiffness = ["--stiffness-least", f"{0.95 * missed['value']:g}", "--stiffness-most", f"{1.05 * missed['value']:g}"]
     known = flags.get(missed["requirement"])
     report_next("select", *(stiffness if known is None else [*known, value]), "--base", design)
+
+
+_UNITS = {"sensitivity_kPa_per_N": "kPa/N", "stiffness_N_per_mm": "N/mm", "force_range_N": "N"}
+_NAMES = {"sensitivity_kPa_per_N": "sensitivity", "stiffness_N_per_mm": "stiffness", "force_range_N": "force range"}
+
+_MINUTE, _HOUR = 60.0, 3600.0
+
+
+def schedule_text(document: dict[str, Any]) -> str:
+    """The answer: the reach of the pressure, a table of the tasks, and remarks on each."""
+    rated, top = document["rated_pressure_kPa"], document["highest_kPa"]
+    lines = [
+        f"{document['design']}: model {document['model']}, rated pressure {tenths_below(rated):.1f} kPa, "
+        f"computed to {top:.1f} kPa ({document['limit']})"
+    ]
+    for figure in dict.fromkeys(task["requirement"] for task in document["tasks"]):
+        lines.append(_reach(figure, document["reach"][figure]))
+    head = [
+        "task",
+        "required",
+        "driving kPa",
+        "band kPa (k = 2)",
+        "inject mL",
+        "move mL",
+        "kPa/K",
+        "1 % is",
+        "holds it",
+    ]
+    lines += ["", table_text(head, [_row(task) for task in document["tasks"]]), ""]
+    for task in document["tasks"]:
+        lines += _notes(task, document)
+    return "\n".join([*lines, *_legend(document)])
+
+
+def _required(task: dict[str, Any]) -> str:
+    return f"{_NAMES[task['requirement']]} {task['value']:g} {_UNITS[task['requirement']]}"
+
+
+def _reach(figure: str, reach: dict[str, Any] | None) -> str:
+    if reach is None:
+        return f"{_NAMES[figure]}: not known at any driving pressure"
+    ends = " to ".join(f"{reach[end]:.4g} (at {reach[f'{end}_at_kPa']:.3g} kPa)" for end in ("low", "high"))
+    within = ""
+    if "rated_low" in reach:
+        within = f"; up to the rated pressure {reach['rated_low']:.4g} to {reach['rated_high']:.4g}"
+    return f"{_NAMES[figure]} by pressure: {ends} {_UNITS[figure]}{within}"
+
+
+def _row(task: dict[str, Any]) -> list[str]:
+    first = [task["task"] or "-", _required(task)]
+    if not task["reached"]:
+        return [*first, "not reached", *["-"] * 6]
+    solution, gas = task["solutions"][0], task["gas"]
+    step = "-" if gas["step_kPa"] is None else f"{gas['step_kPa']:.2g} kPa"
+    return [
+        *first,
+        f"{solution['driving_pressure_kPa']:.2f}",
+        _band(solution["band"]),
+        f"{gas['injected_mL']:.3f}",
+        f"{gas['moved_mL']:+.3f}",
+        f"{gas['by_temperature_kPa_per_K']:.3f}",
+        step,
+        _time(gas),
+    ]
+
+
+def _band(band: dict[str, Any] | None) -> str:
+    if band is None:
+        return "not known"
+    low = f"{'<= ' if band['open_low'] else ''}{band['low_kPa']:.1f}"
+    return f"{low} to {'>= ' if band['open_high'] else ''}{band['high_kPa']:.1f}"
+
+
+def _time(gas: dict[str, Any]) -> str:
+    if gas["hold_s"] is None:
+        return "not known" if gas["loss_kPa_per_min"] is None else "no loss"
+    seconds = gas["hold_s"]
+    if seconds < 2 * _MINUTE:
+        return f"{seconds:.0f} s"
+    return f"{seconds / _MINUTE:.0f} min" if seconds < 2 * _HOUR else f"{seconds / _HOUR:.1f} h"
+
+
+def _notes(task: dict[str, Any], document: dict[str, Any]) -> list[str]:
+    """Warnings and more solutions of a task, or what to change where it is not reached."""
+    name = f"{task['task']}: " if task["task"] else ""
+    required = f"{name}{_required(task)}"
+    if not task["reached"]:
+        return _unreached(required, task)
+    first, *others = task["solutions"]
+    lines = []
+    if first["above_rating"]:
+        at, rated = first["driving_pressure_kPa"], document["rated_pressure_kPa"]
+        lines.append(f"warning: {required}: {at:.2f} kPa is above the rated pressure of {tenths_below(rated):.1f} kPa")
+    if others:
+        at = ", ".join(f"{one['driving_pressure_kPa']:.2f}" for one in others)
+        lines.append(f"{required}: also at {at} kPa; the lowest is taken")
+    band = first["band"]
+    if band is not None and (band["open_low"] or band["open_high"]):
+        advice = "calibrate it (pneutouch calibrate), then repeat with --calibration"
+        if not document["is_fitted"]:
+            advice = "measure it (pneutouch characterize): no calibration covers such a sensor"
+        lines.append(
+            f"{required}: its uncertainty exceeds what pressure can correct: the sensor in hand may not reach it; "
+            f"{advice}"
+        )
+    return lines
+
+
+def _unreached(required: str, task: dict[str, Any]) -> list[str]:
+    lines = [f"{required}: no driving pressure gives it"]
+    if task["possible_band"] is not None:
+        lines.append(f"  within the uncertainty the sensor in hand may have it at {_band(task['possible_band'])} kPa")
+    unit = _UNITS[task["requirement"]]
+    for one in task["offline"]:
+        change = f"{one['what']} {one['before']:.4g} to {one['after']:.4g}"
+        lines.append(f"  to change offline: {change}, which gives {one['predicted']:.4g} {unit}")
+    return lines if task["offline"] else [*lines, "  no single dimension within a factor of 2 gives it: see select"]
+
+
+def _legend(document: dict[str, Any]) -> list[str]:
+    """Meaning of the columns, and the basis of their numbers."""
+    gas = f"dead volume {document['dead_volume_mL']:.3f} mL"
+    leak = document["leak"]
+    lines = [
+        f"inject: air at ambient pressure ({document['ambient_pressure_kPa']:g} kPa) into the vented sensor, {gas}; "
+        "a regulator is set to the driving pressure instead",
+        f"kPa/K: change of the sealed pressure with temperature at {document['temperature_C']:g} C; "
+        "1 %: change of the driving pressure that changes the figure by 1 %",
+    ]
+    if "unknown" in leak:
+        return [*lines, f"how long a sealed cavity holds it is not known: {leak['unknown']} with --leak"]
+    rate = f"{leak['rate_kPa_per_min']:.3g} kPa/min at {leak['at_kPa']:.3g} kPa"
+    return [*lines, f"holds it: until the leak ({rate}, {leak['measured']}) has changed the figure by 1 %"]

@@ -1,4 +1,9 @@
-"""``pneutouch export-reader``: the sensor's force over pressure, for microcontrollers, for Python and as data."""
+"""``pneutouch export-reader``: the sensor's force over pressure, for microcontrollers, for Python and as data.
+
+Output of ``pneutouch export-reader`` for people.
+
+Output of ``pneutouch export-reader --simulator`` for people.
+"""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -20,7 +25,7 @@ from pneutouch.cli.app import (
     reporting,
 )
 from pneutouch.cli.complete import simulators
-from pneutouch.cli.terminal import echo, notify
+from pneutouch.cli.terminal import echo, notify, table_text
 
 
 @app.command("export-reader")
@@ -44,7 +49,7 @@ def export_reader(
         from pneutouch.cli.progress import bar
         from pneutouch.evaluation.evaluate import evaluate
         from pneutouch.mechanics.models import model_options
-        from pneutouch.workflows.reader import make_reader, write_reader
+        from pneutouch.workflows.export_reader import make_reader, write_reader
 
         options = model_options(model or (None if tolerance else "auto"), tolerance)
         if simulator is not None:
@@ -61,8 +66,6 @@ def export_reader(
         if json:
             print_json({**result.document, "folder": str(folder)})
         else:
-            from pneutouch.cli.reader_text import reader_text
-
             echo(reader_text(result.document))
             echo(f"\n{folder}")
             files = " and ".join(sorted(path.name for path in folder.glob("*_reader.*")))
@@ -75,7 +78,7 @@ def _export_simulator(
     """Write the model for a simulator and list its content."""
     from pneutouch.cli.progress import bar
     from pneutouch.evaluation.evaluate import evaluate
-    from pneutouch.workflows.simulator import make_simulator, write_simulator
+    from pneutouch.workflows.export_reader import make_simulator, write_simulator
 
     with bar("tabulating the press"):
         result = make_simulator(evaluate(design, changed, **options), simulator)
@@ -83,7 +86,47 @@ def _export_simulator(
     if json:
         print_json({**result.document, "folder": str(folder)})
     else:
-        from pneutouch.cli.simulator_text import simulator_text
-
         echo(simulator_text(result.document))
         echo(f"\n{folder}")
+
+
+def reader_text(document: Mapping[str, Any]) -> str:
+    """The box of a reader, and how far it is from the full model."""
+    box, known, rated = document["box"], document["difference"], document["rating"]["driving_pressure_kPa"]
+    relative = document["grid"]["force_uncertainty_relative"]
+    calibration = document["calibration"]
+    low, high = box["driving_pressure_kPa"]
+    lines = [
+        f"{document['design']}: force from pressure, by the model {document['model']}"
+        + (f", calibration {calibration}" if calibration else ", not calibrated"),
+        f"  driving pressure   {low:.4g} to {high:.4g} kPa; rated for {rated:.4g} kPa",
+        f"  contact            {document['conditions']['contact']}",
+        f"  contact force      0 to {box['contact_force_N'][1]:.4g} N, to {box['indentation_mm'][1]:.4g} mm of travel",
+        f"  pressure rise      0 to {box['pressure_rise_kPa'][1]:.4g} kPa",
+        f"  ambient pressure   {box['ambient_pressure_kPa'][0]:.5g} to {box['ambient_pressure_kPa'][1]:.5g} kPa",
+        f"  gas temperature    within {box['temperature_change_K']:g} K of that at the tare",
+        f"  table to model     {known['nominal_percent']:.2f} % of full scale at most in {known['states']} states; "
+        f"{known['other_conditions_percent']:.2f} % at other temperatures and ambient pressures",
+    ]
+    if relative is None:
+        lines.append(f"  uncertainty        unknown: {document['grid']['force_uncertainty_unknown']}")
+    else:
+        least, most = (100 * pick(map(pick, relative)) for pick in (min, max))
+        lines.append(f"  uncertainty        {least:.2g} to {most:.2g} % of the force (standard), gauge noise not in it")
+    return "\n".join(lines)
+
+
+def simulator_text(document: Mapping[str, Any]) -> str:
+    """Mass and inertia, and how far the press of every driving pressure goes."""
+    moments = document["inertia_about_centre_g_mm2"]
+    diagonal = ", ".join(f"{moments[k][k]:.4g}" for k in range(3))
+    head = ["driving kPa", "apex mm", "range mm", "force N", "pressure kPa", "stiffest N/mm"]
+    keys = ("driving_pressure_kPa", "apex_height_outer_mm", "range_end_mm", "contact_force_N", "pressure_kPa")
+    rows = [[f"{state[key]:.4g}" for key in (*keys, "greatest_stiffness_N_per_mm")] for state in document["states"]]
+    lines = [
+        f"{document['design']} for {document['simulator']}, by the model {document['model']}",
+        f"mass {document['mass_g']:.4g} g; inertia about its centre {diagonal} g mm2",
+        "",
+        table_text(head, rows),
+    ]
+    return "\n".join(lines)

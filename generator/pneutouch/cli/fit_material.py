@@ -1,17 +1,19 @@
-"""``pneutouch fit-material``: a laboratory's tensile or puck test to a material file."""
+"""``pneutouch fit-material``: a laboratory's tensile or puck test to a material file.
+
+A fitted material as text for people.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
 from pneutouch.cli.complete import names
-from pneutouch.cli.next_step import report_next
 from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, notify
+from pneutouch.cli.terminal import echo, notify, report_next, table_text
 
 if TYPE_CHECKING:
     from pneutouch.bench.tensile.puck import PuckSize
@@ -60,9 +62,9 @@ def fit_material(
     """Fit a hyperelastic law to a tensile or puck test and write it as a material of your own."""
     with reporting():
         from pneutouch.bench.tensile.read import SpecimenSize
-        from pneutouch.workflows.fit_material.fitted import FitOptions, MaterialFacts
-        from pneutouch.workflows.fit_material.run import fit_material as fit
-        from pneutouch.workflows.fit_material.run import write_material
+        from pneutouch.workflows.fit_material import fit_material as fit
+        from pneutouch.workflows.fit_material import write_material
+        from pneutouch.workflows.fitted_material import FitOptions, MaterialFacts
 
         facts = MaterialFacts(like, density, _readings(shore_a), lab)
         size = SpecimenSize(gauge_length, width, thickness)
@@ -74,7 +76,6 @@ def fit_material(
         if json:
             print_json({**content, "folder": str(folder)})
             return
-        from pneutouch.cli.fit_material_text import fit_text
 
         echo(fit_text(content))
         echo(f"\nwritten: {content['file']}\n{folder}")
@@ -93,7 +94,7 @@ def _puck(text: str | None, bonded: bool) -> PuckSize | None:
     """The size of a puck. Raises InputError for a text that is no size."""
     from pneutouch.bench.tensile.puck import PuckSize
     from pneutouch.errors import InputError
-    from pneutouch.spec.number import plain_number
+    from pneutouch.spec.values import plain_number
 
     if text is None:
         if bonded:
@@ -110,7 +111,7 @@ def _puck(text: str | None, bonded: bool) -> PuckSize | None:
 def _readings(text: str | None) -> tuple[float, ...]:
     """Readings of hardness. Raises InputError for a text that is no list of readings."""
     from pneutouch.errors import InputError
-    from pneutouch.spec.number import plain_number
+    from pneutouch.spec.values import plain_number
 
     try:
         readings = tuple(plain_number(part) for part in (text or "").split(",") if part.strip())
@@ -119,3 +120,35 @@ def _readings(text: str | None) -> tuple[float, ...]:
     if any(not 0 < reading < 100 for reading in readings):
         raise InputError("numbers from 0 to 100, separated by commas, such as 19,20,21", key="shore_a", value=text)
     return readings
+
+
+def fit_text(document: dict[str, Any]) -> str:
+    """The law, the modulus, and how far each law is off."""
+    law = document["law"]
+    rows = [
+        [
+            "->" if fit["label"] == law["label"] else "",
+            fit["label"],
+            f"{fit['misfit_percent']:.1f} %",
+            ", ".join(
+                f"{value:.4g} ± {error:.1g}"
+                for value, error in zip(fit["constants"], fit["uncertainties"], strict=True)
+            ),
+            fit["refused"] or "",
+        ]
+        for fit in document["fits"]
+    ]
+    head = ["", "law", "misfit", "constants (MPa; Ogden: mu, alpha), k = 2", ""]
+    specimens = [
+        f"{one['data']}: {one['points']} points, slack {one['slack_percent']:.2g} %, shear modulus "
+        f"{one['shear_modulus_MPa']:.4g} MPa"
+        for one in document["specimens"]
+    ]
+    lines = [
+        f"{document['material']}: {law['label']}, within {law['misfit_percent']:.2g} % up to a stretch of "
+        f"{document['largest_stretch']:.3g}; shear modulus at small strain "
+        f"{document['shear_modulus_small_strain_MPa']:.4g} MPa",
+        f"neo-Hookean over the same stretches: {document['shear_modulus_MPa']:.4g} MPa",
+        *specimens,
+    ]
+    return "\n\n".join(["\n".join(lines), table_text(head, rows)])

@@ -1,14 +1,20 @@
-"""``pneutouch new``: a design file to start from, or a copy of what is shipped."""
+"""``pneutouch new``: a design file to start from, or a copy of what is shipped.
 
+Lines after a copy of a printer profile, a gauge or a material: numbers to put in, and the next command.
+"""
+
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from pneutouch.catalogue import Library
+from pneutouch.catalogue.printers import makers
 from pneutouch.cli.app import DesignFolderOption, SetOption, app, changes, design_folder, reporting
 from pneutouch.cli.complete import names
-from pneutouch.cli.next_step import report_next
-from pneutouch.cli.terminal import echo, notify
+from pneutouch.cli.terminal import echo, notify, report_next
 from pneutouch.errors import InputError
+from pneutouch.spec.material import Material
 
 
 @app.command()
@@ -62,7 +68,22 @@ def new(
         if made.profile is None:
             report_next(*made.command, first=made.first)
             return
-        from pneutouch.cli.new_profile import next_of_profile
 
         command, first = next_of_profile(made.profile, made.path)
         report_next(*command, first=first)
+
+
+def next_of_profile(kind: str, path: Path) -> tuple[tuple[str, ...], str]:
+    """The command that reads a copy at ``path``, and the steps before it."""
+    name = path.stem
+    if kind == "printers":
+        return ("coupons", "--profile", name), f"put the title, the resins and the numbers of your machine into {path}"
+    if kind == "gauges":
+        command = ("predict", "paper-dome", "--set", f"pneumatics.gauge={name}")
+        return command, f"put the title and the numbers of your gauge into {path}"
+    library = Library.default()
+    material: Material = library.load("materials", name)
+    first = f"put the title, the code and the numbers of your material into {path}"
+    if material.kind == "elastomer" and makers(material, library):
+        return ("new", f"{name}-dome", "--material", name), first
+    return ("list", "materials"), first

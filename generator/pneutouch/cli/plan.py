@@ -1,7 +1,10 @@
-"""``pneutouch plan``: a test plan for the laboratory."""
+"""``pneutouch plan``: a test plan for the laboratory.
+
+A test plan as text for people.
+"""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -16,10 +19,10 @@ from pneutouch.cli.app import (
     print_json,
     reporting,
 )
-from pneutouch.cli.next_step import report_next
 from pneutouch.cli.progress import bar
 from pneutouch.cli.simulate import SPECIMENS, ResinsOption, SpecimensOption, words
-from pneutouch.cli.terminal import echo, notify
+from pneutouch.cli.terminal import echo, notify, report_next, table_text
+from pneutouch.wording import counted
 
 
 @app.command()
@@ -38,7 +41,7 @@ def plan(
 ) -> None:
     """Plan a measurement campaign: every run and step, what it must read, and where the rig cannot follow."""
     with reporting():
-        from pneutouch.workflows.plan.run import make_plan, rig_of, write_plan
+        from pneutouch.workflows.plan import make_plan, rig_of, write_plan
 
         with bar("planning the runs"):
             result = make_plan(
@@ -55,8 +58,61 @@ def plan(
         if json:
             print_json({**result.document, "folder": str(folder)})
         else:
-            from pneutouch.cli.plan_text import plan_text
-
             echo(plan_text(result.document))
             echo(f"\n{folder}")
             report_next("simulate", folder)
+
+
+def plan_text(document: dict[str, Any]) -> str:
+    """The tests with their times, and the greatest values expected of each resin at each driving pressure."""
+    tests = _tests(document)
+    rows = []
+    for resin in document["resins"]:
+        for state in resin["states"]:
+            known = [point for point in state["points"] if point["force_N"] is not None]
+            last = known[-1] if known else None
+            rows.append(
+                [
+                    resin["resin"],
+                    f"{state['driving_pressure_kPa']:g}",
+                    *(
+                        ["-"] * 3
+                        if last is None
+                        else [f"{last[key]:.2f}" for key in ("depth_mm", "force_N", "pressure_rise_kPa")]
+                    ),
+                    resin["model"],
+                ]
+            )
+    runs, sensors = counted(len(document["runs"]), "run"), counted(len(document["sensors"]), "specimen")
+    return "\n".join(
+        [
+            f"{document['design']}: {runs} on {sensors}, {document['total_s'] / 3600:.1f} h on "
+            f"{document['rig']['name']}",
+            "",
+            table_text(["test", "at kPa", "runs at each", "specimens", "runs", "depth mm", "min a run"], tests),
+            "",
+            table_text(["resin", "kPa", "to mm", "N", "rise kPa", "model"], rows),
+        ]
+    )
+
+
+def _tests(document: dict[str, Any]) -> list[list[str]]:
+    """A row a kind of run, with how often it is run on all specimens, and their sum."""
+    rows = []
+    for kind in dict.fromkeys(run["kind"] for run in document["runs"]):
+        runs = [run for run in document["runs"] if run["kind"] == kind]
+        pressures_kPa = sorted({run["driving_pressure_kPa"] for run in runs})
+        sensors = len({run["sensor"] for run in runs})
+        test = document["tests"].get(kind)
+        rows.append(
+            [
+                kind,
+                ", ".join(f"{p:g}" for p in pressures_kPa),
+                str(len(runs) // (len(pressures_kPa) * sensors)),
+                str(sensors),
+                str(len(runs)),
+                "-" if test is None else f"{max(test['depths_mm']):.2f}",
+                f"{runs[0]['duration_s'] / 60:.1f}",
+            ]
+        )
+    return [*rows, ["all", "", "", "", str(len(document["runs"])), "", ""]]

@@ -1,9 +1,12 @@
-"""``pneutouch respond``: a step or a sine of force or travel through the whole sensor, as a simulated signal."""
+"""``pneutouch respond``: a step or a sine of force or travel through the whole sensor, as a simulated signal.
+
+A simulated signal as text for people.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -20,12 +23,11 @@ from pneutouch.cli.app import (
     print_json,
     reporting,
 )
-from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, notify
+from pneutouch.cli.terminal import echo, notify, report_next, set_words, table_text
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.respond.load import Load
+    from pneutouch.workflows.respond import Load
 
 
 @app.command()
@@ -58,8 +60,8 @@ def respond(
         load = _load(step, sine, peak, duration)
         from pneutouch.evaluation.evaluate import evaluate
         from pneutouch.mechanics.models import model_options
-        from pneutouch.workflows.respond.document import document, write_respond
-        from pneutouch.workflows.respond.run import run_respond
+        from pneutouch.workflows.respond import run_respond
+        from pneutouch.workflows.respond_document import document, write_respond
 
         with bar("simulating the signal"):
             evaluation = evaluate(design, changes(set_, calibration), **model_options(model, tolerance))
@@ -71,7 +73,6 @@ def respond(
         if json:
             print_json({**content, "folder": str(folder)})
             return
-        from pneutouch.cli.respond_text import respond_text
 
         echo(respond_text(content))
         echo(f"\n{folder}")
@@ -81,7 +82,7 @@ def respond(
 def _load(step: str | None, sine: str | None, peak: str | None, duration: float | None) -> Load:
     """The load that the options describe. Raises InputError if they contradict one another."""
     from pneutouch.errors import InputError
-    from pneutouch.workflows.respond.load import Load, frequency_Hz, load_size
+    from pneutouch.workflows.respond import Load, frequency_Hz, load_size
 
     if sine is None:
         if peak is not None:
@@ -92,3 +93,41 @@ def _load(step: str | None, sine: str | None, peak: str | None, duration: float 
         raise InputError("cannot be given with `sine`", key="step", value=step, remedy="give `peak`")
     size, travel = (None, False) if peak is None else load_size(peak, "peak")
     return Load(size, travel, frequency_Hz(sine), duration)
+
+
+_HEAD = ["kPa", "data", "slow kPa", "greatest kPa", "last kPa", "resonance Hz", "gain there", "3 dB Hz", "5 % Hz"]
+
+
+def respond_text(document: dict[str, Any]) -> str:
+    """Readings of the load in every state."""
+    unit = "N" if "peak_N" in document else "mm"
+    sine = document["sine_Hz"]
+    what = "step" if sine is None else f"sine of {sine:g} Hz"
+    sources = list(dict.fromkeys(state["relaxation_source"] for state in document["states"]))
+    rows = [
+        [
+            f"{state['driving_pressure_kPa']:g}",
+            "-" if state["relaxation_source"] is None else chr(ord("A") + sources.index(state["relaxation_source"])),
+            *(
+                _number(state[key])
+                for key in (
+                    "slow_pressure_rise_kPa",
+                    "greatest_reading_kPa",
+                    "last_reading_kPa",
+                    "first_resonance_Hz",
+                    "resonance_gain",
+                    "bandwidth_3_dB_Hz",
+                    "within_5_percent_Hz",
+                )
+            ),
+            *([] if sine is None else [_number(state["gain"]), f"{state['phase_lag_deg']:.1f}"]),
+        ]
+        for state in document["states"]
+    ]
+    head = _HEAD if sine is None else [*_HEAD, "gain", "lag deg"]
+    title = f"{document['design']}: simulated {what} to {document[f'peak_{unit}']:g} {unit}, model {document['model']}"
+    return "\n".join([title, "", table_text(head, rows)])
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.3g}"

@@ -1,4 +1,7 @@
-"""``pneutouch scan``: a sensor slides over a specimen, and its spectrum is read."""
+"""``pneutouch scan``: a sensor slides over a specimen, and its spectrum is read.
+
+A scan as text for people.
+"""
 
 from __future__ import annotations
 
@@ -20,10 +23,10 @@ from pneutouch.cli.app import (
 )
 from pneutouch.cli.complete import names
 from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo
+from pneutouch.cli.terminal import echo, table_text
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.scan.run import ScanOptions
+    from pneutouch.workflows.scan import ScanOptions
 
 
 SpecimenArgument = Annotated[
@@ -80,9 +83,8 @@ def scan(
             refuse_flags(context, _NOT_SEPARATING, "--separate, which scans nothing", specimen)
             _separate(specimen, design, separate, options, changes(set_, calibration), json=json)
             return
-        from pneutouch.workflows.scan.document import document
-        from pneutouch.workflows.scan.run import run_scan
-        from pneutouch.workflows.scan.write import write_scan
+        from pneutouch.workflows.scan import run_scan
+        from pneutouch.workflows.scan_document import document, write_scan
 
         with bar("scanning"):
             run = run_scan(specimen, design, options, changes(set_, calibration))
@@ -90,8 +92,6 @@ def scan(
         if json:
             print_json({**document(run), "folder": str(folder)})
         else:
-            from pneutouch.cli.scan_text import scan_text
-
             echo(scan_text(document(run)))
             echo(f"\n{folder}")
 
@@ -100,10 +100,10 @@ def _options(
     pressures: str, preload: float, speed: float | None, control: str, noise: float | None, seed: int, data: list[Path]
 ) -> ScanOptions:
     from pneutouch.errors import InputError
-    from pneutouch.spec.number import plain_number
+    from pneutouch.spec.values import plain_number
     from pneutouch.texture.scan import NOISE
     from pneutouch.units import KPA
-    from pneutouch.workflows.scan.run import ScanOptions
+    from pneutouch.workflows.scan import ScanOptions
 
     try:
         listed = tuple(plain_number(part) * KPA for part in pressures.split(",") if part.strip())
@@ -115,15 +115,97 @@ def _options(
 def _separate(
     specimen: str, design: str, text: str, options: ScanOptions, changed: dict[str, Any], *, json: bool
 ) -> None:
-    from pneutouch.workflows.scan.separate import separating
+    from pneutouch.workflows.scan_separate import separating
 
     with bar("ranking domes"):
         separation = separating(specimen, design, text, options, changed)
     if json:
         print_json(separation)
     else:
-        from pneutouch.cli.scan_text import separation_text
-
         echo(separation_text(separation))
     if not separation["domes"]:
         raise typer.Exit(1)
+
+
+_HEAD = ["state", "patch radius mm", "N/mm", "kPa/mm", "kPa", "model"]
+
+
+def scan_text(document: dict[str, Any]) -> str:
+    """States, then the readings of each pattern in each."""
+    states = [
+        [
+            state["label"],
+            f"{state['contact_radius_mm']:.2f}",
+            f"{state['stiffness_N_per_mm']:.3f}",
+            f"{state['pressure_slope_kPa_per_mm']:.3f}",
+            f"{state['pressure_kPa']:.2f}",
+            state["model"],
+        ]
+        for state in document["states"]
+        if "contact_radius_mm" in state
+    ]
+    rows = [
+        [state["label"], pattern["name"], *_pattern(pattern)]
+        for state in document["states"]
+        for pattern in state["patterns"]
+    ]
+    head = ["signal", "pattern", "true Hz", "found Hz", "model Pa", "read Pa", "over noise", "p", ""]
+    first, last = document["path_mm"]
+    notes = [f"note: {state['label']}: {note}" for state in document["states"] for note in state.get("notes", [])]
+    return "\n".join(
+        [
+            f"{document['specimen']} scanned by {document['design']}: {document['preload_N']:g} N, "
+            f"{document['control']} held, {document['speed_mm_per_s']:g} mm/s from {first:.2f} to {last:.2f} mm",
+            *(
+                ["", table_text(["state", "patch radius mm", "N/mm", "kPa/mm", "kPa", "model"], states)]
+                if states
+                else []
+            ),
+            "",
+            table_text(head, rows),
+            *(["", *notes] if notes else []),
+        ]
+    )
+
+
+def _pattern(pattern: dict[str, Any]) -> list[str]:
+    model = f"{1e3 * pattern['model_amplitude_kPa']:.3g}" if "model_amplitude_kPa" in pattern else "-"
+    true = f"{pattern['true_frequency_Hz']:.4g}"
+    if "p_value" not in pattern:
+        return [true, "-", model, "-", "-", "-", "no signal"]
+    return [
+        true,
+        f"{pattern['detected_frequency_Hz']:.4g}",
+        model,
+        f"{1e3 * pattern['amplitude_kPa']:.3g}",
+        f"{pattern['detection_figure']:.1f}",
+        f"{pattern['p_value']:.3f}",
+        "detected" if pattern["detected"] else "not detected",
+    ]
+
+
+def separation_text(document: dict[str, Any]) -> str:
+    """Domes that separate two patterns, best first."""
+    one, two = (f"{p['pitch_mm']:g} mm at {p['depth_mm']:g} mm" for p in document["patterns"])
+    if not document["domes"]:
+        return f"none of {document['candidates']} candidates shows both {one} and {two} above the noise"
+    rows = []
+    for dome in document["domes"]:
+        states = [
+            [f"{state['driving_pressure_kPa']:.1f}", "/".join(f"{1e3 * a:.3g}" for a in state["amplitudes_kPa"])]
+            for state in dome["states"]
+        ]
+        rows.append(
+            [
+                str(dome["rank"]),
+                dome["resin"],
+                f"{dome['inner_radius_mm']:.2f}",
+                f"{dome['wall_thickness_mm']:.2f}",
+                *states[0],
+                *states[1],
+                f"{dome['contrast']:.3g}",
+            ]
+        )
+    head = ["", "resin", "R0 mm", "t0 mm", "1st: kPa", "Pa", "2nd: kPa", "Pa", "contrast"]
+    first = f"1st pattern {one}, 2nd {two}; {document['candidates']} candidates at {document['preload_N']:g} N"
+    return "\n".join([first, "", table_text(head, rows)])

@@ -6,8 +6,7 @@ import typer
 
 from pneutouch.cli.app import JsonOption, app, print_json, reporting
 from pneutouch.cli.complete import document_kinds as known
-from pneutouch.cli.next_step import report_next
-from pneutouch.cli.terminal import echo
+from pneutouch.cli.terminal import echo, report_next
 
 
 @app.command()
@@ -33,7 +32,7 @@ def schema(
                 {key: {"form": kind.form, "title": kind.title, "where": kind.where} for key, kind in kinds.items()}
             )
             return
-        from pneutouch.cli.table import table_text
+        from pneutouch.cli.terminal import table_text
 
         rows = [[key, kind.form, kind.title, kind.where.replace("`", "")] for key, kind in kinds.items()]
         echo(table_text(["name", "form", "document", "where"], rows))

@@ -1,8 +1,13 @@
-"""``pneutouch select``: the inverse."""
+"""``pneutouch select``: the inverse.
+
+The options of ``select``: a flag for each field of a target, and a target as the words that give it.
+"""
 
 from __future__ import annotations
 
+import shlex
 import sys
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -18,17 +23,87 @@ from pneutouch.cli.app import (
     print_json,
     reporting,
 )
-from pneutouch.cli.declared import field_tables, named_by_flag, with_fields
-from pneutouch.cli.next_step import DesignPlace, report_next, report_written
+from pneutouch.cli.complete import percent_of
+from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, with_fields
 from pneutouch.cli.progress import bar
-from pneutouch.cli.select_fields import SELECT_FIELDS
-from pneutouch.cli.select_processes import select_over
-from pneutouch.cli.terminal import echo
+from pneutouch.cli.terminal import DesignPlace, echo, report_next, report_written
 from pneutouch.errors import InputError
 from pneutouch.spec.target import Target
+from pneutouch.spec.values import plain_numbers
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.select.run import SelectionRun
+    from pneutouch.workflows.select.select import SelectionRun
+
+
+def _pressures(text: str) -> list[float]:
+    try:
+        return plain_numbers(text)
+    except ValueError:
+        raise InputError("write two driving pressures in kPa, such as 0,22", key="same_at", value=text) from None
+
+
+def _names(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
+_PERCENT = "PERCENT"
+"""Metavar of an option in per cent."""
+
+SELECT_FIELDS = {
+    "sensitivity": FieldOption("target", "sensitivity_kPa_per_N"),
+    "tolerance": FieldOption("target", "tolerance_percent", partial(percent_of, parameter="tolerance"), _PERCENT),
+    "at": FieldOption("target", "driving_pressure_kPa"),
+    "force_range": FieldOption("target", "force_range_N"),
+    "stiffness_least": FieldOption("target", "stiffness_least_N_per_mm"),
+    "stiffness_most": FieldOption("target", "stiffness_most_N_per_mm"),
+    "max_diameter": FieldOption("target", "max_diameter_mm"),
+    "max_footprint": FieldOption("target", "max_footprint_mm"),
+    "fits": FieldOption("target", "fits", metavar="finger:MM"),
+    "inner_radius": FieldOption("given", "inner_radius_mm"),
+    "wall": FieldOption("given", "wall_thickness_mm"),
+    "material": FieldOption("given", "materials"),
+    "mix": FieldOption("given", "mix", metavar="SOFT+STIFF"),
+    "graded": FieldOption("given", "graded"),
+    "same_at": FieldOption("target", "same_sensitivity_at_kPa", _pressures, "KPA,KPA"),
+    "same_within": FieldOption("target", "same_within_percent", partial(percent_of, parameter="same_within"), _PERCENT),
+    "widest_range": FieldOption("target", "widest_range"),
+    "base": FieldOption("setting", "base"),
+    "profile": FieldOption("setting", "profile"),
+    "process": FieldOption("setting", "processes", _names, "PROCESS,...|any"),
+    "tube_length": FieldOption("setting", "tube_length_mm"),
+    "dead_volume": FieldOption("setting", "dead_volume_mL"),
+    "gauge": FieldOption("setting", "gauge", metavar="NAME|any"),
+    "robustness": FieldOption("weights", "robustness"),
+    "tunability": FieldOption("weights", "tunability"),
+    "contact_anywhere": FieldOption("weights", "contact_anywhere"),
+}
+"""Field of a target by the parameter of its option."""
+
+
+def target_words(target: Target) -> list[str]:
+    """The options that give the same target as a file, in the order of `SELECT_FIELDS`."""
+    words = []
+    for name, option in SELECT_FIELDS.items():
+        table = getattr(target, option.table)
+        value = getattr(table, option.key)
+        if option.key not in table.model_fields_set or value is None or value is False:
+            continue
+        flag = f"--{name.replace('_', '-')}"
+        words += [flag] if value is True else [flag, _text(value, "%" if option.metavar == _PERCENT else "")]
+    return [*words, *(word for text in target.setting.assignments for word in ("--set", text))]
+
+
+def saving_command(target: Target, rank: int, name: str) -> str:
+    """The command that saves the design of a rank under a name, as it is typed in a shell."""
+    picked = [] if rank == 1 else ["--pick", str(rank)]
+    return shlex.join(["pneutouch", "select", *target_words(target), *picked, "--write", name])
+
+
+def _text(value: Any, unit: str) -> str:
+    if isinstance(value, list):
+        return ",".join(_text(each, unit) for each in value)
+    return value if isinstance(value, str) else f"{value:.12g}{unit}"
+
 
 _FLAGS_ALONE = "select"
 """Stands for the target's file if none is given."""
@@ -67,6 +142,8 @@ def select(
         request = _target(target, fields, set_ or [])
         place = None if write is None else DesignPlace(write, folder, overwrite)
         if request.setting.processes is not None:
+            from pneutouch.cli.select_text import select_over
+
             select_over(request, where, place, pick, json=json, charts=charts is not None)
             return
         if request.given.graded:
@@ -80,8 +157,8 @@ def select(
 
 def _run(request: Target, where: str, written: int | None) -> SelectionRun:
     """The selection, with a bar over its steps on a terminal."""
-    from pneutouch.workflows.select.gauged import select as run
-    from pneutouch.workflows.select.run import STEPS
+    from pneutouch.workflows.select.processes import select as run
+    from pneutouch.workflows.select.select import STEPS
 
     with bar("") as report:
         return run(request, where, written=written, progress=lambda step: report(STEPS.index(step), len(STEPS), step))
@@ -117,14 +194,14 @@ def _report(selection: SelectionRun, pick: int, place: DesignPlace | None, chart
 
 def _graded(target: Target, where: str, place: DesignPlace | None, *, json: bool, **others: bool) -> None:
     """The search for a grade; ``others`` are flags that do not go with it and whether they were given."""
-    from pneutouch.cli.graded import select_graded
+    from pneutouch.cli.select_text import select_graded
 
     select_graded(target, where, place, json=json, refused=[flag for flag, given in others.items() if given])
 
 
 def _target(path: Path | None, fields: dict[str, Any], set_: list[str]) -> Target:
     """The target of a file, options in place of its fields; or of options alone."""
-    from pneutouch.catalogue.examples import read_given
+    from pneutouch.catalogue.library import read_given
     from pneutouch.spec.files import design_inside
     from pneutouch.spec.read import validate
 

@@ -1,13 +1,35 @@
-"""A selection as text for people."""
+"""A selection as text for people.
+
+``pneutouch select --process``: the best design of each process.
+
+``pneutouch select --graded``: the search for a grade, with its cost.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import TYPE_CHECKING
 
 import numpy as np
+import typer
 
-from pneutouch.cli.table import table_text
+from pneutouch.cli.app import print_json
+from pneutouch.cli.progress import bar
+from pneutouch.cli.terminal import DesignPlace, echo, notify, report_next, report_written, table_text
+from pneutouch.errors import InputError, RuleBrokenError
 from pneutouch.rounding import tenths_below
 from pneutouch.selection import Candidate
+from pneutouch.spec.target import Target
 from pneutouch.units import KPA
-from pneutouch.workflows.select.run import SelectionRun
-from pneutouch.workflows.select.words import dropped_lines, headline, missed_text, remarks, search_notes
+from pneutouch.workflows.select.document import dropped_lines, headline, missed_text, remarks, search_notes
+from pneutouch.workflows.select.select import SelectionRun
+
+if TYPE_CHECKING:
+    from pneutouch.selection.graded import GradeTrial
+    from pneutouch.workflows.select.graded import GradedSelectionRun
+    from pneutouch.workflows.select.processes import ProcessSelection
+
 
 HEAD = ["", "resin", "R0 mm", "t0 mm", "wide mm", "kPa", "S kPa/N", "U (k=2)", "range N", "ends with"]
 HEAD += ["S 0 kPa..rated", "rated kPa", "binds", "solid S"]
@@ -69,4 +91,147 @@ def row_of(selection: SelectionRun, choice: Candidate) -> list[str]:
         "..".join(f"{end:.2f}" if np.isfinite(end) else "none" for end in choice.span),
         f"{tenths_below(choice.rated / KPA):.1f}",
         f"{choice.binding} ({100 * choice.margins[choice.binding]:+.0f} %)",
+    ]
+
+
+def select_over(target: Target, where: str, place: DesignPlace | None, pick: int, *, json: bool, charts: bool) -> None:
+    """Search each process, show the best designs and save the one picked. Exits 1 where no process has one."""
+    from pneutouch.workflows.select.document import write_choice
+    from pneutouch.workflows.select.processes import select_processes
+
+    if charts:
+        raise InputError("--charts cannot be given with --process", remedy="draw them for one `profile`")
+    with bar("") as report:
+        selection = select_processes(target, where, progress=report)
+    path = None
+    if selection.best and (place is not None or pick != 1):
+        run = selection.pick(pick)
+        if place is not None:
+            path = write_choice(run, run.answer.designs[0], *place[:2], overwrite=place.overwrite)
+    if json:
+        print_json({**selection.document(), "written": None if path is None else str(path)})
+    else:
+        echo(processes_text(selection))
+        if path is not None:
+            report_written(path)
+        elif selection.best:
+            from pneutouch.output.new import free_name
+
+            report_next(*sys.argv[1:], "--write", free_name())
+    if not selection.best:
+        raise typer.Exit(1)
+
+
+def processes_text(selection: ProcessSelection) -> str:
+    """A row for the best design of each process, and why others have none."""
+    head, rows = processes_table(selection)
+    return "\n".join([*([table_text(head, rows), ""] if rows else []), *processes_lines(selection)])
+
+
+def processes_table(selection: ProcessSelection) -> tuple[list[str], list[list[str]]]:
+    """The best design of each process that has one: columns and rows."""
+
+    rows = []
+    for number, (process, run) in enumerate(selection.best, start=1):
+        best = run.answer.designs[0]
+        solid = "solid" if best.contact is not None else f"{run.confirmed[0].sensitivity_kPa_per_N:.3f}"
+        rows.append([str(number), process, *row_of(run, best), solid])
+    return [HEAD[0], "process", *HEAD[1:]], rows
+
+
+def processes_lines(selection: ProcessSelection) -> list[str]:
+    """Profile and confirmation of each best design, and why a process has none."""
+    from pneutouch.workflows.select.document import headline, missed_text
+
+    lines = []
+    for process, run in selection.best:
+        solid = run.answer.designs[0].contact is not None or run.confirmed[0].within
+        others = len({choice.resin.name for choice in run.answer.designs}) - 1
+        confirmed = "confirmed by the solid" if solid else "the solid is outside its interval"
+        lines.append(f"{process}: {run.base.printer.title}, {confirmed}; {others} other resins meet the target")
+    for process, run in selection.runs.items():
+        if not run.answer.designs:
+            nearest = run.answer.nearest
+            why = "" if nearest is None else f"; the nearest misses {missed_text(run, nearest)} ({nearest.resin.name})"
+            lines.append(f"{process}: {headline(run)}{why}")
+    return lines + [f"{process}: left out: {why}" for process, why in selection.left_out.items()]
+
+
+def select_graded(target: Target, where: str, place: DesignPlace | None, *, json: bool, refused: list[str]) -> None:
+    """Search, show and save a grade. Exits 1 where none meets the target; ``refused`` are flags that exclude it.
+
+    Raises RuleBrokenError if ``check`` rejects the grade that meets it; nothing is saved then.
+    """
+    from pneutouch.workflows.select import graded_document as shown
+    from pneutouch.workflows.select.graded import select_graded as run
+
+    if refused:
+        raise InputError(f"{', '.join(f'--{flag}' for flag in refused)} cannot be given with --graded")
+    begun = time.perf_counter()
+    with bar("searching grades") as report:
+        selection = run(target, where, progress=lambda trial, done, most: report(done, most))
+    notify(f"{selection.solves} solid solves in {time.perf_counter() - begun:.0f} s")
+    path = None
+    if place is not None and selection.passes:
+        path = shown.write_graded(selection, *place[:2], overwrite=place.overwrite)
+    if json:
+        print_json({**shown.graded_document(selection), "written": None if path is None else str(path)})
+    else:
+        echo(graded_text(selection))
+        if path is not None:
+            report_written(path)
+    if selection.rejected is not None:
+        raise RuleBrokenError(f"the grade meets the target and is rejected by `check`: {selection.rejected}")
+    if not selection.search.met:
+        raise typer.Exit(1)
+
+
+def graded_text(selection: GradedSelectionRun) -> str:
+    """The grade and the constant membranes of its size, or the requirements that are missed."""
+    from pneutouch.evaluation.contact_object import contact_document
+    from pneutouch.workflows.select.checks import contact_text
+
+    contact = [f"contact: {contact_text(selection.base)}"] if contact_document(selection.base) else []
+    headline, *lines = graded_lines(selection)
+    return "\n".join([headline, *contact, "", table_text(*graded_table(selection)), "", *lines])
+
+
+def graded_table(selection: GradedSelectionRun) -> tuple[list[str], list[list[str]]]:
+    """Head and rows: the grade, then the constant membranes of its size."""
+    pressures = [f"{p / KPA:g} kPa" for p in selection.grade_target.pressures]
+    head = ["", *(f"S {p}" for p in pressures), *(["apart"] if len(pressures) > 1 else [])]
+    head += [*(f"range {p}" for p in pressures), "ends with", "rated kPa", "meets"]
+    rows = [["graded: " + selection.grade.label, *_row(selection, selection.search.best)]]
+    return head, rows + [[constant.name, *_row(selection, constant.trial)] for constant in selection.constants]
+
+
+def graded_lines(selection: GradedSelectionRun) -> list[str]:
+    """Verdict on a grade against the target: its misses, its cost and the parts that were left out."""
+    from pneutouch.workflows.select.graded_document import missed, rated_warning
+
+    sensor = selection.sensor
+    size = f"R0 {sensor.dome.inner_radius:g} mm, t0 {sensor.dome.wall_thickness:g} mm, on {selection.base.where}"
+    met = "a grade meets the target" if selection.search.met else "no grade of this size meets the target; the nearest"
+    lines = [f"{met}: {size}"]
+    if not selection.search.met:
+        lines += [f"it misses {line}" if k == 0 else line for k, line in enumerate(missed(selection))]
+    warning = rated_warning(selection)
+    lines += [] if warning is None else [f"warning: {warning}"]
+    constant = [c.name for c in selection.constants if selection.meets(c.trial)]
+    too = f"a constant membrane does too: {', '.join(constant)}"
+    lines.append(too if constant else "no constant one listed meets it")
+    lines.append(f"cost: {selection.solves} solid solves, {len(selection.search.trials)} of them grades")
+    return lines + [f"left out: {name}: {why}" for name, why in selection.left_out.items()]
+
+
+def _row(selection: GradedSelectionRun, trial: GradeTrial) -> list[str]:
+    apart = [f"{100 * trial.difference:+.1f} %"] if len(trial.sensitivity_kPa_per_N) > 1 else []
+    rated = "-" if trial.note else f"{tenths_below(trial.rated / KPA):.1f}"
+    return [
+        *(f"{value:.3f}" for value in trial.sensitivity_kPa_per_N),
+        *apart,
+        *(f"{value:.1f} N" for value in trial.force),
+        ", ".join(dict.fromkeys(trial.ends)) or "-",
+        rated,
+        "yes" if selection.meets(trial) else "no",
     ]

@@ -9,13 +9,12 @@ import typer
 
 from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
 from pneutouch.cli.complete import names
-from pneutouch.cli.next_step import report_next
 from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, notify
+from pneutouch.cli.terminal import echo, notify, report_next
 from pneutouch.wording import counted
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.simulate.options import SimulationOptions
+    from pneutouch.workflows.simulate_inputs import SimulationOptions
 
 ResinsOption = Annotated[
     str,
@@ -77,8 +76,8 @@ def simulate(
     with reporting():
         from pneutouch.bench.simulate import SimulationTruth
         from pneutouch.mechanics.models import USUAL
-        from pneutouch.workflows.simulate.options import SimulationOptions
-        from pneutouch.workflows.simulate.run import simulate
+        from pneutouch.workflows.simulate import simulate
+        from pneutouch.workflows.simulate_inputs import SimulationOptions
 
         options = SimulationOptions(
             resins=words(resins),
@@ -106,7 +105,7 @@ def words(text: str) -> tuple[str, ...]:
 def numbers(flag: str, text: str) -> tuple[float, ...]:
     """Numbers with commas between. Raises InputError."""
     from pneutouch.errors import InputError
-    from pneutouch.spec.number import plain_number
+    from pneutouch.spec.values import plain_number
 
     try:
         return tuple(map(plain_number, words(text)))
@@ -118,7 +117,7 @@ def _report(folder: Path, options: SimulationOptions, *, json: bool) -> None:
     """The folder on stdout; on stderr where runs stop short of their depth."""
     from json import loads
 
-    from pneutouch.workflows.simulate.options import KINDS
+    from pneutouch.workflows.simulate_inputs import KINDS
 
     truth = loads((folder / "truth.json").read_text(encoding="utf-8"))
     files = [name for name in loads((folder / "manifest.json").read_text(encoding="utf-8"))["files"] if "/" in name]

@@ -8,7 +8,7 @@ from importlib.machinery import ExtensionFileLoader
 from types import FrameType
 from typing import Any
 
-from pneutouch.holding import STOPS
+from pneutouch.stopping import STOPS
 
 _AGAIN = 0.25
 """Seconds after which a stop is raised again: libraries swallow it in callbacks and by catching every exception."""

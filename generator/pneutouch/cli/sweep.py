@@ -1,4 +1,7 @@
-"""``pneutouch sweep``: many designs to one dataset."""
+"""``pneutouch sweep``: many designs to one dataset.
+
+Output of ``sweep`` for people: the first rows of its table.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +14,13 @@ import typer
 from pneutouch.cli.app import CalibrationOption, JsonOption, SetOption, app, changes, print_json, reporting
 from pneutouch.cli.complete import assignment, names
 from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, notify
+from pneutouch.cli.terminal import echo, notify, table_text
 from pneutouch.errors import InputError
+from pneutouch.rounding import tenths_below
 
 if TYPE_CHECKING:
     from pneutouch.workflows.sweep import SweepPlan, SweepResult
+
 
 _MODEL_HELP = "Model; solid, or harmonic off the axis, where neither this nor the file gives one."
 
@@ -58,8 +63,8 @@ def sweep(
         # Before numpy loads: the processes take the cores, and results must not depend on how many there are.
         os.environ["OMP_NUM_THREADS"] = "1"
         from pneutouch.workflows.sweep import sweep as run
-        from pneutouch.workflows.sweep.companions import check_companions, write_companions
-        from pneutouch.workflows.sweep.run import ComputeResources
+        from pneutouch.workflows.sweep.dataset import check_companions, write_companions
+        from pneutouch.workflows.sweep.execute import ComputeResources
 
         plan = _plan(
             file, design, over or [], changes(set_, calibration), {"model": model, "closure": closure, "clamp": clamp}
@@ -106,10 +111,55 @@ def _report(done: SweepResult, rows: list[dict[str, Any]], written: list[Path], 
         return
     counts = ", ".join(f"{count} {status}" for status, count in done.states.items())
     there = "; was there already, --fresh computes it again" if done.computed == 0 else ""
-    from pneutouch.cli.sweep_text import sweep_text
 
     echo(sweep_text(rows, written[0]))
     notify(f"{done.points} points, states: {counts}{there}")
     for path in written:
         notify(f"written: {path}")
     echo(f"\n{done.path}")
+
+
+_MOST = 24
+"""Number of rows that are printed: as many as a screen shows."""
+
+_FIGURES = {
+    "sensitivity_kPa_per_N": ("S kPa/N", 3),
+    "stiffness_N_per_mm": ("N/mm", 3),
+    "force_range_high_N": ("N at the end", 2),
+    "range_end_mm": ("range mm", 2),
+    "limit_point_kPa": ("limit kPa", 1),
+    "rated_pressure_kPa": ("rated kPa", 1),
+}
+"""Columns with their decimals, as `predict` shows the same figures."""
+
+
+def sweep_text(rows: list[dict[str, Any]], table: Path) -> str:
+    """The swept fields, figures and status of the first rows; where there are more, where they stand."""
+    if not rows:
+        return "no state"
+    names = list(rows[0])
+    swept = names[: names.index("driving_pressure_kPa")]
+    head = [*swept, "kPa", "S kPa/N", "interval (k = 2)", *(name for name, _ in list(_FIGURES.values())[1:]), "status"]
+    shown = [_cells(row, swept) for row in rows[:_MOST]]
+    text = table_text(head, shown)
+    left = len(rows) - len(shown)
+    return f"{text}\n... and {left} more: {table}" if left else text
+
+
+def _cells(row: dict[str, Any], swept: list[str]) -> list[str]:
+    low, high = row["sensitivity_low_kPa_per_N"], row["sensitivity_high_kPa_per_N"]
+    sensitivity, *others = (_figure(name, row[name]) for name in _FIGURES)
+    interval = "-" if low is None else f"{low:.2f} to {high:.2f}"
+    fields = [_field(row[name]) for name in (*swept, "driving_pressure_kPa")]
+    return [*fields, sensitivity, interval, *others, row["status"]]
+
+
+def _figure(name: str, value: float | None) -> str:
+    """A figure with its decimals; a rated pressure is rounded down, so that the shown one is never above it."""
+    if value is None:
+        return "-"
+    return f"{tenths_below(value) if name == 'rated_pressure_kPa' else value:.{_FIGURES[name][1]}f}"
+
+
+def _field(value: Any) -> str:
+    return "-" if value is None else f"{value:g}" if isinstance(value, float) else str(value)

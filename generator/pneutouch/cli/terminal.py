@@ -1,15 +1,23 @@
 """Output to people: text wrapped to their terminal, severities in colour there, and streams that may be closed.
 
 In a pipe a line stays whole, so that ``grep`` finds it, and nothing is coloured unless FORCE_COLOR requires it.
+
+Tables fitted to the width of the terminal; whole lines if stdout is no terminal.
+
+The last line of a command between a target and a measured sensor: the command that comes next.
 """
 
 import contextlib
+import io
 import os
 import re
+import shlex
 import shutil
 import sys
 import textwrap
-from typing import TextIO
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import NamedTuple, TextIO
 
 from pneutouch.errors import ComputationError
 
@@ -105,3 +113,90 @@ def _is_coloured(stream: TextIO) -> bool:
     if any(os.environ.get(name, "0") not in ("", "0") for name in ("FORCE_COLOR", "CLICOLOR_FORCE")):
         return True
     return stream.isatty() and os.environ.get("TERM") != "dumb" and os.environ.get("CLICOLOR") != "0"
+
+
+_NARROW = 16
+"""Letters of a figure or a name that is not broken; longer cells are text."""
+
+_APART = 2
+"""Spaces between columns."""
+
+
+def table_text(
+    head: Sequence[str], rows: Sequence[Sequence[str]], columns: int | None = None, *, indent: str = ""
+) -> str:
+    """Left-aligned columns two spaces apart, under a head where there is one; "" without rows and head.
+
+    Cells are wrapped so that no line has more than ``columns`` letters (None: the terminal's).
+    """
+    table = [head, *rows] if head else list(rows)
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in table]
+    most = columns or width(sys.stdout)
+    if most is not None and any(len(indent) + len(line) > most for line in lines):
+        lines = _lines_of(head, rows, most - len(indent))
+    return "\n".join(f"{indent}{line}" for line in lines)
+
+
+def _lines_of(head: Sequence[str], rows: Sequence[Sequence[str]], columns: int) -> list[str]:
+    """The lines of the table. Figures and names stay whole, texts take as many lines as they need; columns that do not
+    fit follow below, behind the first one."""
+    table = [head, *rows] if head else list(rows)
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    least = [min(each, _NARROW) for each in widths]
+    end, taken = 1, least[0]
+    while end < len(widths) and taken + _APART + least[end] <= columns:
+        taken += _APART + least[end]
+        end += 1
+    if end < len(widths) and end > 1:
+        here = _lines_of(head[:end], [row[:end] for row in rows], columns)
+        return [*here, "", *_lines_of([*head[:1], *head[end:]], [[row[0], *row[end:]] for row in rows], columns)]
+    # Where not even the first two columns fit, every cell is folded: a column that stays whole would be cut off.
+    fits = end == len(widths)
+    return _folded(head, rows, [fits and each <= _NARROW for each in widths], columns)
+
+
+def _folded(head: Sequence[str], rows: Sequence[Sequence[str]], whole: Sequence[bool], columns: int) -> list[str]:
+    """The lines of a table whose cells are folded, but for the columns that stay whole."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=None, pad_edge=False, padding=(0, _APART, 0, 0), header_style="", show_edge=False)
+    table.show_header = bool(head)
+    for name, kept in zip(head or rows[0], whole, strict=True):
+        table.add_column(Text(name) if head else "", overflow="fold", no_wrap=kept)
+    for row in rows:
+        table.add_row(*(Text(cell) for cell in row))
+    stream = io.StringIO()
+    Console(file=stream, width=columns, no_color=True, highlight=False, legacy_windows=False).print(table)
+    return [line.rstrip() for line in stream.getvalue().splitlines()]
+
+
+class DesignPlace(NamedTuple):
+    """Place where a design that was found is to be saved, and whether that replaces a file."""
+
+    name: str
+    folder: Path
+    overwrite: bool
+
+
+def report_next(*words: object, first: str = "") -> None:
+    """Print ``next: pneutouch WORDS`` on stderr, quoted so that it works as it stands; ``first`` is done by hand."""
+    command = shlex.join(["pneutouch", *map(str, words)])
+    notify(f"{first}, then: {command}" if first else f"next: {command}")
+
+
+def set_words(assignments: Iterable[str] | None, calibration: str | None = None) -> list[str]:
+    """The ``--set`` options and the ``--calibration`` of a command, to be given to the next one."""
+    named = [] if calibration is None else ["--calibration", calibration]
+    return [*(word for text in assignments or () for word in ("--set", text)), *named]
+
+
+def report_written(path: Path) -> None:
+    """Report a design file that was written, and that it is to be checked: by its name where that is found."""
+    from pneutouch.catalogue import Library
+
+    echo(f"\nwritten: {path}")
+    known = Library.default().paths("designs").get(path.stem)
+    report_next("check", path.stem if known is not None and known.resolve() == path.resolve() else path)

@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.evaluation.chart_data import ContactChart, ContactRow, ErrorCurves
+from pneutouch.evaluation.sheet_data import ContactChart, ContactRow, ErrorCurves
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
-from pneutouch.mechanics.anywhere.conditions import outside, state_conditions
 from pneutouch.mechanics.anywhere.reading import (
     FARTHEST,
     SMALLEST_BALL,
@@ -19,8 +18,10 @@ from pneutouch.mechanics.anywhere.reading import (
     ball_places,
     edge_places,
     force_logs,
+    outside,
     place_uncertainty,
     plate_places,
+    state_conditions,
 )
 from pneutouch.mechanics.anywhere.table import ContactPlaces, DomeConditions
 from pneutouch.rounding import rounded

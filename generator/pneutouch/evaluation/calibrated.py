@@ -1,13 +1,15 @@
-"""Effect of a calibration on a design's sensor: its parameters, its correction, its error."""
+"""Effect of a calibration on a design's sensor: its parameters, its correction, its error.
+
+Check that parameters of a design's sensor can be fitted to measured runs.
+"""
 
 import math
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
-from pneutouch.mechanics import Sensor
-from pneutouch.mechanics.contact_correction import GRIPS
+from pneutouch.mechanics.contact_correction import GRIPS, outside_fit
 from pneutouch.mechanics.prediction import ErrorEstimate
-from pneutouch.mechanics.sensor import ResponseCorrection
+from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
 from pneutouch.spec.calibration import CalibratedResponse, SensorCalibration
 from pneutouch.spec.design import CALIBRATION
 from pneutouch.units import KPA, ML
@@ -142,3 +144,19 @@ def calibrated_error(calibration: SensorCalibration) -> ErrorEstimate | None:
         "sensitivity_basis": basis,
         "summary": [f"Sensitivity: up to {greatest:.1%}; {basis}."],
     }
+
+
+def check_fitted(scene: ResolvedDesign, sensor: Sensor) -> None:
+    """Raise InputError where the atlas, which every fit is made with, does not cover the sensor at a depth it has."""
+    why = outside_fit(sensor)
+    if why is None:
+        return
+    contact = scene.design.contact
+    key = next(iter(contact.off_axis), None if contact.base else "base")
+    raise InputError(
+        f"the atlas does not cover this sensor, {why}, and the fit is made with the atlas",
+        file=scene.where,
+        key=None if key is None else f"contact.{key}",
+        value=None if key is None else getattr(contact, key),
+        remedy="`compare` sets design and measurement side by side without a fit",
+    )

@@ -1,5 +1,10 @@
 """Sensors side by side, predicted or measured: the differences of their inputs, and the figures that differ
-significantly."""
+significantly.
+
+Uncertainty of the difference of two predicted figures: sources that both sensors share cancel in part.
+
+A predicted curve read at the depths of measured runs: a figure belongs to the range it is fitted over.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +13,77 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.bench.figures import line_figures
 from pneutouch.errors import InputError
 from pneutouch.evaluation.comparison_record import ComparisonRecord, CurvePoints, DifferenceRecord, RowRecord
-from pneutouch.evaluation.correlation import SourceEffect, variance_of_ratio
-from pneutouch.mechanics.uncertainty.sources.model import MODEL_CORRELATION
+from pneutouch.mechanics.response import figures
+from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
+from pneutouch.mechanics.uncertainty.sources.model import MODEL, MODEL_CORRELATION
 from pneutouch.rounding import rounded
 
 if TYPE_CHECKING:
     from pneutouch.parts import Assembly
+
+
+_OF_RESIN = ("published modulus", "mixing fraction", "ageing of the modulus", "ageing")
+"""Sources that are one unknown number for all sensors in one resin, of one age."""
+
+
+@dataclass(frozen=True, slots=True)
+class SourceEffect:
+    """Effect of one standard uncertainty of a source on the logarithm of a figure, with its sign."""
+
+    name: str
+    origin: str
+    size: float
+
+
+def effects_of(uncertainty: UncertaintyRecord, figure: str) -> tuple[SourceEffect, ...]:
+    """Effects of every source on a figure, from a state's uncertainty document; their squares sum to its variance."""
+    entry = uncertainty["figures"][figure]
+    total, slopes = entry["standard_uncertainty_relative"], uncertainty["elasticities"][figure]
+    origins: dict[str, str] = {}
+    inputs: dict[str, set[str]] = {}
+    for source in uncertainty["sources"]:
+        if figure in source["figures"]:
+            origins[source["name"]] = source["origin"]
+            inputs.setdefault(source["name"], set()).add(source["acts_on"])
+    effects = []
+    for name, share in entry["shares"].items():
+        # What acts on several inputs at once has no sign that holds for it alone.
+        acts_on = inputs.get(name, set())
+        slope = slopes.get(next(iter(acts_on)), 1.0) if len(acts_on) == 1 else 1.0
+        effects.append(SourceEffect(name, origins.get(name, ""), math.copysign(total * math.sqrt(share), slope)))
+    return tuple(effects)
+
+
+def variance_of_ratio(first: Sequence[SourceEffect], second: Sequence[SourceEffect], *, same_resin: bool) -> float:
+    """Variance of the logarithm of the ratio of two figures (JCGM 100, 5.2.2).
+
+    Of sensors in the same resin, the sources on the resin are taken as fully correlated, the model's error by
+    `MODEL_CORRELATION` where both have it from the same measurements. All else is taken as independent.
+    """
+    total = sum(effect.size**2 for effect in (*first, *second))
+    if not same_resin:
+        return total
+    second_by_name = {effect.name: effect for effect in second}
+    for one in first:
+        other = second_by_name.get(one.name)
+        if other is not None:
+            total -= 2 * _coefficient(one, other) * one.size * other.size
+    return max(total, 0.0)
+
+
+def _coefficient(one: SourceEffect, other: SourceEffect) -> float:
+    if one.name in _OF_RESIN:
+        return 1.0
+    # The calibrated parameters are several unknowns, whose effects two states weigh differently: as one unknown they
+    # would cancel where they do not. Taken as independent they do not cancel at all, which errs on the wide side.
+    return MODEL_CORRELATION if one.name == MODEL and one.origin == other.origin else 0.0
+
 
 COVERAGE = 2.0
 """k of every interval; a difference that exceeds k combined standard uncertainties is no chance at about 95 %."""
@@ -256,3 +324,36 @@ def _notes(sensors: Sequence[ComparedSensor], pressures_kPa: Sequence[float], in
     if not inputs and len(predicted) == len(sensors):
         notes.append("No input differs.")
     return [*notes, *dict.fromkeys(note for sensor in sensors for note in sensor.notes)]
+
+
+_ROUNDING, _LEAST_POINTS = 1e-9, 3
+
+
+def figures_at(
+    indentation: Array, force: Array, rise_kPa: Array, range_end: float, specimens: Sequence[Sequence[Array]]
+) -> dict[str, float]:
+    """Figures of a curve (mm, N, kPa; one length) by key of `bench.figure.FIGURES`, as measured runs would give them.
+
+    ``specimens`` holds the depths of each run of each specimen, mm. The curve is read at every run's own depths, as far
+    as its range goes, and the figures are averaged as measured ones are: over the runs, then over the specimens.
+    Saturation is left out where a run does not reach it.
+    """
+    from scipy.interpolate import PchipInterpolator
+
+    kept = indentation <= range_end * (1 + _ROUNDING)
+    travel, first = np.unique(indentation[kept], return_index=True)
+    if travel.size < _LEAST_POINTS:
+        return {}
+    read = PchipInterpolator(travel, np.stack([force[kept][first], rise_kPa[kept][first]], axis=1))
+    averages = []
+    for runs in specimens:
+        inside = (np.minimum(at[at <= range_end * (1 + _ROUNDING)], travel[-1]) for at in runs)
+        fitted = [figures(at, *read(at).T) for at in inside]
+        each = [line_figures(one) for one in fitted if one is not None]
+        if each:
+            averages.append(_mean(each))
+    return _mean(averages) if averages else {}
+
+
+def _mean(each: Sequence[dict[str, float]]) -> dict[str, float]:
+    return {key: float(np.mean([one[key] for one in each])) for key in each[0] if all(key in one for one in each)}

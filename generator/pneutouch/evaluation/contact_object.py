@@ -1,8 +1,13 @@
-"""The object that presses a design's sensor, as the solid takes it."""
+"""The object that presses a design's sensor, as the solid takes it.
+
+Basis of the uncertainty of a sensor under another contact than a plate without friction, in words.
+"""
+
+from __future__ import annotations
 
 import dataclasses
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,12 +15,11 @@ from pneutouch.arrays import Array
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.mechanics import Sensor, SensorPrediction
-from pneutouch.mechanics.object_mesh import MOST_CELLS, object_cells
-from pneutouch.mechanics.solid.contact import RIM, flat_radius
 from pneutouch.mechanics.solid.indenter import (
     CELLS_PER_RADIUS,
     ObjectShapeError,
     ProfileVertex,
+    RigidBase,
     RigidObject,
     ball,
     cone,
@@ -25,9 +29,14 @@ from pneutouch.mechanics.solid.indenter import (
     profile,
     ring,
 )
-from pneutouch.mechanics.solid.rigid_base import RigidBase
+from pneutouch.mechanics.solid.mesh import MOST_CELLS, object_cells
+from pneutouch.mechanics.solid.object_contact import RIM, flat_radius
 from pneutouch.parts import Assembly
 from pneutouch.spec.part import ClampedFlange
+
+if TYPE_CHECKING:
+    from pneutouch.mechanics.uncertainty import ContactModel
+
 
 _AT_ONCE = 1e-6
 """Share of R0 within which the contact reaches an edge at first touch."""
@@ -202,3 +211,22 @@ def check_plate(scene: ResolvedDesign, prediction: SensorPrediction) -> None:
                 key="indentation.plate_diameter_mm",
                 value=scene.design.indentation.plate_diameter_mm,
             )
+
+
+def contact_notes(sensor: Sensor, contact: ContactModel | None) -> tuple[str, ...]:
+    """Notes on the uncertainty under a contact; none for a plate without friction."""
+    if contact is None:
+        return ()
+    notes = [
+        f"{sensor.protocol.other_contact}: the figures and their derivatives by modulus and friction are the solid's, "
+        "the other derivatives those of a plate without friction; what the latter may miss is the source contact "
+        "correction. The error of the model is that of a plate without friction against Table S1, of which the "
+        "friction in those measurements is a part, so that it may count twice (docs/background/uncertainty.md)"
+    ]
+    friction = contact.friction
+    if friction is not None and not np.isfinite(friction.standard).any(axis=0).all():
+        notes.append(
+            "the solid found no equilibrium at another coefficient of friction, whose uncertainty is then not in the "
+            "budget"
+        )
+    return tuple(notes)

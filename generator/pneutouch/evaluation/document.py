@@ -10,7 +10,7 @@ from pneutouch.evaluation.dynamics import dynamics_document
 from pneutouch.evaluation.gauge import gauge_document
 from pneutouch.evaluation.uncertainty import documents
 from pneutouch.mechanics.prediction import SensorRecord, StateRecord
-from pneutouch.mechanics.viscous.known import AGED, ageing_ratio
+from pneutouch.mechanics.viscous.prony import AGED, ageing_ratio
 from pneutouch.rounding import rounded
 
 if TYPE_CHECKING:

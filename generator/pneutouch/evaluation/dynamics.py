@@ -9,11 +9,9 @@ import numpy as np
 
 from pneutouch.evaluation.sheet_data import SpeedData, SpeedState
 from pneutouch.mechanics.line.air import AirState
-from pneutouch.mechanics.line.band import BandFigures, band_figures
-from pneutouch.mechanics.line.cascade import GasLine
-from pneutouch.mechanics.line.dynamics import SensorDynamics
+from pneutouch.mechanics.line.dynamics import GasLine, SensorDynamics
 from pneutouch.mechanics.line.elements import Duct, GasVolume
-from pneutouch.mechanics.line.transient import StepFigures, step_figures
+from pneutouch.mechanics.line.transient import BandFigures, StepFigures, band_figures, step_figures
 from pneutouch.mechanics.viscous.prony import Prony, prony_series
 from pneutouch.parts.air_path import AirPiece, air_path
 from pneutouch.units import KPA, ML

@@ -11,24 +11,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
+from pneutouch.catalogue.library import Resins, alike, elastomers
 from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.evaluation.calibrated import assumption, calibrated_error, calibrated_sensor, check_options, unmeasured
 from pneutouch.evaluation.contact_object import check_first_touch, check_object, check_plate, contact_object, rigid_base
-from pneutouch.evaluation.elastomers import Resins, alike, elastomers
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
 from pneutouch.mechanics.gauge_reading import gauge_reading
 from pneutouch.mechanics.models import DEFAULT_TOLERANCE, USUAL
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.prediction import ErrorEstimate
-from pneutouch.mechanics.viscous.known import AGED, ageing_ratio
+from pneutouch.mechanics.viscous.prony import AGED, ageing_ratio
 from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.read import Changes
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.dynamics import SensorBandwidth
-    from pneutouch.mechanics.curve_outcome import CurveOutcome
+    from pneutouch.mechanics.prediction import CurveOutcome
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
     from pneutouch.mechanics.viscous.describe import ViscousRuns
@@ -82,7 +82,7 @@ class Evaluation:
     @cached_property
     def findings(self) -> list[Finding]:
         """Findings of the print rules."""
-        from pneutouch.evaluation.findings import sensor_findings
+        from pneutouch.evaluation.subject import sensor_findings
         from pneutouch.printability import SensorContext
 
         # What is printed is the wall as drawn, whatever wall a calibration gives the model.
@@ -103,7 +103,7 @@ class Evaluation:
 
     def deep_findings(self) -> list[Finding]:
         """Findings of pymeshlab, an independent reader, on the meshes. Raises InputError if it is not installed."""
-        from pneutouch.printability.deep import inspect
+        from pneutouch.printability.inspection import inspect
 
         tolerance, solids = self.scene.mesh_tolerance, self.assembly.solids
         pairs = zip(self.assembly.bodies, solids, strict=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from pneutouch.evaluation.sheet_data import AgeingData, LoadingLoop, RelaxationCurve, ViscousData, ViscousRow
 from pneutouch.mechanics import Sensor, SensorPrediction
-from pneutouch.mechanics.viscous.known import ageing_ratio, ageing_unknown, unknown
+from pneutouch.mechanics.viscous.prony import ageing_ratio, ageing_unknown, unknown
 from pneutouch.spec.material import Material
 
 if TYPE_CHECKING:

@@ -7,13 +7,13 @@ from functools import cached_property
 from pneutouch.bench.simulate import SimulationTruth, press_curves
 from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
+from pneutouch.catalogue.library import elastomers
 from pneutouch.errors import BeyondLimitError, InputError, nearest
-from pneutouch.evaluation.elastomers import elastomers
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.gauge import reading_of
 from pneutouch.mechanics import Sensor, predict
+from pneutouch.mechanics.paper_sensor import logarithmic_change
 from pneutouch.mechanics.rating import Rating, rating
-from pneutouch.mechanics.uncertainty.hardness import logarithmic_change
 from pneutouch.parts import assemble
 from pneutouch.spec.campaign import AS_DESIGNED
 from pneutouch.spec.read import Changes

@@ -1,27 +1,86 @@
-"""A datasheet's record made from an evaluation."""
+"""A datasheet's record made from an evaluation.
+
+Silicone to weigh for a cast membrane.
+
+The pressed dome of a datasheet, evaluated from the Fourier sums of a prediction.
+"""
 
 from dataclasses import replace
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.evaluation.anywhere import contact_chart
-from pneutouch.evaluation.chart_data import ComparedMembrane
-from pneutouch.evaluation.charts import air, tradeoff, tuning
+from pneutouch.evaluation.charts import air, resin_curves, tradeoff, tuning
 from pneutouch.evaluation.contact_object import object_section
 from pneutouch.evaluation.dynamics import speed_data
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.gauge import sheet_gauge, zero_drift_kPa_per_K
-from pneutouch.evaluation.pour import silicone_pour
-from pneutouch.evaluation.pressed import pressed_view
 from pneutouch.evaluation.relaxation import ageing_data, viscous_data
-from pneutouch.evaluation.sheet_data import SheetData
+from pneutouch.evaluation.sheet_data import ComparedMembrane, PressedView, SheetData, SiliconePour
 from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.evaluation.uncertainty import unknown
-from pneutouch.evaluation.variants import resin_curves
 from pneutouch.mechanics import Sensor, SensorPrediction
 from pneutouch.mechanics.models import stated_error
+from pneutouch.parts import Assembly
+from pneutouch.parts.mould import silicone_batch
 from pneutouch.units import KPA
+
+
+def silicone_pour(assembly: Assembly) -> SiliconePour | None:
+    """The batch that fills the mould once; None if the membrane is not cast."""
+    if assembly.mould is None:
+        return None
+    batch = silicone_batch(assembly.mould)
+    note = (
+        f"{batch.volume_mL:.1f} mL, {batch.cavities} x (cavity {batch.cavity_mL:.2f} + channels "
+        f"{batch.channels_mL:.2f} + overflow {batch.overflow_mL:.2f} mL) and {batch.loss_mL:.1f} mL left in the cup"
+    )
+    return SiliconePour(batch.volume_mL, batch.mass_g, batch.parts_g, note)
+
+
+_ANGLES = 64
+"""Angles around the axis at which the surface is evaluated."""
+
+
+def pressed_view(prediction: SensorPrediction) -> PressedView | None:
+    """The dome at the first driving pressure, pressed to the end of its range; None by a model without a surface."""
+    state = prediction.states[0]
+    face = state.face
+    if face is None:
+        return None
+    angles = 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES
+    rows = face.rows()
+    points = face.positions(rows, angles)
+    # On the axis all angles are one point.
+    points[-1] = points[-1].mean(axis=0)
+    pressure = face.pressure(rows, angles)
+    pressure[-1] = pressure[-1].mean()
+    sheared = None if state.beyond_axis is None else state.beyond_axis.shear
+    moved = face.travel != 0.0 and sheared is not None
+    force = sheared.force[-1] if moved and sheared else np.interp(face.indentation, state.indentation, state.force)
+    return PressedView(
+        driving_pressure_kPa=state.driving_pressure / KPA,
+        indentation=face.indentation,
+        travel=face.travel,
+        force=float(force),
+        points=points,
+        normals=_normals(points),
+        pressure_kPa=pressure / KPA,
+        lines=face.lines,
+    )
+
+
+def _normals(points: Array) -> Array:
+    """Outward unit normals of a surface (n, m, 3), from differences between neighbours."""
+    along = np.gradient(points, axis=0)
+    around = np.roll(points, -1, axis=1) - np.roll(points, 1, axis=1)
+    out = np.cross(around, along)
+    # On the axis a row is one point and has no tangent around it.
+    out[-1] = out[-2].sum(axis=0)
+    return np.asarray(out / np.linalg.norm(out, axis=2, keepdims=True))
+
 
 _LEAST_SPAN = 22 * KPA
 """The sensitivity plot reaches at least the paper's highest driving pressure."""

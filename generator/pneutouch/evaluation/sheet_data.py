@@ -1,4 +1,7 @@
-"""The record that a datasheet is drawn from: everything on the sheet that is computed stands here."""
+"""The record that a datasheet is drawn from: everything on the sheet that is computed stands here.
+
+Records that charts are drawn from: they hold computed figures and compute nothing.
+"""
 
 from __future__ import annotations
 
@@ -9,22 +12,15 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from pneutouch.arrays import Array
     from pneutouch.catalogue import ResolvedDesign
-    from pneutouch.evaluation.chart_data import (
-        ComparedMembrane,
-        ContactChart,
-        PressedView,
-        ResinCurve,
-        TradeOff,
-        TuningChart,
-    )
-    from pneutouch.mechanics.curve_outcome import CurveOutcome
-    from pneutouch.mechanics.prediction import SensorPrediction
+    from pneutouch.mechanics.prediction import CurveOutcome, SensorPrediction, SensorState
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.uncertainty import GasNotes
     from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
     from pneutouch.parts import Assembly
     from pneutouch.printability import Finding
     from pneutouch.printability.estimate import JobEstimate
+    from pneutouch.selection.front import TradeOffFront
+    from pneutouch.spec.contact import ContactKind
 
 
 class RelaxationCurve(NamedTuple):
@@ -230,3 +226,164 @@ class SheetData:
     speed: SpeedData | None = None
     pour: SiliconePour | None = None
     curves: tuple[CurveOutcome, ...] = ()
+
+
+class ResinCurve(NamedTuple):
+    """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each, and the model that computed it."""
+
+    driving_pressure_kPa: Array
+    sensitivity_kPa_per_N: Array
+    model: str
+
+
+class ComparedMembrane(NamedTuple):
+    """A membrane with its states, driving pressures ascending."""
+
+    label: str
+    states: tuple[SensorState, ...]
+
+
+class TuningCurve(NamedTuple):
+    """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each."""
+
+    label: str
+    driving_pressure_kPa: Array
+    sensitivity_kPa_per_N: Array
+
+
+@dataclass(frozen=True)
+class TuningChart:
+    """One design's curve from no pressure to its rated one, or to the highest that it states.
+
+    Attributes:
+        chosen: The curve.
+        low_kPa_per_N: Lower end of its k = 2 interval, kPa/N, (n,); None if that is not known.
+        high_kPa_per_N: Upper end, (n,).
+        working_kPa_per_N: Driving pressures it is meant for and the sensitivities there, kPa to kPa/N.
+        others: Designs to compare with.
+        published_kPa_per_N: Measured sensitivities of this very sensor, kPa to kPa/N.
+        caption: Note below the chart on what the curves leave out; empty for no note.
+    """
+
+    chosen: TuningCurve
+    low_kPa_per_N: Array | None
+    high_kPa_per_N: Array | None
+    working_kPa_per_N: dict[float, float]
+    others: tuple[TuningCurve, ...] = ()
+    published_kPa_per_N: tuple[tuple[float, float], ...] = ()
+    caption: str = ""
+
+
+class ChartPoint(NamedTuple):
+    """A design on the chart: title of its resin, what to call it, kPa/N and N."""
+
+    resin: str
+    label: str
+    sensitivity_kPa_per_N: float
+    force: float
+
+
+@dataclass(frozen=True)
+class TradeOff:
+    """Fronts at one driving pressure.
+
+    Attributes:
+        fronts: One a resin; empty ones are left out.
+        driving_pressure_kPa: Driving pressure, kPa.
+        gauge_kPa: Pressure rise that the pressure sensor has left, kPa.
+        window_kPa_per_N: Least and greatest required sensitivity (kPa/N), None if free.
+        force: Least required force range, N; None if free.
+        spots: Designs, the first picked out.
+        caption: Note below the chart on what the fronts leave out; empty for no note.
+        errors: Median and greatest relative difference of the fronts where the solid was solved to correct them.
+    """
+
+    fronts: tuple[TradeOffFront, ...]
+    driving_pressure_kPa: float
+    gauge_kPa: float
+    spots: tuple[ChartPoint, ...]
+    window_kPa_per_N: tuple[float, float] | None = None
+    force: float | None = None
+    caption: str = ""
+    errors: tuple[float, float] | None = None
+
+    @property
+    def known(self) -> tuple[TradeOffFront, ...]:
+        """The fronts with a line to draw."""
+        return tuple(front for front in self.fronts if front.sensitivity_kPa_per_N.size > 1)
+
+
+class ErrorCurves(NamedTuple):
+    """Errors of the force read (percent, (n,) at each driving pressure, NaN if the reading is not reached) over a
+    size or a place of contact, (n,)."""
+
+    along: Array
+    errors_percent: tuple[Array, ...]
+
+
+class ContactRow(NamedTuple):
+    """A contact: object (plate, ball or edge), its radius (None: a plate) and offset in mm, tilt in degrees; errors of
+    the force read in percent by driving pressure and reading, None if the reading is not reached."""
+
+    kind: ContactKind
+    radius: float | None
+    offset: float
+    tilt_deg: float
+    errors_percent: tuple[tuple[float | None, ...], ...]
+
+
+@dataclass(frozen=True)
+class ContactChart:
+    """Curves of the reading under contact off the centre, at one or two driving pressures.
+
+    Attributes:
+        driving_pressures_kPa: The lowest and the highest of the design, kPa.
+        rises_kPa: Pressure rises of the rows at each of them, kPa; the curves are at the first.
+        forces: Contact forces of the central plate at these, N.
+        by_radius: Central balls over their radius, mm; ``edges_by_radius``: edges of bars across the pole.
+        by_offset: The ball of ``ball_radius`` over its offset, mm; ``edges_by_offset``: the edge of that radius.
+        by_tilt: A leaning plate over its tilt, degrees.
+        ball_radius: mm.
+        rows: The table.
+        standard_uncertainties: Addition of an unknown place of contact to the logarithm of the sensitivity, by driving
+            pressure.
+        free_offset: Distance of a plate from the axis without effect, mm.
+    """
+
+    driving_pressures_kPa: tuple[float, ...]
+    rises_kPa: tuple[tuple[float, ...], ...]
+    forces: tuple[tuple[float, ...], ...]
+    by_radius: ErrorCurves
+    by_offset: ErrorCurves
+    by_tilt: ErrorCurves
+    edges_by_radius: ErrorCurves
+    edges_by_offset: ErrorCurves
+    ball_radius: float
+    rows: tuple[ContactRow, ...]
+    standard_uncertainties: tuple[float, ...]
+    free_offset: float
+
+
+@dataclass(frozen=True)
+class PressedView:
+    """The pressed dome in three dimensions at one driving pressure.
+
+    Attributes:
+        driving_pressure_kPa: Driving pressure, kPa.
+        indentation: Of the object, mm.
+        travel: Distance that it then moved sideways, mm.
+        force: Contact force, N.
+        points: Outer surface, mm, (n, m, 3): rows from the base to the pole, columns once around.
+        normals: Outward unit normals there, (n, m, 3).
+        pressure_kPa: Contact pressure there, kPa, (n, m); 0 where nothing touches.
+        lines: Lines that outline the object, mm, (k, 3) each.
+    """
+
+    driving_pressure_kPa: float
+    indentation: float
+    travel: float
+    force: float
+    points: Array
+    normals: Array
+    pressure_kPa: Array
+    lines: tuple[Array, ...]

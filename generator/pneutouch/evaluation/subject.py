@@ -1,4 +1,7 @@
-"""A sensor as the print rules look at it: its bodies on their machines, and where they must meet."""
+"""A sensor as the print rules look at it: its bodies on their machines, and where they must meet.
+
+Findings of the print rules on a sensor and, where its membrane is cast, on its mould.
+"""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,8 +14,9 @@ from pneutouch.parts import Assembly
 from pneutouch.parts.cast_ring import RING
 from pneutouch.parts.glue import glue_of, glue_surfaces
 from pneutouch.parts.layout import Layout
+from pneutouch.printability import Finding, SensorContext, check
 from pneutouch.printability.measure.mould import LEAVES
-from pneutouch.printability.mould import mould_subject
+from pneutouch.printability.rulebook import check_mould, mould_subject
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
 from pneutouch.printability.view import GluedSeat, WettedSurface
 
@@ -112,3 +116,15 @@ def _outer_wall(assembly: Assembly) -> Callable[[Array], Flags]:
         return on_sphere & (points[:, 2] > slack)
 
     return on_wall
+
+
+def sensor_findings(assembly: Assembly, context: SensorContext) -> list[Finding]:
+    """All findings, errors first. A calibrated membrane is cast already: its mould is left aside.
+
+    Raises InputError if a detail of the mould has no space.
+    """
+    context = replace(context, glued=glued_seat(assembly.scene))
+    if assembly.mould is None or context.calibrated:
+        return check(subject_of(assembly), context)
+    findings = check(subject_of(assembly), replace(context, wetted=wetted(assembly)))
+    return sorted([*findings, *check_mould(assembly.mould)], key=lambda finding: finding.rank)

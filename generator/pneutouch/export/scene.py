@@ -1,18 +1,116 @@
-"""GLB and binary STL through trimesh, and bodies cut open for pictures."""
+"""GLB and binary STL through trimesh, and bodies cut open for pictures.
+
+Meshes of the 3D view of a page, with a normal and a colour at every corner, as a short text.
+"""
 
 from __future__ import annotations
 
+import base64
+import json
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from pneutouch.arrays import Array
 from pneutouch.body import Body
-from pneutouch.export.view import ShadedBody
+from pneutouch.body.mesh import corner_normals
 
 if TYPE_CHECKING:
     import trimesh
+
+
+_STEPS = 32767
+"""Steps from the middle of the view to its end in each direction: whole numbers of two bytes."""
+
+
+TILT_DEG = 26.0
+"""Angle above the horizon from which a body is seen."""
+
+_MOST = 65535 // 3
+"""Triangles of one part: their vertices are counted in two bytes."""
+
+
+class ShadedBody(NamedTuple):
+    """Triangles as a picture needs them: corners in mm, unit normals and colours (0 to 1), (m, 3, 3) each.
+
+    ``relief`` is the share of light and shadow in the colours: 1 for the look of a body, 0 for the colours themselves.
+    ``columns``: of a grid that closes around an axis, in rows up to a pole; else 0. First come the triangles of each
+    field's corner, the one after it and the one above that, row by row.
+    """
+
+    name: str
+    corners: Array
+    normals: Array
+    colours: Array
+    relief: float = 1.0
+    columns: int = 0
+
+
+def shaded(body: Body, colours: Array | None = None) -> ShadedBody:
+    """A body with smooth normals; ``colours`` (n, 3) are of its vertices, left out: that of its material."""
+    if colours is None:
+        colours = np.tile(np.array(list(bytes.fromhex(body.material.colour[1:]))) / 255, (len(body.vertices), 1))
+    return ShadedBody(body.name, body.corners, corner_normals(body), colours[body.triangles])
+
+
+def view_data(bodies: Sequence[ShadedBody], tilt_deg: float = TILT_DEG) -> str:
+    """The bodies as JSON, z up, first seen from ``tilt_deg`` above the horizon.
+
+    ``middle`` and ``reach`` in mm place the positions: position = middle + reach * value / 32767. Each of ``bodies``
+    has, in base64 and little-endian, ``positions`` (int16), ``normals`` (int8, 127 is one), ``colours`` (uint8), three
+    a vertex, ``triangles`` (uint16) and ``relief``. A body of more than 65,535 vertices is split. A grid has its
+    ``columns`` in place of triangles.
+    """
+    corners = np.concatenate([body.corners.reshape(-1, 3) for body in bodies])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    middle, reach = 0.5 * (low + high), 0.5 * float((high - low).max())
+    parts = [part for body in bodies for part in _parts(body, middle, reach)]
+    content = {"middle": [round(float(x), 4) for x in middle], "reach": round(reach, 4), "bodies": parts}
+    content["tilt_deg"] = tilt_deg
+    return json.dumps(content, separators=(",", ":"))
+
+
+def _parts(body: ShadedBody, middle: Array, reach: float) -> list[dict[str, Any]]:
+    """The body in pieces of as many triangles as two-byte indices hold."""
+    rows = np.concatenate(
+        [
+            np.rint((body.corners - middle) / reach * _STEPS),
+            np.rint(body.normals * 127),
+            np.rint(np.clip(body.colours, 0, 1) * 255),
+        ],
+        axis=2,
+    ).astype(np.int16)
+    if body.columns:
+        count = len(rows) // (2 * body.columns) + 1
+        lowest = rows[: count * body.columns]
+        vertices = np.concatenate([lowest[:, 0], lowest[-body.columns :, 2]])
+        return [{"name": body.name, "relief": body.relief, "columns": body.columns, **_vertices(vertices)}]
+    pieces = [rows[start : start + _MOST] for start in range(0, len(rows), _MOST)]
+    return [{"name": body.name, "relief": body.relief, **_packed(piece)} for piece in pieces]
+
+
+def _packed(rows: NDArray[np.int16]) -> dict[str, str]:
+    vertices, triangles = np.unique(rows.reshape(-1, 9), axis=0, return_inverse=True)
+    index = triangles.reshape(-1, 3)
+    # Triangles that have no area in these steps would only cost bytes.
+    index = index[(index[:, 0] != index[:, 1]) & (index[:, 1] != index[:, 2]) & (index[:, 0] != index[:, 2])]
+    return {**_vertices(vertices), "triangles": _base64(index.astype("<u2"))}
+
+
+def _vertices(vertices: NDArray[np.int16]) -> dict[str, str]:
+    return {
+        "positions": _base64(vertices[:, :3].astype("<i2")),
+        "normals": _base64(vertices[:, 3:6].astype("i1")),
+        "colours": _base64(vertices[:, 6:].astype("u1")),
+    }
+
+
+def _base64(values: NDArray[Any]) -> str:
+    return base64.b64encode(values.tobytes()).decode()
+
 
 _GLTF_FROM_PRINT = np.array([[1e-3, 0, 0, 0], [0, 0, 1e-3, 0], [0, -1e-3, 0, 0], [0, 0, 0, 1.0]])
 """glTF is in metres with y up; the vertex data stay in mm with z up, and the node carries this matrix."""

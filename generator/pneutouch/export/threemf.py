@@ -4,18 +4,125 @@ Follows the 3MF core specification 1.4 and its materials extension 1.2: material
 components object; a material's name gives the intent and its display colour is for rendering only. A digital material
 whose mix is known is a composite of its base resins, any other material a base material. Bodies lie in one assembly
 because tray software rejects separate objects whose bounding boxes overlap.
+
+Materials of a 3MF: a base material a body, or a composite of base resins where the mix is known.
+
+Metadata of a 3MF model or object: well-known names, and our own in a declared namespace.
+
+lib3mf 2.5 cannot read a model back whose XML has a text of 65536 bytes or more, nor one in which an escape such as
+``&quot;`` lies across a multiple of 65536 bytes (both measured; tests/export/test_threemf_read.py). Our own values are
+therefore percent-encoded where XML would escape, continued in further entries where they are long, and the longest
+stand last.
+
+3MF of a tray through lib3mf: every part an object of its own with its material, one build item each, placed.
+
+Materials sit on mesh objects, never on components objects (3MF core 1.4). Bodies that grow in one print are the
+components of one object: tray software rejects separate objects whose bounding boxes overlap.
 """
 
 import ctypes
 import uuid
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
+from urllib.parse import unquote
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.body import Body
 from pneutouch.errors import ComputationError
-from pneutouch.export.threemf_materials import Materials
-from pneutouch.export.threemf_metadata import add_metadata
+from pneutouch.spec.material import Material
+
+
+class Materials:
+    """The material resources of one model, made as bodies need them.
+
+    Args:
+        wrapper: lib3mf.
+        model: The model that takes the resources.
+        materials: Those of its bodies: a group is made only where a body needs it.
+    """
+
+    def __init__(self, wrapper: Any, model: Any, materials: list[Material]) -> None:
+        self._wrapper = wrapper
+        self._group = model.AddBaseMaterialGroup()
+        composed = any(is_composite(material) for material in materials)
+        self._composites: Any = model.AddCompositeMaterials(self._group) if composed else None
+        self._bases: dict[tuple[str, str], int] = {}
+
+    def property_of(self, body: Body) -> tuple[int, int]:
+        """Resource and property of a body's material, as an object-level property takes them."""
+        material, intent = body.material, f"{body.role}: {body.material.label}"
+        if not is_composite(material):
+            return self._group.GetResourceID(), self._base(intent, material.colour)
+        return self._composites.GetResourceID(), self._composite(intent, material)
+
+    def _base(self, name: str, colour: str) -> int:
+        """A base material, once for each name and colour: names are unique in a package."""
+        if (name, colour) not in self._bases:
+            shown = self._wrapper.RGBAToColor(*bytes.fromhex(colour[1:]), 255)
+            self._bases[name, colour] = self._group.AddMaterial(name, shown)
+        return self._bases[name, colour]
+
+    def _composite(self, intent: str, material: Material) -> int:
+        """A composite of base resins that show the digital material's colour: a viewer mixes the colours too."""
+        import lib3mf
+
+        assert material.mix is not None
+        parts = []
+        for resin in material.base_resins:
+            part = lib3mf.CompositeConstituent()
+            part.PropertyID = self._base(f"{intent}: {resin}", material.colour)
+            part.MixingRatio = material.mix.fractions[resin]
+            parts.append(part)
+        return int(self._composites.AddComposite(parts))
+
+
+def is_composite(material: Material) -> bool:
+    """True if a material is written as a composite: mixed from several resins in known fractions."""
+    return material.is_digital and material.mix is not None
+
+
+NAMESPACE = "https://pneutouch.org/3mf/2026"
+
+WELL_KNOWN = frozenset({"Title", "Designer", "Description", "Copyright", "LicenseTerms", "Application"})
+"""Names of metadata that the specification defines; they have no namespace."""
+
+_LONGEST = 60_000
+"""Bytes of one entry."""
+
+_ENCODED = str.maketrans({letter: f"%{ord(letter):02X}" for letter in "%&<>\"'"})
+
+
+def add_metadata(owner: Any, metadata: dict[str, str]) -> None:
+    """Add entries to a model or an object; a text too long for one is continued in ``key-2``, ``key-3`` ..."""
+    group = owner.GetMetaDataGroup()
+    for key in sorted(metadata, key=lambda key: (len(metadata[key]), key)):
+        if key in WELL_KNOWN:
+            group.AddMetaData("", key, metadata[key], "xs:string", True)
+            continue
+        text = metadata[key].translate(_ENCODED)
+        step = _LONGEST if text.isascii() else _LONGEST // 4
+        for k in range(0, max(len(text), 1), step):
+            name = f"{key}-{k // step + 1}" if k else key
+            group.AddMetaData(NAMESPACE, name, text[k : k + step], "xs:string", True)
+
+
+def metadata_of(owner: Any) -> dict[tuple[str, str], str]:
+    """Values by namespace and name of a model or an object; ours decoded, and continued ones joined."""
+    group = owner.GetMetaDataGroup()
+    entries = [group.GetMetaData(k) for k in range(group.GetMetaDataCount())]
+    values = {(entry.GetNameSpace(), entry.GetName()): entry.GetValue() for entry in entries}
+    local = {name: value for (space, name), value in values.items() if space == NAMESPACE}
+    foreign = {key: value for key, value in values.items() if key[0] != NAMESPACE}
+    for name in list(local):
+        k = 2
+        while name in local and f"{name}-{k}" in local:
+            local[name] += local.pop(f"{name}-{k}")
+            k += 1
+    return {**foreign, **{(NAMESPACE, name): unquote(value) for name, value in local.items()}}
+
 
 DECIMALS = 6
 _UUIDS = uuid.UUID("6d0f1d2e-6f5c-5d0b-9d3a-3f1c7b0f7a11")
@@ -120,3 +227,73 @@ def facts_of(body: Body) -> dict[str, str]:
     """Metadata of a body: a composite has no name of its own that would carry the intent."""
     mix = body.material.mix
     return {"role": body.role, "material": body.material.label, **({} if mix is None else {"mix-source": mix.source})}
+
+
+TRAY_RECIPE = "tray-recipe"
+"""Metadata entry of a tray's 3MF that holds its order."""
+
+
+@dataclass(frozen=True)
+class TrayItem:
+    """One part of a tray.
+
+    Attributes:
+        label: Part number of the build item, unique on the tray.
+        shape: Name of its object: items of one shape share it, and the bodies of the first are taken.
+        bodies: In the part's own frame, mm; their names are unique among all shapes.
+        transform: Rows (4, 3): the images of the x, y and z axes, and the shift in mm, from that frame to the tray's.
+    """
+
+    label: str
+    shape: str
+    bodies: tuple[Body, ...]
+    transform: Array
+
+
+def threemf_tray(name: str, items: Sequence[TrayItem], metadata: dict[str, str]) -> bytes:
+    """Write a tray called ``name``; the same input gives the same bytes.
+
+    ``metadata`` is as for `export.threemf.threemf`. Raises ComputationError for a body that is not
+    closed, and where the file cannot be read back strictly.
+    """
+    import lib3mf
+
+    wrapper = lib3mf.get_wrapper()
+    model = wrapper.CreateModel()
+    model.SetUnit(lib3mf.ModelUnit.MilliMeter)
+    materials = Materials(wrapper, model, [body.material for item in items for body in item.bodies])
+    objects: dict[str, Any] = {}
+    for item in items:
+        if item.shape not in objects:
+            objects[item.shape] = _object(wrapper, model, name, item, materials)
+    for item in items:
+        built = model.AddBuildItem(objects[item.shape], _transform(lib3mf, item.transform))
+        built.SetPartNumber(item.label)
+        built.SetUUID(name_uuid(name, "tray item", item.label))
+    model.SetBuildUUID(name_uuid(name, "tray"))
+    add_metadata(model, metadata)
+    return content_of(wrapper, model)
+
+
+def _object(wrapper: Any, model: Any, name: str, item: TrayItem, materials: Materials) -> Any:
+    """The mesh object of a part, or a components object over those of its bodies."""
+    meshes = [
+        mesh_object(wrapper, model, materials, body, name_uuid(name, "tray object", body.name)) for body in item.bodies
+    ]
+    if len(meshes) == 1:
+        return meshes[0]
+    whole = model.AddComponentsObject()
+    whole.SetName(item.shape)
+    whole.SetUUID(name_uuid(name, "tray assembly", item.shape))
+    for mesh, body in zip(meshes, item.bodies, strict=True):
+        component = whole.AddComponent(mesh, wrapper.GetIdentityTransform())
+        component.SetUUID(name_uuid(name, "tray component", body.name))
+    return whole
+
+
+def _transform(lib3mf: Any, rows: Array) -> Any:
+    placed = lib3mf.Transform()
+    for i, row in enumerate(rows):
+        for j, value in enumerate(row):
+            placed.Fields[i][j] = float(value)
+    return placed

@@ -1,20 +1,225 @@
-"""Read a 3MF back: bodies with their materials, metadata, the recipe where there is one."""
+"""Read a 3MF back: bodies with their materials, metadata, the recipe where there is one.
+
+The package under a 3MF, opened with suspicion: a zip whose parts are counted, inflated and looked through here.
+
+What is handed on is a fresh, plain archive of exactly the parts that were checked, so no other reader can see
+anything else in the file. Nothing is extracted to disk.
+"""
 
 import ctypes
+import io
+import struct
+import zipfile
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
+from xml.parsers import expat
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pneutouch.arrays import Array, Indices
-from pneutouch.body.triangles import enclosed_volume
+from pneutouch.body.mesh import enclosed_volume
 from pneutouch.errors import InputError
-from pneutouch.export.threemf import read_strictly
-from pneutouch.export.threemf_metadata import NAMESPACE, metadata_of
-from pneutouch.export.threemf_package import checked_package
+from pneutouch.export.threemf import NAMESPACE, metadata_of, read_strictly
+from pneutouch.spec.files import read_bytes
+
+MOST_BYTES = 256 * 2**20
+"""Greatest size of a file, and of all its parts inflated: a sensor has less than 1 MB, a fine one some tens."""
+
+MOST_PARTS = 1000
+"""Greatest number of parts; a sensor has four, a slicer's project some hundreds."""
+
+_DEEPEST = 64
+"""Deepest nesting of XML elements; the specification needs a tenth of it."""
+
+MOST_COMPONENTS = 10_000
+"""Greatest number of objects that the components of a file amount to, each counted as often as it is referred to."""
+
+_XML = (".model", ".rels", ".xml")
+"""Endings of parts that must be well-formed XML."""
+
+_END, _END_SIZE = b"PK\x05\x06", 22
+_END_64, _END_64_SIZE = b"PK\x06\x06", 56
+_LOCATOR_64, _LOCATOR_64_SIZE = b"PK\x06\x07", 20
+_MOST_DIRECTORY = MOST_PARTS * 1024
+_DAMAGE = (zipfile.BadZipFile, zlib.error, struct.error, EOFError, OSError, ValueError, OverflowError, RuntimeError)
+"""Exceptions that zipfile raises for archives with wrong bytes in them, found by changing bytes at random."""
+
+_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+
+
+def checked_package(path: Path) -> bytes:
+    """The package at ``path`` as a plain archive of checked parts.
+
+    Raises InputError for what is missing, no file, no zip, damaged, larger than `MOST_BYTES` in the file or inflated,
+    of more than `MOST_PARTS` parts, or holds XML with a document type or entities.
+    """
+    content = _content(path)
+    _check_end(content, path)
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            parts = _parts(archive, path)
+    except _DAMAGE as error:
+        raise InputError(
+            f"damaged zip archive ({error})", file=path, remedy="export or download the file again"
+        ) from None
+    components = Components(str(path))
+    for name, part in parts.items():
+        _check_xml(part, f"{path}: {name}", (components, name), must=name.lower().endswith(_XML))
+    components.check()
+    plain = io.BytesIO()
+    with zipfile.ZipFile(plain, "w", zipfile.ZIP_STORED) as archive:
+        for name, part in parts.items():
+            archive.writestr(zipfile.ZipInfo(name), part)
+    return plain.getvalue()
+
+
+def _content(path: Path) -> bytes:
+    return read_bytes(path, MOST_BYTES, "3MF file")
+
+
+def _check_end(content: bytes, path: Path) -> None:
+    """Check the archive's end record before a list of its parts is made: the list could be long."""
+    at = content.rfind(_END, max(0, len(content) - _END_SIZE - 0xFFFF))
+    end = content[at : at + _END_SIZE]
+    comment = int.from_bytes(end[20:22], "little")
+    if at < 0 or at + _END_SIZE + comment != len(content):
+        what = "a zip archive cut short or damaged" if content.startswith(b"PK") else "not a zip archive"
+        raise InputError(f"{what}; a 3MF is a zip archive, such as pneutouch build writes", file=path)
+    count, size = end[10:12], end[12:16]
+    locator = max(0, at - _LOCATOR_64_SIZE)
+    if content[locator:at].startswith(_LOCATOR_64):
+        # lib3mf always writes the long form; its record stands right before the locator.
+        long = content[max(0, locator - _END_64_SIZE) : locator]
+        if not long.startswith(_END_64):
+            raise InputError(
+                "damaged zip archive (no zip64 record)", file=path, remedy="export or download the file again"
+            )
+        count, size = long[32:40], long[40:48]
+    if int.from_bytes(count, "little") > MOST_PARTS or int.from_bytes(size, "little") > _MOST_DIRECTORY:
+        _too_many(path)
+
+
+def _parts(archive: zipfile.ZipFile, path: Path) -> dict[str, bytes]:
+    """Content by name. Declared sizes are checked first; then no more than declared is inflated, and no less taken."""
+    if not all(entry.filename for entry in archive.infolist()):
+        raise InputError("a part without a name, which no 3MF has", file=path)
+    entries = [entry for entry in archive.infolist() if not entry.is_dir()]
+    if len(entries) > MOST_PARTS:
+        _too_many(path)
+    if sum(entry.file_size for entry in entries) > MOST_BYTES:
+        raise InputError(f"inflates to more than {_mega(MOST_BYTES)}, which no sensor needs", file=path)
+    parts: dict[str, bytes] = {}
+    seen: set[str] = set()
+    for entry in entries:
+        if entry.flag_bits & 1 or entry.compress_type not in _METHODS:
+            raise InputError(f"{entry.filename}: encrypted or packed by a method that 3MF does not allow", file=path)
+        if entry.filename.lower() in seen:
+            raise InputError(f"{entry.filename}: there twice; a part may be there once only", file=path)
+        seen.add(entry.filename.lower())
+        with archive.open(entry) as stream:
+            part = stream.read(entry.file_size + 1)
+        if len(part) != entry.file_size:
+            raise zipfile.BadZipFile(
+                f"{entry.filename} inflates to {len(part)} bytes and not the {entry.file_size} declared"
+            )
+        parts[entry.filename] = part
+    return parts
+
+
+def _too_many(path: Path) -> NoReturn:
+    raise InputError(f"more than {MOST_PARTS} parts, which no sensor needs", file=path)
+
+
+def _mega(size: int) -> str:
+    return f"{size // 2**20} MiB"
+
+
+Name = tuple[str, str]
+"""An object: the part that it stands in, and its id there."""
+
+
+class Components:
+    """References between objects, over all parts: a few of them can stand for more objects than any reader holds."""
+
+    def __init__(self, where: str) -> None:
+        self.where, self.object = where, ("", "")
+        self.references: dict[Name, list[Name]] = {}
+
+    def start(self, part: str, tag: str, attributes: dict[str, str]) -> None:
+        """Take note of an element of a part as it begins."""
+        local = tag.rsplit(":", 1)[-1]
+        if local == "object":
+            self.object = (part, attributes.get("id", ""))
+            self.references.setdefault(self.object, [])
+        elif local == "component":
+            path = next((value for key, value in attributes.items() if key.rsplit(":", 1)[-1] == "path"), part)
+            self.references.setdefault(self.object, []).append((path.lstrip("/"), attributes.get("objectid", "")))
+
+    def check(self) -> None:
+        """Raise InputError where objects refer to themselves, or amount to more than `MOST_COMPONENTS`."""
+        counts: dict[Name, int] = {}
+        for first in self.references:
+            self._count(first, counts)
+
+    def _count(self, first: Name, counts: dict[Name, int]) -> None:
+        """Children before parents, without recursion: the chain may be as long as the file."""
+        stack, ancestors = [(first, False)], set()
+        while stack:
+            name, done = stack.pop()
+            children = self.references.get(name, [])
+            if done:
+                ancestors.discard(name)
+                counts[name] = 1 + sum(counts.get(child, 1) for child in children)
+                if counts[name] > MOST_COMPONENTS:
+                    raise InputError(
+                        f"its components amount to more than {MOST_COMPONENTS} objects, which no sensor needs",
+                        file=self.where,
+                    )
+            elif name not in counts:
+                if name in ancestors:
+                    raise InputError(f"object {name[1][:40]} is a component of itself", file=self.where)
+                ancestors.add(name)
+                stack.append((name, True))
+                stack += [(child, False) for child in dict.fromkeys(children) if child not in counts]
+
+
+def _check_xml(content: bytes, where: str, noted: tuple[Components, str], must: bool) -> None:
+    """Refuse a document type, entities and deep nesting, in any encoding; ``must`` be well-formed XML at all.
+
+    Parts with other endings are looked through as well: what is no XML fails at its first bytes. ``noted`` takes note
+    of the components, under the name of the part.
+    """
+    depth = 0
+
+    def refuse(*_: Any) -> NoReturn:
+        raise InputError(
+            "has a document type or entities, which 3MF does not allow", file=where, remedy="take them out"
+        )
+
+    def deeper(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal depth
+        depth += 1
+        noted[0].start(noted[1], tag, attributes)
+        if depth > _DEEPEST:
+            raise InputError(f"XML nested deeper than {_DEEPEST} elements, which no 3MF needs", file=where)
+
+    def back(*_: Any) -> None:
+        nonlocal depth
+        depth -= 1
+
+    parser = expat.ParserCreate()
+    parser.StartDoctypeDeclHandler = parser.EntityDeclHandler = parser.ExternalEntityRefHandler = refuse
+    parser.StartElementHandler, parser.EndElementHandler = deeper, back
+    try:
+        parser.Parse(content, True)
+    except (expat.ExpatError, ValueError, LookupError) as error:
+        if must:
+            raise InputError(f"not well-formed XML: {error}", file=where) from None
+
 
 RECIPE = "recipe"
 """Name of the metadata entry that holds the recipe."""

@@ -6,8 +6,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import BeyondLimitError
-from pneutouch.mechanics.atlas.batches import batch_of
-from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack
+from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, batch_of
 from pneutouch.mechanics.atlas.recipe import FIELDS
 from pneutouch.mechanics.atlas.respond import (
     BREAK,

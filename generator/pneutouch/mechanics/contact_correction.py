@@ -5,6 +5,8 @@ a contact to the solid's with that plate, at the same travels and driving pressu
 ratio is of one sensor; nearby its logarithm is taken as the same. With friction that of the force moves by up to 0.04
 for a modulus 1.3 times as large, that of the sensitivity by up to 0.02 (`tests/mechanics/test_contact_correction.py`):
 a fit takes the ratio at its own estimate.
+
+Sensors that a calibration covers: those that the atlas, with which every fit is made, has answers for.
 """
 
 from dataclasses import dataclass
@@ -14,6 +16,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
+from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA
 
@@ -121,3 +124,16 @@ def _log_ratio(contact: Array, plate: Array, depths: Array) -> Array:
     at = np.minimum(depths, min(contact[0, -1], plate[0, -1]))
     over, under = (np.array([np.interp(at, one[0], row) for row in one[1:]]) for one in (contact, plate))
     return np.asarray(np.log(over / under))
+
+
+_DEPTH = 0.75
+"""Depth in R0 that a fit takes at most: that of the sensitivity test (paper, section 3-B)."""
+
+
+def outside_fit(sensor: Sensor) -> str | None:
+    """Reason why no fit to measured runs covers a sensor, or None if one does.
+
+    Friction and objects are the solid's correction of the atlas (`contact_correction`).
+    """
+    plate = plate_alone(sensor)
+    return outside_atlas(plate.replace(depth=min(plate.protocol.depth, _DEPTH * plate.dome.inner_radius)))

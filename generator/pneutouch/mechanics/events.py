@@ -6,7 +6,7 @@ from typing import TypedDict
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.contact import PressedStates
+from pneutouch.mechanics.membrane_contact import PressedStates
 from pneutouch.mechanics.sensor import Sensor
 
 SWAY, LOBES = "sway", "lobes"

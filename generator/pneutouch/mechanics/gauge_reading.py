@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from pneutouch.spec.gauge import Gauge
-from pneutouch.spec.quantity import Quantity
+from pneutouch.spec.values import Quantity
 from pneutouch.units import GAUGE_LIMIT, KPA
 
 RECORDER_STEP_V = 20.0 / 2**16

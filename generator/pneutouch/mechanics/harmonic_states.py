@@ -10,16 +10,15 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError, InputError
 from pneutouch.mechanics.events import range_end
+from pneutouch.mechanics.harmonic.friction_path import ShearPath
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
-from pneutouch.mechanics.harmonic.shear import ShearPath
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject
 from pneutouch.mechanics.models import HARMONICS_SETTLED
 from pneutouch.mechanics.off_axis_curve import OffAxisCurve, RangeCurve, ShearCurve
 from pneutouch.mechanics.prediction import ModelResult, SensorState
 from pneutouch.mechanics.response import Figures, figures
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.first_touch import first_touch
-from pneutouch.mechanics.solid.inflate import FreeState, Inflation, state_at
+from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch, state_at
 from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.mechanics.solid_states import curve_between, press_settings, reported_events, solid_result
 from pneutouch.units import KPA

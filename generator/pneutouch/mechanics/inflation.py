@@ -6,15 +6,43 @@ with C1 = mu/2,
     p R0/(C1 t0) = 8 x/(1 + x^2) - 64 x/(1 + x^2)^4 .
 
 Its maximum is the limit point: beyond it the dome goes on growing at falling pressure.
+
+The exact neo-Hookean membrane, tabulated: the reference for the error of the cap model in state I.
+
+The membrane equations solved by shooting, without assuming constant curvature or equibiaxial stretch. The
+tests solve them again with an independent program and compare every row.
+
+Roots of many equations at once by bisection: no derivative, no failure inside a bracket.
+
+SciPy's `elementwise.find_root` takes 9 ms for 100 roots where this takes 1.1 ms, and 0.5 s to import.
 """
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import BeyondLimitError, ComputationError
-from pneutouch.mechanics.roots import bisect
+
+_HALVINGS = 60
+"""2**-60 of the bracket: below the rounding of any root of its size."""
+
+
+def bisect(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
+    """Return where ``function`` turns from negative to positive between ``low`` and ``high``, elementwise.
+
+    Where it is positive already at ``low`` the answer is ``low``; where it is still negative at ``high``,
+    ``high``. All arrays have the same shape.
+    """
+    a, b = np.array(low, float), np.array(high, float)
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (a + b)
+        below = function(middle) < 0
+        a, b = np.where(below, middle, a), np.where(below, b, middle)
+    root: Array = 0.5 * (a + b)
+    return root
+
 
 _HIGHEST = 1e6
 """Largest x searched on the falling branch; p R0/(mu t0) is 4e-6 there."""
@@ -78,3 +106,26 @@ def relative_height(
         return np.exp(bisect(lambda s: target - relative_pressure(np.exp(s)), low, high))
     low, high = np.ones(target.shape), np.full(target.shape, LIMIT_HEIGHT)
     return bisect(lambda x: relative_pressure(x) - target, low, high)
+
+
+_PRESSURE = (0.0, 0.487184, 0.816153, 1.204673, 1.398748, 1.497427, 1.546655, 1.568785, 1.57537)
+_HEIGHT = (1.0, 1.066291, 1.134059, 1.255874, 1.360730, 1.452773, 1.535446, 1.611202, 1.69000)
+
+RISING_BRANCH = np.column_stack([_PRESSURE, _HEIGHT])
+"""p R0/(mu t0) and h/R0 from no pressure to the limit point."""
+
+
+def limit_point_errors() -> tuple[float, float]:
+    """Relative errors of the cap's limit pressure and of its apex height there."""
+    pressure, height = RISING_BRANCH[-1]
+    return float(LIMIT_PRESSURE / pressure - 1), float(LIMIT_HEIGHT / height - 1)
+
+
+def height_errors(relative_pressures: Array) -> Array:
+    """Relative errors of the cap's apex height at p R0/(mu t0) from 0 to the cap's limit.
+
+    Interpolated between the table's rows, where the errors change slowly.
+    """
+    known = RISING_BRANCH[RISING_BRANCH[:, 0] <= LIMIT_PRESSURE]
+    errors = relative_height(known[:, 0], 1.0, 1.0, 1.0) / known[:, 1] - 1
+    return np.asarray(np.interp(relative_pressures, known[:, 0], errors))

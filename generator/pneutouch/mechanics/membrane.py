@@ -3,12 +3,17 @@
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.contact import PressedStates, press
 from pneutouch.mechanics.events import events, range_end
-from pneutouch.mechanics.exact_membrane import height_errors, limit_point_errors
-from pneutouch.mechanics.gas import TrappedGas
-from pneutouch.mechanics.inflation import LIMIT_HEIGHT, pressure, relative_height, thickness_stretch
+from pneutouch.mechanics.inflation import (
+    LIMIT_HEIGHT,
+    height_errors,
+    limit_point_errors,
+    pressure,
+    relative_height,
+    thickness_stretch,
+)
 from pneutouch.mechanics.limits import limit_point, limits
+from pneutouch.mechanics.membrane_contact import PressedStates, TrappedGas, press
 from pneutouch.mechanics.prediction import ErrorEstimate, InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor

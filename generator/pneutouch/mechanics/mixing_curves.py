@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from pneutouch.errors import BeyondLimitError, ComputationError
-from pneutouch.mechanics.curve_outcome import CurveOutcome
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.predict import predict
-from pneutouch.mechanics.prediction import SensorPrediction
+from pneutouch.mechanics.prediction import CurveOutcome, SensorPrediction
 from pneutouch.mechanics.rating import Rating, rating
 from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
 from pneutouch.spec.material import Material, MixByCurve

@@ -7,7 +7,7 @@ from typing import TypedDict
 from pneutouch.errors import InputError
 from pneutouch.mechanics.prediction import ErrorEstimate
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.spec.number import plain_number
+from pneutouch.spec.values import plain_number
 
 MODELS = ("membrane", "atlas", "solid")
 """The models of central contact, cheapest first; contact off the axis has one, harmonic."""

@@ -1,7 +1,16 @@
-"""The paper's sensor in any resin: the one with measurements, and the wall that a material file gives."""
+"""The paper's sensor in any resin: the one with measurements, and the wall that a material file gives.
+
+Shore A hardness to modulus: A. N. Gent, Rubber Chem. Technol. 31, 896-906 (1958), in its usual metric form.
+
+E = 0.0981 (56 + 7.62336 S) / (0.137505 (254 - 2.54 S)) MPa. Only its slope and its ratios are used: the relation's own
+level is not trusted for a relaxed modulus (it gives TangoPlus twice the modulus of the paper's Table 1). Above 80 the
+scale is compressed and the slope grows without bound towards 100.
+"""
 
 import dataclasses
 import math
+
+import numpy as np
 
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.spec.material import Material
@@ -71,3 +80,28 @@ def _grade(material: Material) -> tuple[tuple[float, ...], tuple[float, ...]] | 
     if along is None or mean is None:
         return None
     return tuple(along.arc), tuple(modulus / mean.nominal for modulus in along.shear_modulus_MPa)
+
+
+_OFFSET, _RISE = 56.0, 7.62336
+_UNIT = 0.0981 / (0.137505 * 2.54)
+_FULL = 100.0
+
+
+def young_modulus(shore_a: float) -> float:
+    """E in MPa of a Shore A hardness below 100."""
+    return _UNIT * (_OFFSET + _RISE * shore_a) / (_FULL - shore_a)
+
+
+def shore_a(modulus: float) -> float:
+    """The Shore A hardness of a Young's modulus in MPa: `young_modulus` solved."""
+    return (_FULL * modulus - _UNIT * _OFFSET) / (modulus + _UNIT * _RISE)
+
+
+def logarithmic_slope(shore: float) -> float:
+    """Logarithmic slope d ln E / dS, per unit of Shore A."""
+    return _RISE / (_OFFSET + _RISE * shore) + 1.0 / (_FULL - shore)
+
+
+def logarithmic_change(before: float, after: float) -> float:
+    """Logarithm of the ratio of the moduli at two hardnesses."""
+    return float(np.log(young_modulus(after) / young_modulus(before)))

@@ -9,8 +9,8 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError, nearest
-from pneutouch.mechanics.contact import CLOSURES
 from pneutouch.mechanics.membrane import error_against_exact_membrane, membrane_result
+from pneutouch.mechanics.membrane_contact import CLOSURES
 from pneutouch.mechanics.models import (
     DEFAULT_TOLERANCE,
     DISCRETISATION,

@@ -1,9 +1,12 @@
-"""A prediction: the results of a model for a sensor, and their document in boundary units."""
+"""A prediction: the results of a model for a sensor, and their document in boundary units.
+
+A record: a sensor in a mix by one of the mixing curves of its pair.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NotRequired, TypedDict
+from typing import Any, NotRequired, TypedDict
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.events import LOBES, SWAY, Event, EventRecord
@@ -13,6 +16,7 @@ from pneutouch.mechanics.pressed_face import PressedFace
 from pneutouch.mechanics.response import Figures, tangent_stiffness
 from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.rounding import rounded
+from pneutouch.spec.material import MixByCurve
 from pneutouch.units import KPA, ML
 
 _DIGITS = 12
@@ -280,3 +284,37 @@ class SensorPrediction:
             "binding": caps.binding,
         }
         return content if caps.law_range is None else {**content, "law_range_kPa": caps.law_range / KPA}
+
+
+@dataclass(frozen=True)
+class CurveOutcome:
+    """The sensor by one mixing curve.
+
+    states: as many of the design's driving pressures as it can be inflated to, from the lowest. rated: rated pressure,
+    MPa; None if nothing could be solved.
+    """
+
+    by_curve: MixByCurve
+    states: tuple[SensorState, ...]
+    rated: float | None
+
+    def document(self) -> dict[str, Any]:
+        """The outcome as data."""
+        by_curve = self.by_curve
+        return {
+            "curve": by_curve.curve,
+            "place": by_curve.place,
+            "shear_modulus_MPa": by_curve.shear_modulus_MPa.nominal,
+            "beyond_last_point": by_curve.beyond,
+            "rated_pressure_kPa": None if self.rated is None else self.rated / KPA,
+            "states": [self._state(state) for state in self.states],
+        }
+
+    @staticmethod
+    def _state(state: SensorState) -> dict[str, Any]:
+        figures = state.figures
+        return {
+            "driving_pressure_kPa": state.driving_pressure / KPA,
+            "sensitivity_kPa_per_N": None if figures is None else figures.sensitivity_kPa_per_N,
+            "force_range_end_N": None if figures is None else figures.force_range[1],
+        }

@@ -6,13 +6,12 @@ from typing import Literal, NamedTuple, TypedDict
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.batches import batch_of
-from pneutouch.mechanics.fit_cover import outside_fit
+from pneutouch.mechanics.atlas.press import batch_of
+from pneutouch.mechanics.contact_correction import outside_fit
 from pneutouch.mechanics.limits import RATED_SHARE, Limits
 from pneutouch.mechanics.models import DISCRETISATION
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.uncertainty.limit import COUPON, limit_spread
-from pneutouch.mechanics.uncertainty.propagate import COVERAGE
+from pneutouch.mechanics.uncertainty.propagate import COUPON, COVERAGE, limit_spread
 from pneutouch.rounding import rounded, tenths_below
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean
-from pneutouch.mechanics.solid.indenter import RigidObject
-from pneutouch.mechanics.solid.rigid_base import RigidBase
+from pneutouch.mechanics.solid.indenter import RigidBase, RigidObject
 
 _PLANE = RigidBase()
 

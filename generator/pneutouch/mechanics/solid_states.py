@@ -1,4 +1,8 @@
-"""The model ``solid``: the paper's finite element study (section 2-C and Supplement B) run for a sensor."""
+"""The model ``solid``: the paper's finite element study (section 2-C and Supplement B) run for a sensor.
+
+Range of the law: stretches of the wall beyond those of its fit are a limit of the inflation and an event of the
+press.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -6,31 +10,48 @@ from typing import Protocol
 
 import numpy as np
 
-from pneutouch.arrays import Array, distinct
+from pneutouch.arrays import Array, distinct, hermite
 from pneutouch.mechanics.events import LOBES, SWAY, Event, range_end
-from pneutouch.mechanics.harmonic.face import pressed_face
 from pneutouch.mechanics.harmonic.fields import Harmonics
+from pneutouch.mechanics.harmonic.object_contact import pressed_face
 from pneutouch.mechanics.harmonic.surface import PlacedObject
-from pneutouch.mechanics.hermite import hermite
-from pneutouch.mechanics.law_range import beyond_law, leaves_law
-from pneutouch.mechanics.limits import LimitPoint, Limits
-from pneutouch.mechanics.object_mesh import object_cells
+from pneutouch.mechanics.limits import LAW_RANGE, LimitPoint, Limits
 from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState, WallPath
 from pneutouch.mechanics.pressed_face import PressedFace
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.events import SolidEvent
-from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
-from pneutouch.mechanics.solid.indenter import Indenter
-from pneutouch.mechanics.solid.inflate import FreeState, Inflation, inflate, state_at
-from pneutouch.mechanics.solid.mesh import dome, nodes_along
+from pneutouch.mechanics.solid.indenter import Indenter, RigidBase
+from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch, inflate, state_at
+from pneutouch.mechanics.solid.mesh import dome, nodes_along, object_cells, printed_dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.printed import printed_dome
-from pneutouch.mechanics.solid.rigid_base import RigidBase
-from pneutouch.mechanics.solid.stress import StrainProbe, burst
-from pneutouch.meridian.arc import arc_share
+from pneutouch.mechanics.solid.stress import StrainProbe, burst, met
+from pneutouch.shape.meridian import arc_share
 from pneutouch.units import KPA
+
+
+def leaves_law(probe: StrainProbe, run: Inflation, largest: float | None) -> tuple[float, float] | None:
+    """Pressure (MPa) and outer apex height (mm) at which free inflation leaves the stretches of tension up to
+    ``largest``; None if it does not, or where they are not known."""
+    return None if largest is None else met(probe, run, probe.greatest_tension, largest)
+
+
+def beyond_law(probe: StrainProbe, pressed: IndentationPath, largest: float | None) -> list[Event]:
+    """The event of a wall pressed beyond the stretches that its law was fitted over; none where they are not known."""
+    if largest is None:
+        return []
+    tension = [probe.greatest_tension(state.positions / probe.solid.length) for state in pressed.path]
+    travel = [max(state.indentation, 0.0) for state in pressed.path]
+    beyond = [at for at, stretch in zip(travel, tension, strict=True) if stretch > largest]
+    if not beyond:
+        return []
+    text = (
+        f"the wall is stretched up to the first invariant of tension to {max(tension):.2f} times the length, and its "
+        f"law was fitted up to {largest:g}"
+    )
+    return [Event(LAW_RANGE, beyond[0], False, text)]
+
 
 _DRAWN = 3.0
 """Radius over R0 to which an object is drawn."""

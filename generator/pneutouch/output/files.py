@@ -1,19 +1,25 @@
-"""Write a file or an output folder whole or not at all: written next to its place, then renamed into it."""
+"""Write a file or an output folder whole or not at all: written next to its place, then renamed into it.
+
+The manifest of an output folder: its inputs, the versions that made it, and the digest of every file in it.
+"""
 
 import contextlib
 import errno
 import hashlib
+import importlib.metadata
 import json
 import os
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
+from pneutouch import __version__
 from pneutouch.errors import InputError
-from pneutouch.formats import check_format
-from pneutouch.holding import parent_folders, refuse_stopped, temporary_folder, uninterrupted
+from pneutouch.formats import check_format, versioned
 from pneutouch.spec.files import read_bytes
+from pneutouch.stopping import parent_folders, refuse_stopped, temporary_folder, uninterrupted
 
 MANIFEST = "manifest.json"
 
@@ -220,3 +226,49 @@ def _keep_foreign(folder: Path, fresh: Path) -> None:
             shutil.copy2(path, target, follow_symlinks=False)
         elif path.is_dir() and not any(path.iterdir()):
             target.mkdir(parents=True)
+
+
+LIBRARIES = ("numpy", "manifold3d", "trimesh", "lib3mf", "cadquery", "cadquery-ocp", "matplotlib", "jinja2", "typst")
+"""Libraries whose versions the bytes of a build depend on."""
+
+_DIGITS = 12
+"""Digits of an input hash."""
+
+
+def input_hash(inputs: Mapping[str, Any], version: str = __version__) -> str:
+    """Short digest of the inputs and the version."""
+    return short_digest({"inputs": inputs, "version": version})
+
+
+def short_digest(document: Mapping[str, Any]) -> str:
+    """First twelve digits of the SHA-256 of a JSON document."""
+    return digest(json_bytes(document))[:_DIGITS]
+
+
+def versions() -> dict[str, str]:
+    """The versions that the bytes of a build depend on; an extra that is not installed is left out."""
+    installed = {name: version for name in LIBRARIES if (version := _installed(name)) is not None}
+    return {"pneutouch": __version__, **installed}
+
+
+def _installed(library: str) -> str | None:
+    try:
+        return importlib.metadata.version(library)
+    except importlib.metadata.PackageNotFoundError:
+        return None
+
+
+def entry(content: bytes) -> dict[str, Any]:
+    """Entry of a file in a manifest."""
+    return {"sha256": digest(content), "bytes": len(content)}
+
+
+def with_manifest(files: Mapping[str, bytes], name: str, inputs: Mapping[str, Any], **more: Any) -> dict[str, bytes]:
+    """The files of a folder and their manifest. ``more`` are further entries; an ``input_hash`` among them is kept."""
+    listed = {path: entry(content) for path, content in sorted(files.items())}
+    return {**files, MANIFEST: manifest(listed, name, inputs=inputs, **{"input_hash": input_hash(inputs), **more})}
+
+
+def manifest(listed: Mapping[str, Mapping[str, Any]], name: str, **more: Any) -> bytes:
+    """The manifest of files whose entries (see `entry`) are given by path."""
+    return json_bytes(versioned("manifest", {"name": name, "versions": versions(), "files": listed, **more}))

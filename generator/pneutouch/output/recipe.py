@@ -1,18 +1,30 @@
-"""A recipe: everything that a build follows from, as data that a 3MF carries and from which it can be redone."""
+"""A recipe: everything that a build follows from, as data that a 3MF carries and from which it can be redone.
+
+Read a recipe that a 3MF carries: nothing in it is used before it is validated.
+"""
 
 from __future__ import annotations
 
+import datetime
 import json
-from dataclasses import dataclass, fields
+from collections.abc import Collection
+from dataclasses import dataclass, fields, replace
 from functools import partial
-from typing import Any
+from typing import Any, NoReturn
 
 from pneutouch import __version__
-from pneutouch.catalogue import ResolvedDesign
-from pneutouch.errors import InputError
-from pneutouch.evaluation.elastomers import Resins
-from pneutouch.evaluation.evaluate import Evaluation, PredictionOptions, evaluate_scene
-from pneutouch.formats import KEY, format_of
+from pneutouch.catalogue import KINDS, ResolvedDesign, check_scene
+from pneutouch.catalogue.library import Resins
+from pneutouch.errors import InputError, nearest, shown
+from pneutouch.evaluation.evaluate import CLAMPS, Evaluation, PredictionOptions, evaluate_scene
+from pneutouch.export.threemf_read import Package
+from pneutouch.formats import KEY, check_format, format_of
+from pneutouch.mechanics.membrane_contact import CLOSURES
+from pneutouch.mechanics.models import MODEL_CHOICES
+from pneutouch.output.files import input_hash, versions
+from pneutouch.spec.fields import Table
+from pneutouch.spec.read import validate
+from pneutouch.spec.values import is_finite, plain_name
 
 SETTINGS = ("model", "closure", "clamp", "tolerance")
 """Names of the settings among a recipe's inputs."""
@@ -85,3 +97,158 @@ def scene_parts(scene: ResolvedDesign) -> dict[str, Any]:
 
 def _data(model: Any) -> Any:
     return None if model is None else model.model_dump(mode="json")
+
+
+FINEST_STEP = 1e-3
+"""Finest step in mm that a recipe's printers may have: none prints finer, and meshes grow without bound."""
+
+
+def read_recipe(package: Package) -> BuildRecipe:
+    """The recipe of a 3MF. Raises InputError if there is none, or if it is damaged, altered or of wrong values."""
+    where = str(package.path)
+    if package.recipe is None:
+        raise InputError(
+            "holds no recipe, so it cannot be rebuilt",
+            file=where,
+            remedy="give a 3MF that pneutouch build wrote, or a design file",
+        )
+    head = _head(package.recipe, f"{where}: recipe")
+    inputs, kinds = head.inputs, scene_kinds()
+    _check_keys(inputs, {*kinds, *SETTINGS, "compared_resins"}, f"{where}: recipe: inputs")
+    there = {key: kind for key, kind in kinds.items() if key in inputs}
+    parts = {key: _part(kind, inputs[key], f"{where}: recipe: {key}") for key, kind in there.items()}
+    scene = ResolvedDesign(name=head.name, where=where, **parts)
+    resins = _resins(inputs["compared_resins"], f"{where}: recipe: compared_resins")
+    options = _options(inputs, f"{where}: recipe")
+    check_scene(replace(scene, where=f"{where}: recipe"))
+    _check_steps(scene, f"{where}: recipe")
+    if package.metadata.get("input-hash") != input_hash(inputs, head.version):
+        raise InputError(
+            "recipe: altered or damaged: it does not match the input hash stored with it",
+            file=where,
+            remedy="take the file as it was built, or build from a design file",
+        )
+    return BuildRecipe(scene, resins, options, head.version)
+
+
+class _Head(Table):
+    """The outermost table of a recipe."""
+
+    format: str
+    name: str
+    version: str
+    inputs: dict[str, Any]
+
+
+def _head(text: str, where: str) -> _Head:
+    try:
+        content = json.loads(text, parse_constant=_no_number)
+    except (ValueError, RecursionError) as error:
+        why = "nested too deep" if isinstance(error, RecursionError) else str(error)
+        raise InputError(
+            f"damaged, not valid JSON: {why}", file=where, remedy="take the file as it was built"
+        ) from None
+    if not isinstance(content, dict):
+        raise InputError("damaged: must be a table", file=where)
+    check_format("recipe", content, where)
+    head = validate(_Head, content, where)
+    plain_name(head.name, file=where, key="name")
+    if not head.version.isprintable() or len(head.version) > 40:
+        raise InputError("must be a version number", file=where, key="version", value=head.version[:60])
+    return head
+
+
+def _no_number(word: str) -> NoReturn:
+    raise ValueError(f"{word} is not a number")
+
+
+def _check_keys(content: dict[str, Any], known: set[str], where: str) -> None:
+    for key in sorted(content.keys() - known):
+        raise InputError(f"{key}: unknown.{nearest(key, known)}", file=where)
+    for key in sorted(known - content.keys() - {*OPTIONAL}):
+        raise InputError(f"{key}: missing", file=where)
+
+
+def _part(kind: str, content: Any, where: str) -> Any:
+    """One thing of a kind, validated as its file would be."""
+    if not isinstance(content, dict):
+        raise InputError(f"{where} = {shown(content)}: must be a table")
+    return KINDS[kind].validate(_dated(content) if kind == "designs" else content, where)
+
+
+def _dated(content: dict[str, Any]) -> dict[str, Any]:
+    """A design with its date as TOML gives it; JSON has no dates. A wrong date is left for the validation."""
+    document = content.get("document")
+    if not isinstance(document, dict) or not isinstance(document.get("date"), str):
+        return content
+    try:
+        date: Any = datetime.date.fromisoformat(document["date"])
+    except ValueError:
+        return content
+    return {**content, "document": {**document, "date": date}}
+
+
+def _resins(content: Any, where: str) -> Resins:
+    if not isinstance(content, dict):
+        raise InputError("must be a table of materials", file=where)
+    resins = {name: _part("materials", content[name], f"{where}.{name}") for name in sorted(content)}
+    for name, material in resins.items():
+        if material.kind != "elastomer":
+            raise InputError(f"{where}.{name}: {material.label} is {material.kind}; it must be elastomer")
+    return resins
+
+
+def _options(inputs: dict[str, Any], where: str) -> PredictionOptions:
+    """Options of the prediction; a null keeps its default, which the model does not use."""
+    model = _one_of(inputs, "model", MODEL_CHOICES, where)
+    needed = {"closure": model in ("membrane", "auto"), "tolerance": model == "auto"}
+    given: dict[str, Any] = {"model": model, "clamp": _one_of(inputs, "clamp", CLAMPS, where)}
+    for key, used in needed.items():
+        if used == (inputs[key] is None):
+            raise InputError(
+                f"{key} = {shown(inputs[key])}: must {'' if used else 'not '}be given with model {model}", file=where
+            )
+    if needed["closure"]:
+        given["closure"] = _one_of(inputs, "closure", CLOSURES, where)
+    if needed["tolerance"]:
+        value = inputs["tolerance"]
+        if not (is_finite(value) and 0 < value < 100):
+            raise InputError(f"tolerance = {shown(value)}: must be a positive share, such as 0.02", file=where)
+        given["tolerance"] = float(value)
+    return PredictionOptions(**given)
+
+
+def _one_of(inputs: dict[str, Any], key: str, known: Collection[str], where: str) -> str:
+    value = inputs[key]
+    if not isinstance(value, str) or value not in known:
+        raise InputError(f"{key} = {shown(value)}: unknown.{nearest(str(value)[:60], known)}", file=where)
+    return value
+
+
+def _check_steps(scene: ResolvedDesign, where: str) -> None:
+    """Steps that no printer makes would make meshes without bounds."""
+    if scene.mesh_tolerance < FINEST_STEP:
+        raise InputError(
+            f"the printers step by {scene.mesh_tolerance:g} mm",
+            file=where,
+            remedy=f"their steps must be at least {FINEST_STEP:g} mm",
+        )
+
+
+def stored_versions(package: Package) -> dict[str, Any]:
+    """The versions that a 3MF states, nothing where that is damaged: no build depends on it."""
+    try:
+        stored = json.loads(package.metadata.get("versions", "{}"))
+    except (ValueError, RecursionError):
+        return {}
+    return stored if isinstance(stored, dict) else {}
+
+
+def other_versions(package: Package, recipe: BuildRecipe) -> list[str]:
+    """Programs that made a 3MF and are of another version here, in words: ``pneutouch 0.1 (here 0.2)``."""
+    made = {**stored_versions(package), "pneutouch": recipe.version}
+    return [
+        f"{name} {str(made[name])[:40]} (here {here})"
+        for name, here in versions().items()
+        if made.get(name, here) != here
+    ]

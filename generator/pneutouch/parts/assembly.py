@@ -9,12 +9,12 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
 from pneutouch.catalogue import ResolvedDesign
+from pneutouch.parts.air_path import glue_volume, internal_volume
 from pneutouch.parts.connector import rigid_solids
-from pneutouch.parts.gas import glue_volume, internal_volume
 from pneutouch.parts.layout import Layout, lay_out
 from pneutouch.parts.membrane import INNER_WALL, membrane_solid
 from pneutouch.parts.mould import MouldAssembly, mould_of
-from pneutouch.parts.seat import SEAT
+from pneutouch.parts.mount import SEAT
 from pneutouch.parts.space import check_space
 from pneutouch.spec.part import ClampedFlange, OnePiece
 from pneutouch.spec.printer import Mode, Printer

@@ -17,8 +17,7 @@ from itertools import pairwise
 
 from pneutouch.body import Bore, Feature, Solid
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.meridian import Line, Meridian, Segment
-from pneutouch.parts.trace import trace
+from pneutouch.shape.meridian import Line, Meridian, Segment, trace
 from pneutouch.spec.material import Material
 from pneutouch.spec.part import CastRing
 

@@ -2,14 +2,11 @@
 
 from pneutouch.body import Solid
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.meridian import Meridian
+from pneutouch.parts.channel import inward, outward, rear_lugs, side_bore, side_boss
 from pneutouch.parts.layout import Layout
-from pneutouch.parts.mount import mount_cuts, mounting_bores, underside
+from pneutouch.parts.mount import clamping_bores, clearing_bores, mount_cuts, mounting_bores, seat_faces, underside
 from pneutouch.parts.port import CHANNEL
-from pneutouch.parts.rear_port import inward, outward, rear_lugs
-from pneutouch.parts.seat import clamping_bores, clearing_bores, seat_faces
-from pneutouch.parts.side_port import side_bore, side_boss
-from pneutouch.parts.trace import TracedPath, trace
+from pneutouch.shape.meridian import Meridian, TracedPath, trace
 from pneutouch.spec.part import ClampedFlange, OnePiece
 
 PLUG_SHOULDER = "shoulder"

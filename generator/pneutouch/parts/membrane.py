@@ -3,8 +3,8 @@
 import math
 
 from pneutouch.body import Solid
-from pneutouch.meridian import Arc, Line, Meridian
 from pneutouch.parts.layout import Layout
+from pneutouch.shape.meridian import Arc, Line, Meridian
 from pneutouch.spec.material import Material
 
 INNER_WALL = "inner wall"

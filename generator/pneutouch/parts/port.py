@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from pneutouch.body import Prism
-from pneutouch.meridian import Arc, Line, Point
+from pneutouch.shape.meridian import Arc, Line, Point
 from pneutouch.spec.part import Barb, Luer, Port, PushIn, Thread, Tube
 
 CHANNEL = "channel"

@@ -11,19 +11,17 @@ import numpy as np
 from pneutouch.arrays import Array, Flags
 from pneutouch.body import Body
 from pneutouch.parts.glue import GlueSurface
-from pneutouch.printability.measure.cavities import Pocket, balls, pockets, seen, unseen
+from pneutouch.printability.measure.cavities import PartVoxels, Pocket, balls, build_frame, fill, pockets, seen, unseen
 from pneutouch.printability.measure.chords import Chords, Side, chords, refined
-from pneutouch.printability.measure.samples import SurfaceSamples, sample
-from pneutouch.printability.measure.shells import Hollow, voids
-from pneutouch.printability.measure.surface import SurfaceMesh
+from pneutouch.printability.measure.joined import Hollow, voids
+from pneutouch.printability.measure.surface import SurfaceMesh, SurfaceSamples, sample
 from pneutouch.printability.measure.thin import OPENINGS, ThinPlace, thin_places
-from pneutouch.printability.measure.voxels import PartVoxels, build_frame, fill
 from pneutouch.printability.subject import Point3, PrintItem, PrintSubject
 from pneutouch.spec.printer import FeatureSize, Printer
 
 if TYPE_CHECKING:
     from pneutouch.mechanics import Sensor, SensorPrediction
-    from pneutouch.mechanics.curve_outcome import CurveOutcome
+    from pneutouch.mechanics.prediction import CurveOutcome
     from pneutouch.mechanics.rating import Rating
     from pneutouch.spec.gauge import Gauge
 

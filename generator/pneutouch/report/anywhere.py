@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.evaluation.chart_data import ContactChart, ContactRow, ErrorCurves
+from pneutouch.evaluation.sheet_data import ContactChart, ContactRow, ErrorCurves
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, figure, legend_above, note, plain_ticks, svg
 
 SIZE = (57.0, 58.0)

@@ -2,23 +2,18 @@
 
 import base64
 
-from pneutouch.evaluation.chart_data import ContactChart
-from pneutouch.evaluation.sheet_data import SheetData
-from pneutouch.export.view import view_data
-from pneutouch.report import curves, pages, relaxation
+from pneutouch.evaluation.sheet_data import ContactChart, SheetData
+from pneutouch.export.scene import view_data
+from pneutouch.report import curves, pages
 from pneutouch.report.anywhere import contact_figures
-from pneutouch.report.certainty import ends, shares
+from pneutouch.report.certainty import ends, share_bars, shares
 from pneutouch.report.drawing import section_drawing
-from pneutouch.report.graded_sheet import CAPTIONS, graded_figures
+from pneutouch.report.graded import CAPTIONS, graded_figures
 from pneutouch.report.mould import CAPTION as MOULD_CAPTION
 from pneutouch.report.mould import mould_rows, mould_section
-from pneutouch.report.picture import picture
-from pneutouch.report.pressed import caption, pressed_figure
-from pneutouch.report.shares import share_bars
+from pneutouch.report.pictures import caption, picture, pressed_figure, shown
 from pneutouch.report.sheet import content_of
-from pneutouch.report.shown import shown
-from pneutouch.report.tradeoff import tradeoff_chart
-from pneutouch.report.tuning import tuning_chart
+from pneutouch.report.tradeoff import tradeoff_chart, tuning_chart
 
 _PIXELS = (900, 640)
 """Width and height of the picture."""
@@ -27,7 +22,7 @@ _PIXELS = (900, 640)
 def datasheet(sheet: SheetData) -> dict[str, bytes]:
     """``datasheet.html``, with the 3D view and, where that cannot be drawn, a picture; and ``datasheet.pdf``."""
     figures = _figures(sheet)
-    viscous = relaxation.section(sheet.viscous, relaxation.ageing_line(sheet))
+    viscous = curves.section(sheet.viscous, curves.ageing_line(sheet))
     content = {**content_of(sheet), "viscous": viscous}
     content["captions"] |= CAPTIONS
     content["captions"]["sensitivity"] = (
@@ -80,6 +75,6 @@ def _figures(sheet: SheetData) -> dict[str, str]:
     if isinstance(sheet.contact, ContactChart):
         figures |= contact_figures(sheet.contact)
     if not isinstance(sheet.viscous, str):
-        figures["held"] = relaxation.held_chart(sheet.viscous, curves.SIZE)
-        figures["loop"] = relaxation.loop_chart(sheet.viscous, curves.SIZE)
+        figures["held"] = curves.held_chart(sheet.viscous, curves.SIZE)
+        figures["loop"] = curves.loop_chart(sheet.viscous, curves.SIZE)
     return figures | graded_figures(sheet)

@@ -10,9 +10,19 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.parts import Assembly
 from pneutouch.parts.cast_ring import RING
-from pneutouch.report.dimension import CENTRE, NEIGHBOUR, THIN, circle, horizontal, leader, polar, vertical
-from pneutouch.report.port_note import port_note
-from pneutouch.report.section import draw_bores, draw_section
+from pneutouch.report.section import (
+    CENTRE,
+    NEIGHBOUR,
+    THIN,
+    circle,
+    draw_bores,
+    draw_section,
+    horizontal,
+    leader,
+    polar,
+    port_note,
+    vertical,
+)
 from pneutouch.report.style import BOLD, INK, MM, MUTED, figure, svg
 from pneutouch.spec.part import BoltCircle, ClampedFlange, OnePiece, RobotFlange, Sleeve
 

@@ -1,4 +1,7 @@
-"""Pictures of a graded membrane: how its two resins are laid out, and its effect compared with constant mixes."""
+"""Pictures of a graded membrane: how its two resins are laid out, and its effect compared with constant mixes.
+
+Additions to a datasheet for a graded membrane: two pictures, and the constant mixes it is compared with.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +12,15 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.evaluation.chart_data import ComparedMembrane
-from pneutouch.report.shown import GRADE_COLOURS, greatest_share
+from pneutouch.evaluation.sheet_data import ComparedMembrane, SheetData
+from pneutouch.report.pictures import GRADE_COLOURS, greatest_share
 from pneutouch.report.style import ACCENT, BOLD, INK, LINES, MUTED, Label, figure, label_ends, note, svg
 from pneutouch.spec.material import ArcGrading, Material
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
 
 _CELLS = 90
 """Cells along the arc of the shaded section; one more would not be seen."""
@@ -133,3 +137,24 @@ def _rises(ax: Axes, graded: ComparedMembrane, constants: Sequence[ComparedMembr
     at = graded.states[-1].driving_pressure / KPA
     ax.set(xlabel=f"contact force at {at:g} kPa  (N)", ylabel="pressure rise  (kPa)", ylim=(0, None), xlim=(0, None))
     label_ends(ax, ends)
+
+
+CAPTIONS = {
+    "grade-section": "Half sections of the wall: the stiff resin's share, laid droplet by droplet.",
+    "grade-share": "Share of the stiff resin along the arc from the pole to the rim. The mixing curve behind it is "
+    "assumed, see the sources.",
+    "grade-modulus": "Modulus along the arc, and its mean.",
+    "graded-sensitivity": "The graded membrane against constant ones of its size, all by the solid: as stiff "
+    "throughout as at its softest, on average and at its stiffest. Sensitivity over driving pressure.",
+    "graded-response": "The same membranes: response at the highest driving pressure.",
+}
+
+
+def graded_figures(sheet: SheetData) -> dict[str, str]:
+    """The figures that `CAPTIONS` names as SVG for a graded membrane; nothing for any other."""
+    if sheet.scene.membrane_material.along is None:
+        return {}
+    return {
+        **grade_figures(sheet.scene.membrane_material, sheet.scene),
+        **graded_against_constant(ComparedMembrane("graded", sheet.prediction.states), sheet.constants),
+    }

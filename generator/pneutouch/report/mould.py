@@ -8,15 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneutouch.body import Solid
-from pneutouch.body.outline import section_outline
+from pneutouch.body.section import section_outline
 from pneutouch.parts.cast_ring import RING, RingSize
 from pneutouch.parts.mould import MouldAssembly, silicone_batch
-from pneutouch.parts.mould.lay import lay_out_mould
-from pneutouch.parts.mould.pieces import LEDGE_HEIGHT, mould_solids, screw_places, silicone
-from pneutouch.parts.mould.release import release_of
-from pneutouch.parts.mould.screws import SCREW
-from pneutouch.parts.mould.size import PROUD, MouldSize
-from pneutouch.report.dimension import CENTRE, THIN, leader
+from pneutouch.parts.mould.filling import release_of
+from pneutouch.parts.mould.pieces import LEDGE_HEIGHT, lay_out_mould, mould_solids, screw_places, silicone
+from pneutouch.parts.mould.size import PROUD, SCREW, MouldSize
+from pneutouch.report.section import CENTRE, THIN, leader
 from pneutouch.report.style import INK, MM, MUTED, figure, svg
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pneutouch.holding import temporary_folder
 from pneutouch.parts.lettering.glyphs import FONTS
+from pneutouch.stopping import temporary_folder
 
 TEMPLATES = Path(__file__).parent / "templates"
 

@@ -1,22 +1,28 @@
-"""The section through the x axis, of the solids as designed."""
+"""The section through the x axis, of the solids as designed.
+
+Pieces of a technical drawing: dimensions, leaders, centre lines. Lengths in the drawing's data units (mm).
+
+Notes on a port for drawing, print sheet and datasheet.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.body import Bore, Solid
-from pneutouch.body.outline import section_outline
+from pneutouch.body.section import section_outline
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts import Assembly
 from pneutouch.parts.cast_ring import RING
-from pneutouch.report.dimension import THIN, circle
-from pneutouch.report.shown import grade_colours
+from pneutouch.report.pictures import grade_colours
 from pneutouch.report.style import INK, MUTED, figure, svg
+from pneutouch.spec.part import Barb, Luer, PushIn, Thread
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,6 +30,75 @@ if TYPE_CHECKING:
     from matplotlib.path import Path
 
     from pneutouch.spec.material import ArcGrading
+
+
+THIN = 0.4
+CENTRE = (0, (8, 2, 2, 2))
+"""Dashes of a centre line."""
+
+NEIGHBOUR = (0, (8, 2, 1.5, 2, 1.5, 2))
+"""Dashes of a neighbouring part, which does not belong to the drawn one."""
+
+_SIZE = 6.8
+
+
+def polar(radius: float, degrees: float) -> tuple[float, float]:
+    """A point at a radius and an angle in degrees."""
+    return radius * math.cos(math.radians(degrees)), radius * math.sin(math.radians(degrees))
+
+
+def circle(ax: Axes, x: float, y: float, radius: float, **look: object) -> None:
+    """A thin circle."""
+    angle = np.linspace(0, 2 * np.pi, 181)
+    style: dict[str, Any] = {"color": INK, "lw": 0.7, **look}
+    ax.plot(x + radius * np.cos(angle), y + radius * np.sin(angle), **style)
+
+
+def _arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:
+    style = {
+        "arrowstyle": "<|-|>,head_width=0.12,head_length=0.3",
+        "lw": THIN,
+        "color": INK,
+        "shrinkA": 0,
+        "shrinkB": 0,
+    }
+    ax.annotate("", end, start, arrowprops=style)
+
+
+def horizontal(ax: Axes, y: float, x0: float, x1: float, feature: float, text: str) -> None:
+    """A horizontal dimension at height ``y`` with extension lines from ``feature``."""
+    for x in (x0, x1):
+        ax.plot([x, x], [feature, y - 0.6], color=INK, lw=0.25)
+    _arrow(ax, (x0, y), (x1, y))
+    ax.text(
+        0.5 * (x0 + x1),
+        y,
+        text,
+        ha="center",
+        va="center",
+        fontsize=_SIZE,
+        bbox={"fc": "white", "ec": "none", "pad": 0.8},
+    )
+
+
+def vertical(ax: Axes, x: float, y0: float, y1: float, feature: float, text: str) -> None:
+    """A vertical dimension at ``x`` with extension lines from ``feature``; the text stands outside."""
+    reach = x + math.copysign(0.6, x)
+    for y in (y0, y1):
+        ax.plot([feature, reach], [y, y], color=INK, lw=0.25)
+    _arrow(ax, (x, y0), (x, y1))
+    side = "left" if x > 0 else "right"
+    place: dict[str, Any] = {"xytext": (3 if x > 0 else -3, 0), "textcoords": "offset points"}
+    ax.annotate(text, (x, 0.5 * (y0 + y1)), ha=side, va="center", fontsize=_SIZE, **place)
+
+
+def leader(ax: Axes, at: tuple[float, float], to: tuple[float, float], text: str, ha: str) -> None:
+    """A note with an arrow to the point ``at``."""
+    arrow = {"arrowstyle": "-|>,head_width=0.12,head_length=0.3", "lw": THIN, "color": INK, "shrinkA": 1, "shrinkB": 0}
+    box = {"fc": "white", "ec": "none", "pad": 0.6}
+    look: dict[str, Any] = {"va": "center", "fontsize": _SIZE, "multialignment": "left", "bbox": box}
+    ax.annotate(text, at, xytext=to, arrowprops=arrow, ha=ha, **look)
+
 
 _THICK = 0.9
 _TOLERANCE = 5e-3
@@ -119,3 +194,43 @@ def _turned_in(ax: Axes, bore: Bore, both_sides: bool, filled: bool = False) -> 
     ax.fill(across, height, facecolor="white", edgecolor=INK, lw=THIN)
     if filled:
         ax.fill(across, height, facecolor="none", edgecolor=MUTED, hatch=_HATCHES["membrane"], lw=0)
+
+
+def port_note(scene: ResolvedDesign) -> str:
+    """The note at the port in the drawing, diameters as drawn."""
+    port, wider = scene.port, scene.hole_undersize
+    if isinstance(port, Barb):
+        return f"stem Ø{port.stem_diameter:g}\nbore Ø{port.bore_diameter:g}\nbarb Ø{port.barb_diameter:g}"
+    if isinstance(port, Thread):
+        return f"{port.thread}\ncore Ø{port.core_diameter + wider:.4g}\n{port.depth:g} deep"
+    if isinstance(port, Luer):
+        return f"Luer lock\nØ{port.opening_diameter + wider:.4g}, {port.taper:.0%}"
+    return f"Ø{scene.tube.outer_diameter + wider:.4g}\n{port.depth:g} deep"
+
+
+def port_steps(scene: ResolvedDesign) -> str:
+    """Steps to clean and connect the port."""
+    port, tube = scene.port, scene.tube
+    size = f"{tube.outer_diameter:g} x {tube.inner_diameter:g} mm"
+    if isinstance(port, Barb):
+        behind = (
+            f"; the mounting surface needs a hole of at least {tube.outer_diameter + 1:g} mm for it"
+            if scene.mount.port_side == "rear"
+            else ""
+        )
+        return (
+            f"Port: push a {port.bore_diameter:g} mm drill or wire through the bore. Push {size} soft tube over the "
+            f"barb{behind}."
+        )
+    if isinstance(port, Thread):
+        return (
+            f"Port: drill the core hole to {port.core_diameter:g} mm, tap {port.thread}; screw the fitting in by hand "
+            "until its gasket lies on the face."
+        )
+    if isinstance(port, Luer):
+        return (
+            "Port: clear the cone of support; check with a male Luer lock that it grips by the cone before the lock "
+            "bottoms."
+        )
+    assert isinstance(port, PushIn)
+    return f"Port: push {size} tube in to the stop, {port.depth:g} mm deep, and glue it in."

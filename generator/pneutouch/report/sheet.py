@@ -5,15 +5,25 @@ from typing import Any
 from pneutouch import __version__
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorState
-from pneutouch.report import ordering, prose
+from pneutouch.report import print_sheet, prose
 from pneutouch.report.anywhere import contact_section
 from pneutouch.report.certainty import interval, uncertainty_section
-from pneutouch.report.environment import NOT_TESTED, environment
-from pneutouch.report.gauge import detection, gauge_range, gauge_volume
-from pneutouch.report.making import body_rows, making, making_title
-from pneutouch.report.mixing_curves import curves_section
-from pneutouch.report.off_axis import CAPTION, OFF_AXIS, SHEAR, SHEAR_CAPTION, off_axis_rows, shear_rows
-from pneutouch.report.speed import speed_rows
+from pneutouch.report.conditions import (
+    CAPTION,
+    NOT_TESTED,
+    OFF_AXIS,
+    SHEAR,
+    SHEAR_CAPTION,
+    curves_section,
+    detection,
+    environment,
+    gauge_range,
+    gauge_volume,
+    off_axis_rows,
+    shear_rows,
+    speed_rows,
+)
+from pneutouch.report.print_sheet import body_rows, making, making_title
 from pneutouch.units import KPA, ML
 
 DASH = "–"
@@ -41,7 +51,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
     return {
         "title": document.title,
         "name": sheet.scene.name,
-        "part_number": ordering.part_number(sheet.scene),
+        "part_number": print_sheet.part_number(sheet.scene),
         "revision": document.revision,
         "date": date,
         "tool": f"pneutouch {__version__}",
@@ -70,7 +80,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "bodies": body_rows(sheet),
         "making": {"title": making_title(sheet.pour), "lines": making(sheet.scene, sheet.pour)},
         "method": prose.method(sheet.scene),
-        "ordering": ordering.code_table(sheet.scene),
+        "ordering": print_sheet.code_table(sheet.scene),
         "handling": prose.HANDLING,
         "definitions": prose.DEFINITIONS,
         "assumptions": list(sheet.prediction.assumptions),

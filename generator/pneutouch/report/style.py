@@ -1,4 +1,7 @@
-"""Style of all figures: one font, one line width family, readable in grayscale, the same bytes every time."""
+"""Style of all figures: one font, one line width family, readable in grayscale, the same bytes every time.
+
+The bands of intervals around curves: each is hatched in its own direction, so that they stay apart in grayscale.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pneutouch.arrays import Array
 from pneutouch.parts.lettering.glyphs import FONTS
 from pneutouch.report.placing import AT_SIDE, CORNER, NEAR, settle
 
@@ -17,8 +21,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
     from matplotlib.patheffects import AbstractPathEffect
     from matplotlib.text import Annotation
+
 
 BOLD: dict[str, Any] = {"family": "Inter Semi Bold", "weight": 600}
 INK, ACCENT, MUTED, FAINT = "#16212B", "#0B5C8A", "#6C7A86", "#C9D1D8"
@@ -159,3 +165,31 @@ def plain_ticks(axis: Axis) -> None:
     axis.set_major_locator(LogLocator(10, (1.0, 2.0, 5.0) if high < 300 * low else (1.0,)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
+
+
+HATCHES = ("//", "\\\\", "||", "..", "--", "++")
+_FILL, _HATCH = 0.07, 0.55
+"""Opacity of the ground and of the hatch: the curves and the other bands are seen through both."""
+
+
+def band(ax: Axes, x: Array, low: Array, high: Array, number: int, tone: str) -> None:
+    """Draw the band of curve ``number`` between ``low`` and ``high`` (n,), with its ends in the line of the curve."""
+    from matplotlib.colors import to_rgba
+
+    fill, lines = to_rgba(tone, _FILL), to_rgba(tone, _HATCH)
+    ax.fill_between(x, low, high, lw=0, zorder=1, facecolor=fill, edgecolor=lines, hatch=_hatch(number))
+    for end in (low, high):
+        ax.plot(x, end, color=tone, lw=0.5, ls=LINES[number % len(LINES)], zorder=2)
+
+
+def band_key(number: int, tone: str) -> Patch:
+    """The band of a curve for a legend."""
+    from matplotlib.colors import to_rgba
+    from matplotlib.patches import Patch
+
+    fill, lines = to_rgba(tone, _FILL), to_rgba(tone, _HATCH)
+    return Patch(lw=0, facecolor=fill, edgecolor=lines, hatch=2 * _hatch(number))
+
+
+def _hatch(number: int) -> str:
+    return HATCHES[number % len(HATCHES)]

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.report.bands import band, band_key
-from pneutouch.report.style import INK, LINES, MARKERS, MUTED, figure, svg
+from pneutouch.report.style import INK, LINES, MARKERS, MUTED, band, band_key, figure, svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

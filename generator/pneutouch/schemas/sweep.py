@@ -4,7 +4,7 @@ from typing import Any
 
 from pneutouch.evaluation.evaluate import CLAMPS
 from pneutouch.mechanics import MODEL_CHOICES
-from pneutouch.mechanics.contact import CLOSURES
+from pneutouch.mechanics.membrane_contact import CLOSURES
 from pneutouch.mechanics.models import USUAL
 from pneutouch.schemas.shape import NUMBER, TEXT, any_of, described_by, items, record
 from pneutouch.spec.over import MAX_VALUES

@@ -1,4 +1,7 @@
-"""From candidates to an answer: the few best of each resin, or the requirements that prevent one."""
+"""From candidates to an answer: the few best of each resin, or the requirements that prevent one.
+
+Distance of a candidate from its requirements, in percent of the required value.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -9,12 +12,10 @@ from pneutouch.arrays import Array, Flags, Index, distinct
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import ENDS, respond
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE
-from pneutouch.mechanics.uncertainty.sources.place import place_uncertainties
-from pneutouch.selection.contact_figures import ContactFigures
-from pneutouch.selection.pool import REQUIREMENTS, CandidatePool, evaluated, margins
+from pneutouch.mechanics.uncertainty.sources.model import place_uncertainties
+from pneutouch.selection.candidates import REQUIREMENTS, CandidatePool, evaluated, margins, rated, search
+from pneutouch.selection.contact_factors import ContactFigures
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
-from pneutouch.selection.rated import rated
-from pneutouch.selection.search import search
 
 EACH = 3
 """Candidates of one resin that are looked at closely."""
@@ -280,3 +281,33 @@ def _impossible(
             dropped.append(DroppedRequirement(requirement, close(row)))
     known = bool(worst[nearest] > _UNKNOWN)
     return SelectionResult([], close(nearest) if known else None, dropped, pool.resin.size)
+
+
+_MOST = ("outer diameter", "footprint", "break strain", "gauge range")
+"""Margins to a value that must not be exceeded; the others are to one that must be reached."""
+
+
+def missed_percent(problem: SelectionProblem, candidate: Candidate) -> dict[str, float | None]:
+    """Requirements and limits that are broken, and how far its value is off, in percent of the required one.
+
+    None if its value is not known.
+    """
+    broken = {name: margin for name, margin in candidate.margins.items() if margin < 0}
+    return {
+        name: _off(problem, candidate, name, margin) if np.isfinite(margin) else None for name, margin in broken.items()
+    }
+
+
+def _off(problem: SelectionProblem, candidate: Candidate, name: str, margin: float) -> float:
+    lines = candidate.pool.response.lines
+    if name == "sensitivity":
+        assert problem.sensitivity_kPa_per_N is not None
+        return 100.0 * abs(float(lines.sensitivity_kPa_per_N[0]) / problem.sensitivity_kPa_per_N - 1.0)
+    if name == "stiffness":
+        least, most = problem.stiffness
+        stiffness = float(lines.stiffness[0])
+        bound = least if least is not None and stiffness < least else most
+        assert bound is not None
+        return 100.0 * abs(stiffness / bound - 1.0)
+    # A margin to a greatest value is relative to the candidate's own.
+    return 100.0 * (1.0 / (1.0 + margin) - 1.0 if name in _MOST else -margin)

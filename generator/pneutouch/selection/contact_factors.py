@@ -2,6 +2,8 @@
 
 Space mapping (Bandler et al., IEEE Trans. Microwave Theory Tech. 42 (1994) 2536, doi:10.1109/22.339794): the cheap
 model is corrected to meet the accurate one where that was solved, and is searched again.
+
+The solid's state of a candidate under a contact that the atlas does not cover, as an answer of the atlas.
 """
 
 from __future__ import annotations
@@ -12,7 +14,9 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import SensorBatch
-from pneutouch.mechanics.atlas.respond import AtlasResponse
+from pneutouch.mechanics.atlas.respond import BUCKLING, DEPTH, ENDS, AtlasResponse
+from pneutouch.mechanics.prediction import SensorState
+from pneutouch.mechanics.response import FigureArrays
 
 _LENGTHS = np.array([0.3, 0.25, 0.5, 1.0])
 """Distances that count as one in the columns of `places`."""
@@ -111,3 +115,52 @@ class ContactFactors(NamedTuple):
 def _distances(a: Array, b: Array) -> Array:
     """Distances (n, m) between points (n, d) and (m, d)."""
     return np.asarray(np.linalg.norm(a[:, None] - b[None], axis=2))
+
+
+class ContactFigures(NamedTuple):
+    """Record of a candidate under a contact that the atlas does not cover; its figures are the solid's.
+
+    ends_with: what ends its range. plate_kPa_per_N: sensitivity by the atlas, under the plate without friction.
+    rounds: searches that were made until it was found.
+    """
+
+    ends_with: str
+    plate_kPa_per_N: float
+    rounds: int
+
+
+def ending(state: SensorState) -> str:
+    """End of the range of a state: an event, or the depth."""
+    return next((event.kind for event in state.events if event.ends_range), ENDS[DEPTH])
+
+
+def solid_response(state: SensorState, atlas: AtlasResponse) -> AtlasResponse | None:
+    """A state of the solid as an answer of one row; the atlas's row gives the limit point, which no contact changes.
+
+    None if the state has no figures. An end that the atlas does not have counts as buckling, which no margin reads.
+    """
+    figures, kind = state.figures, ending(state)
+    if figures is None:
+        return None
+    grid = np.linspace(0.0, state.range_end, atlas.force.shape[1])
+    force, rise, stretch = (
+        np.interp(grid, state.indentation, values) for values in (state.force, state.pressure_rise, state.max_stretch)
+    )
+    saturation = np.nan if figures.saturation_force is None else figures.saturation_force
+    values = {name: getattr(figures, name) for name in FigureArrays._fields if hasattr(figures, name)}
+    low, high = figures.force_range
+    values |= {"force_low": low, "force_high": high, "saturation_force": saturation}
+    return AtlasResponse(
+        lines=FigureArrays(**{name: np.array([value]) for name, value in values.items()}),
+        ends=np.array([ENDS.index(kind) if kind in ENDS else BUCKLING]),
+        near_buckling=np.array([False]),
+        range_end=np.array([state.range_end]),
+        contact_radius=np.interp([state.range_end], state.indentation, state.contact_radius),
+        limit_pressure=atlas.limit_pressure,
+        apex_outer=np.array([state.apex_outer]),
+        cavity_volume=np.array([state.cavity_volume]),
+        max_stretch=np.array([stretch.max()]),
+        indentation=grid[None],
+        force=force[None],
+        rise=rise[None],
+    )

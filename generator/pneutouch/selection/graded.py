@@ -1,4 +1,7 @@
-"""Graded membranes against constant ones: the solid's figures of each, and the constant mix nearest to a target."""
+"""Graded membranes against constant ones: the solid's figures of each, and the constant mix nearest to a target.
+
+The search for a grade: fractions at pole and rim that meet a target, by as few solid solves as possible.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -11,9 +14,183 @@ from pneutouch.errors import ComputationError
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.limits import RATED_SHARE, Limits
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.selection.grade_search import GradeTarget, GradeTrial, cost
 from pneutouch.selection.mixes import greatest
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
+
+ENOUGH = 0.5
+"""A trial that uses no more than this share of every tolerance ends a search for the same sensitivity."""
+_LEAST_GAIN = 1e-3
+"""A search ends where the surface through the trials promises no more than this: of a tolerance, or of the force."""
+_SPARE_TRIALS = 0.9
+"""Share of a tolerance that the surface may use up for the widest range: it is not exact."""
+_LATTICE = 51
+_APART = 2e-3
+"""Trials lie at least so far from one another, as a share of the greatest fraction."""
+_FEWEST = 4
+_SURFACES = ("linear", "thin_plate_spline")
+"""Radial bases in the order tried: the first does not ring where figures jump, since another event ends the range;
+the second follows a smooth course better."""
+_DIGITS = 4
+"""Digits of a fraction: a hundredth of a percent, finer than a droplet pattern resolves."""
+_LIMITS = ("limit pressure", "force range")
+_MISSED = 1.0e3
+"""Violation of a trial without figures."""
+
+
+@dataclass(frozen=True)
+class GradeTarget:
+    """Aims of a grade: sensitivity (kPa/N) at each pressure (MPa) within a share, the same at all within another.
+
+    force: what the range must reach (N); None if it need not. widest: whether it shall reach as far as it can.
+    """
+
+    sensitivity_kPa_per_N: float
+    tolerance: float
+    pressures: tuple[float, ...]
+    same_within: float | None
+    force: float | None
+    widest: bool
+
+
+@dataclass(frozen=True)
+class GradeTrial:
+    """One membrane and the solid's figures: fractions at pole and rim; by pressure, sensitivity and force range's end
+    (NaN without figures), the highest pressure of the search (MPa, a share of the least limit as designed), what ends
+    the ranges, why there are no figures, and the rated pressure (MPa)."""
+
+    pole: float
+    rim: float
+    sensitivity_kPa_per_N: tuple[float, ...]
+    force: tuple[float, ...]
+    highest: float
+    ends: tuple[str, ...] = ()
+    note: str = ""
+    rated: float = np.nan
+
+    @property
+    def difference(self) -> float:
+        """Sensitivity at the last pressure over that at the first, less one."""
+        return self.sensitivity_kPa_per_N[-1] / self.sensitivity_kPa_per_N[0] - 1.0
+
+    @property
+    def reach(self) -> float:
+        """Force that the range reaches at every pressure, N."""
+        return float(min(self.force))
+
+
+@dataclass(frozen=True)
+class GradeSearch:
+    """The best trial, whether it meets the target, and all trials in order; one solid solve each."""
+
+    best: GradeTrial
+    met: bool
+    trials: tuple[GradeTrial, ...]
+
+
+TryGrade = Callable[[float, float], GradeTrial]
+TrialReport = Callable[[GradeTrial, int, int], None]
+
+
+def shares(target: GradeTarget, trial: GradeTrial) -> dict[str, float]:
+    """Share of each tolerance or limit that a trial uses up: at most 1 if it is kept."""
+    values = np.array(trial.sensitivity_kPa_per_N)
+    if not np.isfinite(values).all() or values.min() <= 0.0:
+        return {"no figures": _MISSED}
+    used_share = {"sensitivity": float(np.abs(values / target.sensitivity_kPa_per_N - 1.0).max()) / target.tolerance}
+    if target.same_within is not None:
+        used_share["same sensitivity"] = abs(trial.difference) / target.same_within
+    used_share["limit pressure"] = max(target.pressures) / trial.highest
+    if target.force is not None:
+        used_share["force range"] = target.force / max(trial.reach, 1e-9)
+    return used_share
+
+
+def cost(target: GradeTarget, trial: GradeTrial, spare: float = 1.0) -> float:
+    """Cost that the search minimizes: the worst share of the aims; for the widest range, less with force once all are
+    met.
+
+    ``spare`` is the share of every tolerance that may be used up for the widest range.
+    """
+    used = shares(target, trial)
+    if target.widest:
+        worst = max(used.values()) / spare
+        return 100.0 + 10.0 * (worst - 1.0) if worst > 1.0 else -float(np.log(max(trial.reach, 1e-9)))
+    # The limit pressure and a force range are limits, not aims: nothing is gained far inside them.
+    return max(value for name, value in used.items() if name not in _LIMITS or value > 1.0)
+
+
+def grade_search(target: GradeTarget, levels: Array, solve: TryGrade, progress: TrialReport, most: int) -> GradeSearch:
+    """Fractions at pole and rim between the ends of ``levels``, rising fractions (n,), that meet a target.
+
+    A scan of all pairs of levels, soft ones first; then the best place on a surface through all trials is tried, and
+    again with that trial in it. It stops where every tolerance is half kept, or where the surface promises no gain.
+    ``most`` bounds the trials of both together.
+    """
+    trials: list[GradeTrial] = []
+
+    def tried(pole: float, rim: float) -> None:
+        trials.append(solve(pole, rim))
+        progress(trials[-1], len(trials), most)
+
+    for pole in np.round(levels, _DIGITS):
+        for rim in np.round(levels, _DIGITS):
+            if len(trials) < most and not _done(target, trials):
+                tried(float(pole), float(rim))
+    while len(trials) < most and not _done(target, trials):
+        looks = (_promising(target, float(levels[-1]), trials, surface) for surface in _SURFACES)
+        place = next((look for look in looks if look is not None), None)
+        if place is None:
+            break
+        tried(*place)
+    best = min(trials, key=lambda trial: cost(target, trial))
+    return GradeSearch(best, max(shares(target, best).values()) <= 1.0, tuple(trials))
+
+
+def _done(target: GradeTarget, trials: list[GradeTrial]) -> bool:
+    return not target.widest and any(
+        max(shares(target, trial).values()) <= 1.0 and cost(target, trial) <= ENOUGH for trial in trials
+    )
+
+
+def _promising(target: GradeTarget, top: float, trials: list[GradeTrial], surface: str) -> tuple[float, float] | None:
+    """The place of least cost on the surface through the trials, none tried yet; None if it promises no gain."""
+    known = [trial for trial in trials if np.isfinite(trial.sensitivity_kPa_per_N).all()]
+    if len(known) < _FEWEST:
+        return None
+    centre, width, best = np.array([0.5 * top, 0.5 * top]), 0.5 * top, np.inf
+    for _ in range(2):
+        axes = [np.linspace(max(c - width, 0.0), min(c + width, top), _LATTICE) for c in centre]
+        places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2).round(_DIGITS)
+        costs = _expected(target, top, trials, places, surface)
+        k = int(np.argmin(costs))
+        centre, best, width = places[k], float(costs[k]), 2 * width / (_LATTICE - 1)
+    gain = min(cost(target, trial) for trial in trials) - best
+    return (float(centre[0]), float(centre[1])) if gain > _LEAST_GAIN else None
+
+
+def _expected(target: GradeTarget, top: float, trials: list[GradeTrial], places: Array, surface: str) -> Array:
+    """Cost at places (n, 2) by a surface through the logarithms of sensitivities, forces and limit pressures, (n,).
+
+    Infinite next to a trial and where the nearest one has no figures.
+    """
+    from scipy.interpolate import RBFInterpolator
+
+    known = [trial for trial in trials if np.isfinite(trial.sensitivity_kPa_per_N).all()]
+    at = np.array([(t.pole, t.rim) for t in known]) / top
+    table = np.log([[*t.sensitivity_kPa_per_N, *np.maximum(t.force, 1e-9), t.highest] for t in known])
+    values = np.exp(RBFInterpolator(at, table, kernel=surface, degree=1)(places / top))
+    n = len(target.pressures)
+    costs = np.array(
+        [
+            cost(target, GradeTrial(0.0, 0.0, tuple(v[:n]), tuple(v[n : 2 * n]), v[-1]), _SPARE_TRIALS)
+            for v in values.tolist()
+        ]
+    )
+    every = np.array([(t.pole, t.rim) for t in trials])
+    away = np.hypot(*np.moveaxis(places[:, None, :] - every[None, :, :], -1, 0)) / top
+    unknown = np.array([not np.isfinite(t.sensitivity_kPa_per_N).all() for t in trials])
+    return np.where((away.min(axis=1) < _APART) | unknown[away.argmin(axis=1)], np.inf, costs)
+
 
 _FRACTIONS = 401
 """Constant fractions that the atlas evaluates."""

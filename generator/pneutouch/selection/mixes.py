@@ -7,7 +7,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Index
 from pneutouch.catalogue.mixture import ResolvedMixingCurve
-from pneutouch.selection.pool import CandidatePool, evaluated, margins
+from pneutouch.selection.candidates import CandidatePool, evaluated, margins
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
 LEVELS = 15

@@ -5,7 +5,7 @@ from typing import Any, Literal
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from pneutouch.spec.fields import Table, declaration
-from pneutouch.spec.quantity import Quantity
+from pneutouch.spec.values import Quantity
 
 Reference = Literal["gauge", "absolute"]
 """Reference pressure of a gauge: the air around it, or a vacuum."""

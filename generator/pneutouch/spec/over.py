@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from pneutouch.errors import InputError
-from pneutouch.spec.number import is_finite
 from pneutouch.spec.toml_text import toml_value
+from pneutouch.spec.values import is_finite
 
 MAX_VALUES = 10_000
 

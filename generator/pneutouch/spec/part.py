@@ -1,4 +1,7 @@
-"""Catalogue parts of the connector: tubes, ports, seats and mounts, each one TOML with its source. Lengths in mm."""
+"""Catalogue parts of the connector: tubes, ports, seats and mounts, each one TOML with its source. Lengths in mm.
+
+[cast_ring]: the perforated ring that the flange of a cast membrane is cast around. It matters for such a seat.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pneutouch.spec.fields import Table
+from pneutouch.spec.fields import Table, number
 
 Length = Annotated[float, Field(gt=0, json_schema_extra={"unit": "mm"})]
 Source = Annotated[str, Field(min_length=8)]
@@ -215,3 +218,22 @@ MOUNTS: dict[str, type[Part]] = {
     "sleeve": Sleeve,
 }
 """Models by family: a file names its family, and with it its keys."""
+
+
+class PerforatedRing(Table):
+    """[cast_ring]: the web of the ring, which the silicone encloses, and its holes.
+
+    Defaults are this project's own choice and untested: walls and holes are what a filament printer of 0.4 mm makes.
+    """
+
+    hole_count: int | None = number(
+        None,
+        unit="",
+        low=3,
+        high=400,
+        help="Holes around the ring that silicone goes through; left out: as many as leave between two of them what "
+        "they are wide.",
+    )
+    hole_diameter_mm: float = number(2.0, unit="mm", low=0.5, high=10, help="Diameter of these holes.")
+    thickness_mm: float = number(1.6, unit="mm", low=0.4, high=10, help="Thickness of the ring within the silicone.")
+    width_mm: float = number(4.0, unit="mm", low=1, high=30, help="Width of the ring within the silicone.")

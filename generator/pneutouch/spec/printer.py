@@ -9,7 +9,7 @@ from pydantic import Field, field_validator, model_validator
 from pneutouch.errors import InputError
 from pneutouch.spec.fields import MaterialKind, Table
 from pneutouch.spec.material import Material
-from pneutouch.spec.quantity import Quantity
+from pneutouch.spec.values import Quantity
 from pneutouch.units import UM
 
 HOLE_UNDERSIZE_MM = (-0.5, 1.0)

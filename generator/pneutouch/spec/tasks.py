@@ -13,8 +13,8 @@ from pneutouch.errors import InputError, nearest
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, declaration, number
 from pneutouch.spec.files import read_bytes
-from pneutouch.spec.number import plain_number
 from pneutouch.spec.read import read_toml, validate
+from pneutouch.spec.values import plain_number
 
 TASK_FIGURES = {
     "sensitivity": "sensitivity_kPa_per_N",

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, mo
 from pneutouch.errors import shown
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, number
-from pneutouch.spec.number import is_finite
+from pneutouch.spec.values import is_finite
 
 LEAST_COPIES, MOST_COPIES = 1, 200
 

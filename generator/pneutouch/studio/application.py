@@ -1,30 +1,72 @@
-"""The requests of the page and their answers."""
+"""The requests of the page and their answers.
+
+The files of the page, held in memory and compressed once: no path of a request reaches the disk.
+"""
 
 import asyncio
 import contextlib
+import gzip
 from collections.abc import AsyncIterator, Callable
 from functools import partial
-from typing import Any
+from importlib.resources import files
+from typing import Any, NamedTuple
 
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
-from starlette.responses import JSONResponse, Response
+from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
 from pneutouch import __version__
 from pneutouch.catalogue import Library
 from pneutouch.errors import ComputationError, PneutouchError
 from pneutouch.studio.answer import Answers
-from pneutouch.studio.body import json_body
-from pneutouch.studio.desk import Desk
 from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
 from pneutouch.studio.form import designs_document, form_document, target_form_document
 from pneutouch.studio.guard import Application, Guard, TooLargeError, too_large
-from pneutouch.studio.library import PageLibrary
-from pneutouch.studio.pages import page_files, respond
-from pneutouch.studio.question import Question
+from pneutouch.studio.job_routes import Desk
+from pneutouch.studio.question import PageLibrary, Question, json_body
 from pneutouch.studio.solver import Solver, SupersededError
+
+_KINDS = {
+    "html": "text/html; charset=utf-8",
+    "css": "text/css; charset=utf-8",
+    "js": "text/javascript; charset=utf-8",
+    "svg": "image/svg+xml",
+}
+
+
+class PageFile(NamedTuple):
+    """A file of the page: its media type, and its bytes as they are and compressed."""
+
+    kind: str
+    plain: bytes
+    compressed: bytes
+
+
+def page_files() -> dict[str, PageFile]:
+    """The files by the path that they are requested at; ``/`` is the page."""
+    root = files("pneutouch.studio") / "static"
+    files_by_path = {}
+    for folder, prefix in ((root, "/"), (root / "vendor", "/vendor/")):
+        for entry in sorted(folder.iterdir(), key=lambda each: each.name):
+            kind = _KINDS.get(entry.name.rpartition(".")[2])
+            if kind is not None and entry.is_file():
+                content = entry.read_bytes()
+                files_by_path[f"{prefix}{entry.name}"] = PageFile(kind, content, gzip.compress(content, 9, mtime=0))
+    files_by_path["/"] = files_by_path.pop("/index.html")
+    return files_by_path
+
+
+def respond(known: dict[str, PageFile], request: Request) -> Response:
+    """The file at the path of a request, compressed where the browser takes it; 404 if there is none."""
+    file = known.get(request.url.path)
+    if file is None:
+        return PlainTextResponse("not found", 404)
+    packed = "gzip" in request.headers.get("accept-encoding", "")
+    headers = {"Vary": "Accept-Encoding"} | ({"Content-Encoding": "gzip"} if packed else {})
+    return Response(file.compressed if packed else file.plain, media_type=file.kind, headers=headers)
+
 
 _WAITING = 8
 """Questions that may wait for an answer at once; a page sends two."""

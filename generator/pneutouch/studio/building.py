@@ -11,11 +11,9 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.models import model_options
 from pneutouch.output.files import MANIFEST
-from pneutouch.spec.names import plain_name
+from pneutouch.spec.values import plain_name
 from pneutouch.studio.question import Question
-from pneutouch.workflows.build import STEPS, build
-from pneutouch.workflows.build.contents import described
-from pneutouch.workflows.build.naming import calibrated_name
+from pneutouch.workflows.build import STEPS, build, calibrated_name, described
 
 STAGES = ("prediction", *STEPS)
 """The stages that a build reports, in order."""

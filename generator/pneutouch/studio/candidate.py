@@ -1,4 +1,9 @@
-"""A design that was found, as the page shows it: its description, and the state that makes it the page's design."""
+"""A design that was found, as the page shows it: its description, and the state that makes it the page's design.
+
+A design that was found, as a state of the page, and the command that saves it.
+
+A design as the state of the page: a base that it has open, and the fields that differ from it.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +11,27 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pneutouch.catalogue import DesignSource, Library
+from pneutouch.cli.select import saving_command
+from pneutouch.errors import InputError
+from pneutouch.output.new import free_name
 from pneutouch.rounding import tenths_below
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.fields import Table
+from pneutouch.spec.read import assignments, validate
+from pneutouch.studio.question import PAGE, Question
 from pneutouch.units import KPA
+from pneutouch.workflows.select.checks import assigned
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from pneutouch.catalogue import ResolvedDesign
     from pneutouch.selection import Candidate
+    from pneutouch.spec.target import Target
     from pneutouch.workflows.select.graded import GradedSelectionRun
-    from pneutouch.workflows.select.run import SelectionRun
+    from pneutouch.workflows.select.select import SelectionRun
+
 
 FigureRow = tuple[str, str, str]
 """Name of a figure, the figure with its unit, and an addition to it."""
@@ -84,3 +103,51 @@ def _limits(selection: SelectionRun, choice: Candidate, rank: int | None) -> lis
         value = f"{solid.sensitivity_kPa_per_N:.3f} kPa/N" if np.isfinite(solid.sensitivity_kPa_per_N) else "none"
         rows.append(("By the solid", value, "in the interval" if solid.within else "outside the interval"))
     return rows
+
+
+def state_of(design: DesignFile, base: str, bases: Mapping[str, str], library: Library) -> dict[str, Any]:
+    """The state that is ``design``: ``base``, by the page's name for it, and by ``table.key`` the texts of its values
+    that differ from the base's file, None if a key is left out.
+
+    Raises InputError if the page has no such base, or its file is wrong.
+    """
+    if base not in bases:
+        raise InputError("unknown design", key="base", value=base)
+    before, after = _flat(DesignSource.of(bases[base], library).changed({})), _flat(design)
+    values: dict[str, str | None] = {}
+    for name in sorted(before | after):
+        value = after.get(name)
+        if value != before.get(name):
+            values[name] = None if value is None else assignments({name: value})[0].partition("=")[2]
+    return {"base": base, "values": values}
+
+
+def _flat(design: DesignFile) -> dict[str, Any]:
+    """The values of a design file by ``table.key``, those outside the tables by their key."""
+    content: dict[str, Any] = {}
+    for name, value in design.model_dump(by_alias=True).items():
+        if isinstance(getattr(design, name), Table):
+            content |= {f"{name}.{key}": each for key, each in value.items()}
+        else:
+            content[name] = value
+    return content
+
+
+class CandidateStates:
+    """Maker of page states from designs that were found, and of the commands that save them under a free name."""
+
+    def __init__(self, question: Question, bases: Mapping[str, str], library: Library, target: Target) -> None:
+        self._bases, self._library, self._target, self._name = bases, library, target, free_name()
+        if question.base not in bases:
+            raise InputError("unknown design", key="base", value=question.base)
+        named = (name for name, design in bases.items() if design == target.setting.base)
+        self._base = question.base if target.setting.base is None else next(named)
+
+    def state(self, base: ResolvedDesign, changes: list[str]) -> dict[str, Any]:
+        """The state of the page that is the design that ``select`` saves: a base with assignments."""
+        design = validate(DesignFile, assigned(base.design, changes, self._name), PAGE)
+        return state_of(design, self._base, self._bases, self._library)
+
+    def command(self, rank: int) -> str:
+        """The command that saves the design of a rank."""
+        return saving_command(self._target, rank, self._name)

@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from pneutouch.catalogue import Library
-from pneutouch.catalogue.examples import examples
+from pneutouch.catalogue.library import examples
 from pneutouch.catalogue.listing import listing
 from pneutouch.errors import PneutouchError
 from pneutouch.spec.contact import SIZES

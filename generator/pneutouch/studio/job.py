@@ -11,12 +11,12 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from pneutouch.holding import STOPS
+from pneutouch.stopping import STOPS
 from pneutouch.studio.faults import reported
 
 KINDS: dict[str, str] = {
     "build": "building:build_design",
-    "open": "opening:open_file",
+    "open": "opened_design:open_file",
     "select": "search:search",
     "recognise": "measuring:recognised",
     "characterize": "measuring:characterize",

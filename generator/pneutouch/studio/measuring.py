@@ -1,6 +1,10 @@
-"""Jobs on measured runs: their columns recognised, their figures, the model fitted to a sensor."""
+"""Jobs on measured runs: their columns recognised, their figures, the model fitted to a sensor.
+
+The commands that repeat the page's work on measured runs.
+"""
 
 import contextlib
+import shlex
 import shutil
 from collections import Counter
 from collections.abc import Iterator, Mapping
@@ -12,19 +16,83 @@ from pneutouch.bench.calibrate import NAMES, USUAL
 from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.evaluation.resins import resin_of
-from pneutouch.spec.campaign import Campaign, CampaignRun, RunKind
-from pneutouch.spec.campaign_file import CAMPAIGN, campaign_of
-from pneutouch.spec.number import finite_numbers
-from pneutouch.studio.campaign import placed, write_runs
+from pneutouch.spec.campaign import CAMPAIGN, Campaign, CampaignRun, RunKind, campaign_of
+from pneutouch.spec.values import finite_numbers
 from pneutouch.studio.job import Report
-from pneutouch.studio.measured import groups_document, head_document, run_document, runs_document
-from pneutouch.studio.measuring_words import calibrate_words, characterize_words
+from pneutouch.studio.measured import groups_document, head_document, placed, run_document, runs_document, write_runs
 from pneutouch.studio.question import Question
-from pneutouch.workflows.calibrate.run import CalibrationOptions, CalibrationOutcome, run_calibration
+from pneutouch.workflows.calibrate.calibrate import CalibrationOptions, CalibrationOutcome, run_calibration
 from pneutouch.workflows.characterize import Reading, load_curves, parse_columns, read_as, recognise
-from pneutouch.workflows.characterize.reading import reading_text, with_reading
-from pneutouch.workflows.characterize.run import characterize as run_characterize
-from pneutouch.workflows.characterize.run import write
+from pneutouch.workflows.characterize.campaign import characterize as run_characterize
+from pneutouch.workflows.characterize.campaign import write
+from pneutouch.workflows.characterize.load import reading_text, with_reading
+
+_MARKS = {"\t": "tab", " ": "space"}
+
+Parameters = list[tuple[str, str]]
+"""Names of a command's parameters with their texts; a text is empty if the name alone is enough."""
+
+
+def characterize_words(data: Path, question: Question | None, arguments: Mapping[str, Any]) -> dict[str, str]:
+    """The command, and the steps before it."""
+    parameters: Parameters = []
+    if question is not None:
+        parameters.append(("design", arguments["bases"][question.base]))
+        parameters += [("set", f"{key}={text}") for key, text in question.values.items() if text is not None]
+    return _words("characterize", data, [*parameters, *_reading_words(arguments)], _kept(question))
+
+
+def _kept(question: Question | None) -> str:
+    """Keys that the page leaves out of the design file: no option of a command does."""
+    left = [] if question is None else [key for key, text in question.values.items() if text is None]
+    return f"it keeps {', '.join(left)} of the design file, which the page leaves out" if left else ""
+
+
+def calibrate_words(
+    data: Path, question: Question | None, arguments: Mapping[str, Any], options: CalibrationOptions
+) -> dict[str, str]:
+    """The command, and the steps before it: it takes no changes of a design."""
+    changed = question is not None and any(key != "calibration" for key in question.values)
+    parameters: Parameters = []
+    if question is not None:
+        parameters.append(("design", "DESIGN" if changed else arguments["bases"][question.base]))
+    stated = {
+        "sensor": options.sensor,
+        "fit": None if options.names == USUAL else ",".join(options.names),
+        "hold_out": ",".join(f"{pressure:g}" for pressure in options.hold_out) or None,
+        "no_priors": None if options.priors else "",
+        "save": options.save,
+        "force": "" if options.save is not None and options.replace else None,
+    }
+    parameters += [(name, text) for name, text in stated.items() if text is not None]
+    return _words(
+        "calibrate", data, [*parameters, *_reading_words(arguments)], _saving(question, arguments) if changed else ""
+    )
+
+
+def _saving(question: Question | None, arguments: Mapping[str, Any]) -> str:
+    """Instruction to save a changed design first."""
+    assert question is not None
+    changes = [("from", arguments["bases"][question.base])]
+    changes += [("set", f"{key}={text}") for key, text in question.values.items() if text is not None]
+    return f"before it, with a name for DESIGN: {_command('new', 'DESIGN', changes)}"
+
+
+def _reading_words(arguments: Mapping[str, Any]) -> Parameters:
+    stated = {"columns": (arguments.get("columns") or "").strip(), **(arguments.get("format") or {})}
+    return [(name, _MARKS.get(value, str(value))) for name, value in stated.items() if value not in (None, "")]
+
+
+def _words(command: str, data: Path, parameters: Parameters, before: str) -> dict[str, str]:
+    return {"command": _command(command, str(data), parameters), "before": before}
+
+
+def _command(command: str, given: str, parameters: Parameters) -> str:
+    words = ["pneutouch", command, given]
+    for name, text in parameters:
+        words += [f"--{name.replace('_', '-')}", *([text] if text else [])]
+    return shlex.join(words)
+
 
 _NO_RUNS = (".toml", ".json", ".md", ".html", ".pdf", ".svg", ".png", ".zip", ".3mf", ".step", ".stl", ".glb")
 """Endings of files that lie next to runs and are none."""

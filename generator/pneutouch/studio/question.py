@@ -1,10 +1,20 @@
-"""A question of the page: a design by its name, and the values of fields that differ from its file, as texts."""
+"""A question of the page: a design by its name, and the values of fields that differ from its file, as texts.
 
+The library of the page: files are read once, but for those that the page itself writes into the user's folder.
+
+JSON that a request holds.
+"""
+
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
+from starlette.requests import Request
+
 from pneutouch.catalogue import DesignSource, Library
+from pneutouch.catalogue.library import CachedLibrary
 from pneutouch.errors import InputError
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, parse_changes
@@ -70,3 +80,31 @@ def _leave_out(content: dict[str, Any], name: str) -> None:
         content.pop(table, None)
     elif isinstance(tables, dict):
         tables.pop(key, None)
+
+
+_WRITTEN = ("designs", "calibrations")
+
+
+class PageLibrary(CachedLibrary):
+    """A cached library that searches for designs and calibrations each time."""
+
+    def paths(self, kind: str) -> dict[str, Path]:
+        """Names of one kind with their files, sorted by name."""
+        return Library.paths(self, kind) if kind in _WRITTEN else super().paths(kind)
+
+    def load(self, kind: str, name: str, *, file: str | None = None, key: str | None = None) -> Any:
+        """Load one thing by name; raises InputError as a library does."""
+        if kind in _WRITTEN:
+            return Library.load(self, kind, name, file=file, key=key)
+        return super().load(kind, name, file=file, key=key)
+
+
+async def json_body(request: Request, what: str) -> Any:
+    """The document in a body. Raises InputError, which names it by ``what``, if there is none."""
+    try:
+        content = json.loads(await request.body())
+        # JSON can escape halves of surrogate pairs; such a text has no bytes, so that no answer could repeat it.
+        json.dumps(content, ensure_ascii=False).encode()
+    except (ValueError, RecursionError):
+        raise InputError(f"the {what} is not JSON") from None
+    return content

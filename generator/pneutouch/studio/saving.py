@@ -9,7 +9,7 @@ from pneutouch.catalogue import KINDS, Library, user_folder
 from pneutouch.errors import InputError
 from pneutouch.output.new import check_free, new_changed, write_design
 from pneutouch.spec.files import read_bytes
-from pneutouch.spec.names import plain_name
+from pneutouch.spec.values import plain_name
 from pneutouch.studio.question import Question
 
 _ENDING = ".toml"

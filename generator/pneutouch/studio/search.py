@@ -1,33 +1,109 @@
-"""The job that answers a target: the document of ``select``, its designs as cards, and the trade-off chart."""
+"""The job that answers a target: the document of ``select``, its designs as cards, and the trade-off chart.
+
+The answer to a target over several processes: the table of the command, and the best design of each as a card.
+
+A target as the page sends it: fields with texts, as in a question about a design.
+"""
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.catalogue import Library
-from pneutouch.catalogue.cached_library import CachedLibrary
-from pneutouch.cli.graded import graded_lines, graded_table
+from pneutouch.catalogue.library import CachedLibrary
+from pneutouch.cli.select_text import graded_lines, graded_table, processes_lines, processes_table
+from pneutouch.errors import InputError, PneutouchError, shown
 from pneutouch.rounding import rounded
-from pneutouch.studio.by_process import by_process
-from pneutouch.studio.candidate import candidate_card, graded_card
-from pneutouch.studio.candidate_state import CandidateStates
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.read import override, parse_changes, validate
+from pneutouch.spec.target import Target
+from pneutouch.studio.candidate import CandidateStates, candidate_card, graded_card
 from pneutouch.studio.question import PAGE, Question
-from pneutouch.studio.target import at_its_fields, target_of
-from pneutouch.workflows.select import words
 from pneutouch.workflows.select.charts import tradeoff
-from pneutouch.workflows.select.document import document
-from pneutouch.workflows.select.gauged import select
+from pneutouch.workflows.select.document import document, dropped_lines, headline, missed_text, remarks, search_notes
 from pneutouch.workflows.select.graded import select_graded
 from pneutouch.workflows.select.graded_document import graded_document
-from pneutouch.workflows.select.run import STEPS, SelectionRun
+from pneutouch.workflows.select.processes import select, select_processes
+from pneutouch.workflows.select.select import STEPS, SelectionRun
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
     from pneutouch.selection import Candidate
-    from pneutouch.spec.target import Target
     from pneutouch.studio.job import Report
+
+
+def by_process(target: Target, page: CandidateStates, library: Library, report: Report) -> dict[str, Any]:
+    """Search each process of a target; for one in which no design meets it, the card shows the nearest."""
+    selection = select_processes(target, PAGE, library, progress=report)
+    row = {process: number for number, (process, _) in enumerate(selection.best, start=1)}
+    cards = [_card(process, run, page, row.get(process)) for process, run in selection.runs.items()]
+    searched, (head, rows) = len(selection.runs) + len(selection.left_out), processes_table(selection)
+    return {
+        "selection": {**selection.document(), "written": None},
+        "headline": f"{len(row) or 'none'} of {searched} processes with a design that meets the target",
+        "notes": [],
+        "cards": [card for card in cards if card is not None],
+        "remarks": processes_lines(selection),
+        "chart": None,
+        "table": {"caption": "The best design of each process", "head": head, "rows": rows} if rows else None,
+    }
+
+
+def _card(process: str, run: SelectionRun, page: CandidateStates, row: int | None) -> dict[str, Any] | None:
+    """The best design of a process, in ``row`` of the table, or the nearest one with its misses; None without
+    either."""
+    choice = run.answer.nearest if row is None else run.answer.designs[0]
+    if choice is None:
+        return None
+    card = candidate_card(run, choice, None if row is None else 1)
+    return {
+        **card,
+        "rank": row,
+        "title": f"{process}: {card['title']}",
+        "rows": [("Profile", run.base.printer.title, ""), *card["rows"]],
+        "kind": "nearest" if row is None else "process",
+        "label": process,
+        "note": f"it misses: {missed_text(run, choice)}" if row is None else "",
+        "passes": row is not None and 1 in run.judged,
+        "state": page.state(run.base, run.assignments(choice)),
+        "command": None if row is None else page.command(row),
+    }
+
+
+_CHANGES = "setting.assignments"
+
+
+def target_of(question: Question, bases: Mapping[str, str]) -> Target:
+    """The target that the fields of a question state, with the base that the page has by that name.
+
+    Raises InputError naming key and value.
+    """
+    given = [f"{name}={text}" for name, text in question.values.items() if text is not None]
+    content = override({"target": {}}, parse_changes(given), Target)
+    base = content.get("setting", {}).get("base")
+    if isinstance(base, str):
+        # The page has designs by name alone: no path of a request is opened.
+        if base not in bases:
+            raise InputError("unknown design", key="setting.base", value=base)
+        content["setting"]["base"] = bases[base]
+    return validate(Target, content, PAGE)
+
+
+@contextmanager
+def at_its_fields() -> Iterator[None]:
+    """Put an error about a field of the base to the field of the form that changes it, which its words then name."""
+    try:
+        yield
+    except PneutouchError as error:
+        for each in (error, *error.others):
+            if each.key is not None and each.key.partition(".")[0] in DesignFile.model_fields:
+                value = "" if each.value is None else f" = {shown(each.value)}"
+                each.problem, each.key, each.value = f"{each.key}{value}: {each.problem}", _CHANGES, None
+        raise
+
 
 _DIGITS = 6
 _CHART = "trade-off chart"
@@ -56,10 +132,10 @@ def _selected(target: Target, page: CandidateStates, library: Library, report: R
     report(len(STEPS), total, _CHART)
     return {
         "selection": {**document(run), "written": None},
-        "headline": words.headline(run),
-        "notes": words.search_notes(run),
+        "headline": headline(run),
+        "notes": search_notes(run),
         "cards": _cards(run, page),
-        "remarks": [*_nothing_to_drop(run), *words.remarks(run)],
+        "remarks": [*_nothing_to_drop(run), *remarks(run)],
         "chart": _chart(run, library),
         "table": None,
     }
@@ -87,9 +163,9 @@ def _cards(run: SelectionRun, page: CandidateStates) -> list[dict[str, Any]]:
     if cards or run.rejected:
         return cards
     if answer.nearest is not None:
-        misses = f"it misses: {words.missed_text(run, answer.nearest)}"
+        misses = f"it misses: {missed_text(run, answer.nearest)}"
         cards.append(card(answer.nearest, "nearest", "nearest", note=misses))
-    for dropped, line in zip(answer.dropped, words.dropped_lines(run), strict=False):
+    for dropped, line in zip(answer.dropped, dropped_lines(run), strict=False):
         cards.append(card(dropped.best, "dropped", f"without {dropped.requirement}", note=line))
     return cards
 
@@ -97,7 +173,7 @@ def _cards(run: SelectionRun, page: CandidateStates) -> list[dict[str, Any]]:
 def _nothing_to_drop(run: SelectionRun) -> list[str]:
     """Lines for a target that no design meets, if none fits without one of its requirements either."""
     answer = run.answer
-    return [] if answer.designs or run.rejected or answer.dropped else words.dropped_lines(run)
+    return [] if answer.designs or run.rejected or answer.dropped else dropped_lines(run)
 
 
 def _chart(run: SelectionRun, library: Library) -> dict[str, Any]:

@@ -9,8 +9,7 @@ from typing import Any, BinaryIO
 from pneutouch.catalogue import Library
 from pneutouch.studio.answer import full_answer
 from pneutouch.studio.faults import reported
-from pneutouch.studio.library import PageLibrary
-from pneutouch.studio.question import Question
+from pneutouch.studio.question import PageLibrary, Question
 
 
 def answered(request: Mapping[str, Any], library: Library) -> dict[str, Any]:

@@ -1,7 +1,11 @@
-"""Text tables in chunks of bytes that end at a line end, so that every row and every fault has its row number."""
+"""Text tables in chunks of bytes that end at a line end, so that every row and every fault has its row number.
 
+Write CSV that spreadsheets open as data: no text in it is taken for a formula.
+"""
+
+import csv
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -9,9 +13,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
-from pneutouch.tables.cells import NUMBER, blank, cells
-from pneutouch.tables.chunk import RowChunk, places
-from pneutouch.tables.layout import TableLayout
+from pneutouch.tables.layout import NUMBER, RowChunk, TableLayout, blank, cells, places
 from pneutouch.tables.text import LONGEST_LINE, TOO_LONG, TextBytes
 
 CHUNK = 4 * 2**20
@@ -204,3 +206,29 @@ def _last(rest: bytes, row: int, reader: _Reader) -> Array:
     if not np.isfinite(values).all():
         _raise_fault(rest + b"\n", row, reader)
     return values
+
+
+_FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "＝", "＋", "－", "＠")
+
+
+def safe_cell(value: object) -> object:
+    """A cell for a CSV file: text that a spreadsheet would run as a formula gets an apostrophe in front.
+
+    Numbers stay as they are, also those given as text: ``-0.25`` is no formula.
+    """
+    if not isinstance(value, str) or not value.lstrip(" ").startswith(_FORMULA):
+        return value
+    try:
+        float(value)
+    except ValueError:
+        return f"'{value}"
+    return value
+
+
+def csv_bytes(head: Sequence[str], rows: Iterable[Sequence[object]]) -> bytes:
+    """A table as a CSV file in UTF-8: a header row and ``rows``, every cell made safe by `safe_cell`."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(safe_cell(name) for name in head)
+    writer.writerows([safe_cell(cell) for cell in row] for row in rows)
+    return buffer.getvalue().encode()

@@ -1,6 +1,22 @@
-"""Layout of a table in a file: given by the user, and used by the reader."""
+"""Layout of a table in a file: given by the user, and used by the reader.
 
+Lines to cells, and which cells are numbers.
+
+The result of every table reader: rows in chunks, and columns located by their names.
+
+Files that the library of an extra reads: its faults as errors of the file.
+"""
+
+import csv
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from pneutouch.arrays import Array
+from pneutouch.errors import InputError, nearest
 
 CLOCK = "X_Value"
 """Name of the times of a file that states begin and step of its clock in place of a column; LabVIEW's name of times."""
@@ -75,3 +91,105 @@ class TableLayout:
     def all_units(self) -> tuple[str, ...]:
         """Units of `all_names`."""
         return self.units if self.clock is None else ("s", *self.units)
+
+
+NUMBER = {
+    ".": re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?"),
+    ",": re.compile(r"[+-]?(\d+(,\d*)?|,\d+)([eE][+-]?\d+)?"),
+}
+"""Numbers by their decimal mark; none has separators of thousands."""
+
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
+
+_TEXT = 1.5
+"""Number of cells of numbers that outweigh a cell of text: our choice. A table has a column of remarks or dates at
+most."""
+
+
+def cells(line: str, delimiter: str) -> list[str]:
+    """Cells of a line without the spaces about them; a delimiter within quotes is part of its cell."""
+    if delimiter == " ":
+        return line.split()
+    if '"' not in line:
+        return [cell.strip() for cell in line.split(delimiter)]
+    try:
+        return [cell.strip() for cell in next(csv.reader([line.rstrip("\r\n")], delimiter=delimiter), [])]
+    except csv.Error:
+        return [cell.strip() for cell in line.split(delimiter)]
+
+
+def blank(line: str, delimiter: str) -> bool:
+    """True if a line counts as empty: one of spaces and tabs alone, but not of delimiters."""
+    return not line.strip(" \r\t" if delimiter != "\t" else " \r")
+
+
+def score(row: Sequence[str], decimal: str) -> float:
+    """Score of a row as one of numbers: above 0 if it looks like one."""
+    filled = [cell for cell in row if cell]
+    numbers = sum(NUMBER[decimal].fullmatch(cell) is not None for cell in filled)
+    return numbers - _TEXT * (len(filled) - numbers)
+
+
+def undecided_comma(rows: Sequence[Sequence[str]]) -> str | None:
+    """A number whose comma may be a decimal comma or one of thousands, where no number of the rows decides."""
+    commas = [cell for row in rows for cell in row if "," in cell and NUMBER[","].fullmatch(cell)]
+    return commas[0] if commas and all(_THOUSANDS.fullmatch(cell) for cell in commas) else None
+
+
+class RowChunk(NamedTuple):
+    """Some rows of a file.
+
+    Attributes:
+        rows: Their numbers in the file, (n,), counted from 1.
+        values: The requested columns, (k, n), in the requested order; all finite.
+        share: Share of the file that has been read, 0 to 1.
+        total: Number of rows of numbers in the file; of a text file as estimated from its bytes.
+        last: A complete last row without a line end, whose last number may be cut: its values (k, 1), not among
+            ``values``; else None.
+        last_row: Its number in the file.
+    """
+
+    rows: Array
+    values: Array
+    share: float
+    total: int
+    last: Array | None = None
+    last_row: int = 0
+
+
+def places(path: Path, layout: TableLayout, names: Sequence[str]) -> list[int]:
+    """Indices of the columns in a table; #2 is the second one whatever its name.
+
+    Raises InputError for a column that is missing or there twice."""
+    header, indices = layout.names, []
+    for name in names:
+        if header.count(name) > 1:
+            count = header.count(name)
+            raise InputError(f"there {count} times", file=path, key=f"column {name}", remedy="must be there once")
+        place = layout.place(name)
+        if place is None:
+            hint = " Columns are separated by commas, semicolons or tabs." if len(header) < 2 else ""
+            hint = hint or nearest(name, set(header))
+            problem = f"missing from the header '{', '.join(header)[:80]}' (row {layout.header_row}).{hint}"
+            raise InputError(problem, file=path, key=f"column {name}")
+        indices.append(place)
+    return indices
+
+
+@contextmanager
+def library_file(path: Path, kind: str, library: str, extra: str) -> Iterator[None]:
+    """Import and use the library of ``extra`` that reads files of a ``kind``.
+
+    Raises InputError if it is not installed, and in place of whatever its parsers raise.
+    """
+    try:
+        yield
+    except (InputError, OSError):
+        raise
+    except ImportError:
+        raise InputError(f'{kind} files need {library}: pip install "pneutouch[{extra}]"', file=path) from None
+    except Exception as error:
+        text = " ".join(str(error).split())[:120] or type(error).__name__
+        raise InputError(
+            f"no whole {kind} file: {text}", file=path, remedy="cut off, or another kind of file?"
+        ) from None

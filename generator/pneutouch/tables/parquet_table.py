@@ -9,9 +9,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
-from pneutouch.tables.chunk import RowChunk, places
-from pneutouch.tables.layout import TableFormat, TableLayout
-from pneutouch.tables.library_file import library_file
+from pneutouch.tables.layout import RowChunk, TableFormat, TableLayout, library_file, places
 
 MOST_ROWS, MOST_UNPACKED = 1_000_000_000, 2**30
 """Rows of a file, a day at 10 kHz; and bytes of one group of rows once unpacked, which is in memory."""

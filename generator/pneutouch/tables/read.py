@@ -10,12 +10,11 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
-from pneutouch.tables.chunk import RowChunk
 from pneutouch.tables.csv_table import csv_chunks
-from pneutouch.tables.layout import CLOCK, TableFormat, TableLayout
+from pneutouch.tables.layout import CLOCK, RowChunk, TableFormat, TableLayout
 from pneutouch.tables.parquet_table import parquet_chunks, parquet_layout
 from pneutouch.tables.tdms_table import tdms_chunks, tdms_layout
-from pneutouch.tables.text_layout import text_layout
+from pneutouch.tables.text import text_layout
 from pneutouch.tables.xlsx_table import xlsx_chunks, xlsx_layout
 
 _ANY = TableFormat()

@@ -11,9 +11,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError, shown
-from pneutouch.tables.chunk import RowChunk, places
-from pneutouch.tables.layout import TableFormat, TableLayout
-from pneutouch.tables.library_file import library_file
+from pneutouch.tables.layout import RowChunk, TableFormat, TableLayout, library_file, places
 
 _UNIT_KEYS = ("unit_string", "NI_UnitDescription", "Unit", "unit")
 """Properties of a channel that hold its unit: the first is the one of LabVIEW's library."""

@@ -13,9 +13,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.errors import InputError, shown
-from pneutouch.tables.chunk import RowChunk, places
-from pneutouch.tables.layout import TableFormat, TableLayout
-from pneutouch.tables.library_file import library_file
+from pneutouch.tables.layout import RowChunk, TableFormat, TableLayout, library_file, places
 from pneutouch.tables.locate import Located, fewest, header_of, locate
 
 UNPACKED = 100e6

@@ -9,13 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, hermite
 from pneutouch.errors import BeyondLimitError, InputError
-from pneutouch.mechanics.atlas.batches import batch_of
-from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, SensorBatch
+from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, SensorBatch, batch_of
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.atlas_states import outside_atlas
-from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA
 

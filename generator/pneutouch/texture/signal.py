@@ -1,13 +1,18 @@
-"""A pressure signal sampled at even times, and its decimation."""
+"""A pressure signal sampled at even times, and its decimation.
+
+A measured signal from a CSV or parquet file: times in s and pressures in kPa.
+"""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
+from pneutouch.tables.read import whole
 from pneutouch.units import KPA
 
 OVERSAMPLING = 5.0
@@ -134,3 +139,25 @@ def decimated(given: Signal, highest: float) -> Signal:
     kept = (len(given.pressure) - 1) // factor + 1
     filtered = upfirdn(taps, padded, 1, factor)[2 * blocks : 2 * blocks + kept]
     return Signal(given.start, given.step * factor, np.asarray(filtered + mean, float))
+
+
+@dataclass(frozen=True, slots=True)
+class RecordColumns:
+    """Column names in the file's header; the units are s and kPa gauge whatever the names are."""
+
+    time_s: str = "time_s"
+    pressure_kPa: str = "pressure_kPa"
+
+
+def read_signal(path: Path, columns: RecordColumns = RecordColumns()) -> Signal:
+    """The signal in a file; other columns are ignored.
+
+    Raises InputError, naming file, row and column, as `tables.read.chunks`, where one column is named for both, and for
+    uneven sampling (``signal``).
+    """
+    names = columns.time_s, columns.pressure_kPa
+    if names[0] == names[1]:
+        problem = "declared for both time and pressure"
+        raise InputError(problem, file=path, key=f"column {names[0]}", remedy="must be two columns")
+    rows, (time, pressure_kPa) = whole(path, names)
+    return signal(time, pressure_kPa * KPA, str(path), [int(row) for row in rows])

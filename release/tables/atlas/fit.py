@@ -8,8 +8,7 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.recipe import STORED, AtlasAxes, AtlasRecipe, axes, flattened
-from pneutouch.mechanics.atlas.spline import SplineAxis
+from pneutouch.mechanics.atlas.recipe import STORED, AtlasAxes, AtlasRecipe, SplineAxis, axes, flattened
 from release.tables.atlas.survey import Survey
 
 _SMOOTH = 1.0e-5

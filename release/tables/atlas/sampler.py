@@ -11,16 +11,15 @@ from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.mechanics.atlas.recipe import AtlasRecipe, axes
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.contact import Plate
-from pneutouch.mechanics.solid.continuation import PathFollower
-from pneutouch.mechanics.solid.descend import descend
+from pneutouch.mechanics.solid.cavity import Gas, Liquid, Regulator, Supply
+from pneutouch.mechanics.solid.continuation import PathFollower, descend
+from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, at_volume, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, SolverState, minimise, stability
-from pneutouch.mechanics.solid.rigid_base import RigidBase
+from pneutouch.mechanics.solid.object_contact import Plate
 from pneutouch.mechanics.solid.stress import StrainProbe
-from pneutouch.mechanics.solid.supply import Gas, Liquid, Regulator, Supply
 
 _HOLDS = (1.0e3, 1.0e2, 1.0e4)
 """Stiffnesses in mu/R0^3 that hold the volume, tried in turn; the state keeps the volume it really has."""

@@ -13,8 +13,7 @@ import numpy as np
 from rich.progress import Progress
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.anywhere.recipe import RECIPE
-from pneutouch.mechanics.anywhere.table import SHIPPED, digest
+from pneutouch.mechanics.anywhere.table import RECIPE, SHIPPED, digest
 from release.tables.contact.build import jobs, joined, solve
 from release.tables.contact.fingerprint import model_answers
 from release.tables.contact.press import DomeState

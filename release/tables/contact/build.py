@@ -8,8 +8,7 @@ from itertools import product
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.anywhere.recipe import PlaceTableRecipe
-from pneutouch.mechanics.anywhere.table import ContactPlaces, DomeConditions, PlaceTable
+from pneutouch.mechanics.anywhere.table import ContactPlaces, DomeConditions, PlaceTable, PlaceTableRecipe
 from release.tables.contact.press import DomeState, at_equal_reading, pressed
 
 Tables = dict[str, Array]

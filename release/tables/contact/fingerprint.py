@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.anywhere.recipe import PlaceTableRecipe
+from pneutouch.mechanics.anywhere.table import PlaceTableRecipe
 from release.tables.contact.press import DomeState, pressed
 
 _STATE = DomeState(0.15, 0.25, 0.12)

@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.anywhere.recipe import PlaceTableRecipe
-from pneutouch.mechanics.anywhere.table import ContactPlaces, DomeConditions, PlaceTable
+from pneutouch.mechanics.anywhere.table import ContactPlaces, DomeConditions, PlaceTable, PlaceTableRecipe
 from release.tables.contact.press import DomeState, at_equal_reading, pressed
 
 

@@ -9,17 +9,15 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
-from pneutouch.mechanics.anywhere.recipe import PlaceTableRecipe
+from pneutouch.mechanics.anywhere.table import PlaceTableRecipe
 from pneutouch.mechanics.harmonic.press import OffAxisPress
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject, ProfiledObject
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.indent import PressSettings
-from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, Indenter, RigidObject, ball, edge
-from pneutouch.mechanics.solid.inflate import FreeState, Inflation, inflate, state_at
+from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, Indenter, RigidBase, RigidObject, ball, edge
+from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch, inflate, state_at
 from pneutouch.mechanics.solid.mesh import arc_cells, dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.mechanics.solid_states import KINDS
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from pneutouch.bench.calibrate import Injection, Observations, parameters
-from pneutouch.bench.calibrate.inject import injected
+from pneutouch.bench.calibrate.model import injected
 from pneutouch.bench.record import MeasuredCurve
-from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pneutouch.bench.calibrate.further import _volume
-from pneutouch.bench.calibrate.inject import injected
+from pneutouch.bench.calibrate.model import injected
+from pneutouch.bench.calibrate.other_states import _volume
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.units import KPA

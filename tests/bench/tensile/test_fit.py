@@ -7,16 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pneutouch.bench.tensile.choose import FORMS, MISFIT, choose_law
-from pneutouch.bench.tensile.curve import TensionCurve
-from pneutouch.bench.tensile.fit import LawForm, fit_law
-from pneutouch.bench.tensile.reach import reached_stretch
-from pneutouch.bench.tensile.stable import instability
-from pneutouch.bench.tensile.uniaxial import tension
+from pneutouch.bench.tensile.choose import FORMS, MISFIT, choose_law, instability, reached_stretch
+from pneutouch.bench.tensile.fit import LawForm, TensionCurve, fit_law, tension
 from pneutouch.errors import InputError
 from pneutouch.mechanics.laws import hyperelastic
+from pneutouch.mechanics.laws.hyperelastic import first_invariant, same_invariant
 from pneutouch.mechanics.laws.strain import VALUE, Strain
-from pneutouch.mechanics.laws.tension import first_invariant, same_invariant
 
 STRETCH = np.linspace(1.02, 3.0, 100)
 

@@ -11,9 +11,8 @@ from pathlib import Path
 import pytest
 
 from pneutouch.catalogue import Library
-from pneutouch.export.reader.arduino import arduino_gauge
 from pneutouch.export.reader.reading import Status
-from pneutouch.export.reader.render import MOST_TABLES, c_name, reader_files, sketch_note, table_bytes
+from pneutouch.export.reader.render import MOST_TABLES, arduino_gauge, c_name, reader_files, sketch_note, table_bytes
 from pneutouch.spec.gauge import Gauge
 from tests.export.reader.records import record, single
 

@@ -6,11 +6,9 @@ from functools import cache
 
 from pneutouch.body import Solid
 from pneutouch.catalogue import Library, load_scene
-from pneutouch.export.voxels.blend import ResinBlend
-from pneutouch.export.voxels.job import VoxelBody, VoxelJob
-from pneutouch.export.voxels.raster import raster
-from pneutouch.meridian import Arc, Line, Meridian
+from pneutouch.export.voxels.raster import ResinBlend, VoxelBody, VoxelJob, raster
 from pneutouch.parts import Assembly, assemble
+from pneutouch.shape.meridian import Arc, Line, Meridian
 from pneutouch.spec.read import parse_changes
 from tests.conftest import ROOT
 

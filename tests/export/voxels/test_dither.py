@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.ndimage import binary_erosion, generate_binary_structure
 
-from pneutouch.export.voxels.blend import ResinBlend
 from pneutouch.export.voxels.bluenoise import BLOCK, thresholds, void_and_cluster
+from pneutouch.export.voxels.raster import ResinBlend
 from pneutouch.export.voxels.skin import SkinCompensation, interior
 from pneutouch.export.voxels.slices import VoxelSlicer
 from tests.export.voxels.small import ball, block, job, material
@@ -111,7 +111,7 @@ def test_a_mixed_disc_is_soft_at_every_face_and_holds_its_fraction(fraction):
 
 
 def test_a_wall_too_thin_for_its_fraction_is_said_to_fall_short():
-    from pneutouch.export.voxels.manifest import shortfalls
+    from pneutouch.export.voxels.stack import shortfalls
 
     thin = job((block(0, 0.14, 2.0), even(0.9)))
     slicer = VoxelSlicer(thin)

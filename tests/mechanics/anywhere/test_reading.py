@@ -6,10 +6,18 @@ import numpy as np
 import pytest
 from release.tables.contact.press import DomeState, at_equal_reading, pressed
 
-from pneutouch.mechanics.anywhere.conditions import batch_conditions, covered, outside, state_conditions
-from pneutouch.mechanics.anywhere.reading import ball_places, edge_places, force_logs, place_uncertainty, plate_places
-from pneutouch.mechanics.anywhere.recipe import RECIPE
-from pneutouch.mechanics.anywhere.table import DomeConditions
+from pneutouch.mechanics.anywhere.reading import (
+    ball_places,
+    batch_conditions,
+    covered,
+    edge_places,
+    force_logs,
+    outside,
+    place_uncertainty,
+    plate_places,
+    state_conditions,
+)
+from pneutouch.mechanics.anywhere.table import RECIPE, DomeConditions
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.uncertainty import batch_of
 

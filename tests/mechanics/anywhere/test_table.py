@@ -13,8 +13,16 @@ from release.tables.contact.press import DomeState, at_equal_reading, pressed
 from scipy.interpolate import CubicHermiteSpline
 
 from pneutouch.mechanics.anywhere.reading import TABLE_ERROR
-from pneutouch.mechanics.anywhere.recipe import RECIPE, NodeAxis, PlaceTableRecipe
-from pneutouch.mechanics.anywhere.table import SHIPPED, ContactPlaces, DomeConditions, digest, shipped
+from pneutouch.mechanics.anywhere.table import (
+    RECIPE,
+    SHIPPED,
+    ContactPlaces,
+    DomeConditions,
+    NodeAxis,
+    PlaceTableRecipe,
+    digest,
+    shipped,
+)
 
 EDGES = [*((seed, False) for seed in range(3)), *((seed, True) for seed in range(2))]
 """Seeds of presses by edges that the table was not made from, and whether they stand next to the pole."""

@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import ENDS, respond
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.events import range_end
-from pneutouch.mechanics.exact_membrane import RISING_BRANCH
+from pneutouch.mechanics.inflation import RISING_BRANCH
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.prediction import ModelResult
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
+from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import at_volume, inflate
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from release.tables.atlas.fit import roughness
 from scipy.interpolate import BSpline
 
-from pneutouch.mechanics.atlas.spline import SplineAxis, pieces
+from pneutouch.mechanics.atlas.recipe import SplineAxis, pieces
 
 axes = st.builds(
     lambda low, length, cells, degree, stretch: SplineAxis(low, low + length, cells, degree, stretch),

@@ -13,13 +13,11 @@ from pneutouch.mechanics.harmonic.surface import LyingObject
 from pneutouch.mechanics.harmonic_states import EVEN_ORDERS, ORDERS, off_axis_press
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.indent import PressSettings
-from pneutouch.mechanics.solid.indenter import ball, edge
-from pneutouch.mechanics.solid.inflate import FreeState, state_at
+from pneutouch.mechanics.solid.indenter import RigidBase, ball, edge
+from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.stress import StrainProbe
 
 RADIUS, EVEN = 9.25, Harmonics(4, 2)

@@ -7,19 +7,17 @@ import numpy as np
 import pytest
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.harmonic.face import face_areas, pressed_face
 from pneutouch.mechanics.harmonic.fields import Harmonics
+from pneutouch.mechanics.harmonic.object_contact import face_areas, pressed_face
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject, ProfiledObject
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.pressed_face import PressedFace
-from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.indent import PressSettings, indent
-from pneutouch.mechanics.solid.indenter import RigidObject, ball, edge
-from pneutouch.mechanics.solid.inflate import FreeState, state_at
+from pneutouch.mechanics.solid.indenter import RigidBase, RigidObject, ball, edge
+from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
 from pneutouch.mechanics.solid.mesh import END, START, dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.stress import StrainProbe
 
 RADIUS, DEPTH = 9.25, 3.0

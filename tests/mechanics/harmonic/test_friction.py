@@ -5,27 +5,23 @@ from functools import cache
 import numpy as np
 import pytest
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, hermite
 from pneutouch.mechanics.harmonic.friction import lengths
 from pneutouch.mechanics.harmonic.friction_path import SurfaceFrictionFollower
 from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.surface import PlacedObject
-from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.continuation import PlateState
-from pneutouch.mechanics.solid.descend import descend
-from pneutouch.mechanics.solid.first_touch import first_touch
+from pneutouch.mechanics.solid.continuation import PlateState, descend
 from pneutouch.mechanics.solid.friction_newton import HeldState, SlidingResult
 from pneutouch.mechanics.solid.friction_path import FrictionFollower
 from pneutouch.mechanics.solid.friction_system import ContactSystem
 from pneutouch.mechanics.solid.indent import PressSettings, indent, shut_in
-from pneutouch.mechanics.solid.indenter import RigidObject, ball
-from pneutouch.mechanics.solid.inflate import FreeState, state_at
+from pneutouch.mechanics.solid.indenter import RigidBase, RigidObject, ball
+from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, evaluate, tangent
-from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.stress import StrainProbe
 
 RADIUS = 9.25

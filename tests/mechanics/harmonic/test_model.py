@@ -7,9 +7,9 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean
 from pneutouch.mechanics.solid.banded import solve_definite
+from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.rigid_base import RigidBase
 
 LAWS = {
     "neo-hookean": neo_hookean(0.27),
@@ -117,7 +117,7 @@ def test_the_wall_at_rest_is_stable() -> None:
 
 
 def test_a_wall_on_its_flange_is_refused() -> None:
-    from pneutouch.mechanics.solid.printed import printed_dome
+    from pneutouch.mechanics.solid.mesh import printed_dome
 
     mesh = printed_dome(9.25, 1.5, 3.0, 1.5, arc=8, through=1)
     with pytest.raises(ValueError, match="flange"):

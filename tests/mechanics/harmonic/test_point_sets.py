@@ -7,16 +7,16 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.harmonic.model import HarmonicModel
-from pneutouch.mechanics.harmonic.point_sets import PointSets
+from pneutouch.mechanics.harmonic.settling import PointSets
 from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.contact import ContactEvaluation
 from pneutouch.mechanics.solid.indent import PressSettings, shut_in
 from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, SolverState, evaluate, tangent
+from pneutouch.mechanics.solid.object_contact import ContactEvaluation
 
 RADIUS = 9.25
 

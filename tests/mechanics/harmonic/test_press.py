@@ -5,20 +5,18 @@ from functools import cache
 import numpy as np
 import pytest
 
+from pneutouch.arrays import hermite
 from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress, OffAxisState
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject, Surface
-from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.contact import Plate
-from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent, shut_in
-from pneutouch.mechanics.solid.indenter import RigidObject, ball, cylinder, edge
-from pneutouch.mechanics.solid.inflate import FreeState, state_at
+from pneutouch.mechanics.solid.indenter import RigidBase, RigidObject, ball, cylinder, edge
+from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene
-from pneutouch.mechanics.solid.rigid_base import RigidBase
+from pneutouch.mechanics.solid.object_contact import Plate
 from pneutouch.mechanics.solid.stress import StrainProbe
 from tests.mechanics.solid.derivatives import assert_derivatives
 

@@ -8,23 +8,20 @@ import pytest
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.harmonic import friction_path
-from pneutouch.mechanics.harmonic.friction_path import SurfaceFrictionFollower
+from pneutouch.mechanics.harmonic.friction_path import ENDED_BEFORE, STEPS, ShearPath, SurfaceFrictionFollower
 from pneutouch.mechanics.harmonic.friction_settling import SurfaceFrictionSolver
 from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
-from pneutouch.mechanics.harmonic.shear import ENDED_BEFORE, STEPS, ShearPath
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.descend import descend
-from pneutouch.mechanics.solid.first_touch import first_touch
+from pneutouch.mechanics.solid.continuation import descend
 from pneutouch.mechanics.solid.friction_newton import SlidingResult
 from pneutouch.mechanics.solid.indent import PressSettings, shut_in
-from pneutouch.mechanics.solid.indenter import cylinder
-from pneutouch.mechanics.solid.inflate import FreeState, state_at
+from pneutouch.mechanics.solid.indenter import RigidBase, cylinder
+from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure
-from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.stress import StrainProbe
 
 RADIUS, DEPTH, ORDER = 9.25, 2.0, 2

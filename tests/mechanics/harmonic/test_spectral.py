@@ -7,12 +7,12 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.solid.elements import TermState
 from pneutouch.mechanics.solid.indent import PressSettings, shut_in
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, minimise
-from pneutouch.mechanics.solid.terms import TermState
 
 ANGLES = np.arange(256) * 2.0 * np.pi / 256
 

@@ -6,11 +6,11 @@ import pytest
 from pneutouch.mechanics.harmonic.press import OffAxisPress
 from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.object_contact import Plate
 from pneutouch.mechanics.solid.stress import StrainProbe
 
 R0, OUTER, OFFSET = 9.25, 10.75, 0.01

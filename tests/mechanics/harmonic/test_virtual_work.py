@@ -10,14 +10,12 @@ from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.press import OffAxisPress, OffAxisState
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.indent import PressSettings, shut_in
-from pneutouch.mechanics.solid.indenter import RigidObject, ball, cylinder
-from pneutouch.mechanics.solid.inflate import FreeState, state_at
+from pneutouch.mechanics.solid.indenter import RigidBase, RigidObject, ball, cylinder
+from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, minimise
-from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.stress import StrainProbe
 
 RADIUS = 9.25

@@ -12,10 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pneutouch.mechanics.line.air import ADIABATIC, AirState
-from pneutouch.mechanics.line.band import GAS, LINE, WALL, band_figures, gain_at
-from pneutouch.mechanics.line.cascade import GasLine
-from pneutouch.mechanics.line.dynamics import SensorDynamics, on_axis
+from pneutouch.mechanics.line.dynamics import GasLine, SensorDynamics, on_axis
 from pneutouch.mechanics.line.elements import Duct, GasVolume
+from pneutouch.mechanics.line.transient import GAS, LINE, WALL, band_figures, gain_at
 
 AIR = AirState(0.101325)
 DOME = GasVolume(1657.0, 3 * math.pi * 9.25**2)

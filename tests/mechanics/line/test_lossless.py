@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from pneutouch.mechanics.line.band import band_figures
-from pneutouch.mechanics.line.cascade import GasLine
-from pneutouch.mechanics.line.dynamics import SensorDynamics
+from pneutouch.mechanics.line.dynamics import GasLine, SensorDynamics
 from pneutouch.mechanics.line.elements import Duct, GasVolume
+from pneutouch.mechanics.line.transient import band_figures
 from tests.mechanics.line.lossless import IDEAL
 
 C = IDEAL.sound_speed

@@ -7,15 +7,15 @@ import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.base_contact import BaseContact
-from pneutouch.mechanics.solid.contact import Plate
-from pneutouch.mechanics.solid.harmonics import HarmonicSolid
+from pneutouch.mechanics.solid.cavity import Liquid, Regulator
 from pneutouch.mechanics.solid.indent import PressSettings, indent
+from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonResult, SolidScene, evaluate, minimise
-from pneutouch.mechanics.solid.rigid_base import RigidBase
-from pneutouch.mechanics.solid.supply import Liquid, Regulator
+from pneutouch.mechanics.solid.object_contact import Plate
+from pneutouch.mechanics.solid.second_variation import HarmonicSolid
 from tests.mechanics.solid.derivatives import assert_derivatives
 
 DEPTH = 0.75 * 9.25

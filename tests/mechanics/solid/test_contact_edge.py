@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.mechanics.solid.contact import _edge
+from pneutouch.mechanics.solid.object_contact import _edge
 
 
 @pytest.mark.parametrize("edge", [1.0, 1.03, 1.1])

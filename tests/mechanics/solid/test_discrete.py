@@ -5,14 +5,12 @@ import pytest
 
 from pneutouch.mechanics.laws import neo_hookean, ogden
 from pneutouch.mechanics.solid.banded import negative_pivots
-from pneutouch.mechanics.solid.cavity import Cavity
-from pneutouch.mechanics.solid.contact import Plate
-from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.cavity import Cavity, Gas, Liquid
+from pneutouch.mechanics.solid.elements import TermState
+from pneutouch.mechanics.solid.mesh import dome, printed_dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
-from pneutouch.mechanics.solid.printed import printed_dome
-from pneutouch.mechanics.solid.supply import Gas, Liquid
-from pneutouch.mechanics.solid.terms import TermState
+from pneutouch.mechanics.solid.object_contact import Plate
 from tests.mechanics.solid.derivatives import assert_derivatives, dense
 
 

@@ -4,16 +4,15 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.flange_contact import cardinal_splines, evaluated, meeting_nodes, top_nodes
-from pneutouch.mechanics.solid.harmonics import HarmonicSolid
+from pneutouch.mechanics.solid.base_contact import cardinal_splines, evaluated, meeting_nodes, top_nodes
+from pneutouch.mechanics.solid.cavity import Liquid
 from pneutouch.mechanics.solid.indent import PressSettings, indent
+from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import state_at
-from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.mesh import dome, printed_dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
-from pneutouch.mechanics.solid.printed import printed_dome
-from pneutouch.mechanics.solid.rigid_base import RigidBase
-from pneutouch.mechanics.solid.supply import Liquid
+from pneutouch.mechanics.solid.second_variation import HarmonicSolid
 from tests.mechanics.solid.derivatives import assert_derivatives
 
 DEPTH = 0.75 * 9.25

@@ -9,23 +9,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.contact import Plate
-from pneutouch.mechanics.solid.continuation import PathFollower
-from pneutouch.mechanics.solid.descend import descend
-from pneutouch.mechanics.solid.elimination import LeadingElimination
+from pneutouch.mechanics.solid.cavity import Gas
+from pneutouch.mechanics.solid.continuation import PathFollower, descend
 from pneutouch.mechanics.solid.events import BREAKS_CURVE
-from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.friction import FrictionStep
 from pneutouch.mechanics.solid.friction_newton import FrictionSolver
-from pneutouch.mechanics.solid.general_band import OneSidedBlocks
-from pneutouch.mechanics.solid.harmonics import HarmonicSolid
+from pneutouch.mechanics.solid.friction_system import LeadingElimination, OneSidedBlocks
 from pneutouch.mechanics.solid.indent import PressSettings, follower_of, indent
 from pneutouch.mechanics.solid.indenter import ball
-from pneutouch.mechanics.solid.inflate import inflate, state_at
+from pneutouch.mechanics.solid.inflate import first_touch, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
-from pneutouch.mechanics.solid.supply import Gas
+from pneutouch.mechanics.solid.object_contact import Plate
+from pneutouch.mechanics.solid.second_variation import HarmonicSolid
 from tests.mechanics.solid.derivatives import dense
 
 DEPTH = 0.5 * 9.25

@@ -6,10 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pneutouch.mechanics.solid.descend import _turns_back
-from pneutouch.mechanics.solid.first_touch import first_touch
+from pneutouch.mechanics.solid.continuation import _turns_back
 from pneutouch.mechanics.solid.indent import follower_of, indent
-from pneutouch.mechanics.solid.inflate import inflate, state_at
+from pneutouch.mechanics.solid.inflate import first_touch, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from tests.stability.random_scenes import RADIUS, random_dome, sensors

@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.friction_linear import LinearContact
-from pneutouch.mechanics.solid.friction_pivots import PiecewiseLine
-from pneutouch.mechanics.solid.friction_settling import StepSettling
-from pneutouch.mechanics.solid.friction_status import PointStatus, PointTractions
+from pneutouch.mechanics.solid.friction_linear import LinearContact, PiecewiseLine, PointStatus, PointTractions
+from pneutouch.mechanics.solid.friction_newton import StepSettling
 from pneutouch.mechanics.solid.indent import PressSettings, indent
+from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.rigid_base import RigidBase
 
 N, SIZE, RADIUS = 8, 12, 9.25
 

@@ -16,15 +16,15 @@ from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.models import models_for
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.contact import Plate
+from pneutouch.mechanics.solid.cavity import Gas
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene
-from pneutouch.mechanics.solid.supply import Gas
+from pneutouch.mechanics.solid.object_contact import Plate
 from pneutouch.mechanics.solid_states import solid_result
-from pneutouch.meridian.arc import arc_share
+from pneutouch.shape.meridian import arc_share
 from pneutouch.spec.grade import Grade
 from pneutouch.units import KPA
 from tests.mechanics.solid.derivatives import assert_derivatives

@@ -8,16 +8,15 @@ import pytest
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.contact import Plate
+from pneutouch.mechanics.solid.cavity import Gas, Regulator
 from pneutouch.mechanics.solid.continuation import PathFollower, PlateState, plate_state
+from pneutouch.mechanics.solid.elements import RADIAL, TermState
 from pneutouch.mechanics.solid.friction_path import FrictionFollower
 from pneutouch.mechanics.solid.inflate import state_at
-from pneutouch.mechanics.solid.kinematics import RADIAL
 from pneutouch.mechanics.solid.mesh import SolidMesh, boundary, dome, grid_cells, with_middles
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, minimise
-from pneutouch.mechanics.solid.supply import Gas, Regulator
-from pneutouch.mechanics.solid.terms import TermState
+from pneutouch.mechanics.solid.object_contact import Plate
 
 COLUMNS, ROWS = 12, 4
 

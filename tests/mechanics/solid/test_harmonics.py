@@ -8,15 +8,14 @@ from hypothesis import strategies as st
 from pneutouch.mechanics.laws import mooney_rivlin, neo_hookean, ogden, yeoh
 from pneutouch.mechanics.laws.strain import VALUE, Strain
 from pneutouch.mechanics.solid.banded import is_definite, softest
-from pneutouch.mechanics.solid.contact import Plate
+from pneutouch.mechanics.solid.cavity import Regulator
 from pneutouch.mechanics.solid.elements import cell_shapes, gauss_square, line_shapes, pressure_modes
-from pneutouch.mechanics.solid.harmonics import HarmonicSolid
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
-from pneutouch.mechanics.solid.out_of_plane import shear_moduli
-from pneutouch.mechanics.solid.supply import Regulator
+from pneutouch.mechanics.solid.object_contact import Plate
+from pneutouch.mechanics.solid.second_variation import HarmonicSolid, shear_moduli
 
 LAWS = [neo_hookean(0.3), mooney_rivlin(0.1, 0.05), yeoh(0.15, 0.02, 0.003), ogden(((0.25, 1.7), (0.05, -2.0)))]
 

@@ -6,9 +6,8 @@ import pytest
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
-from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.mesh import dome, printed_dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.printed import printed_dome
 
 MODULI = (0.17, 0.27, 0.55, 0.91, 1.64, 4.00, 5.33)
 TABLE_S1 = {

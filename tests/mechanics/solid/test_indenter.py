@@ -6,10 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.indenter import STEEPEST, ObjectShapeError, ProfileVertex, ball, cone, profile, ring
-from pneutouch.mechanics.solid.inflate import state_at
+from pneutouch.mechanics.solid.inflate import first_touch, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 

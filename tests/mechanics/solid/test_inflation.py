@@ -5,10 +5,10 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from pneutouch.mechanics.laws import mooney_rivlin, neo_hookean, yeoh
-from pneutouch.mechanics.solid.errors import UnreachableLoadError
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome, longest_outer_edge
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.newton import UnreachableLoadError
 from pneutouch.mechanics.solid.stress import StrainProbe, burst
 
 

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pneutouch.mechanics.solid import descend
-from pneutouch.mechanics.solid.descend import _describe
+from pneutouch.mechanics.solid import continuation
+from pneutouch.mechanics.solid.continuation import _describe
 
 NODES = np.array([[0.0, 9.0], [9.0, 0.5], [6.0, 6.0]])
 
@@ -23,7 +23,7 @@ def state(force, height_of_the_last, *, stable=True):
 
 @pytest.mark.parametrize(("force", "percent"), [(1.5, "-25.0"), (2.0, "0.0"), (2.2, "10.0")])
 def test_the_change_of_the_force_is_that_from_the_last_state(force, percent, monkeypatch):
-    monkeypatch.setattr(descend, "lost_work", lambda path, after: 0.12)
+    monkeypatch.setattr(continuation, "lost_work", lambda path, after: 0.12)
     said = _describe([state(2.0, 0.6)], state(force, 0.2))
     assert f"the force changes by {percent} % at once and 12 % of a step's work is lost" in said
     assert "at rest at r 6.00, z 6.00 mm moves most" in said

@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.continuation import LONGEST
-from pneutouch.mechanics.solid.descend import descend
-from pneutouch.mechanics.solid.first_touch import first_touch
+from pneutouch.mechanics.solid.continuation import LONGEST, descend
 from pneutouch.mechanics.solid.indent import PressSettings, follower_of
-from pneutouch.mechanics.solid.inflate import state_at
+from pneutouch.mechanics.solid.inflate import first_touch, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import direction, evaluate, full_tangent

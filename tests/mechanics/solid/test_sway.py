@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.harmonics import HarmonicSolid
+from pneutouch.mechanics.solid.cavity import Regulator
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonResult, SolidScene, evaluate, minimise
-from pneutouch.mechanics.solid.supply import Regulator
+from pneutouch.mechanics.solid.second_variation import HarmonicSolid
 from pneutouch.mechanics.solid.sway import free_loss, softest_mode, unstable_waves
 
 R0, DEPTH = 9.25, 6.94

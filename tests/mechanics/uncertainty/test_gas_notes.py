@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.uncertainty import batch_of, gas_notes
-from pneutouch.mechanics.uncertainty.gas_notes import ADIABATIC, REFERENCE_TEMPERATURE
+from pneutouch.mechanics.uncertainty.document import ADIABATIC, REFERENCE_TEMPERATURE
 from tests.mechanics.test_contact import PAPER
 
 

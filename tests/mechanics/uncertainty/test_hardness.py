@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.mechanics.uncertainty.hardness import logarithmic_change, logarithmic_slope, shore_a, young_modulus
+from pneutouch.mechanics.paper_sensor import logarithmic_change, logarithmic_slope, shore_a, young_modulus
 
 
 def test_value_of_the_relation_as_it_is_usually_printed():

@@ -8,9 +8,9 @@ import pytest
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.uncertainty import FIGURES, batch_of
-from pneutouch.mechanics.uncertainty.contact_presses import pressed_logs
-from pneutouch.mechanics.uncertainty.derivatives import STEP
+from pneutouch.mechanics.uncertainty.contact_model import pressed_logs
 from pneutouch.mechanics.uncertainty.neighbours import log_figures, moved, softer_walls
+from pneutouch.mechanics.uncertainty.propagate import STEP
 from tests.mechanics.test_contact import PAPER
 
 SENSITIVITY, STIFFNESS, FORCE = (

@@ -5,15 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from pneutouch.catalogue import Library
-from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.neighbours import joined
-from pneutouch.mechanics.viscous.by_solid import loop_by_solid, relaxation_by_solid
-from pneutouch.mechanics.viscous.describe import LOOP_SPEEDS, RAMP_SPEED
-from pneutouch.mechanics.viscous.known import ageing_ratio
-from pneutouch.mechanics.viscous.prony import prony_series
+from pneutouch.mechanics.viscous.describe import LOOP_SPEEDS, RAMP_SPEED, loop_by_solid, relaxation_by_solid
+from pneutouch.mechanics.viscous.prony import ageing_ratio, prony_series
 from pneutouch.mechanics.viscous.runs import loop, relaxation
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA

@@ -11,7 +11,7 @@ from pneutouch.mechanics.solid.friction_loop import friction_loop
 from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid_states import press_settings, solid_probe, solid_states
-from pneutouch.mechanics.viscous.by_solid import _Run, loop_by_solid, relaxation_by_solid
+from pneutouch.mechanics.viscous.describe import _Run, loop_by_solid, relaxation_by_solid
 from pneutouch.mechanics.viscous.prony import Prony
 from pneutouch.mechanics.viscous.runs import loop, relaxation
 from tests.mechanics.viscous.test_follow import SENSOR, A, B
@@ -94,7 +94,7 @@ def test_figures_under_friction_hold_on_finer_steps(friction, monkeypatch):
         return np.array([held.drop(held.force)[0], held.drop(held.rise)[0], *turn.hysteresis()])
 
     coarse = figures()
-    module = "pneutouch.mechanics.viscous.by_solid"
+    module = "pneutouch.mechanics.viscous.describe"
     for name, steps in (("_RAMP_STEPS", 60), ("_LOOP_STEPS", 72)):
         monkeypatch.setattr(f"{module}.{name}", steps)
     assert coarse == pytest.approx(figures(), abs=0.003)

@@ -10,12 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.mechanics.atlas.batches import batch_of
-from pneutouch.mechanics.atlas.press import AtlasPress
+from pneutouch.mechanics.atlas.press import AtlasPress, batch_of
 from pneutouch.mechanics.atlas.table import AtlasPoint, shipped
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
-from pneutouch.mechanics.viscous.follow import follow
 from pneutouch.mechanics.viscous.prony import Prony
+from pneutouch.mechanics.viscous.runs import follow
 from tests.mechanics.viscous.closed import after_ramp, loop_energy
 
 A = Prony((0.1450, 0.1534, 0.1084), (0.1139, 2.528, 51.19))

@@ -10,10 +10,8 @@ from pydantic import ValidationError
 
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.viscous.describe import describe
-from pneutouch.mechanics.viscous.known import unknown
-from pneutouch.mechanics.viscous.prony import Prony, prony_series, relaxed
-from pneutouch.spec.material import Material
-from pneutouch.spec.relaxation import Relaxation
+from pneutouch.mechanics.viscous.prony import Prony, prony_series, relaxed, unknown
+from pneutouch.spec.material import Material, Relaxation
 from tests.mechanics.viscous.closed import after_ramp, loop_energy
 
 A = Prony((0.1450, 0.1534, 0.1084), (0.1139, 2.528, 51.19))

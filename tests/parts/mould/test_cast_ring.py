@@ -16,17 +16,17 @@ from pneutouch.catalogue import DesignSource, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.subject import subject_of, wetted
-from pneutouch.export.brep import exact_solid
+from pneutouch.export.step import exact_solid
 from pneutouch.parts import Assembly, assemble
 from pneutouch.parts.membrane import membrane_meridian
 from pneutouch.parts.mould.pieces import silicone
 from pneutouch.printability.measure.mould import cavity_match, overlaps, undercuts
-from pneutouch.printability.rules.contact_faces import overlap_volume, shared_area
+from pneutouch.printability.rules.faces import overlap_volume, shared_area
 from pneutouch.printability.rules.feature_sizes import CHECKS
 from pneutouch.printability.subject import PrintSubject
 from pneutouch.printability.view import PrintView
 from pneutouch.report.mould import mould_rows, mould_section
-from pneutouch.workflows.build.mould import exploded
+from pneutouch.workflows.build_mould import exploded
 from tests.parts.mould.random_moulds import checked, random_moulds
 
 CAST = {

@@ -13,18 +13,16 @@ from hypothesis import strategies as st
 from pneutouch.body import Body
 from pneutouch.catalogue import DesignSource, load_scene
 from pneutouch.errors import InputError
-from pneutouch.meridian import Arc, Line, Meridian
 from pneutouch.parts import assemble
 from pneutouch.parts.layout import lay_out
 from pneutouch.parts.membrane import membrane_meridian
 from pneutouch.parts.mould import MouldAssembly, mould_of, silicone_batch
-from pneutouch.parts.mould.filling import filling
-from pneutouch.parts.mould.lay import lay_out_mould
-from pneutouch.parts.mould.pieces import core, mould_solids, ring, screw_places
-from pneutouch.parts.mould.release import release_of
-from pneutouch.parts.mould.screws import SCREW
+from pneutouch.parts.mould.filling import filling, release_of
+from pneutouch.parts.mould.pieces import core, lay_out_mould, mould_solids, ring, screw_places
+from pneutouch.parts.mould.size import SCREW
 from pneutouch.printability.measure.mould import cavity_match, overlaps, undercuts
-from pneutouch.printability.rules.contact_faces import overlap_volume, shared_area
+from pneutouch.printability.rules.faces import overlap_volume, shared_area
+from pneutouch.shape.meridian import Arc, Line, Meridian
 from pneutouch.units import ML
 from tests.parts.mould.random_moulds import checked, random_moulds
 from tests.parts.space import measured_volume

@@ -7,7 +7,7 @@ import pytest
 
 from pneutouch.body import Bore, Solid
 from pneutouch.parts.coupons import COUPONS, CouponContext
-from pneutouch.parts.mould.open_mould import FLOOR, WALL, open_mould
+from pneutouch.parts.mould.size import FLOOR, WALL, open_mould
 from pneutouch.spec.material import Material
 
 

@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.parts.specimen import Box, complement
-from pneutouch.parts.specimen.mesh import joined
+from pneutouch.parts.specimen.family import joined
 from pneutouch.parts.specimen.struts import STRUTS
 from pneutouch.parts.specimen.surfaces import SURFACES
-from pneutouch.printability.rules.contact_faces import overlap_volume, shared_area
+from pneutouch.printability.rules.faces import overlap_volume, shared_area
 from tests.parts.specimen.shapes import STEP, body, context, drawn
 
 FRACTIONS = {

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from pneutouch.parts.specimen import Box
-from pneutouch.parts.specimen.marching import MarchingGrid, between, level_set
-from pneutouch.parts.specimen.surfaces import SURFACES, PeriodicSurface
+from pneutouch.parts.specimen.surfaces import SURFACES, MarchingGrid, PeriodicSurface, between, level_set
 from tests.parts.specimen.shapes import STEP, body
 
 BOX = Box((0.0, 0.0, 0.0), (2.0, 2.0, 2.0))

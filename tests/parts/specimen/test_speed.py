@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from pneutouch.body.revolve import circle_count
+from pneutouch.body.shapes import circle_count
 from pneutouch.parts.specimen import Box, complement
 from pneutouch.parts.specimen.struts import STRUTS, Lattice, fill
 from tests.parts.specimen.shapes import STEP, bars_by_hand, body, context, drawn

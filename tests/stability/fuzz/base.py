@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 from unittest import mock
 
-from pneutouch.workflows.sweep.workfolder import WorkFolder
+from pneutouch.workflows.sweep.journal import WorkFolder
 from tests.running import in_process
 from tests.stability.fuzz.cases import LINES, RESULTS, RIG
 
@@ -71,7 +71,7 @@ def _sweep(folder: Path) -> None:
 
 
 def _stack(folder: Path) -> None:
-    from pneutouch.workflows.build.voxels import plan_voxels, write_stack
+    from pneutouch.workflows.build_voxels import plan_voxels, write_stack
     from tests.export.voxels.small import small_assembly
 
     write_stack(plan_voxels(small_assembly(), coarser=4.0).job, folder, "small_", {"name": "small"})

@@ -15,10 +15,10 @@ from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.read import parse_changes
 from pneutouch.spec.toml_text import toml_text
-from pneutouch.workflows.characterize import run as characterizing
-from pneutouch.workflows.characterize.run import characterize
-from pneutouch.workflows.simulate.options import SimulationOptions
-from pneutouch.workflows.simulate.run import simulate
+from pneutouch.workflows.characterize import campaign as characterizing
+from pneutouch.workflows.characterize.campaign import characterize
+from pneutouch.workflows.simulate import simulate
+from pneutouch.workflows.simulate_inputs import SimulationOptions
 
 ASKED = SimulationOptions(
     specimens=2,

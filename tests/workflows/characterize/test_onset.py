@@ -12,8 +12,8 @@ from pneutouch.bench.reading import PLATE, read_blocks
 from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.bench.source import identify
 from pneutouch.spec.campaign import ColumnMap, Rig
-from pneutouch.workflows.simulate.options import SimulationOptions
-from pneutouch.workflows.simulate.run import simulate
+from pneutouch.workflows.simulate import simulate
+from pneutouch.workflows.simulate_inputs import SimulationOptions
 
 RADIUS = 8.73
 SOFT = {"membrane.inner_radius_mm": RADIUS, "membrane.wall_thickness_mm": 0.9}

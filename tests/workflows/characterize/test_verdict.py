@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from pneutouch.bench.figures import summarize
 from pneutouch.bench.record import MeasuredCurve
-from pneutouch.bench.summary import summarize
 from pneutouch.spec.campaign import CampaignRun
 from pneutouch.spec.read import validate
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
-from pneutouch.workflows.characterize.verdict import ageing, verdicts
+from pneutouch.workflows.characterize.predicted import ageing, verdicts
 
 DEPTHS = np.linspace(0.0, 7.0, 15)
 

@@ -9,8 +9,7 @@ from pneutouch.evaluation import evaluate
 from pneutouch.spec.tasks import DrivingTask
 from pneutouch.units import KPA
 from pneutouch.workflows.driving import LeakSource, driving_schedule, schedule_document
-from pneutouch.workflows.driving.reach import reach_curves
-from pneutouch.workflows.driving.solve import band, solutions
+from pneutouch.workflows.driving.pressures import band, reach_curves, solutions
 
 LEAK = LeakSource(0.05, 20.0, cap=True, where="a test")
 

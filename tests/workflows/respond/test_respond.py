@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 import pneutouch as pt
-from pneutouch.cli.respond_text import respond_text
+from pneutouch.cli.respond import respond_text
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.formats import versioned
-from pneutouch.workflows.respond.document import document, write_respond
-from pneutouch.workflows.respond.load import Load, frequency_Hz, load_size
-from pneutouch.workflows.respond.run import run_respond
+from pneutouch.workflows.respond import Load, frequency_Hz, load_size, run_respond
+from pneutouch.workflows.respond_document import document, write_respond
 
 
 @pytest.fixture(scope="module")

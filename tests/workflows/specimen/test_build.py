@@ -13,11 +13,10 @@ import pytest
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.library import is_specimen
 from pneutouch.export.threemf import read_strictly
-from pneutouch.printability.rules.contact_faces import overlap_volume, shared_area
+from pneutouch.printability.rules.faces import overlap_volume, shared_area
 from pneutouch.spec.read import read_toml
 from pneutouch.workflows.specimen.build import build_specimen, check_specimen
-from pneutouch.workflows.specimen.draw import draw
-from pneutouch.workflows.specimen.load import load_specimen
+from pneutouch.workflows.specimen.draw import draw, load_specimen
 from tests.conftest import ROOT
 
 LIBRARY = Library((ROOT,))

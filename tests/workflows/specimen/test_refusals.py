@@ -6,8 +6,7 @@ import pytest
 
 from pneutouch.errors import InputError
 from pneutouch.spec.read import parse_changes
-from pneutouch.workflows.specimen.draw import draw
-from pneutouch.workflows.specimen.load import load_specimen
+from pneutouch.workflows.specimen.draw import draw, load_specimen
 from tests.workflows.specimen.test_build import LIBRARY, written
 
 BARS = 'kind = "bars"\npitch_mm = 3\nheight_mm = 1\n'

@@ -16,7 +16,7 @@ from distributed import Client
 
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.sweep import plan_of_flags, sweep, work
-from pneutouch.workflows.sweep.run import ComputeResources
+from pneutouch.workflows.sweep.execute import ComputeResources
 from tests.running import in_process
 
 OVER = [
@@ -176,7 +176,7 @@ def cluster(tmp_path, monkeypatch):
         workers += [dask(*words), dask(*words)]
         with Client(address, timeout=PATIENCE, set_as_default=False) as client:
             client.wait_for_workers(len(workers))
-        monkeypatch.setattr("pneutouch.workflows.sweep.cluster._PATIENCE", PATIENCE)
+        monkeypatch.setattr("pneutouch.workflows.sweep.workers._PATIENCE", PATIENCE)
         yield Cluster(address, scheduler, workers)
     finally:
         for process in (*workers, scheduler):

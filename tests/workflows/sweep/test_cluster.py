@@ -11,9 +11,9 @@ import pytest
 from distributed import Client
 
 from pneutouch.errors import InputError
-from pneutouch.workflows.sweep import cluster as module
 from pneutouch.workflows.sweep import sweep
-from pneutouch.workflows.sweep.run import ComputeResources
+from pneutouch.workflows.sweep import workers as module
+from pneutouch.workflows.sweep.execute import ComputeResources
 from tests.workflows.sweep.conftest import PATIENCE, ended, held, journal_lines, resumed, small
 
 

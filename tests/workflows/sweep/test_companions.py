@@ -9,14 +9,13 @@ import re
 import numpy as np
 import pytest
 
-from pneutouch.cli.sweep_text import sweep_text
+from pneutouch.cli.sweep import sweep_text
 from pneutouch.errors import InputError
-from pneutouch.report.bands import HATCHES
+from pneutouch.report.style import HATCHES
 from pneutouch.report.swept import SweptAxis, SweptFigure, pictures
 from pneutouch.workflows.sweep import plan_of_file, sweep
-from pneutouch.workflows.sweep.companions import swept_figure, table_csv, table_rows, write_companions
-from pneutouch.workflows.sweep.dataset import stored_dataset
-from pneutouch.workflows.sweep.run import ComputeResources
+from pneutouch.workflows.sweep.dataset import stored_dataset, swept_figure, table_csv, table_rows, write_companions
+from pneutouch.workflows.sweep.execute import ComputeResources
 from tests.workflows.sweep.conftest import load, small
 
 ALONE = ComputeResources(workers=1)

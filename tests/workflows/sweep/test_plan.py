@@ -12,8 +12,8 @@ from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.spec.over import spread
 from pneutouch.workflows.sweep import plan_of_file, plan_of_flags, sweep, work
-from pneutouch.workflows.sweep.run import ComputeResources
-from pneutouch.workflows.sweep.study import study
+from pneutouch.workflows.sweep.execute import ComputeResources
+from pneutouch.workflows.sweep.work import study
 
 BASE = 'design = "paper-dome"\nmodel = "membrane"\n'
 WALL = '"membrane.wall_thickness_mm"'

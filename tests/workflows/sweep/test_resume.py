@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.errors import ComputationError, InputError
-from pneutouch.workflows.sweep import sweep, workfolder
+from pneutouch.workflows.sweep import journal, sweep
 from pneutouch.workflows.sweep.journal import Journal
 from tests.running import in_new_process
 from tests.workflows.sweep.conftest import (
@@ -69,10 +69,10 @@ def test_ctrl_c_says_how_to_go_on(undisturbed, tmp_path):
 
 
 KILLS = {
-    "dataset half written": "workfolder.replace_whole = lambda fresh, target, content: (fresh.write_bytes(content[:900]), die())",
-    "dataset not renamed": "workfolder.replace_whole = lambda fresh, target, content: (fresh.write_bytes(content), die())",
-    "dataset renamed": "workfolder._sync_folder = die",
-    "journal removed": "workfolder.WorkFolder._clear = die",
+    "dataset half written": "journal.replace_whole = lambda fresh, target, content: (fresh.write_bytes(content[:900]), die())",
+    "dataset not renamed": "journal.replace_whole = lambda fresh, target, content: (fresh.write_bytes(content), die())",
+    "dataset renamed": "journal._sync_folder = die",
+    "journal removed": "journal.WorkFolder._clear = die",
 }
 
 
@@ -91,7 +91,7 @@ def test_a_kill_within_the_last_writes_loses_nothing(moment, library, tmp_path, 
     sweep(small(), plain, ALONE, library=library)
     code = (
         f"import os, sys; sys.argv = ['pneutouch', *{words!r}, '--out', {str(out)!r}, '--workers', '1']\n"
-        "from pneutouch.workflows.sweep import workfolder\ndef die(*_): os.kill(os.getpid(), 9)\n"
+        "from pneutouch.workflows.sweep import journal\ndef die(*_): os.kill(os.getpid(), 9)\n"
         f"{KILLS[moment]}\nfrom pneutouch.cli import run; run()"
     )
     killed = subprocess.run([sys.executable, "-c", code], cwd=root, capture_output=True, check=False)
@@ -210,7 +210,7 @@ def test_a_full_disk_is_said_and_the_progress_kept(single, library, tmp_path, mo
     def nowhere(fresh, target, content):
         raise OSError(28, "No space left on device", str(fresh))
 
-    monkeypatch.setattr(workfolder, "replace_whole", nowhere)
+    monkeypatch.setattr(journal, "replace_whole", nowhere)
     with pytest.raises(ComputationError, match=r"No space left on device\n6 of 6 points are done"):
         sweep(six(), out, ALONE, library=library)
     monkeypatch.undo()

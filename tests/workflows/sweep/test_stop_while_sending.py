@@ -16,15 +16,15 @@ from tests.workflows.sweep.conftest import PATIENCE
 SCRIPT = """
 import signal
 from pathlib import Path
-from pneutouch.workflows.sweep import local
+from pneutouch.workflows.sweep import workers
 from tests.workflows.sweep.test_stop_while_sending import half_sent
 
 if __name__ == "__main__":
     # A shell's background jobs ignore Ctrl-C, and so would all that they start.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    local.compute = half_sent
+    workers.compute = half_sent
     try:
-        next(local.in_pool([0, 1], Path(), 2))
+        next(workers.in_pool([0, 1], Path(), 2))
     except BaseException as error:
         print(type(error).__name__)
 """

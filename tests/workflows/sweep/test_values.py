@@ -12,7 +12,7 @@ from pneutouch import __version__
 from pneutouch.errors import ComputationError
 from pneutouch.evaluation.document import prediction_document
 from pneutouch.workflows.sweep import plan_of_file, sweep, work
-from pneutouch.workflows.sweep.run import ComputeResources
+from pneutouch.workflows.sweep.execute import ComputeResources
 from pneutouch.workflows.sweep.variables import state_values
 from tests.workflows.sweep.conftest import load, small
 

@@ -12,10 +12,9 @@ from hypothesis import strategies as st
 from pneutouch.catalogue import load_scene
 from pneutouch.parts import assemble
 from pneutouch.parts.lettering.glyphs import is_clear, lettering, narrowest
-from pneutouch.parts.lettering.mark import Marker
-from pneutouch.parts.lettering.tally import read, tally
+from pneutouch.parts.lettering.mark import Marker, read, tally
 from pneutouch.spec.read import parse_changes
-from pneutouch.workflows.tray.expand import letter
+from pneutouch.workflows.tray.order import letter
 
 SEATS = ("glued-flange", "clamped-flange-M2", "one-piece")
 MOUNTS = ("bolt-circle-4xM3", "rear-3xM2", "plain", "robot-50-4-M6")

@@ -12,7 +12,7 @@ from pneutouch.errors import InputError
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import validate
-from pneutouch.workflows.tray.resins import changes, jobs
+from pneutouch.workflows.tray.order import changes, jobs
 
 RESINS = ["Tango", "Agilus", "Clear", "White"]
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import InputError
-from pneutouch.parts.lettering.tally import read
+from pneutouch.parts.lettering.mark import read
+from pneutouch.workflows.tray.labels import subject
 from pneutouch.workflows.tray.lay import fill, lay
 from pneutouch.workflows.tray.order import TrayOrder, is_tray_file, order_of_file, order_of_flags
-from pneutouch.workflows.tray.subject import subject
 from pneutouch.workflows.tray.write import document, inputs, write_tray
 from tests.conftest import ROOT
 from tests.export.threemf_files import read_strictly
@@ -64,7 +64,7 @@ def test_a_one_piece_sensor_stays_one_assembly(seats):
 
 
 def test_shared_faces_of_an_assembly_keep_their_triangles(seats):
-    from pneutouch.printability.rules.contact_faces import shared_area
+    from pneutouch.printability.rules.faces import shared_area
 
     laid, _ = seats
     part = next(part for part in laid.parts if len(part.bodies) == 2)

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 from tests.printability.gallery import ball, box, item, printer, prism, rod
 
 from pictures.rules.case import Case, Pair, of_rule
-from pneutouch.body.outline import mesh_outline
+from pneutouch.body.section import mesh_outline
 from pneutouch.printability import PrintItem
 from pneutouch.printability.rules.voxels import check_stack
-from pneutouch.report.dimension import horizontal, leader, vertical
-from pneutouch.report.section import draw_loops
+from pneutouch.report.section import draw_loops, horizontal, leader, vertical
 from pneutouch.report.style import INK
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from pneutouch.evaluation import Evaluation, evaluate
 from pneutouch.evaluation.subject import subject_of
 from pneutouch.parts import Assembly, assemble
 from pneutouch.printability import Finding, PrintItem, PrintSubject
-from pneutouch.printability.check import RULES
+from pneutouch.printability.rulebook import RULES
 from pneutouch.printability.view import PrintView
 from pneutouch.spec.read import parse_changes
 

@@ -6,9 +6,8 @@ import re
 from typing import TYPE_CHECKING
 
 from pictures.rules.case import Case, Pair, evaluated, of_sensor, window
-from pneutouch.report.dimension import circle, leader, polar
 from pneutouch.report.mould import draw_mould
-from pneutouch.report.section import draw_section
+from pneutouch.report.section import circle, draw_section, leader, polar
 from pneutouch.report.style import ACCENT
 
 if TYPE_CHECKING:

@@ -11,14 +11,13 @@ import numpy as np
 from pictures.rules.case import Case, Pair, assembled, item_of, of_rule, window
 from pneutouch.arrays import Array
 from pneutouch.body import Body
-from pneutouch.body.outline import mesh_outline, section_outline
+from pneutouch.body.section import mesh_outline, section_outline
 from pneutouch.evaluation.subject import subject_of
 from pneutouch.printability import PrintSubject
-from pneutouch.printability.check import RULES
-from pneutouch.printability.deep import inspect
+from pneutouch.printability.inspection import inspect
+from pneutouch.printability.rulebook import RULES
 from pneutouch.printability.view import PrintView
-from pneutouch.report.dimension import leader
-from pneutouch.report.section import draw_loops
+from pneutouch.report.section import draw_loops, leader
 from pneutouch.report.style import FAINT, INK
 
 if TYPE_CHECKING:

@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pictures.rules.case import LIBRARY, Case, Pair, window
-from pneutouch.body.outline import section_outline
+from pneutouch.body.section import section_outline
 from pneutouch.catalogue import load_scene
 from pneutouch.parts.mould import MouldAssembly, mould_of
+from pneutouch.parts.mould.filling import release_of
 from pneutouch.parts.mould.pieces import core, silicone
-from pneutouch.parts.mould.release import release_of
-from pneutouch.printability.mould import MOULD_RULES
-from pneutouch.report.dimension import horizontal, leader
+from pneutouch.printability.rulebook import MOULD_RULES
 from pneutouch.report.mould import draw_mould
-from pneutouch.report.section import draw_loops
+from pneutouch.report.section import draw_loops, horizontal, leader
 from pneutouch.spec.material import Material
 from pneutouch.spec.read import parse_changes
 

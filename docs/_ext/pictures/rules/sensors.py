@@ -8,8 +8,7 @@ import numpy as np
 
 from pictures.rules.case import LIBRARY, Case, Pair, assembled, evaluated, item_of, of_rule, of_sensor, window
 from pneutouch.mechanics.prediction import DeformedShape
-from pneutouch.report.dimension import leader, polar
-from pneutouch.report.section import draw_section
+from pneutouch.report.section import draw_section, leader, polar
 from pneutouch.report.style import ACCENT, INK, LINES, MUTED, plain_ticks
 from pneutouch.spec.material import Material
 from pneutouch.spec.mixing import MixingCurve, MixingPoint

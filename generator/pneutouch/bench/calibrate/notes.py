@@ -1,21 +1,155 @@
-"""Notes on a calibration: data left out, undetermined parameters, further tests, and deviations of the model."""
+"""Notes on a calibration: data left out, undetermined parameters, further tests, and deviations of the model.
+
+Errors that all runs share and that no interval holds, such as a gauge that reads too much.
+
+Cross-validation: fit without a driving pressure, predict it, compare.
+"""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from pneutouch.bench.calibrate.fit import CalibrationFit
-from pneutouch.bench.calibrate.further import SuggestedTest
-from pneutouch.bench.calibrate.gains import gain_shifts
-from pneutouch.bench.calibrate.goodness import SystematicDeviation
-from pneutouch.bench.calibrate.held_out import HeldOutPrediction
+from pneutouch.arrays import Array
+from pneutouch.bench.calibrate.fit import CalibrationFit, fit
+from pneutouch.bench.calibrate.goodness import ASSUMED_SCATTER, SystematicDeviation, response_gap
 from pneutouch.bench.calibrate.identify import UNSEEN, CorrelatedParameters, Identifiability
 from pneutouch.bench.calibrate.intervals import LEAST_RUNS
-from pneutouch.bench.calibrate.observations import clipped
-from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, LOGARITHMIC, USUAL
-from pneutouch.bench.calibrate.response import ASSUMED_SCATTER, response_gap
-from pneutouch.units import ML
+from pneutouch.bench.calibrate.observations import Observations, clipped, points_of
+from pneutouch.bench.calibrate.other_states import SuggestedTest
+from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, LOGARITHMIC, USUAL, CalibrationParameters
+from pneutouch.errors import InputError
+from pneutouch.mechanics.response import lines
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.units import KPA, ML
 from pneutouch.wording import counted, listed
+
+GAIN = 0.01
+
+
+def gain_shifts(fit: CalibrationFit) -> tuple[Array, Array]:
+    """Shifts of the estimates, (k,) coordinates each, if the force and if the pressure were read 1 % too high; 0 on a
+    bound.
+
+    The gauge reads the driving pressure too.
+    """
+    p, solution = fit.points, fit.solution
+    size = p.there.size
+    more = fit.model_at(p._replace(driving=p.driving * (1.0 - GAIN))).values(fit.full[None])[0][0]
+    force, pressure = np.zeros(p.values.size), np.where(solution.use, more - solution.model, 0.0)
+    # True values are lower than read ones, and so would be the data.
+    force[:size] = GAIN * p.values[:size]
+    pressure[size:] += GAIN * p.values[size:]
+    return _shift(fit, force), _shift(fit, pressure)
+
+
+def _shift(fit: CalibrationFit, residual: Array) -> Array:
+    """Step of the estimates for a change of the residuals in N and MPa."""
+    free = np.flatnonzero(~fit.solution.bound)
+    change = np.where(fit.solution.use, residual / fit.problem.errors, 0.0)
+    whole = fit.problem.whitened(np.column_stack([change, fit.solution.jacobian[:, free]]), fit.solution.use)
+    jacobian = whole[:, 1:]
+    normal = jacobian.T @ jacobian + np.diag(fit.problem.weight[free])
+    scale = np.sqrt(np.maximum(np.diag(normal), 1e-30))
+    normal += 1e-12 * np.diag(scale**2)
+    shift = np.zeros(fit.solution.at.size)
+    # The estimates follow readings that are too high: what is found is minus the correction.
+    right = jacobian.T @ whole[:, 0]
+    shift[free] = np.linalg.solve(normal, right)
+    return np.asarray(shift)
+
+
+@dataclass(frozen=True, slots=True)
+class HeldOutPrediction:
+    """A driving pressure (kPa) as predicted by a fit to the others, mean over its runs.
+
+    Attributes:
+        driving_pressure_kPa: Held out.
+        measured_kPa_per_N, predicted_kPa_per_N: Sensitivity on the same travels, kPa/N.
+        force_error, rise_error: Root mean square error of the curves over full scale.
+        force_worst, rise_worst: Greatest error over full scale.
+        points, left_out: Points compared, and those beyond the model's range.
+    """
+
+    driving_pressure_kPa: float
+    measured_kPa_per_N: float
+    predicted_kPa_per_N: float
+    force_error: float
+    rise_error: float
+    force_worst: float
+    rise_worst: float
+    points: int
+    left_out: int
+
+    @property
+    def error(self) -> float:
+        """Relative error of the predicted sensitivity."""
+        return self.predicted_kPa_per_N / self.measured_kPa_per_N - 1.0
+
+
+def predict_held_out(
+    observations: Observations, sensor: Sensor, parameters: CalibrationParameters, driving_pressure_kPa: float
+) -> HeldOutPrediction:
+    """Leave out a driving pressure (kPa), fit to the rest, predict it by that fit and its correction.
+
+    Raises InputError for a pressure that was not measured, where nothing is left to fit, and where the model has too
+    few of its points to compare."""
+    known_kPa = observations.driving_pressures_kPa
+    if driving_pressure_kPa not in known_kPa:
+        problem = f"no run at this driving pressure; measured: {_listed(known_kPa)} kPa"
+        raise InputError(problem, key="hold_out_kPa", value=driving_pressure_kPa)
+    rest = observations.without(driving_pressure_kPa)
+    if not rest.curves and not rest.injections:
+        problem, remedy = "all runs are at this driving pressure", "there must be runs at another to fit"
+        raise InputError(problem, key="hold_out_kPa", value=driving_pressure_kPa, remedy=remedy)
+    fitted = fit(rest, sensor, parameters)
+    points = points_of(observations.only(driving_pressure_kPa))
+    values, ok = fitted.model_at(points).values(fitted.full[None])
+    shape = points.there.shape
+    use = ok[0][: points.there.size].reshape(shape) & points.there
+    if (use.sum(axis=1) < 2).any():
+        problem = (
+            "the model fitted to the rest has fewer than two points of a run at this pressure (beyond its limit "
+            "point or buckled)"
+        )
+        raise InputError(problem, key="hold_out_kPa", value=driving_pressure_kPa, remedy="hold out another")
+    gap = response_gap(fitted)
+    # Every run of a held-out pressure has that pressure; its reading differs by a reset's scatter.
+    factors = (1.0, 1.0) if gap is None else gap.correction.at(driving_pressure_kPa * KPA)
+    parts = values[0][: use.size], values[0][use.size : 2 * use.size]
+    force, rise = (factor * part.reshape(shape) for factor, part in zip(factors, parts, strict=True))
+    rows = [
+        _row(
+            travel=points.travel[i],
+            force=points.force[i],
+            rise=points.rise[i],
+            model_force=force[i],
+            model_rise=rise[i],
+            use=use[i],
+        )
+        for i in range(len(use))
+    ]
+    measured_kPa_per_N, predicted_kPa_per_N, *errors = (float(x) for x in np.mean(rows, axis=0)[:4])
+    errors += [float(x) for x in np.max(rows, axis=0)[4:]]
+    sensitivities = measured_kPa_per_N, predicted_kPa_per_N
+    counts = int(use.sum()), int((points.there & ~use).sum())
+    return HeldOutPrediction(driving_pressure_kPa, *sensitivities, errors[0], errors[1], errors[2], errors[3], *counts)
+
+
+def _row(travel: Array, force: Array, rise: Array, model_force: Array, model_rise: Array, use: Array) -> list[float]:
+    """Both sensitivities, root mean square and greatest errors over full scale; the origin belongs to both curves."""
+    x, f, r, mf, mr = (np.concatenate([[0.0], part[use]]) for part in (travel, force, rise, model_force, model_rise))
+    measured_kPa_per_N, predicted_kPa_per_N = (
+        float(lines(x, a, b / KPA).sensitivity_kPa_per_N) for a, b in ((f, r), (mf, mr))
+    )
+    df, dr = (mf - f)[1:] / np.abs(f).max(), (mr - r)[1:] / np.abs(r).max()
+    rms = [float(np.sqrt(np.mean(part**2))) for part in (df, dr)]
+    return [measured_kPa_per_N, predicted_kPa_per_N, *rms, float(np.abs(df).max()), float(np.abs(dr).max())]
+
+
+def _listed(pressures_kPa: tuple[float, ...]) -> str:
+    return ", ".join(f"{p:g}" for p in pressures_kPa) or "none"
+
 
 CHANNELS = ("force", "pressure rise", "injection's pressure")
 WORDS = ("shear modulus", "wall thickness", "dead volume", "contact offset", "friction")

@@ -7,13 +7,13 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.errors import InputError, nearest
-from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
 from pneutouch.mechanics.contact_correction import GRIPS, NODES
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.uncertainty.contact import SPREAD
+from pneutouch.mechanics.uncertainty.contact_model import SPREAD
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
-from pneutouch.mechanics.uncertainty.sources.build import build_sources
+from pneutouch.mechanics.uncertainty.sources.model import build_sources
 from pneutouch.mechanics.uncertainty.sources.modulus import modulus_sources
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer

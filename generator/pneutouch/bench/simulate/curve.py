@@ -1,4 +1,9 @@
-"""The pressed curve of one specimen, as the simulator and the test plan read it."""
+"""The pressed curve of one specimen, as the simulator and the test plan read it.
+
+Deviations of a simulated sensor from its model, so that a calibration does not meet the very model that it fits.
+
+Air pushed in with a syringe: the expected pressure in the closed line alone and in the sensor.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -6,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.bench.simulate.scatter import parameter
 from pneutouch.errors import InputError
 from pneutouch.mechanics import Sensor, SensorState, predict
 from pneutouch.mechanics.limits import Limits
@@ -106,3 +112,66 @@ def _curve(sensor: Sensor, state: SensorState, model: str) -> PressCurve:
     return PressCurve(
         state.driving_pressure, state.indentation[keep], state.force[keep], state.pressure_rise[keep], ends
     )
+
+
+_WAVES = 3
+"""Half waves along the travel that a smooth deviation is made of, the k-th 1/k as large: our choice."""
+
+_TURN = 22.0 * KPA
+"""Driving pressure at which the smooth share is independent of that without one: the paper's highest."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModelDeviation:
+    """Shares of force and of pressure rise by which a specimen deviates, drawn independently; none by default."""
+
+    common: float = parameter(
+        0.0, "1", "standard deviation of the share that is the same at every driving pressure and travel"
+    )
+    smooth: float = parameter(
+        0.0, "1", "standard deviation of the share that varies along the travel and with the driving pressure"
+    )
+
+    def deviated(self, curves: PressCurves, rng: np.random.Generator) -> PressCurves:
+        """The curves of one specimen with the shares that ``rng`` draws for it; as they are where nothing deviates."""
+        if self == ModelDeviation():
+            return curves
+        common = self.common * rng.standard_normal(2)
+        waves = self.smooth * rng.standard_normal((2, 2, _WAVES))
+        return replace(curves, curves=tuple(_deviated(curve, common, waves) for curve in curves.curves))
+
+
+def _deviated(curve: PressCurve, common: Array, waves: Array) -> PressCurve:
+    """A curve with the shares of force and rise (2,) and the weights of their waves (2, 2, waves)."""
+    order = np.arange(1, _WAVES + 1)
+    shape = np.cos(np.pi * np.outer(curve.indentation / curve.indentation[-1], order))
+    shape *= np.sqrt(2.0) / order / np.sqrt((1.0 / order**2).sum())
+    turn = 0.5 * np.pi * curve.driving / _TURN
+    weights = np.cos(turn) * waves[:, 0] + np.sin(turn) * waves[:, 1]
+    force, rise = np.exp(common[:, None] + weights @ shape.T)
+    return replace(curve, force=curve.force * force, rise=curve.rise * rise)
+
+
+_GRID = 4000
+
+
+def line_pressure(pushed: Array, dead_volume: float, ambient: float) -> Array:
+    """Gauge pressure (MPa) after ``pushed`` mm3 of room air into a closed line of ``dead_volume`` mm3 (Boyle)."""
+    return np.asarray(ambient * pushed / dead_volume)
+
+
+def sensor_pressure(pushed: Array, inflation: InflationCurve, dead_volume: float, ambient: float) -> Array:
+    """Gauge pressure (MPa) after ``pushed`` mm3 of room air into the closed, unpressed sensor; NaN past the limit
+    point.
+
+    Boyle with a cavity that swells: (p + pa)(V(p) + Vd) = pa (V0 + Vd + pushed), with V(p) of the free inflation.
+    """
+    from scipy.interpolate import CubicSpline
+
+    top = int(np.argmax(inflation.pressure))
+    volume, start = np.linspace(inflation.volume[0], inflation.volume[top], _GRID), inflation.volume[0]
+    _, first = np.unique(inflation.volume[: top + 1], return_index=True)
+    pressure = CubicSpline(inflation.volume[first], inflation.pressure[first])(volume)
+    pressure = pressure - pressure[0]
+    taken = (pressure + ambient) * (volume + dead_volume) / ambient - (start + dead_volume)
+    return np.asarray(np.interp(pushed, taken, pressure, right=np.nan))

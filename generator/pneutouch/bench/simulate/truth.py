@@ -7,13 +7,11 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.protocol import RunProtocol, protocol
-from pneutouch.bench.simulate.curve import PressCurve, PressCurves
-from pneutouch.bench.simulate.deviation import ModelDeviation
+from pneutouch.bench.simulate.curve import ModelDeviation, PressCurve, PressCurves
 from pneutouch.bench.simulate.rig import MINUTE, RigModel
-from pneutouch.bench.simulate.run import simulate_run, within
-from pneutouch.bench.simulate.scatter import ScatterModel, SimulatedSpecimens, ageing_factor, stiffened
-from pneutouch.bench.simulate.wall import WallMemory
-from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.bench.simulate.runs import simulate_run, within
+from pneutouch.bench.simulate.scatter import ScatterModel, SimulatedSpecimens, WallMemory, ageing_factor, stiffened
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import DEPTH, respond
 from pneutouch.mechanics.response import FigureArrays, figures, hysteresis, lines
 from pneutouch.mechanics.sensor import Sensor

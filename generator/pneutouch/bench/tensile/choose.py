@@ -1,16 +1,86 @@
-"""Choice of the law of a material: the fewest constants whose stress is within 5 % of the measured one."""
+"""Choice of the law of a material: the fewest constants whose stress is within 5 % of the measured one.
+
+Stability of a law over the states that a fit covers: Drucker's condition in tension, shear and two directions.
+
+An incompressible solid is stable where more strain takes more stress in every direction: the second derivatives of its
+energy by the logarithms of two principal stretches are positive definite (Drucker 1964; Ogden, Non-linear Elastic
+Deformations, 1984, section 6.2).
+
+Stretches that a wall reaches: the range over which a law has to be fitted.
+
+Measured with the solid (neo-Hookean) on the shipped domes paper-dome, fingertip-dome and soft-pad, walls of 0.012 to
+0.6 MPa, plate to three quarters of the inner radius, from no driving pressure to 0.8 of the limit point, and on every
+shipped design at 0, at its rated pressure and at 0.9 of its limit point. The largest first invariant anywhere on the
+faces half a wall away from the clamp is that of uniaxial tension by 1.92 at 0.17 MPa, 1.79 at 0.2 MPa and 2.09, 2.22,
+2.33 and 2.39 at 0.08, 0.05, 0.025 and 0.012 MPa: in a softer wall the trapped gas hardly yields, and the wall bulges
+instead. ``python -m benchmarks.materials --reach`` measures them again.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pneutouch.bench.tensile.curve import TensionCurve
-from pneutouch.bench.tensile.fit import LawFit, LawForm, fit_law, joined_points
-from pneutouch.bench.tensile.reach import reached_stretch
-from pneutouch.bench.tensile.stable import instability
-from pneutouch.bench.tensile.uniaxial import tension_basis
+from pneutouch.arrays import Array
+from pneutouch.bench.tensile.fit import LawFit, LawForm, TensionCurve, fit_law, joined_points, tension_basis
 from pneutouch.errors import InputError
+from pneutouch.mechanics.laws import Hyperelastic, hyperelastic
+from pneutouch.mechanics.laws.hyperelastic import first_invariant
+from pneutouch.mechanics.laws.strain import VALUE, Strain
+
+_STATES, _STEP = 60, 1e-3
+_POISSON_RATIO = 0.49
+
+_RATIOS = {"uniaxial tension": -0.5, "pure shear": 0.0, "equibiaxial tension": 1.0}
+"""Logarithm of the second principal stretch over that of the first."""
+
+
+def instability(name: str, constants: tuple[float, ...], largest: float) -> str | None:
+    """The first state in which a law is unstable, in words; None for a stable law.
+
+    States are those whose first invariant is at most that of uniaxial tension by ``largest``. Raises InputError for
+    constants that give no solid at all.
+    """
+    law = hyperelastic(name, constants, _POISSON_RATIO)
+    most = float(first_invariant(largest))
+    for kind, ratio in _RATIOS.items():
+        logs = np.linspace(_STEP, np.log(largest), _STATES)
+        first = sum(np.exp(2.0 * part * logs) for part in (1.0, ratio, -1.0 - ratio))
+        logs = logs[first <= most * (1.0 + 1e-9)]
+        least = _least_stiffness(law, logs, ratio * logs)
+        if (least <= 0.0).any():
+            return f"{kind} at a stretch of {np.exp(logs[int(np.argmax(least <= 0.0))]):.2f}"
+    return None
+
+
+def _least_stiffness(law: Hyperelastic, first: Array, second: Array) -> Array:
+    """The lesser eigenvalue of the second derivatives by the logarithms of two stretches, (n,), by differences."""
+
+    def energy(one: Array, other: Array) -> Array:
+        a, j = np.exp(2.0 * one) + np.exp(2.0 * other), np.exp(one + other)
+        return np.asarray(law.energy(Strain(a, j, 1.0 / j)).data[VALUE])
+
+    here = energy(first, second)
+    sums = {}
+    for key, (x, y) in {"xx": (1, 0), "yy": (0, 1), "xy": (1, 1)}.items():
+        there = energy(first + x * _STEP, second + y * _STEP) + energy(first - x * _STEP, second - y * _STEP)
+        sums[key] = (there - 2.0 * here) / _STEP**2
+    across = 0.5 * (sums["xy"] - sums["xx"] - sums["yy"])
+    middle, apart = 0.5 * (sums["xx"] + sums["yy"]), 0.5 * (sums["xx"] - sums["yy"])
+    return np.asarray(middle - np.hypot(apart, across))
+
+
+SOFT = 0.1
+"""MPa; below this the wall is stretched further."""
+
+REACHED, REACHED_SOFT = 2.0, 2.5
+"""Stretches of uniaxial tension, rounded up from the measured ones."""
+
+
+def reached_stretch(shear_modulus: float) -> float:
+    """Stretch of uniaxial tension that a law for a wall of a shear modulus (MPa) has to be fitted up to."""
+    return REACHED_SOFT if shear_modulus < SOFT else REACHED
+
 
 MISFIT = 0.05
 """Greatest misfit of a law that is good enough."""

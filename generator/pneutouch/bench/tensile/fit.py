@@ -1,14 +1,75 @@
-"""A hyperelastic law fitted to curves of tension by least squares of the relative difference."""
+"""A hyperelastic law fitted to curves of tension by least squares of the relative difference.
+
+A measured curve of uniaxial tension, and its slack, which is taken off before a fit.
+
+Nominal stress of the hyperelastic laws in uniaxial tension, incompressible: P = dW/dlambda (Treloar 1975, ch. 5).
+"""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.tensile.curve import TensionCurve
-from pneutouch.bench.tensile.uniaxial import tension, tension_basis
+from pneutouch.mechanics.laws.hyperelastic import first_invariant
+
+
+@dataclass(frozen=True, slots=True)
+class TensionCurve:
+    """One loading: stretch (n,), rising, and nominal stress (n,) in MPa, force over the undeformed cross-section.
+
+    Attributes:
+        file: Its file, for messages.
+        notes: Changes made to the numbers when they were read.
+        slack: Strain that was taken off: pulled before the specimen carried load.
+        facts: Entries of the file on the test, such as its machine or its speed.
+    """
+
+    stretch: Array
+    stress: Array
+    file: str = ""
+    notes: tuple[str, ...] = ()
+    slack: float = 0.0
+    facts: dict[str, str] = field(default_factory=dict)
+
+    def without_slack(self, slack: float) -> "TensionCurve":
+        """The curve with its stretch counted from where the specimen begins to carry load, later points alone."""
+        stretch = self.stretch / (1.0 + slack)
+        kept = stretch > 1.0
+        return replace(self, stretch=stretch[kept], stress=self.stress[kept], slack=slack)
+
+    def up_to(self, largest: float) -> "TensionCurve":
+        """The points up to a stretch."""
+        kept = self.stretch <= largest * (1.0 + 1e-9)
+        return replace(self, stretch=self.stretch[kept], stress=self.stress[kept])
+
+    def stress_at(self, stretch: float) -> float:
+        """Nominal stress at a stretch, straight between the points and from the origin, MPa."""
+        return float(np.interp(stretch, [1.0, *self.stretch], [0.0, *self.stress]))
+
+
+def tension_basis(name: str, count: int, stretch: Array) -> Array:
+    """Columns (n, count) whose sum with the constants is the nominal stress: of the laws linear in their constants."""
+    plain, above = stretch - stretch**-2, first_invariant(stretch) - 3.0
+    if name == "neo-hookean":
+        columns = [plain]
+    elif name == "mooney-rivlin":
+        columns = [2.0 * plain, 2.0 * plain / stretch]
+    else:
+        columns = [2.0 * (i + 1) * plain * above**i for i in range(count)]
+    return np.stack(columns, axis=1)
+
+
+def tension(name: str, constants: Sequence[float], stretch: Array) -> Array:
+    """Nominal stress in MPa of a law by name at stretches (n,); its constants as in `mechanics.laws.LAWS`."""
+    if name != "ogden":
+        return np.asarray(tension_basis(name, len(constants), stretch) @ np.asarray(constants, float))
+    pairs = zip(constants[::2], constants[1::2], strict=True)
+    return np.asarray(
+        sum((2.0 * mu / alpha) * (stretch ** (alpha - 1.0) - stretch ** (-0.5 * alpha - 1.0)) for mu, alpha in pairs)
+    )
+
 
 FROM_STRAIN = 0.1
 """Strain from which the misfit is stated: below it slack, crosshead and the zero of the load cell decide."""

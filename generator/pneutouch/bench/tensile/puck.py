@@ -6,10 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.tensile.columns import column_pairs
-from pneutouch.bench.tensile.read import LEAST_POINTS, MODULI
+from pneutouch.bench.tensile.read import LEAST_POINTS, MODULI, column_pairs
 from pneutouch.errors import InputError
-from pneutouch.mechanics.laws.tension import first_invariant, same_invariant
+from pneutouch.mechanics.laws.hyperelastic import first_invariant, same_invariant
 from pneutouch.tables.read import layout_of, whole
 
 _LEAST, _MOST = 0.05, 0.4

@@ -1,13 +1,24 @@
-"""The raster of a stack: where the droplets of a print job lie in the design frame."""
+"""The raster of a stack: where the droplets of a print job lie in the design frame.
+
+Input of a stack: the bodies of one print job, their blends, the raster and the seed.
+
+Blends of a body at every voxel: one base resin, or a share of a second one.
+"""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.body import Solid
 from pneutouch.body.section import SolidSection, Window
+from pneutouch.catalogue import Library
+from pneutouch.errors import InputError, shown
+from pneutouch.shape.meridian import arc_share
+from pneutouch.spec.material import Material
+from pneutouch.spec.mixing import MixingCurve
 from pneutouch.units import UM
 
 INCH = 25.4
@@ -79,3 +90,118 @@ def _grid(low: float, high: float, step: float) -> Array:
 def _held(centres: Array, low: float, high: float) -> slice:
     held = np.flatnonzero((centres >= low) & (centres <= high))
     return slice(int(held[0]), int(held[-1]) + 1) if len(held) else slice(0, 0)
+
+
+Share = Callable[[Array, Array], Array]
+"""Volume fraction of the second resin at points (r, z), arrays of one shape, mm in the design frame."""
+
+
+@dataclass(frozen=True)
+class ResinBlend:
+    """The resins of a body, soft one first; ``share`` is of the second, None if there is one alone.
+
+    ``most`` is its greatest value. ``assumed`` says what the share rests on where it was neither measured nor
+    requested.
+    """
+
+    resins: tuple[str, ...]
+    share: Share | None = None
+    most: float = 0.0
+    assumed: str = ""
+
+
+def blend(material: Material, name: str, library: Library, where: str) -> ResinBlend:
+    """The blend of a material; ``name`` is its own in the catalogue, ``where`` the file and key that request it.
+
+    A digital material of the catalogue has no published mix: its fraction is taken from the mixing curve that it is a
+    point of. Raises InputError if there is none, and for more than two resins.
+    """
+    resins = tuple(material.base_resins)
+    if len(resins) == 1:
+        return ResinBlend(resins)
+    if len(resins) > 2:
+        raise InputError(f"{where} = {shown(name)}: mixed from {len(resins)} resins; voxels are mixed from two at most")
+    if material.along is not None:
+        along = material.along
+        stations, fractions = np.array(along.arc), np.array(along.stiff_fraction)
+        return ResinBlend(resins, lambda r, z: np.interp(arc_share(r, z), stations, fractions), float(fractions.max()))
+    if material.mix is not None:
+        stiff = material.mix.fractions[resins[1]]
+        return ResinBlend(resins, _even(stiff), stiff)
+    fraction, why = _assumed(name, resins, library, where)
+    return ResinBlend(resins, _even(fraction), fraction, f"{name} is {fraction:.1%} {resins[1]}: {why}")
+
+
+def _even(fraction: float) -> Share:
+    return lambda r, z: np.full(np.shape(r), fraction)
+
+
+def _assumed(name: str, resins: tuple[str, ...], library: Library, where: str) -> tuple[float, str]:
+    """Place of a digital material on a mixing curve, and the reason for it."""
+    curve_name = f"{resins[0]}+{resins[1]}"
+    if curve_name in library.paths("mixing"):
+        curve: MixingCurve = library.load("mixing", curve_name)
+        for point in curve.points:
+            if point.material == name:
+                return point.fraction, point.source
+    raise InputError(
+        f"{where} = {shown(name)}: no vendor publishes how much {resins[1]} is in it, and "
+        f"printprofiles/mixing/{curve_name}.toml has no point for it; give "
+        f"{{ from = {shown(resins[0])}, to = {shown(resins[1])}, fraction = .. }} instead"
+    )
+
+
+BACKGROUND = (0, 0, 0, 255)
+"""Opaque black: the background of the utility's own files (BackGroundMaterialRGBA)."""
+
+PALETTE = (
+    (230, 159, 0, 255),
+    (86, 180, 233, 255),
+    (0, 158, 115, 255),
+    (240, 228, 66, 255),
+    (0, 114, 178, 255),
+    (213, 94, 0, 255),
+    (204, 121, 167, 255),
+    (255, 255, 255, 255),
+)
+"""Colours that people of any colour vision distinguish (M. Okabe and K. Ito, Color Universal Design, 2008), and
+white."""
+
+
+@dataclass(frozen=True)
+class VoxelBody:
+    """A body as it is jetted."""
+
+    solid: Solid
+    blend: ResinBlend
+    inside: SolidSection = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "inside", SolidSection(self.solid))
+
+
+@dataclass(frozen=True)
+class VoxelJob:
+    """A print job on a raster. ``resins`` are all that the printer runs: they fix the colours, whatever is used."""
+
+    bodies: tuple[VoxelBody, ...]
+    raster: Raster
+    resins: tuple[str, ...]
+    seed: int = 1
+
+    @property
+    def used(self) -> tuple[str, ...]:
+        """Resins of the bodies, in the order of the labels 1, 2, ...; 0 is the background."""
+        return tuple(sorted({resin for body in self.bodies for resin in body.blend.resins}))
+
+    @property
+    def colours(self) -> dict[str, tuple[int, int, int, int]]:
+        """The colour of each resin in use: that of its place among the printer's, the same in every stack."""
+        return colours_of(self.resins, self.used)
+
+
+def colours_of(resins: Sequence[str], used: Sequence[str]) -> dict[str, tuple[int, int, int, int]]:
+    """Colours by resin; the printer's resins take the palette in the order of their names."""
+    # A printer of more resins than there are colours shares them out among those in use.
+    order = sorted(resins if len(resins) <= len(PALETTE) else used)
+    return {resin: PALETTE[order.index(resin)] for resin in used}

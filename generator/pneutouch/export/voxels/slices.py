@@ -1,17 +1,47 @@
 """The slices of a job: which resin lies in every voxel, layer by layer, in memory that does not grow with their
-number."""
+number.
+
+A coarse grid of cubes over voxels, in which fractions are compared.
+"""
+
+from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from pneutouch.arrays import Flags, Labels, Singles
+from pneutouch.arrays import Array, Flags, Labels, Singles
 from pneutouch.body.section import Window
 from pneutouch.export.voxels.bluenoise import thresholds
-from pneutouch.export.voxels.cubes import Cubes
-from pneutouch.export.voxels.job import VoxelBody, VoxelJob
+from pneutouch.export.voxels.raster import VoxelBody, VoxelJob
 from pneutouch.export.voxels.skin import RecentLayers, SkinCompensation, interior, reach_for
+
+
+@dataclass(frozen=True)
+class Cubes:
+    """A coarse grid over a window of voxels, (layers, rows, columns); ``edge`` are voxels of a cube in each
+    direction."""
+
+    shape: tuple[int, int, int]
+    edge: tuple[int, int, int]
+
+    @staticmethod
+    def over(shape: tuple[int, int, int], pitch: tuple[float, float, float], edge: float) -> Cubes:
+        """Cubes of about ``edge`` mm over a window of voxels of ``pitch`` mm along x, y, z."""
+        counts = tuple(max(1, round(edge / step)) for step in reversed(pitch))
+        return Cubes(shape, counts)  # type: ignore[arg-type]
+
+    def empty(self) -> Array:
+        """A number for every cube."""
+        return np.zeros(tuple(-(-n // e) for n, e in zip(self.shape, self.edge, strict=True)))
+
+    def add(self, totals: Array, layer: int, values: Array | Flags | Singles) -> None:
+        """Add a layer's values (rows, columns) to the totals of their cubes."""
+        _, rows, columns = self.edge
+        summed = np.add.reduceat(values.astype(np.float32), np.arange(0, values.shape[0], rows), axis=0)
+        totals[layer // self.edge[0]] += np.add.reduceat(summed, np.arange(0, values.shape[1], columns), axis=1)
+
 
 CUBE = 1.0
 """Edge in mm of the cubes in which the dithered share is compared with the given one."""

@@ -1,4 +1,7 @@
-"""Many sensors pressed at once in the atlas: trapped gas, limits and events added to its states."""
+"""Many sensors pressed at once in the atlas: trapped gas, limits and events added to its states.
+
+Sensors as the atlas takes them.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +13,9 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasPoint, AtlasSlices
-from pneutouch.mechanics.solid.contact import flat_radius, rim_radius
+from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.mesh import longest_outer_edge
+from pneutouch.mechanics.solid.object_contact import flat_radius, rim_radius
 
 _NEWTON = 8
 _LONGEST = 0.05
@@ -216,3 +220,24 @@ def _inflated(slices: AtlasSlices, k: Index, pressure: Array, groups: Index) -> 
         if not moving.any():
             break
     return nu
+
+
+def batch_of(sensor: Sensor, driving_pressures: Sequence[float] | Array) -> SensorBatch:
+    """One sensor at n driving pressures (MPa).
+
+    Its own law, Poisson ratio and flange are left aside: the atlas is neo-Hookean, at 0.49, clamped at the base.
+    """
+    size = len(driving_pressures)
+    facts = (
+        sensor.dome.inner_radius,
+        sensor.dome.wall_thickness,
+        sensor.wall.shear_modulus,
+        sensor.gas.ambient_pressure,
+        sensor.gas.dead_volume,
+        np.asarray(driving_pressures, dtype=float),
+        sensor.protocol.depth,
+        sensor.protocol.plate_radius,
+        sensor.gas.gauge_limit,
+        np.inf if sensor.wall.break_stretch is None else sensor.wall.break_stretch,
+    )
+    return SensorBatch(*(np.array(np.broadcast_to(fact, size), dtype=float) for fact in facts))

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.mechanics.harmonic.contact import HarmonicContact, X, Y, Z, upward
+from pneutouch.mechanics.harmonic.object_contact import HarmonicContact, X, Y, Z, upward
 from pneutouch.mechanics.harmonic.surface import Surface
-from pneutouch.mechanics.solid.contact import ContactEvaluation
+from pneutouch.mechanics.solid.elements import TermState
 from pneutouch.mechanics.solid.friction import FrictionPoints, FrictionStep, FrictionTerm
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.terms import TermState
+from pneutouch.mechanics.solid.object_contact import ContactEvaluation
 
 
 def tangents(slope: Array) -> Array:

@@ -16,7 +16,6 @@ from typing import ClassVar
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.mechanics.harmonic.contact import Z, upward
 from pneutouch.mechanics.harmonic.friction import (
     SurfaceFriction,
     SurfacePoints,
@@ -26,11 +25,11 @@ from pneutouch.mechanics.harmonic.friction import (
     lengths,
     secants,
 )
-from pneutouch.mechanics.solid.contact import ContactEvaluation
-from pneutouch.mechanics.solid.friction_linear import LinearContact
+from pneutouch.mechanics.harmonic.object_contact import Z, upward
+from pneutouch.mechanics.solid.friction_linear import LinearContact, PointStatus, PointTractions
 from pneutouch.mechanics.solid.friction_newton import SETTLING, FrictionSolver, HeldState
-from pneutouch.mechanics.solid.friction_status import PointStatus, PointTractions
 from pneutouch.mechanics.solid.friction_system import ContactSystem
+from pneutouch.mechanics.solid.object_contact import ContactEvaluation
 
 
 @dataclass(frozen=True)

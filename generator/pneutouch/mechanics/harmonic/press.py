@@ -1,4 +1,7 @@
-"""An object comes straight down on an inflated dome, off its axis or leaning."""
+"""An object comes straight down on an inflated dome, off its axis or leaning.
+
+The greatest stretch on the faces of a wall that is no body of revolution.
+"""
 
 from __future__ import annotations
 
@@ -6,26 +9,51 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pneutouch.arrays import Array
-from pneutouch.mechanics.harmonic.contact import HarmonicContact, X, Y
-from pneutouch.mechanics.harmonic.face import pressed_face
-from pneutouch.mechanics.harmonic.fields import Harmonics
-from pneutouch.mechanics.harmonic.friction_path import SurfaceFrictionFollower, held_back
+from pneutouch.arrays import Array, Index
+from pneutouch.mechanics.harmonic.fields import FieldGroup, FieldOperator, Harmonics
+from pneutouch.mechanics.harmonic.friction_path import ShearPath, SurfaceFrictionFollower, held_back, not_sheared, shear
 from pneutouch.mechanics.harmonic.model import HarmonicModel
-from pneutouch.mechanics.harmonic.placement import first_height
+from pneutouch.mechanics.harmonic.object_contact import HarmonicContact, X, Y, pressed_face
 from pneutouch.mechanics.harmonic.settling import ContactNewton, Foreseen
-from pneutouch.mechanics.harmonic.shear import ShearPath, not_sheared, shear
-from pneutouch.mechanics.harmonic.strain import HarmonicProbe
-from pneutouch.mechanics.harmonic.surface import ProfiledObject, Surface
+from pneutouch.mechanics.harmonic.surface import ProfiledObject, Surface, first_height
 from pneutouch.mechanics.pressed_face import PressedFace
-from pneutouch.mechanics.solid.continuation import PathFollower, PlateState
-from pneutouch.mechanics.solid.descend import PathJump, descend
+from pneutouch.mechanics.solid.continuation import PathFollower, PathJump, PlateState, descend
+from pneutouch.mechanics.solid.elements import F_RR, F_RZ, HOOP, RADIAL
 from pneutouch.mechanics.solid.events import BASE_SHARE, DETAIL, OBJECT_EDGE, OVERHANG, PathPoint, SolidEvent, crossing
 from pneutouch.mechanics.solid.indent import PressSettings, shut_in
 from pneutouch.mechanics.solid.inflate import FreeState
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, NewtonResult, SolidScene, minimise
 from pneutouch.mechanics.solid.stress import StrainProbe
+
+
+class HarmonicProbe:
+    """Stretches at the stations of a `StrainProbe` and at both sides of the plane of symmetry and between; where there
+    are two planes, from one to the other."""
+
+    def __init__(self, model: HarmonicModel, probe: StrainProbe) -> None:
+        cells = model.mesh.cells
+        waves, span = model.harmonics.waves, np.pi / model.harmonics.stride
+        angles = np.linspace(0.0, span, 2 * waves + 1) if waves else np.zeros(1)
+        self._values, self._turned = model.harmonics.values(angles), model.harmonics.turned(angles)
+        self._stations = self._gradients(probe.operator.reshape(len(cells), -1, 5, probe.operator.shape[-1]), cells)
+        self._edges = self._gradients(probe.edge_operator[:, None], cells[probe.edge_cells])
+        self._far = probe.far
+
+    def _gradients(self, strains: Array, cells: Index) -> FieldOperator:
+        shapes = (strains[:, :, row, RADIAL] for row in (F_RR, F_RZ, HOOP))
+        rows = (self._values, self._values, self._turned)
+        groups = [FieldGroup(shape, row) for shape, row in zip(shapes, rows, strict=True)]
+        return FieldOperator(groups, cells, np.ones((int(cells.max()) + 1, self._values.shape[2])))
+
+    def greatest_stretch(self, x: Array) -> float:
+        """Greatest principal stretch over both faces, away from the clamp, for coefficients x (n_nodes, columns)."""
+        stations = self._stations.fields(x)
+        far = stations.reshape(-1, *stations.shape[2:])[self._far].reshape(-1, 3, 3)
+        f = np.concatenate([far, self._edges.fields(x).reshape(-1, 3, 3)])
+        # The greatest singular value by the greatest eigenvalue of the right Cauchy-Green tensor.
+        return float(np.sqrt(np.linalg.eigvalsh(np.matmul(f, np.swapaxes(f, 1, 2)))[:, -1].max()))
+
 
 _ALONG = 33
 """Points of every edge of the outer wall at which an object may touch first."""

@@ -8,6 +8,8 @@ does not relax. The gas and the line take the volume up, v = -p (C_gas + Y/s). S
 
 and the gain is that times the line's transfer, over its value at s = 0, where the gas is isothermal: b, the model of
 the press, drops out. The mass of the wall and of what presses it is not part of this.
+
+A gas line: its elements in order from the cavity to the gauge, at one state of the air.
 """
 
 from __future__ import annotations
@@ -18,9 +20,40 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array, Complex
-from pneutouch.mechanics.line.air import ADIABATIC
-from pneutouch.mechanics.line.cascade import GasLine
-from pneutouch.mechanics.line.elements import GasVolume
+from pneutouch.mechanics.line.air import ADIABATIC, AirState
+from pneutouch.mechanics.line.elements import Duct, GasVolume, LineEnd, profiles
+
+LineElement = Duct | GasVolume
+
+
+@dataclass(frozen=True, slots=True)
+class GasLine:
+    """Ducts and volumes in series, the gauge behind the last one; closed there."""
+
+    elements: tuple[LineElement, ...]
+    air: AirState
+
+    @property
+    def volume(self) -> float:
+        """Gas in it, mm3."""
+        return sum(element.volume for element in self.elements)
+
+    @property
+    def length(self) -> float:
+        """Length of its ducts, mm."""
+        return sum(element.length for element in self.elements if isinstance(element, Duct))
+
+    def seen(self, s: Complex) -> LineEnd:
+        """Admittance of the line at the cavity, and the pressure at the gauge over that in the cavity, at s (n,)."""
+        end = LineEnd(np.zeros_like(s), np.ones_like(s))
+        ducts = [element for element in self.elements if isinstance(element, Duct)]
+        rows = list(profiles(ducts, s, self.air))
+        for element in reversed(self.elements):
+            if isinstance(element, Duct):
+                end = element.before(end, s, self.air, rows.pop())
+            else:
+                end = element.before(end, s, self.air)
+        return end
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,11 +1,32 @@
-"""Shape functions, quadrature and the constant strain operators of a mesh (total Lagrangian)."""
+"""Shape functions, quadrature and the constant strain operators of a mesh (total Lagrangian).
+
+Rows of strains and of unknowns in the arrays of the finite elements.
+
+Further parts of the total energy of a scene, in addition to wall, filling and plate.
+"""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from pneutouch.arrays import Array, Index
-from pneutouch.mechanics.solid.kinematics import AXIAL, F_RR, F_RZ, F_ZR, F_ZZ, HOOP, RADIAL
+
+F_RR, F_RZ, F_ZR, F_ZZ, HOOP = range(5)
+"""Strains of a point: the in-plane deformation gradient by (R, Z) and the hoop stretch r/R."""
+
+IN_PLANE = slice(F_RR, HOOP)
+
+RADIAL, AXIAL = slice(0, None, 2), slice(1, None, 2)
+"""Unknowns of a cell or an edge in r and in z: the positions of its nodes, interleaved."""
+
+
+def area_ratio(strains: Array) -> Array:
+    """Determinant of the in-plane deformation gradient of strains (..., 5)."""
+    return np.asarray(strains[..., F_RR] * strains[..., F_ZZ] - strains[..., F_RZ] * strains[..., F_ZR])
+
 
 _CORNERS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)
 _MIDDLES = np.array([(0, -1), (1, 0), (0, 1), (-1, 0)], dtype=float)
@@ -99,3 +120,33 @@ def pressure_modes(points: Array, measure: Array, count: int) -> Array:
     root = np.sqrt(measure)[:, None, :]
     q, _ = np.linalg.qr(np.swapaxes(raw[None] * root, 1, 2))
     return np.ascontiguousarray(np.swapaxes(q, 1, 2) / root)
+
+
+@dataclass(frozen=True)
+class TermState:
+    """A further part of the total energy at one set of positions: its energy, its gradient (size,), and its second
+    derivative as ``blocks`` of `SolidModel.contact_pattern` (edges of the outer wall) and ``inner_blocks`` of
+    `SolidModel.edge_pattern` (edges of the inner wall), (n_edges, 2 n, 2 n) each, and ``fold_blocks`` of
+    `SolidModel.fold_pattern` (edges of the outer wall with the flange's top); ``around`` by displacements of the edges
+    of the outer wall around the axis, (n_edges, n, n). None if it has none."""
+
+    energy: float
+    gradient: Array
+    blocks: Array | None = None
+    inner_blocks: Array | None = None
+    fold_blocks: Array | None = None
+    around: Array | None = None
+
+
+class EnergyTerm(Protocol):
+    """Interface of an addition to the total energy of wall, filling and plate: the base below the wall, friction of one
+    step.
+
+    ``noise`` is the force that rounding leaves in its gradient.
+    """
+
+    noise: float
+
+    def at(self, x: Array) -> TermState:
+        """Energy and its derivatives at positions x (n_nodes, 2)."""
+        ...

@@ -12,11 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.mechanics.solid.contact import Contact, ContactEvaluation
+from pneutouch.mechanics.solid.elements import AXIAL, RADIAL, TermState
 from pneutouch.mechanics.solid.indenter import Indenter
-from pneutouch.mechanics.solid.kinematics import AXIAL, RADIAL
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.terms import TermState
+from pneutouch.mechanics.solid.object_contact import Contact, ContactEvaluation
 
 #: Stiffness along the surface over that of the contact.
 TANGENTIAL = 0.1

@@ -8,11 +8,9 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.response import hysteresis
-from pneutouch.mechanics.solid.continuation import PlateState
-from pneutouch.mechanics.solid.descend import descend
-from pneutouch.mechanics.solid.first_touch import first_touch
+from pneutouch.mechanics.solid.continuation import PlateState, descend
 from pneutouch.mechanics.solid.indent import PressSettings, follower_of
-from pneutouch.mechanics.solid.inflate import FreeState
+from pneutouch.mechanics.solid.inflate import FreeState, first_touch
 from pneutouch.mechanics.solid.model import SolidModel
 
 

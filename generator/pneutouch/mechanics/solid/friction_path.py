@@ -9,16 +9,15 @@ from typing import Self
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.mechanics.solid.cavity import Supply
 from pneutouch.mechanics.solid.continuation import PathFollower, PlateState
-from pneutouch.mechanics.solid.errors import NoConvergenceError
+from pneutouch.mechanics.solid.elements import TermState
 from pneutouch.mechanics.solid.friction import TANGENTIAL, FrictionState, FrictionStep
 from pneutouch.mechanics.solid.friction_newton import FrictionSolver, SlidingResult
-from pneutouch.mechanics.solid.general_band import OneSidedBlocks
+from pneutouch.mechanics.solid.friction_system import OneSidedBlocks
 from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, evaluate, stability
-from pneutouch.mechanics.solid.supply import Supply
-from pneutouch.mechanics.solid.terms import TermState
+from pneutouch.mechanics.solid.newton import NewtonFailure, NoConvergenceError, SolidScene, evaluate, stability
 
 #: Coefficient of a surface that grips. A point that is about to leave, with a hundredth of its tangential traction left
 #: as normal one, is let go evenly: under a boundless coefficient it would neither stay nor leave. The sensitivities of

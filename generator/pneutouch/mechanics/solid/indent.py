@@ -8,10 +8,8 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.response import Figures, figures
-from pneutouch.mechanics.solid.contact import Footprint, Plate
-from pneutouch.mechanics.solid.continuation import PathFollower, PlateState
-from pneutouch.mechanics.solid.descend import PathJump, descend
-from pneutouch.mechanics.solid.errors import UnreachableLoadError
+from pneutouch.mechanics.solid.cavity import Gas
+from pneutouch.mechanics.solid.continuation import PathFollower, PathJump, PlateState, descend
 from pneutouch.mechanics.solid.events import (
     BASE_SHARE,
     BREAKS_CURVE,
@@ -26,13 +24,13 @@ from pneutouch.mechanics.solid.events import (
     SolidEvent,
     crossing,
 )
-from pneutouch.mechanics.solid.first_touch import FirstTouch, first_touch
 from pneutouch.mechanics.solid.friction_path import FrictionFollower
 from pneutouch.mechanics.solid.indenter import RigidObject
-from pneutouch.mechanics.solid.inflate import FreeState
+from pneutouch.mechanics.solid.inflate import FirstTouch, FreeState, first_touch
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.newton import UnreachableLoadError
+from pneutouch.mechanics.solid.object_contact import Footprint, Plate
 from pneutouch.mechanics.solid.stress import StrainProbe
-from pneutouch.mechanics.solid.supply import Gas
 from pneutouch.mechanics.solid.sway import axisymmetry_losses
 from pneutouch.units import KPA
 

@@ -1,15 +1,29 @@
-"""Study 1: free inflation by volume, through and past the limit point, and the state at a driving pressure."""
+"""Study 1: free inflation by volume, through and past the limit point, and the state at a driving pressure.
+
+First point of contact of a plate or another rigid object with an inflated dome.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.solid.errors import NoConvergenceError, UnreachableLoadError
+from pneutouch.mechanics.solid.cavity import Liquid, Regulator
+from pneutouch.mechanics.solid.indenter import Indenter, RigidObject, first_contact
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.newton import NewtonFailure, NewtonResult, SolidScene, SolverState, minimise, stability
-from pneutouch.mechanics.solid.supply import Liquid, Regulator
+from pneutouch.mechanics.solid.newton import (
+    NewtonFailure,
+    NewtonResult,
+    NoConvergenceError,
+    SolidScene,
+    SolverState,
+    UnreachableLoadError,
+    minimise,
+    stability,
+)
+from pneutouch.mechanics.solid.object_contact import Plate, flat_radius, rim_radius
 
 #: Volume control is this stiff, in mu/R0^3: far above -dp/dV of any dome, so the total tangent stays definite.
 _LIQUID = 30.0
@@ -246,3 +260,30 @@ def _between(solid: SolidModel, a: FreeState, b: FreeState, pressure: float) -> 
             f"driving pressure {1e3 * pressure:.4f} kPa", outcome.why, "a pressure further below the limit"
         )
     return free_state(solid, scene, outcome)
+
+
+class FirstTouch(NamedTuple):
+    """An object where it first touches the free dome, and the radius at which it does, in R0; 0 for a plate."""
+
+    body: Indenter
+    radius: float = 0.0
+
+
+def first_touch(
+    solid: SolidModel,
+    free: FreeState,
+    body: RigidObject | None,
+    plate_diameter: float | None,
+    plate_rim: float | None = None,
+) -> FirstTouch:
+    """A body, or without one a plate, on a free state; lengths in mm, see `indent.PressSettings`."""
+    length, longest = solid.length, np.array(solid.contact.longest)
+    if body is None:
+        radius = np.array(np.inf if plate_diameter is None else 0.5 * plate_diameter / length)
+        apex = float(free.positions[solid.mesh.outer, 1].max()) / length
+        rim = rim_radius(radius, longest, None if plate_rim is None else plate_rim / length)
+        return FirstTouch(Plate(apex, float(flat_radius(radius, rim)), float(rim)))
+    scaled = body.scaled(1.0 / length)
+    r, z = solid.contact.outline(free.positions / length)
+    height, at = first_contact(scaled, r, z)
+    return FirstTouch(scaled.at(height), at)

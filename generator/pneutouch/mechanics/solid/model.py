@@ -9,21 +9,26 @@ from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
 from pneutouch.mechanics.laws.strain import BY_A, BY_H, BY_J, BY_JH, GRADIENT, HESSIAN, VALUE, Strain
 from pneutouch.mechanics.solid.banded import AssemblyPattern
-from pneutouch.mechanics.solid.base_contact import BaseContact, BaseLoad
+from pneutouch.mechanics.solid.base_contact import BaseContact, BaseLoad, FlangeContact, meeting_nodes
 from pneutouch.mechanics.solid.cavity import Cavity
-from pneutouch.mechanics.solid.contact import Contact
 from pneutouch.mechanics.solid.elements import (
     DEFAULT_SCHEME,
+    F_RR,
+    F_RZ,
+    F_ZR,
+    F_ZZ,
+    HOOP,
+    IN_PLANE,
+    EnergyTerm,
     IntegrationScheme,
+    area_ratio,
     gauss_square,
     pressure_modes,
     strain_operator,
 )
-from pneutouch.mechanics.solid.flange_contact import FlangeContact, meeting_nodes
-from pneutouch.mechanics.solid.kinematics import F_RR, F_RZ, F_ZR, F_ZZ, HOOP, IN_PLANE, area_ratio
+from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.mesh import SolidMesh
-from pneutouch.mechanics.solid.rigid_base import RigidBase
-from pneutouch.mechanics.solid.terms import EnergyTerm
+from pneutouch.mechanics.solid.object_contact import Contact
 
 ModulusField = Callable[[Array, Array], Array]
 

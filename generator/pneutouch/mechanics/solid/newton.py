@@ -1,18 +1,70 @@
-"""Newton's method on the total energy of wall, filling and contact, with an energy line search."""
+"""Newton's method on the total energy of wall, filling and contact, with an energy line search.
+
+The line search on an energy of Newton's methods with and without friction.
+
+Failures of a solve that callers handle; users see a ComputationError.
+"""
+
+from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Protocol, TypeVar
 
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
+from pneutouch.errors import BeyondLimitError, ComputationError
 from pneutouch.mechanics.solid.banded import negative_pivots, solve, solve_definite
-from pneutouch.mechanics.solid.contact import ContactEvaluation
+from pneutouch.mechanics.solid.cavity import FillingState, Supply
+from pneutouch.mechanics.solid.elements import EnergyTerm, TermState
 from pneutouch.mechanics.solid.indenter import Indenter
-from pneutouch.mechanics.solid.line_search import line_search
 from pneutouch.mechanics.solid.model import PointFields, SolidModel
-from pneutouch.mechanics.solid.supply import FillingState, Supply
-from pneutouch.mechanics.solid.terms import EnergyTerm, TermState
+from pneutouch.mechanics.solid.object_contact import ContactEvaluation
+
+_ARMIJO = 1.0e-4
+_SHORTEST = 1.0e-6
+
+
+class _Balanced(Protocol):
+    """A state with the gradient of its energy."""
+
+    @property
+    def residual(self) -> Array:
+        """Gradient (size,)."""
+        ...
+
+
+State = TypeVar("State", bound=_Balanced)
+
+
+def line_search(
+    trial: Callable[[float], tuple[float, Callable[[], State]] | None], step: Array, slope: float, noise: float
+) -> State | None:
+    """Backtrack from the full step until the energy falls by Armijo's condition; None if it never does.
+
+    trial: at a share of the step the change of the energy and what completes the state there; None if there is none.
+    slope: derivative of the energy along the step (size,), negative.
+
+    Near convergence the change drowns in rounding, ``noise``: there a step is also taken when it lowers the slope.
+    """
+    share = 1.0
+    while share > _SHORTEST:
+        tried = trial(share)
+        if tried is None:
+            share *= 0.4
+            continue
+        drop, completed = tried
+        if drop <= _ARMIJO * share * slope:
+            return completed()
+        if abs(drop) <= noise:
+            after = completed()
+            if abs(float(step @ after.residual)) <= 0.9 * abs(slope):
+                return after
+        curve = 2.0 * (drop - share * slope)
+        share = float(np.clip(-slope * share * share / curve, 0.1 * share, 0.5 * share)) if curve > 0.0 else 0.3 * share
+    return None
+
 
 #: Converged: unbalanced force below this share of the forces that balance (wall, gas, plate).
 RESIDUAL = 1.0e-9
@@ -295,3 +347,27 @@ def _search(scene: SolidScene, state: SolverState, step: Array, slope: float) ->
         return None if there is None else (there.energy - state.energy, lambda: there)
 
     return line_search(trial, step, slope, noise)
+
+
+class NoConvergenceError(ComputationError):
+    """No equilibrium met the tolerances, even after every cutback.
+
+    load:   the load that could not be reached, in words with its unit.
+    why:    what the last attempt did.
+    advice: what to change.
+    """
+
+    def __init__(self, load: str, why: str, advice: str) -> None:
+        super().__init__(f"no equilibrium at {load}: {why}", remedy=f"try {advice}")
+        self.load, self.why, self.advice = load, why, advice
+
+
+class UnreachableLoadError(BeyondLimitError):
+    """A driving pressure beyond the one that the dome can carry.
+
+    pressure: the requested one.  limit: the largest pressure that has an equilibrium; both gauge, MPa.
+    """
+
+    def __init__(self, pressure: float, limit: float, why: str) -> None:
+        text = f"a driving pressure of {1e3 * pressure:.4f} kPa cannot be carried: {why} (limit {1e3 * limit:.4f} kPa)"
+        super().__init__(pressure, limit, text)

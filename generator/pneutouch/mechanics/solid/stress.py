@@ -6,11 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.mechanics.laws.hyperelastic import same_invariant
 from pneutouch.mechanics.laws.strain import BY_A, BY_H, BY_J, Strain
-from pneutouch.mechanics.laws.tension import same_invariant
-from pneutouch.mechanics.solid.elements import positions, strain_operator
+from pneutouch.mechanics.solid.elements import HOOP, IN_PLANE, area_ratio, positions, strain_operator
 from pneutouch.mechanics.solid.inflate import Inflation, between, pressure_between
-from pneutouch.mechanics.solid.kinematics import HOOP, IN_PLANE, area_ratio
 from pneutouch.mechanics.solid.model import SolidModel
 
 #: Within this many wall thicknesses of a clamped node the elastic stress is singular and means nothing; left out.

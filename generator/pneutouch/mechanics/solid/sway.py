@@ -10,10 +10,10 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.banded import is_definite, softest
 from pneutouch.mechanics.solid.continuation import PlateState
-from pneutouch.mechanics.solid.harmonics import HarmonicSolid
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, at_volume, between, pressure_between
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolverState, minimise
+from pneutouch.mechanics.solid.second_variation import HarmonicSolid
 
 #: Greatest number of waves around the axis that is checked.
 MOST_WAVES = 8

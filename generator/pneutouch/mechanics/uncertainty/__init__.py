@@ -1,11 +1,9 @@
 """The uncertainty of a prediction: stated sources, their shares, expanded uncertainties with k = 2 (JCGM 100)."""
 
-from pneutouch.mechanics.atlas.batches import batch_of
-from pneutouch.mechanics.uncertainty.budget import budget
-from pneutouch.mechanics.uncertainty.contact import ContactModel
-from pneutouch.mechanics.uncertainty.document import document, gas_text, shares, text
-from pneutouch.mechanics.uncertainty.gas_notes import GasNotes, gas_notes
-from pneutouch.mechanics.uncertainty.monte_carlo import monte_carlo
+from pneutouch.mechanics.atlas.press import batch_of
+from pneutouch.mechanics.uncertainty.budget import budget, monte_carlo
+from pneutouch.mechanics.uncertainty.contact_model import ContactModel
+from pneutouch.mechanics.uncertainty.document import GasNotes, document, gas_notes, gas_text, shares, text
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
 from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, UncertaintySource
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors, measured_errors, model_errors

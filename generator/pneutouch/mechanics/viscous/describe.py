@@ -1,22 +1,192 @@
-"""Figures of a press, a hold and a loop of every state."""
+"""Figures of a press, a hold and a loop of every state.
+
+A press followed in time by the solid, for a contact that the atlas does not cover.
+
+The model is that of `follow`: p = p_I + int k(t - s) dP(s), F = int k(t - s) dF(s), with the wall pressure P and the
+force F of the elastic dome. At each time what the past still adds is known, so that the elastic dome is filled by a
+supply of pressure (p_gas(V) - past)/stiffness. It is one solid along the whole history of the plate: friction sticks,
+slips and turns back where it does.
+"""
+
+from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.viscous.by_solid import loop_by_solid, relaxation_by_solid
-from pneutouch.mechanics.viscous.known import ageing_ratio
-from pneutouch.mechanics.viscous.prony import prony_series, relaxed
-from pneutouch.mechanics.viscous.runs import LoopRun, RelaxationRun, loop, relaxation
+from pneutouch.mechanics.solid.cavity import FillingState, Gas
+from pneutouch.mechanics.solid.continuation import LONGEST, PathFollower, PlateState
+from pneutouch.mechanics.solid.indent import follower_of, shut_in
+from pneutouch.mechanics.solid.inflate import first_touch, inflate, state_at
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.newton import NewtonFailure
+from pneutouch.mechanics.solid_states import press_settings, solid_probe
+from pneutouch.mechanics.viscous.prony import Prony, ageing_ratio, prony_series, relaxed
+from pneutouch.mechanics.viscous.runs import HOLD_TIMES, LoopRun, Memory, RelaxationRun, loop, loop_run, relaxation
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
+
+_RAMP_STEPS, _LOOP_STEPS = 20, 24
+"""Steps of a ramp and of half a loop, half of those on the atlas or more: losses, widths and areas hold to 0.3
+percentage points, with friction too (`tests/mechanics/viscous/test_by_solid.py`)."""
+
+_CUTS = 5
+"""Number of times that a step without an equilibrium is halved."""
+
+
+@dataclass(frozen=True)
+class RelaxingGas:
+    """Trapped gas as the elastic dome feels it: pressure less the remaining contribution of the past, over the
+    stiffness now."""
+
+    gas: Gas
+    past: float
+    stiffness: float
+
+    def at(self, volume: float) -> FillingState | None:
+        """Potential, pressure and rate of the gas with the past taken off, over the stiffness."""
+        known = self.gas.at(volume)
+        if known is None:
+            return None
+        energy = known.energy + self.past * (volume - self.gas.start)
+        return FillingState(
+            energy / self.stiffness, (known.pressure - self.past) / self.stiffness, known.rate / self.stiffness
+        )
+
+
+class _Dome(NamedTuple):
+    """A sensor with its relaxed modulus, inflated and at first contact; nondimensional but ``start`` in MPa."""
+
+    solid: SolidModel
+    follower: PathFollower
+    gas: Gas
+    top: float
+    start: float
+
+
+class _Point(NamedTuple):
+    """Time since first contact (s), travel (mm), force (N), pressure rise (MPa)."""
+
+    time: float
+    travel: float
+    force: float
+    rise: float
+
+
+def relaxation_by_solid(
+    sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], depth: float, speed: float
+) -> list[list[RelaxationRun]]:
+    """Relaxation as `runs.relaxation` has it, under the sensor's own contact."""
+    return [[_relaxed(sensor, one, pressure, depth, speed) for one in series] for pressure in driving_pressures]
+
+
+def loop_by_solid(
+    sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], depth: float, speed: float
+) -> list[list[LoopRun]]:
+    """Loop as `runs.loop` has it, under the sensor's own contact."""
+    return [[_loop_pressed(sensor, one, pressure, depth, speed) for one in series] for pressure in driving_pressures]
+
+
+def _relaxed(sensor: Sensor, series: Prony, pressure: float, depth: float, speed: float) -> RelaxationRun:
+    share = np.linspace(0.0, 1.0, _RAMP_STEPS + 1)[1:]
+    clock = np.concatenate([share * depth / speed, depth / speed + HOLD_TIMES])
+    travel = np.concatenate([share, np.ones(HOLD_TIMES.size)]) * depth
+    points, ended = _Run(sensor, series, pressure).along(clock, travel)
+    if ended is not None:
+        ended = f"{ended} at {travel[len(points) - 1]:.2f} mm"
+    held = points[1 + _RAMP_STEPS :]
+    force, rise = (np.array([getattr(point, name) for point in held]) for name in ("force", "rise"))
+    return RelaxationRun(HOLD_TIMES[: len(held)], force, rise, ended)
+
+
+def _loop_pressed(sensor: Sensor, series: Prony, pressure: float, depth: float, speed: float) -> LoopRun:
+    share = np.linspace(0.0, 1.0, _LOOP_STEPS + 1)
+    travel = np.concatenate([share, share[-2::-1]]) * depth
+    clock = np.linspace(0.0, 2.0 * depth / speed, travel.size)
+    points, ended = _Run(sensor, series, pressure).along(clock[1:], travel[1:])
+    force, rise = (np.array([getattr(point, name) for point in points]) for name in ("force", "rise"))
+    whole = np.full((2, travel.size), np.nan)
+    whole[:, : len(points)] = force, rise
+    return loop_run(travel, whole[0], whole[1], len(points), ended)
+
+
+class _Run:
+    """One dome with memory along a history of the plate."""
+
+    def __init__(self, sensor: Sensor, series: Prony, pressure: float) -> None:
+        self._dome = _dome(sensor, pressure)
+        self._memory = Memory(series.excess[None, :], np.array([series.times]))
+        self._limit = sensor.gas.gauge_limit
+        start = self._dome.follower.here
+        # At first contact the force is nothing: what the contact's stiffness has of it is rounding.
+        self._before = np.array([[start.state.filling.pressure], [0.0]])
+        self._now, self._down = _Point(0.0, 0.0, 0.0, 0.0), True
+
+    def along(self, clock: Array, travel: Array) -> tuple[list[_Point], str | None]:
+        """Points at times (s) and travels (mm), the first at first contact, and why there are no more."""
+        points = [self._now]
+        for time, to in zip(clock.tolist(), travel.tolist(), strict=True):
+            ended = self._reach(time, to)
+            if ended is not None:
+                return points, ended
+            points.append(self._now)
+            if self._now.force <= 0.0:
+                # The plate would pull: contact is lost, and no equilibrium under it is looked for.
+                return points, None
+        return points, None
+
+    def _reach(self, time: float, travel: float, cuts: int = 0) -> str | None:
+        """Go to a time and travel, in shorter steps where the whole one finds no equilibrium; why that failed."""
+        here, dome = self._now, self._dome
+        height = dome.top - travel / dome.solid.length
+        if abs(travel - here.travel) > LONGEST * dome.solid.length * (1.0 + 1e-9):
+            return self._halved(time, travel, cuts)
+        if travel < here.travel and self._down:
+            dome = self._dome = dome._replace(follower=dome.follower.turned())
+            self._down = False
+        decay, weight, stiffer = self._memory.step(np.array([time - here.time]))
+        past = self._memory.left(decay) - stiffer * self._before
+        stiffness = 1.0 + float(stiffer[0])
+        dome.follower.feed(RelaxingGas(dome.gas, float(past[0, 0]), stiffness))
+        solved = dome.follower.solve(height)
+        if isinstance(solved, NewtonFailure) or not solved.stable:
+            return self._halved(time, travel, cuts) if cuts < _CUTS else "no equilibrium found"
+        self._keep(solved, time, travel, stiffness, past, (decay, weight))
+        return "gauge range" if self._now.rise + dome.start > self._limit else None
+
+    def _halved(self, time: float, travel: float, cuts: int) -> str | None:
+        here = self._now
+        middle = 0.5 * (here.time + time), 0.5 * (here.travel + travel)
+        return self._reach(*middle, cuts + 1) or self._reach(time, travel, cuts + 1)
+
+    def _keep(
+        self, solved: PlateState, time: float, travel: float, stiffness: float, past: Array, step: tuple[Array, Array]
+    ) -> None:
+        dome = self._dome
+        dome.follower.path.append(solved)
+        now = np.array([[solved.state.filling.pressure], [solved.force]])
+        self._memory.add(*step, now - self._before)
+        self._before = now
+        pressure, force = (stiffness * now + past)[:, 0].tolist()
+        solid = dome.solid
+        self._now = _Point(time, travel, force * solid.mu * solid.length**2, pressure * solid.mu - dome.start)
+
+
+def _dome(sensor: Sensor, pressure: float) -> _Dome:
+    solid = solid_probe(sensor).solid
+    free = state_at(solid, pressure, inflate(solid, to_pressure=pressure))
+    press = press_settings(sensor)
+    touch = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim)
+    follower = follower_of(solid, free, press, touch)
+    return _Dome(solid, follower, shut_in(solid, free, press), touch.body.height, free.pressure)
+
 
 RAMP_SPEED = 5.0
 """mm/s, of the press before the hold: our choice, the paper gives none."""

@@ -10,8 +10,8 @@ D638).
 import math
 
 from pneutouch.body import Prism, Solid
-from pneutouch.meridian import Arc, Line, Segment
 from pneutouch.parts.coupons.coupon import CALIPER, ROLE, Coupon, CouponContext, Nominal
+from pneutouch.shape.meridian import Arc, Line, Segment
 
 OVERALL, END_WIDTH, NARROW_LENGTH, NARROW_WIDTH = 115.0, 25.0, 33.0, 6.0
 FILLET, OUTER_RADIUS = 14.0, 25.0

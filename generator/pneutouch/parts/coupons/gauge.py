@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from itertools import accumulate, pairwise
 
 from pneutouch.body import Bore, Feature, Frame, Prism, Solid, Turned
-from pneutouch.meridian import Line, Point, Segment
 from pneutouch.parts.coupons.coupon import CALIPER, GAUGE_PINS, ROLE, Coupon, CouponContext, Nominal
-from pneutouch.parts.trace import cylinder
+from pneutouch.shape.meridian import Line, Point, Segment, cylinder
 
 WALLS = (0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.2, 1.6, 2.0)
 PINS = HOLES = (0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0, 2.5, 3.0)

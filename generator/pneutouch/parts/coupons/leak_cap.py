@@ -5,10 +5,9 @@ the base plane. What gas is left is the dead volume alone, and what leaks is not
 """
 
 from pneutouch.body import Solid
-from pneutouch.meridian import Meridian
 from pneutouch.parts.coupons.coupon import PRESSURE, ROLE, Coupon, CouponContext, Nominal
 from pneutouch.parts.layout import Layout
-from pneutouch.parts.trace import TracedPath, trace
+from pneutouch.shape.meridian import Meridian, TracedPath, trace
 from pneutouch.spec.part import ClampedFlange
 
 TEST_PRESSURE = 20.0

@@ -6,7 +6,7 @@ require 6 mm under the durometer, so two pucks are laid on one another for that;
 
 from pneutouch.body import Solid
 from pneutouch.parts.coupons.coupon import BALANCE, CALIPER, ROLE, Coupon, CouponContext, Nominal
-from pneutouch.parts.trace import cylinder
+from pneutouch.shape.meridian import cylinder
 from pneutouch.units import grams
 
 DIAMETER, THICKNESS = 20.0, 3.0

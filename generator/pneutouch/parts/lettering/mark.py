@@ -1,19 +1,207 @@
-"""Part marks: lettering on rigid bodies, a tally on the membrane's flange, cut in or raised in one batch."""
+"""Part marks: lettering on rigid bodies, a tally on the membrane's flange, cut in or raised in one batch.
 
+A part mark for a narrow ring: grooves along the flange, counted like strokes on a slate.
+
+Read counter-clockwise, looking onto the dome. A long groove is the start; then a group of grooves for the value, a
+wider gap, and a group for the copy. A narrow groove counts one, a middle one five. A is 1, B is 2 and so on.
+
+Flat faces that may carry a part mark: away from seals, glue, screw heads and the dome, with solid behind them.
+"""
+
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
 from pneutouch.parts import Assembly
-from pneutouch.parts.lettering.faces import HEIGHTS, LabelPosition, free_area, lettered_faces, placed, spot
 from pneutouch.parts.lettering.glyphs import is_clear, lettering, narrowest, rounded
-from pneutouch.parts.lettering.tally import TallyRing, tally
 from pneutouch.spec.part import ClampedFlange
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.tray import Marks
+
+FIVE, START = 3.0, 6.0
+"""Widths of the groove for five and of the start over that of the groove for one."""
+
+_BETWEEN, _APART = 1.3, 4.0
+"""Land between grooves, and between groups, over the width of the groove for one."""
+
+_ASIDE = 0.0137
+"""Angle in rad of the start: off the x axis, where every mesh has vertices."""
+
+EXPLAINED = (
+    "Look onto the dome and go counter-clockwise from the longest stroke, the start. The first group is the letter "
+    "(A is 1, without I and O), the second the copy; a narrow stroke counts one, a middle one five."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class TallyRing:
+    """Sectors of a ring from radius ``inner`` to ``outer`` (mm): first and last angle of each, rad."""
+
+    inner: float
+    outer: float
+    sectors: tuple[tuple[float, float], ...]
+
+    @property
+    def narrowest(self) -> float:
+        """Width in mm of the narrowest groove, straight across its inner end; or its length, where that is less."""
+        angle = min(last - first for first, last in self.sectors)
+        return min(2 * self.inner * math.sin(0.5 * angle), self.outer - self.inner)
+
+    def polygons(self, error: float = 0.01) -> list[Array]:
+        """Outlines (n, 2) in mm, counter-clockwise, arcs within ``error``."""
+        return [self._polygon(first, last, error) for first, last in self.sectors]
+
+    def _polygon(self, first: float, last: float, error: float) -> Array:
+        steps = 1 + math.ceil((last - first) / math.sqrt(8 * error / self.outer))
+        angle = np.linspace(first, last, steps + 1)
+        arc = np.column_stack([np.cos(angle), np.sin(angle)])
+        return np.concatenate([self.outer * arc, self.inner * arc[::-1]])
+
+
+def tally(index: int, copy: int, inner: float, outer: float, width: float) -> TallyRing | None:
+    """Grooves for a value's ``index`` and a ``copy``, both from 1; ``width`` mm is the narrowest, at ``inner``.
+
+    None if they do not go round the ring with a gap before the start comes again.
+    """
+    sectors, at = [(0.0, START * width)], START * width
+    for number in (index, copy):
+        at += _APART * width
+        for share in _strokes(number):
+            sectors.append((at, at + share * width))
+            at += (share + _BETWEEN) * width
+        at -= _BETWEEN * width
+    if at + _APART * width > 2 * math.pi * inner:
+        return None
+    return TallyRing(inner, outer, tuple((_ASIDE + first / inner, _ASIDE + last / inner) for first, last in sectors))
+
+
+def read(sectors: list[tuple[float, float]]) -> tuple[int, int]:
+    """Index and copy from the angles (rad) of grooves in any order, anywhere round the ring."""
+    start = max(range(len(sectors)), key=lambda k: sectors[k][1] - sectors[k][0])
+    unit = (sectors[start][1] - sectors[start][0]) / START
+    rest = sorted(((a - sectors[start][1]) % (2 * math.pi), b - a) for k, (a, b) in enumerate(sectors) if k != start)
+    counts, end = [0], rest[0][0]
+    for at, width in rest:
+        if at - end > 0.5 * (_BETWEEN + _APART) * unit:
+            counts.append(0)
+        counts[-1] += 5 if width > 0.5 * (1 + FIVE) * unit else 1
+        end = at + width
+    index, copy = counts
+    return index, copy
+
+
+def _strokes(number: int) -> list[float]:
+    """Widths of the grooves that count a number: fives first."""
+    fives, ones = divmod(number, 5)
+    return [FIVE] * fives + [1.0] * ones
+
+
+_STEP = 0.01
+"""Distance in mm from a face at which its section is taken."""
+
+_TURNS = 24
+"""Angles round a face at which a label is tried."""
+
+HEIGHTS = (5.0, 4.5, 4.0, 3.5, 3.0)
+"""Heights of capitals in mm that are tried; below 3 mm they are not legible."""
+
+
+@dataclass(frozen=True, slots=True)
+class RingFace:
+    """A ring of a horizontal face between two radii (mm) at height ``z``; ``mates``: it must lie flat on something."""
+
+    name: str
+    z: float
+    up: bool
+    inner: float
+    outer: float
+    mates: bool
+
+
+@dataclass(frozen=True, slots=True)
+class LabelPosition:
+    """Position of a label: capitals ``height`` mm tall, centred ``radius`` mm from the axis, foot towards the axis."""
+
+    face: RingFace
+    height: float
+    radius: float
+    angle: float
+
+
+def lettered_faces(assembly: Assembly, solid: Solid) -> list[RingFace]:
+    """Faces of a rigid body in the order they are preferred: faces that can be read once mounted come first."""
+    layout, seat = assembly.layout, assembly.scene.seat
+    if solid.role == "ring":
+        # The other ring, that a flange is cast around, is in the mould: its faces close on the cavity.
+        if not isinstance(seat, ClampedFlange):
+            return []
+        return [RingFace("ring top", seat.ring_thickness, True, 0.0, layout.ring_radius, False)]
+    if solid.role == "plug":
+        return [RingFace("plug underside", layout.under, False, 0.0, layout.plate_radius, True)]
+    if solid.role != "connector":
+        return []
+    faces = [
+        RingFace("plate top", layout.plate_high, True, layout.ring_radius, layout.plate_radius, False),
+        RingFace("plate underside", layout.plate_low, False, 0.0, layout.plate_radius, True),
+    ]
+    if layout.under < layout.plate_low:
+        faces.append(RingFace("boss face", layout.under, False, 0.0, layout.plate_radius, True))
+    return faces
+
+
+def free_area(face: RingFace, solid: Solid, body: Body, depth: float, edge: float) -> Any:
+    """CrossSection of a face that is bare, has ``depth`` mm of solid behind it and lies ``edge`` mm from any edge.
+
+    Around a bore there is space for a screw head, which is less than twice as wide (ISO 4762).
+    """
+    from manifold3d import CrossSection
+
+    whole, inwards = body.manifold(), -1.0 if face.up else 1.0
+    section = whole.slice(face.z + inwards * _STEP) ^ whole.slice(face.z + inwards * depth)
+    section -= whole.slice(face.z - inwards * _STEP)
+    section = (section ^ CrossSection.circle(face.outer, 180)).offset(-edge)
+    if face.inner:
+        section -= CrossSection.circle(face.inner + edge, 180)
+    heads = [CrossSection.circle(2 * bore.radius, 48).translate((bore.x, bore.y)) for bore in solid.bores]
+    return section - CrossSection.compose(heads) if heads else section
+
+
+def spot(face: RingFace, area: Any, box: tuple[float, float], heights: Sequence[float]) -> LabelPosition | None:
+    """The place for the tallest lettering of ``heights`` (mm), or None; ``box`` is width and height at 1 mm."""
+    from manifold3d import CrossSection
+
+    if area.is_empty():
+        return None
+    reach = max(abs(x) for x in area.bounds())
+    for height in heights:
+        rectangle = CrossSection.square((box[0] * height, box[1] * height), True)
+        for radius in _radii(reach, box[1] * height):
+            for turn in range(_TURNS if radius else 1):
+                position = LabelPosition(face, height, radius, 0.5 * math.pi + 2 * math.pi * turn / _TURNS)
+                if (placed(rectangle, position) - area).area() < 1e-9:
+                    return position
+    return None
+
+
+def placed(shape: Any, at: LabelPosition) -> Any:
+    """A CrossSection drawn about the origin, put on its spot; mirrored on a face that is read from below."""
+    turn = math.degrees(at.angle) - 90.0 if at.radius else 0.0
+    turned = (shape if at.face.up else shape.mirror((1.0, 0.0))).rotate(turn)
+    return turned.translate((at.radius * math.cos(at.angle), at.radius * math.sin(at.angle)))
+
+
+def _radii(reach: float, height: float) -> list[float]:
+    """Distances from the axis that are tried: from the rim inwards by a quarter millimetre, then the middle."""
+    outermost = reach - 0.5 * height
+    count = max(0, int((outermost - 0.5 * height) / 0.25) + 1)
+    return [*(outermost - 0.25 * k for k in range(count)), 0.0]
+
 
 _SAFETY = 1.2
 """Marks are drawn larger than the printer's recommended detail by this factor."""

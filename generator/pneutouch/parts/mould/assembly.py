@@ -1,26 +1,98 @@
-"""The mould of a cast membrane: its parts, how often each is made, and its bodies closed and as printed."""
+"""The mould of a cast membrane: its parts, how often each is made, and its bodies closed and as printed.
+
+Mass of silicone in a batch, and its division into the parts that are mixed.
+
+Check that a mould has space for its details: channels within the flange, fillets within its thickness.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.meridian import Meridian
+from pneutouch.errors import InputError
 from pneutouch.parts.cast_ring import RING
 from pneutouch.parts.layout import Layout, lay_out
 from pneutouch.parts.membrane import membrane_meridian
-from pneutouch.parts.mould.lay import lay_out_mould
-from pneutouch.parts.mould.pieces import mould_solids
-from pneutouch.parts.mould.size import MouldShape, MouldSize
-from pneutouch.parts.mould.space import check_mould_space
+from pneutouch.parts.mould.pieces import channels, lay_out_mould, mould_solids
+from pneutouch.parts.mould.size import FILLET, MouldShape, MouldSize
+from pneutouch.shape.meridian import Meridian
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Mode, Printer
+from pneutouch.units import ML, grams
+
+_EDGE = 0.05
+"""Flange in mm that must be left at both sides of a channel: less would cut ring or core."""
+
+_LEAST_HOLE = 0.3
+"""Least diameter in mm of a channel where it is narrowest: own choice."""
+
+_LEAST_GAP = 0.5
+"""Least silicone in mm between core and ring: own choice."""
+
+
+def check_mould_space(where: str, size: MouldSize) -> None:
+    """Raise InputError that names the key of the design file ``where`` which leaves a detail no space."""
+    _check_insert(where, size)
+    shape, faces = size.shape, size.faces
+    width = faces.edge.start[0] - faces.rim.end[0] - 2 * _EDGE
+    for key, diameter, narrowest in (
+        ("sprue_diameter_mm", shape.sprue_diameter, 2 * size.neck),
+        ("vent_diameter_mm", shape.vent_diameter, 2 * (0.5 * shape.vent_diameter - size.foot * _slope(size))),
+    ):
+        if diameter > width:
+            raise InputError(
+                f"wider than the flange; it must be at most {width:.2f} mm",
+                file=where,
+                key=f"mould.{key}",
+                value=diameter,
+                remedy="take a smaller one, or raise membrane.wall_thickness_mm, which the flange follows",
+            )
+        if narrowest < _LEAST_HOLE:
+            raise InputError(
+                f"its draft closes it: {max(narrowest, 0.0):.2f} mm is left in diameter",
+                file=where,
+                key=f"mould.{key}",
+                value=diameter,
+                remedy="take a larger one, or less mould.draft_deg or mould.wall_mm",
+            )
+    flange = -size.low
+    if FILLET + shape.clearance > 0.9 * flange:
+        raise InputError(
+            f"the flange of {flange:.2f} mm has no space for the ring's rounding",
+            file=where,
+            key="mould.clearance_mm",
+            value=shape.clearance,
+            remedy=f"it must be at most {0.9 * flange - FILLET:.2f} mm",
+        )
+
+
+def _check_insert(where: str, size: MouldSize) -> None:
+    """Silicone must pass between the core and the ring that it is cast around: the mould grows, the ring does not."""
+    if size.insert is None:
+        return
+    gap = size.insert.web_inner - max(size.faces.rim.start[0], size.faces.rim.end[0])
+    if gap < _LEAST_GAP:
+        raise InputError(
+            f"the core leaves {max(gap, 0.0):.2f} mm inside the ring that the flange is cast around; at least "
+            f"{_LEAST_GAP:g} mm lets silicone through",
+            file=where,
+            key="mould.shrinkage_percent",
+            value=round(100 * size.shape.shrinkage, 6),
+            remedy="take a silicone that shrinks less, or less mould.draft_deg",
+        )
+
+
+def _slope(size: MouldSize) -> float:
+    """Radius lost by a channel over height."""
+    return math.tan(size.shape.draft)
 
 
 @dataclass(frozen=True)
@@ -135,4 +207,79 @@ def shape_of(scene: ResolvedDesign) -> MouldShape:
         clearance=stated.clearance_mm,
         shrinkage=0.01 * shrinkage,
         hole_undersize=scene.mould_printer.hole_undersize_mm.nominal,
+    )
+
+
+FILM = 0.5
+"""Thickness in mm of the silicone that is left to run over into a window of the base: own choice."""
+
+LOSS_SHARE = 0.15
+LEAST_LOSS_ML = 2.0
+"""Loss on cup, stirrer and syringe: this share, and at least so much; our choice, measure yours."""
+
+
+@dataclass(frozen=True)
+class SiliconeBatch:
+    """The silicone of one filling of the mould. Volumes in mL at the mould's size, masses in g.
+
+    ``parts_by_mass`` are the mixing parts of the material, empty if unknown.
+    """
+
+    cavities: int
+    cavity_mL: float
+    channels_mL: float
+    overflow_mL: float
+    density_g_per_cm3: float
+    parts_by_mass: tuple[float, ...]
+
+    @cached_property
+    def filled_mL(self) -> float:
+        """Volume that the mould takes: cavities, channels and overflow."""
+        return self.cavities * (self.cavity_mL + self.channels_mL + self.overflow_mL)
+
+    @property
+    def loss_mL(self) -> float:
+        """Volume that is lost: `LOSS_SHARE` of the filling, at least `LEAST_LOSS_ML`."""
+        return max(LOSS_SHARE * self.filled_mL, LEAST_LOSS_ML)
+
+    @property
+    def volume_mL(self) -> float:
+        """To be mixed."""
+        return self.filled_mL + self.loss_mL
+
+    @property
+    def mass_g(self) -> float:
+        """To be weighed, all parts together."""
+        return grams(self.volume_mL * ML, self.density_g_per_cm3)
+
+    @property
+    def parts_g(self) -> tuple[float, ...]:
+        """To be weighed of each part, in the order of ``parts_by_mass``."""
+        whole = sum(self.parts_by_mass)
+        return tuple(self.mass_g * part / whole for part in self.parts_by_mass)
+
+    def document(self) -> dict[str, Any]:
+        """The entry of the manifest."""
+        return {
+            "cavities": self.cavities,
+            "cavity_mL": round(self.cavity_mL, 4),
+            "channels_mL": round(self.channels_mL, 4),
+            "overflow_mL": round(self.overflow_mL, 4),
+            "loss_mL": round(self.loss_mL, 4),
+            "volume_mL": round(self.volume_mL, 4),
+            "mass_g": round(self.mass_g, 3),
+            "parts_g": [round(part, 3) for part in self.parts_g],
+        }
+
+
+def silicone_batch(mould: MouldAssembly) -> SiliconeBatch:
+    """The batch that fills a mould once."""
+    size, material = mould.size, mould.scene.membrane_material
+    return SiliconeBatch(
+        cavities=size.shape.cavities,
+        cavity_mL=size.cavity_volume / ML,
+        channels_mL=sum(channel.volume() for channel in channels(size)) / ML,
+        overflow_mL=math.pi * size.window**2 * FILM / ML,
+        density_g_per_cm3=material.density_g_per_cm3.nominal,
+        parts_by_mass=() if material.casting is None else tuple(material.casting.parts_by_mass),
     )

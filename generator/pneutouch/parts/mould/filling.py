@@ -3,12 +3,15 @@
 Slow flow of a Newtonian liquid: the pour channel by Hagen and Poiseuille (pipe of varying radius, 8 mu L / (pi r^4)
 integrated along it), the dome's wall by the flow between parallel faces (12 mu ds / (w h^3), its width w taken as the
 circumference at half the arc). Batchelor, An Introduction to Fluid Dynamics (1967), sections 4.2 and 4.8.
+
+Stretch that a cured membrane needs to leave its core.
 """
 
 import math
 from dataclasses import dataclass
 
 from pneutouch.parts.mould.size import MouldSize
+from pneutouch.shape.meridian import Meridian
 
 GRAVITY = 9.80665
 """m/s2."""
@@ -55,3 +58,42 @@ def _wall(size: MouldSize) -> float:
     middle = 0.5 * (inner + outer)
     length, width = 0.5 * math.pi * middle, 2 * math.pi * middle * math.sin(0.25 * math.pi)
     return 12 * length / (width * (outer - inner) ** 3)
+
+
+PEEL_STRETCH = 1.5
+"""Stretch of the wall's outside where a finger rolls it back over itself: a strip of thickness t bent to an inner
+radius of t / 2 has its middle at the radius t, so its outside is longer by half. Own estimate."""
+
+SAFETY = 2.0
+"""Elongation at break over the strain needed: own choice, for nicks at the flange and silicone not fully cured."""
+
+
+@dataclass(frozen=True, slots=True)
+class Release:
+    """``opening_mm`` is the smallest opening of the cured membrane, ``core_mm`` the greatest diameter of the core that
+    passes it."""
+
+    opening_mm: float
+    core_mm: float
+
+    @property
+    def passing_strain(self) -> float:
+        """Strain around the opening as the core passes it; 0 where it passes freely."""
+        return max(self.core_mm / self.opening_mm - 1.0, 0.0)
+
+    @property
+    def strain(self) -> float:
+        """The strain needed: of the passing core, or of rolling the wall back, whichever is more."""
+        return max(self.passing_strain, PEEL_STRETCH - 1.0)
+
+
+def release_of(membrane: Meridian, size: MouldSize) -> Release:
+    """The release of a membrane (its meridian, as cured) from the core of its mould.
+
+    It is an upper bound: the whole core is taken to pass the smallest opening, wherever that is.
+    """
+    # The opening is bounded by the faces below the dome: its rim and what lies within the flange.
+    opening = 2 * min(min(piece.start[0], piece.end[0]) for piece in membrane.pieces[1:3])
+    rim = size.faces.rim
+    core = 2 * max(size.faces.inner.radius, rim.start[0], rim.end[0])
+    return Release(opening, core)

@@ -1,4 +1,4 @@
-"""Layout of a mould: radii, heights and the places of its cavities. Lengths in mm.
+r"""Layout of a mould: radii, heights and the places of its cavities. Lengths in mm.
 
 The frame is the design's, the first cavity's axis being z and the membrane's base plane z = 0. It is poured turned
 over, with the flange's underside up: air leaves there, and neither a vent nor a parting line meets the sensing face.
@@ -6,18 +6,27 @@ over, with the flange's underside up: air leaves there, and neither a vent nor a
     cap        ______________________
               |      .-------.      |     outer wall and top of the flange
               |    .' .-----. '.    |
-    z = 0     |___|__/       \\__|___|     parting line 1
-    ring      \\ ring |  core  | ring /     edge of the flange
-              /__________________\\        parting line 2: the core's foot forms the flange's underside
-    core     /_____|________|_____\\       the foot's cone centres the core in the cap
+    z = 0     |___|__/       \__|___|     parting line 1
+    ring      \ ring |  core  | ring /     edge of the flange
+              /__________________\        parting line 2: the core's foot forms the flange's underside
+    core     /_____|________|_____\       the foot's cone centres the core in the cap
     base     |______| window |______|     presses the foot; its window holds what runs over
+
+The screws that hold a mould closed.
+
+Open moulds of flat coupons: a tray whose top is the plane that a straight edge strikes the silicone off at.
+
+Walls stand upright, without draft: it would change a cross-section that is measured, and a cured coupon of silicone is
+peeled out of the open side.
 """
 
 import math
 from dataclasses import dataclass, replace
 
-from pneutouch.meridian import Arc, Line, Meridian, Point, Segment
+from pneutouch.body import Feature, Prism, Solid, Turned
 from pneutouch.parts.cast_ring import RingSize
+from pneutouch.shape.meridian import Arc, Line, Meridian, Point, Segment
+from pneutouch.spec.material import Material
 
 TAPER = math.radians(10.0)
 """Slope of the cones that centre core and ring in the cap: own choice; above about 7 degrees a cone does not jam."""
@@ -201,3 +210,70 @@ class MouldSize:
         clearance times sin t, most at the rim, and not at the pole.
         """
         return self.shape.clearance
+
+
+@dataclass(frozen=True, slots=True)
+class MouldScrew:
+    """A screw by its holes, mm in diameter."""
+
+    name: str
+    clearance_diameter: float
+    core_diameter: float
+    head_diameter: float
+    depth: float
+
+    def margin(self, undersize: float) -> float:
+        """Plastic in mm from a screw's axis outwards: its head and half a millimetre."""
+        return 0.5 * (max(self.head_diameter, self.clearance_diameter) + undersize) + 1.0
+
+
+SCREW = MouldScrew("M3", clearance_diameter=3.4, core_diameter=2.5, head_diameter=5.5, depth=8.0)
+"""Clearance hole: ISO 273, medium series; head: ISO 4762; core: M3 tap drill, also used for thread-forming screws;
+depth: own choice, above two diameters."""
+
+
+WALL, FLOOR = 2.5, 2.5
+"""Wall around the cavity and floor under it, mm: own choice."""
+
+_PAST = 1.0
+"""Distance in mm by which the cut reaches past the open top, so that no two faces coincide."""
+
+
+def open_mould(coupon: Solid, material: Material, factor: float) -> Solid:
+    """The mould of a coupon that lies on z = 0 and has one outline all over its height.
+
+    ``factor`` is the length of the mould over that of the cured coupon. The cavity's floor is z = 0, the strike-off
+    plane the coupon's thickness times ``factor`` above it.
+    """
+    shape, cavity, tool = coupon.base, _scaled(coupon.base, factor, 0.0), _scaled(coupon.base, factor, _PAST)
+    if isinstance(shape, Meridian):
+        wide, low, high = shape.bounds()
+        x, y = (-wide, wide), (-wide, wide)
+    else:
+        low, high = shape.low, shape.high
+        boxes = [piece.bounds() for piece in shape.outline]
+        x = (min(box[0] for box in boxes), max(box[1] for box in boxes))
+        y = (min(box[2] for box in boxes), max(box[3] for box in boxes))
+    if low != 0.0 or coupon.bores or coupon.adds or coupon.cuts:
+        raise TypeError(f"{coupon.name} is no plain body on z = 0: an open mould cannot form it")
+    corners = [(factor * x[0] - WALL, factor * y[0] - WALL), (factor * x[1] + WALL, factor * y[1] + WALL)]
+    block = Prism(_rectangle(*corners), -FLOOR, factor * high)
+    return Solid(f"{coupon.name}-mould", coupon.role, material, block, cuts=(Feature(tool, cavity.volume()),))
+
+
+def _scaled(shape: Meridian | Prism, factor: float, past: float) -> Turned | Prism:
+    """A coupon at the mould's size, its top ``past`` mm higher."""
+    if isinstance(shape, Prism):
+        outline = tuple(scaled(piece, factor) for piece in shape.outline)
+        return Prism(outline, factor * shape.low, factor * shape.high + past)
+    top = shape.bounds()[2]
+
+    def moved(point: Point) -> Point:
+        return factor * point[0], factor * point[1] + (past if point[1] == top else 0.0)
+
+    return Turned(Meridian(tuple(Line(moved(piece.start), moved(piece.end), piece.tag) for piece in shape.pieces)))
+
+
+def _rectangle(low: tuple[float, float], high: tuple[float, float]) -> tuple[Segment, ...]:
+    corners = [low, (high[0], low[1]), high, (low[0], high[1])]
+    return tuple(Line(corners[k], corners[(k + 1) % 4], "side") for k in range(4))

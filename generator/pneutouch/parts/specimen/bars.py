@@ -7,9 +7,10 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.body import Frame, Prism, Solid
-from pneutouch.meridian import Line
 from pneutouch.parts.specimen.family import (
     DECIMALS,
+    Box,
+    Mesh,
     PatternContext,
     PatternFamily,
     PatternGeometry,
@@ -18,7 +19,7 @@ from pneutouch.parts.specimen.family import (
     check_least,
     heights,
 )
-from pneutouch.parts.specimen.mesh import Box, Mesh
+from pneutouch.shape.meridian import Line
 from pneutouch.spec.specimen import Bars
 
 _CORNERS = np.array(

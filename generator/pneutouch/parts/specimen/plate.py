@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from pneutouch.arrays import Array, Indices
-from pneutouch.body.revolve import circle_count, widen
+from pneutouch.body.shapes import circle_count, widen
 from pneutouch.parts.specimen.faces import boundary, triangulated
-from pneutouch.parts.specimen.mesh import Box, Mesh
+from pneutouch.parts.specimen.family import Box, Mesh
 
 CORNER = 0.5
 """Share of the border that the cut corner takes at x = y = 0: it shows the orientation of the specimen."""

@@ -7,6 +7,8 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.parts.specimen.family import (
     DECIMALS,
+    Box,
+    Mesh,
     PatternContext,
     PatternFamily,
     PatternGeometry,
@@ -14,7 +16,6 @@ from pneutouch.parts.specimen.family import (
     check_count,
     check_least,
 )
-from pneutouch.parts.specimen.mesh import Box, Mesh
 from pneutouch.spec.specimen import RandomPhase, Sinusoid
 
 Wave = tuple[tuple[float, ...], tuple[float, ...], float]

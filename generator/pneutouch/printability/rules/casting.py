@@ -6,7 +6,7 @@ import numpy as np
 
 from pneutouch.printability.finding import Excess, Finding, Severity
 from pneutouch.printability.view import PrintPart, PrintView, SensorContext
-from pneutouch.spec.casting import Casting
+from pneutouch.spec.material import Casting
 
 PREPARED_MIN = 8.0
 """Minutes of the pot life that weighing, mixing (3) and degassing (5) take: see `_PREPARED`."""

@@ -1,11 +1,14 @@
-"""Removal of support: hollows behind necks, corners out of sight and long thin channels cannot be washed out."""
+"""Removal of support: hollows behind necks, corners out of sight and long thin channels cannot be washed out.
+
+Closed hollows: support cannot be removed from them, and they cannot be inspected.
+"""
 
 import numpy as np
 
 from pneutouch.arrays import Flags, Indices
 from pneutouch.printability.finding import Excess, Finding, Severity
 from pneutouch.printability.measure.cavities import NARROW, Pocket, overhangs
-from pneutouch.printability.measure.rays import first_hits
+from pneutouch.printability.measure.chords import first_hits
 from pneutouch.printability.subject import Point3
 from pneutouch.printability.view import PrintJob, PrintView
 
@@ -30,7 +33,7 @@ _BRIDGED = 50.0
 """Ceiling in mm2 that a filament printer bridges without support: about 7 mm in each direction."""
 
 
-def check(view: PrintView) -> list[Finding]:
+def check_cleaning(view: PrintView) -> list[Finding]:
     """Look into each job as it is printed; filament and resin need support only under ceilings, casting needs none."""
     findings = []
     for job in view.jobs:
@@ -129,3 +132,21 @@ def _finding(
     part = job.nearest(where)
     fix = part.item.hints.get("cleaning", fix)
     return Finding("cleaning", severity, part.name, text, fix, source, where, excess)
+
+
+_SOURCE = "vendor, objet.com Tips and Tricks: a confined hollow is not cleanable"
+_CLOSED_FILAMENT = "our choice, unverified: a closed hollow cannot be inspected, and loose support stays in it"
+
+
+def check_hollows(view: PrintView) -> list[Finding]:
+    """Look for shells that face inwards, in each body and in the bodies that a job joins to one."""
+    findings = []
+    for job in view.jobs:
+        source = _SOURCE if job.printer.process == "polyjet" else _CLOSED_FILAMENT
+        for hollow in job.hollows if job.sound else []:
+            text = f"a closed hollow of {hollow.volume:.3g} mm3"
+            part = job.nearest(hollow.where)
+            fix = part.item.hints.get("hollows", "open it with a hole to clean through, or fill it")
+            excess = Excess(hollow.volume, 0.0, "mm3")
+            findings.append(Finding("hollows", "error", hollow.body, text, fix, source, hollow.where, excess))
+    return findings

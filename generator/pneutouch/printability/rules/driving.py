@@ -12,7 +12,7 @@ _SOURCES = {
 }
 
 
-def check(view: PrintView) -> list[Finding]:
+def check_driving(view: PrintView) -> list[Finding]:
     """Compare the highest driving pressure with the rated pressure and with the nominal limit; and with a gauge that
     the design names the pressure while pressed."""
     return [] if view.sensor is None else [*_driven(view.sensor), *_pressed(view.sensor)]

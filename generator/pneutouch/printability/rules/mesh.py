@@ -4,7 +4,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.printability.finding import Excess, Finding
-from pneutouch.printability.sizes import spot
+from pneutouch.printability.rules.feature_sizes import spot
 from pneutouch.printability.view import PrintPart, PrintView
 from pneutouch.units import UM
 
@@ -19,7 +19,7 @@ _FINER = 4.0
 """Chords this many times narrower than the finest step needs make at least as many times the triangles."""
 
 
-def check(view: PrintView) -> list[Finding]:
+def check_mesh(view: PrintView) -> list[Finding]:
     """Measure closedness, the deviation from the exact solid and the width of chords."""
     findings = []
     for part in view.parts:

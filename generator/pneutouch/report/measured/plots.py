@@ -10,8 +10,17 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.mechanics.prediction import SensorState
-from pneutouch.report.measured.comparison import GroupComparison
-from pneutouch.report.measured.panels import Panel, Plot, band_of, ends_of, key, lines_of, multiples, some
+from pneutouch.report.measured.panels import (
+    GroupComparison,
+    Panel,
+    Plot,
+    band_of,
+    ends_of,
+    key,
+    lines_of,
+    multiples,
+    some,
+)
 from pneutouch.report.style import FAINT, INK, LINES, MARKERS, MUTED
 from pneutouch.units import KPA
 

@@ -4,9 +4,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from pneutouch.report import pages
-from pneutouch.report.measured import definition, head, plots, slow, tables
-from pneutouch.report.measured.comparison import CampaignReport
-from pneutouch.report.measured.panels import MOST_RUNS, Panel, Plot, panels_of
+from pneutouch.report.measured import head, plots, tables
+from pneutouch.report.measured.panels import MOST_RUNS, CampaignReport, Panel, Plot, panels_of
 
 _RUNS_ONLY = ("steps", "saturation", "loop", "relaxation")
 
@@ -41,8 +40,8 @@ def _content(measured: CampaignReport, panels: Sequence[Panel]) -> dict[str, Any
         "questions": _listed(tables.questions(measured)),
         "warnings": _listed(tables.warning_rows(measured)),
         "conditions": head.conditions(measured),
-        "definitions": definition.rows(),
-        "where": definition.WHERE,
+        "definitions": tables.rows(),
+        "where": tables.WHERE,
     }
 
 
@@ -83,17 +82,17 @@ def _figures(measured: CampaignReport, panels: Sequence[Panel]) -> DrawnPlots:
             "Hysteresis",
             "Pressure rise over contact force: the first run at the lowest and at the highest driving pressure, all "
             "its cycles.",
-            slow.loops(panels),
+            tables.loops(panels),
         ),
         "relaxation": (
             "Relaxation",
             f"Force and pressure rise in a long hold, in percent of their value at 1 s; every driving pressure.{some}",
-            slow.relaxations(panels),
+            tables.relaxations(panels),
         ),
         "ageing": (
             "Ageing",
             "Change of the sensitivity since fresh, in percent of the aged one, with its 95 % interval.",
-            slow.ageings(measured),
+            tables.ageings(measured),
         ),
     }
     drawn = {name: (title, caption, plot) for name, (title, caption, plot) in listed.items() if plot is not None}

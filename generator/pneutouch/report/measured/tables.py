@@ -1,15 +1,39 @@
-"""The tables of the sheet as rows of text."""
+"""The tables of the sheet as rows of text.
+
+Meaning of each figure, in one line; formulas and sources are in docs/howto/measuring.md.
+
+Effects of time and direction: hysteresis loops, relaxation, ageing.
+"""
+
+from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pneutouch.bench.figure import FIGURES, FigureDefinition
-from pneutouch.report.measured.comparison import CampaignReport, GroupComparison
-from pneutouch.report.measured.panels import Panel
-from pneutouch.report.measured.words import DASH, Bounds, between, cut, difference, number, overlap, signed, word_of
-from pneutouch.report.style import MARKERS
+from pneutouch.arrays import Array
+from pneutouch.bench.figures import FIGURES, FIRST, FigureDefinition
+from pneutouch.bench.record import MeasuredCurve
+from pneutouch.report.measured.head import DASH, Bounds, between, cut, difference, number, overlap, signed, word_of
+from pneutouch.report.measured.panels import (
+    NARROW,
+    TONES,
+    CampaignReport,
+    GroupComparison,
+    Panel,
+    Plot,
+    ends_of,
+    key,
+    multiples,
+    some,
+)
+from pneutouch.report.style import INK, LINES, MARKERS, MUTED, figure, plain_ticks, svg
+from pneutouch.units import KPA
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 MOST = 40
 """Entries of a list of warnings, questions, failures, leaks or volumes that are printed."""
@@ -32,13 +56,13 @@ def resin_table(panel: Panel) -> dict[str, Any]:
     """
     groups: list[dict[str, Any]] = []
     absent: list[str] = []
-    for figure in FIGURES:
-        compared = [comparison for comparison in panel.comparisons if figure.key in comparison.group.figures]
+    for each in FIGURES:
+        compared = [comparison for comparison in panel.comparisons if each.key in comparison.group.figures]
         if not compared:
-            absent.append(f"{figure.name}, {figure.unit}" if _NAMES.count(figure.name) > 1 else figure.name)
+            absent.append(f"{each.name}, {each.unit}" if _NAMES.count(each.name) > 1 else each.name)
             continue
-        rows = [[*_condition(comparison), *_figure(figure, comparison)] for comparison in compared]
-        groups.append({"name": figure.name, "unit": figure.unit, "rows": rows})
+        rows = [[*_condition(comparison), *_figure(each, comparison)] for comparison in compared]
+        groups.append({"name": each.name, "unit": each.unit, "rows": rows})
     unknown = {b.group.key.driving_pressure_kPa: b.why for b in panel.comparisons if b.why}
     return {
         "title": panel.label,
@@ -86,8 +110,8 @@ def _of_sensor(comparison: GroupComparison, sensor: str) -> Row:
     group = comparison.group
     each = [figures for curve, figures in zip(group.curves, group.each, strict=True) if curve.run.sensor == sensor]
     cells: Row = []
-    for key, digits in (("sensitivity_kPa_per_N", 4), ("stiffness_N_per_mm", 3)):
-        values = np.array([figures[key] for figures in each if key in figures])
+    for name, digits in (("sensitivity_kPa_per_N", 4), ("stiffness_N_per_mm", 3)):
+        values = np.array([figures[name] for figures in each if name in figures])
         if not values.size:
             cells += [DASH, DASH]
             continue
@@ -139,3 +163,208 @@ def failures(measured: CampaignReport) -> tuple[list[Row], str]:
 def questions(measured: CampaignReport) -> tuple[list[Row], str]:
     """Parts of the data that look wrong and were not changed."""
     return cut([list(pair) for pair in measured.questions], MOST)
+
+
+WHERE = "Formulas, units and sources: docs/howto/measuring.md, section Definitions."
+
+LINES_OF = {
+    "sensitivity_kPa_per_N": "Slope of the least-squares line of pressure rise over force, with intercept, over a run.",
+    "sensitivity_through_origin_kPa_per_N": "Slope of the least-squares line through the origin.",
+    "r_squared": "Share of the variance of the rise that the line with intercept explains.",
+    "nonlinearity_percent": "Greatest distance from that line over the full-scale rise.",
+    "repeatability_kPa_per_N": "Standard deviation of the sensitivity between runs of a specimen, pooled.",
+    "part_to_part_kPa_per_N": "Standard deviation of the specimens' mean sensitivities.",
+    "stiffness_N_per_mm": "Force at the greatest depth over that depth.",
+    "force_range_N": "Greatest force of the sensitivity test, at its greatest depth.",
+    "saturation_force_N": "Force at which the local slope of rise over force falls below half the fitted one.",
+    "sensing_range_N": "Saturation force, or the greatest force reached where the sensor did not saturate.",
+    "hysteresis_width_percent": "Greatest difference in rise between loading and unloading, over the full-scale rise.",
+    "hysteresis_area_percent": "Area between loading and unloading over the area under loading.",
+    "relaxation_force_percent": "Loss of force from 1 s of the hold to its end, over the force at 1 s.",
+    "relaxation_force_percent_per_decade": "Slope of that loss over the decimal logarithm of time.",
+    "relaxation_pressure_percent": "Loss of pressure rise from 1 s of the hold to its end, over the rise at 1 s.",
+    "relaxation_pressure_percent_per_decade": "Slope of that loss over the decimal logarithm of time.",
+    "drift_pressure_kPa_per_min": "Slope of the pressure over time without contact.",
+    "noise_force_N": "Standard deviation of a force sample without contact, trend taken out.",
+    "noise_pressure_kPa": "Standard deviation of a pressure sample without contact, trend taken out.",
+    "resolution_N": "Three standard deviations of the pressure's noise over the sensitivity.",
+}
+"""Lines by key of `bench.figure.FIGURES`."""
+
+TERMS = (
+    (
+        "95 % interval",
+        "Of a mean: over specimens, Student's t; with one specimen over its runs, which does not include other "
+        "specimens. Of a standard deviation: chi-square.",
+    ),
+    ("n", "Specimens / runs behind a value."),
+    (
+        "Predicted band",
+        "The interval that holds the figure of a printed sensor with 95 %, as the predicted datasheet states it.",
+    ),
+    ("Difference", "Measured less predicted, in percent of the predicted."),
+    (
+        "Overlap",
+        "Whether the measured interval and the predicted band share a value; a measured value without an interval "
+        "counts as itself. Empty where the prediction has no band.",
+    ),
+    ("Full scale", "Difference of the greatest and the least pressure rise of the run."),
+)
+"""Further words of the tables."""
+
+
+def rows() -> list[list[str]]:
+    """Name with unit, and meaning: of every figure, then of the tables' other words."""
+    named = [[f"{f.name}, {f.unit}" if f.unit else f.name, LINES_OF[f.key]] for f in FIGURES]
+    return [*named, *([what, meaning] for what, meaning in TERMS)]
+
+
+_POINTS = 120
+"""Points of a branch that are drawn."""
+_PER_DECADE = 8
+"""Points of a relaxation a decade of time."""
+
+
+def loops(panels: Sequence[Panel]) -> Plot | None:
+    """Rise over force in and out, of one run at the lowest and at the highest driving pressure.
+
+    More loops in a panel, or those of several specimens, would hide one another.
+    """
+    from matplotlib.lines import Line2D
+
+    panels = [
+        panel for panel in panels if any(_loop_of(panel, pressure_kPa) for pressure_kPa in panel.driving_pressures_kPa)
+    ]
+    if not panels:
+        return None
+    pressures_kPa = sorted(
+        {
+            pressure_kPa
+            for panel in panels
+            for pressure_kPa in ends_of(panel.driving_pressures_kPa)
+            if _loop_of(panel, pressure_kPa)
+        }
+    )
+    tones = {pressure_kPa: TONES[k % len(TONES)] for k, pressure_kPa in enumerate(pressures_kPa)}
+    legend: dict[str, Any] = {
+        **{f"{p:g} kPa": Line2D([], [], ls="", marker="s", ms=5, color=tone) for p, tone in tones.items()},
+        "loading": Line2D([], [], color=INK, lw=0.9),
+        "unloading": Line2D([], [], color=INK, lw=0.9, ls=LINES[1]),
+    }
+
+    def draw(ax: Axes, panel: Panel) -> None:
+        for pressure_kPa in ends_of(panel.driving_pressures_kPa):
+            curve = _loop_of(panel, pressure_kPa)
+            for force_up, rise_up, force_down, rise_down in curve.loop if curve else ():
+                ax.plot(*_thin(force_up, rise_up / KPA), color=tones[pressure_kPa], lw=0.9)
+                ax.plot(*_thin(force_down, rise_down / KPA), color=tones[pressure_kPa], lw=0.9, ls=LINES[1])
+        ax.set(xlim=(0, None), ylim=(0, None))
+
+    return multiples(panels, draw, ("contact force  (N)", "pressure rise  (kPa)"), legend)
+
+
+def _loop_of(panel: Panel, driving_pressure_kPa: float) -> MeasuredCurve | None:
+    """The first loop run at a driving pressure."""
+    runs = (
+        curve
+        for comparison in panel.comparisons
+        if comparison.group.key.driving_pressure_kPa == driving_pressure_kPa
+        for curve in comparison.group.of_kind("loop")
+        if curve.loop
+    )
+    return next(runs, None)
+
+
+def _thin(x: Array, y: Array) -> tuple[Array, Array]:
+    step = max(len(x) // _POINTS, 1)
+    return x[::step], y[::step]
+
+
+def relaxations(panels: Sequence[Panel]) -> Plot | None:
+    """Force and pressure rise over the logarithm of time, in percent of their value at `FIRST`; every run."""
+    from matplotlib.lines import Line2D
+
+    panels = [panel for panel in panels if any(curve.relaxation is not None for curve in _relaxed(panel))]
+    if not panels:
+        return None
+    legend: dict[str, Any] = {
+        **key(panels),
+        "force": Line2D([], [], color=INK, lw=0.9),
+        "pressure rise": Line2D([], [], color=MUTED, lw=0.9, ls=LINES[1]),
+    }
+
+    def draw(ax: Axes, panel: Panel) -> None:
+        ax.set_xscale("log")
+        for comparison in panel.comparisons:
+            for curve in some(comparison.group.of_kind("relaxation")):
+                _relaxation(ax, curve, panel.spots(comparison, curve))
+        plain_ticks(ax.xaxis)
+
+    return multiples(
+        panels, draw, ("time in the hold  (s)", f"share of the value at {FIRST:g} s  (%)"), legend, shared=True
+    )
+
+
+def _relaxed(panel: Panel) -> list[MeasuredCurve]:
+    return [curve for comparison in panel.comparisons for curve in comparison.group.of_kind("relaxation")]
+
+
+def _relaxation(ax: Axes, curve: MeasuredCurve, look: dict[str, Any]) -> None:
+    if curve.relaxation is None:
+        return
+    time, *channels = curve.relaxation
+    if time.size == 0 or time[-1] <= FIRST:
+        return
+    edges = np.geomspace(FIRST, time[-1], max(int(_PER_DECADE * np.log10(time[-1] / FIRST)), 2) + 1)
+    later = time >= FIRST
+    which = np.digitize(time[later], edges[1:-1])
+    count = np.bincount(which)
+    seconds, *means = (
+        np.bincount(which, weights=part[later])[count > 0] / count[count > 0] for part in (time, *channels)
+    )
+    for values, color, line in zip(means, (INK, MUTED), LINES[:2], strict=True):
+        style = {
+            **look,
+            "ls": line,
+            "color": color,
+            "mec": color,
+            "lw": 0.7,
+            "markevery": 3,
+            "mfc": color if look["mfc"] != "white" else "white",
+        }
+        ax.plot(seconds, 100 * values / values[0], **style)
+
+
+def ageings(measured: CampaignReport) -> Plot | None:
+    """Change of sensitivity between ages with its interval, one row a group; and the paper's change in a year."""
+    rows = measured.ageing
+    if not rows:
+        return None
+    with figure(NARROW, 22 + 5.2 * len(rows)) as drawn:
+        ax = drawn.add_subplot()
+        for k, (_, _, _, change, low, high, paper) in enumerate(rows):
+            if low is not None and high is not None:
+                ax.plot([low, high], [k, k], color=INK, lw=0.9, marker="|", ms=4)
+            ax.plot(change, k, ls="", marker="o", color=INK, ms=3.6, label="measured" if k == 0 else None)
+            if paper is not None:
+                first = all(row[6] is None for row in rows[:k])
+                ax.plot(
+                    [-paper, paper],
+                    [k, k],
+                    ls="",
+                    marker=MARKERS[3],
+                    color=INK,
+                    mfc="white",
+                    ms=4.2,
+                    label="paper, one year (sign not given)" if first else None,
+                )
+        ax.axvline(0, color=INK, lw=0.6)
+        ax.set_yticks(range(len(rows)), [_short(row) for row in rows])
+        ax.set(xlabel="change of sensitivity  (%)", ylim=(len(rows) - 0.4, -0.6))
+        ax.grid(visible=False, axis="y")
+        drawn.legend(loc="outside upper left", ncols=2, handletextpad=0.2)
+        return Plot(svg(drawn), wide=False)
+
+
+def _short(row: tuple[Any, ...]) -> str:
+    return f"{row[0]}, {row[1]:g} kPa, {row[2]}".replace("$", r"\$")

@@ -19,7 +19,7 @@ from pneutouch.schemas.shape import (
 from pneutouch.schemas.typed import typed
 from pneutouch.schemas.written.parts import contact
 from pneutouch.spec.campaign import Rig, RunKind
-from pneutouch.workflows.plan.steps import StepRecord
+from pneutouch.workflows.plan import StepRecord
 
 _KIND: Schema = {"enum": list(RunKind.__args__)}  # type: ignore[attr-defined]
 

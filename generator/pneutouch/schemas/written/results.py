@@ -2,7 +2,7 @@
 
 from typing import get_args
 
-from pneutouch.bench.simulate.parameter import ParameterRecord
+from pneutouch.bench.simulate.scatter import ParameterRecord
 from pneutouch.schemas.shape import (
     FLAG,
     NUMBER,

@@ -1,5 +1,9 @@
-"""A calibration as files: its folder, and the calibration file that a design names."""
+"""A calibration as files: its folder, and the calibration file that a design names.
 
+The place of a calibration in the user's folder, checked before anything is computed for it.
+"""
+
+import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,21 +13,72 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.bench.calibrate.goodness import ResponseGap
 from pneutouch.bench.calibrate.identify import UNSEEN
 from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, KEYS, MODULUS, NAMES, OFFSET, WALL, outside_value
-from pneutouch.bench.calibrate.response import ResponseGap
 from pneutouch.catalogue import KINDS
 from pneutouch.errors import InputError
 from pneutouch.formats import format_of, versioned
-from pneutouch.output.files import check_writable, json_bytes, write_folder
-from pneutouch.output.manifest import with_manifest
-from pneutouch.report.residuals import residual_chart
+from pneutouch.output.files import check_writable, json_bytes, with_manifest, write_folder
+from pneutouch.report.fit_charts import residual_chart
 from pneutouch.rounding import rounded
+from pneutouch.spec.calibration import SensorCalibration
+from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
+from pneutouch.spec.values import NAME_RULE, plain_name
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.calibrate.fit import Calibration
-from pneutouch.workflows.calibrate.place import check_place, taken
 from pneutouch.workflows.coupons import MeasuredProfile, write_profiles
+
+_NO_CALIBRATION = "none"
+"""Name of a calibration that leaves the calibration of a design out."""
+
+
+def check_place(name: str, root: Path) -> Path:
+    """The file ``root/calibrations/name.toml`` of a calibration.
+
+    Raises InputError for a bad name, for a place that something other than a file has, and for a folder that cannot be
+    written.
+    """
+    # DESIGN@NAME is a path where it ends with .toml.
+    if plain_name(name, key="save") == _NO_CALIBRATION or name.endswith(".toml"):
+        remedy = f"{NAME_RULE}; not {_NO_CALIBRATION}, and not ending with .toml"
+        raise InputError("cannot be the name of a calibration", key="save", value=name, remedy=remedy)
+    path = root / KINDS["calibrations"].folder / f"{name}.toml"
+    if path.is_symlink() or (path.exists() and not path.is_file()):
+        raise InputError("is no file of its own", file=path, remedy="move it away or give another `save`")
+    parent = next(one for one in path.absolute().parents if one.exists())
+    if not parent.is_dir():
+        raise InputError(f"{parent} is not a folder", file=path, remedy="move it away: it must be a folder")
+    if not os.access(parent, os.W_OK | os.X_OK):
+        raise InputError(f"{parent} cannot be written", file=path, remedy="take a user's folder you may write to")
+    return path
+
+
+def check_unlike(path: Path, digest: str, names: Sequence[str], hold_out_kPa: Sequence[float]) -> None:
+    """Raise InputError where the file is there and cannot be the calibration that is to be made.
+
+    It can be where its campaign has the ``digest``, and ``names`` were fitted and ``hold_out_kPa`` were held out.
+    """
+    if not path.is_file():
+        return
+    try:
+        there = KINDS["calibrations"].validate(read_toml(path), str(path))
+    except InputError:
+        raise taken(path) from None
+    assert isinstance(there, SensorCalibration)
+    held_kPa = [] if there.response is None else there.response.held_out_pressures_kPa
+    fitted = {parameter.key for parameter in there.parameters if parameter.fitted}
+    requested = {KEYS[NAMES.index(name)] for name in names}
+    if there.source.digest != digest or fitted != requested or held_kPa != list(hold_out_kPa):
+        raise taken(path)
+
+
+def taken(path: Path) -> InputError:
+    """The error of a name that another calibration has."""
+    remedy = "give another `save`, or `replace` to replace it"
+    return InputError("there is a calibration of this name, of other content", file=path, remedy=remedy)
+
 
 _CHART = (160.0, 110.0)
 """Width and height of the residual chart, mm."""

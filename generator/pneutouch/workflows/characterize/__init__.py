@@ -1,9 +1,18 @@
 """Measured data to figures, compared with the predicted ones."""
 
-from pneutouch.workflows.characterize.load import CampaignData, Progress, load_curves, recognise
+from pneutouch.workflows.characterize.campaign import CharacterizationResult, characterize, sound
+from pneutouch.workflows.characterize.load import (
+    CampaignData,
+    Progress,
+    Reading,
+    load_curves,
+    parse_columns,
+    read_as,
+    recognise,
+    same_failures,
+    undisputed,
+)
 from pneutouch.workflows.characterize.predicted import answers
-from pneutouch.workflows.characterize.reading import Reading, parse_columns, read_as, same_failures, undisputed
-from pneutouch.workflows.characterize.run import CharacterizationResult, characterize, sound
 
 __all__ = [
     "CampaignData",

@@ -1,23 +1,35 @@
-"""The prediction for each group of runs, and the plausibility of the files against it."""
+"""The prediction for each group of runs, and the plausibility of the files against it.
+
+Verdicts on measured figures: against a target, and of one age against another.
+
+Document that ``characterize`` prints: every figure measured and predicted, and everything that is doubtful.
+"""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import groupby
+from typing import Any
+
+import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.figure import line_figures
-from pneutouch.bench.plausible import ExpectedRun
-from pneutouch.bench.summary import RunGroup
+from pneutouch.bench.figures import BY_KEY, RunGroup, line_figures
+from pneutouch.bench.record import MeasuredCurve
+from pneutouch.bench.run_checks import ExpectedRun
+from pneutouch.bench.statistics import LEVEL, Estimate
 from pneutouch.catalogue import DesignSource, Library
 from pneutouch.errors import PneutouchError
+from pneutouch.evaluation.comparison import figures_at
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
-from pneutouch.evaluation.read_at import figures_at
 from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
-from pneutouch.report.measured import GroupComparison
+from pneutouch.report.measured import CampaignReport, GroupComparison, Verdict
 from pneutouch.spec.campaign import AS_DESIGNED
+from pneutouch.spec.material import Material
 from pneutouch.spec.read import Changes
+from pneutouch.spec.target import Target, TargetFigures
 from pneutouch.units import KPA
 
 _OF_STATE = ("sensitivity_kPa_per_N", "stiffness_N_per_mm")
@@ -133,3 +145,186 @@ def _figures(
         scale = 0.0 if ends is None else value / ends["value"]
         predictions[key] = (value, None, None) if ends is None else (value, scale * ends["low"], scale * ends["high"])
     return predictions
+
+
+_INFINITE = float("inf")
+
+_SAME_KPA = 1e-6
+
+_YEAR = 300.0, 430.0
+"""Ages in days that are compared with the paper's change in a year."""
+
+
+def verdicts(target: Target, groups: Sequence[RunGroup]) -> tuple[Verdict, ...]:
+    """Every requirement of a target against every group it applies to; a size is not measured here.
+
+    A requirement that no group measures is not decided.
+    """
+    figures = target.target
+    outcomes = []
+    for what, key, low, high, text in _requirements(figures):
+        only_kPa = figures.driving_pressure_kPa
+        answers = [
+            group
+            for group in groups
+            if key in group.figures
+            and (only_kPa is None or np.isclose(only_kPa, group.key.driving_pressure_kPa, atol=_SAME_KPA))
+        ]
+        for group in answers:
+            where = f"{group.key.resin}, {group.key.age}, {group.key.driving_pressure_kPa:g} kPa"
+            estimate = group.figures[key]
+            outcomes.append(Verdict(f"{what}, {where}", text, _interval(estimate), _passed(estimate, low, high)))
+        if not answers:
+            where = "" if only_kPa is None else f", {only_kPa:g} kPa"
+            outcomes.append(Verdict(f"{what}{where}", text, "not measured", None))
+    return tuple(outcomes)
+
+
+def _requirements(figures: TargetFigures) -> list[tuple[str, str, float, float, str]]:
+    """The requirements: name, figure, least, most, in words."""
+    rows = []
+    if (s := figures.sensitivity_kPa_per_N) is not None:
+        part = figures.tolerance_percent / 100
+        text = f"{s:g} kPa/N within {figures.tolerance_percent:g} %"
+        rows.append(("Sensitivity", "sensitivity_kPa_per_N", s * (1 - part), s * (1 + part), text))
+    if (f := figures.force_range_N) is not None:
+        rows.append(("Force range", "force_range_N", f, _INFINITE, f"at least {f:g} N"))
+    if (k := figures.stiffness_least_N_per_mm) is not None:
+        rows.append(("Stiffness", "stiffness_N_per_mm", k, _INFINITE, f"at least {k:g} N/mm"))
+    if (k := figures.stiffness_most_N_per_mm) is not None:
+        rows.append(("Stiffness", "stiffness_N_per_mm", 0.0, k, f"at most {k:g} N/mm"))
+    return rows
+
+
+def _interval(estimate: Estimate) -> str:
+    if estimate.low is None or estimate.high is None:
+        return f"{estimate.value:.4g} (one run: no interval)"
+    remark = "" if estimate.over == "specimens" else ", this specimen alone"
+    return f"{estimate.value:.4g} ({estimate.low:.4g} to {estimate.high:.4g}{remark})"
+
+
+def _passed(estimate: Estimate, low: float, high: float) -> bool | None:
+    """True if the whole interval lies inside, False if it lies outside; None if it lies on both sides, or there is
+    none."""
+    if estimate.low is None or estimate.high is None:
+        return None
+    if low <= estimate.low and estimate.high <= high:
+        return True
+    return False if estimate.high < low or estimate.low > high else None
+
+
+AgeingChange = tuple[str, float, str, float, float | None, float | None, float | None]
+
+
+def ageing(groups: Sequence[RunGroup], library: Library) -> tuple[AgeingChange, ...]:
+    """Change of the sensitivity since fresh, in percent of the aged one as in the paper's Supplement E.
+
+    Resin, pressure, age, change with the ends of its 95 % interval, and the paper's change in a year where it measured
+    one.
+    """
+    known = [group for group in groups if "sensitivity_kPa_per_N" in group.figures]
+    by_sensor: Callable[[RunGroup], tuple[str, float]] = lambda group: (group.key.resin, group.key.driving_pressure_kPa)  # noqa: E731
+    changes: list[AgeingChange] = []
+    for (resin, pressure), some in groupby(sorted(known, key=by_sensor), key=by_sensor):
+        fresh, *aged = sorted(some, key=lambda group: group.key.age_days)
+        if fresh.key.age_days == 0:
+            for group in aged:
+                published = (
+                    _published_sensitivity(resin, library) if _YEAR[0] <= group.key.age_days <= _YEAR[1] else None
+                )
+                changes.append((resin, pressure, group.key.age, *_change(fresh, group), published))
+    return tuple(changes)
+
+
+def _published_sensitivity(resin: str, library: Library) -> float | None:
+    if resin == AS_DESIGNED:
+        return None
+    material: Material = library.load("materials", resin)
+    measured = material.measured
+    change = None if measured is None else measured.sensitivity_change_one_year_percent
+    return None if change is None else change.nominal
+
+
+def _change(fresh: RunGroup, aged: RunGroup) -> tuple[float, float | None, float | None]:
+    """Change in percent with its ends; the halves of both intervals are added as squares."""
+    new, old = fresh.figures["sensitivity_kPa_per_N"], aged.figures["sensitivity_kPa_per_N"]
+    value = 100 * (old.value - new.value) / old.value
+    if new.high is None or old.high is None:
+        return value, None, None
+    half = (
+        100
+        * float(np.hypot((new.high - new.value) / new.value, (old.high - old.value) / old.value))
+        * new.value
+        / old.value
+    )
+    return value, value - half, value + half
+
+
+_INJECTION = ("sensor", "figure", "value", "standard_error", "unit")
+_CHANGE = ("sensitivity_change_percent", "low", "high", "published_change_one_year_percent")
+_AGEING = ("resin", "driving_pressure_kPa", "age", *_CHANGE)
+_VERDICT = ("what", "required", "measured", "passed")
+_OF_RUN = ("file", "kind", "sensor", "resin", "run", "driving_pressure_kPa", "age_days")
+
+
+def document(measured: CampaignReport) -> dict[str, Any]:
+    """A campaign as plain data."""
+    campaign = measured.campaign
+    return {
+        "title": campaign.title,
+        "lab": campaign.lab,
+        "simulated": campaign.simulated,
+        "design": measured.scene.name,
+        "input_hash": measured.input_hash,
+        "model": measured.model,
+        "level": LEVEL,
+        "groups": [_group(comparison) for comparison in measured.comparisons],
+        "runs": [_run(*of) for b in measured.comparisons for of in zip(b.group.curves, b.group.each, strict=True)],
+        "injections": [dict(zip(_INJECTION, row, strict=True)) for row in measured.injections],
+        "ageing": [dict(zip(_AGEING, row, strict=True)) for row in measured.ageing],
+        "target": [{key: getattr(v, key) for key in _VERDICT} for v in measured.verdicts],
+        "questions": [{"file": file, "question": text} for file, text in measured.questions],
+        "failures": [{"file": file, "message": text} for file, text in measured.failures],
+    }
+
+
+def _group(comparison: GroupComparison) -> dict[str, Any]:
+    group = comparison.group
+    return {
+        "resin": group.key.resin,
+        "age": group.key.age,
+        "driving_pressure_kPa": group.key.driving_pressure_kPa,
+        "sensors": group.sensors,
+        "files": [curve.run.file for curve in group.curves],
+        "why_not_predicted": comparison.why or None,
+        "figures": {key: _figure(key, estimate, comparison) for key, estimate in group.figures.items()},
+    }
+
+
+def _figure(key: str, estimate: Estimate, comparison: GroupComparison) -> dict[str, Any]:
+    figure: dict[str, Any] = {
+        "value": estimate.value,
+        "low": estimate.low,
+        "high": estimate.high,
+        "unit": BY_KEY[key].unit,
+        "specimens": estimate.specimens,
+        "runs": estimate.runs,
+        "interval_over": estimate.over or None,
+    }
+    if key in comparison.predicted:
+        value, low, high = comparison.predicted[key]
+        off = 100 * (estimate.value / value - 1) if value else None
+        figure["predicted"] = {"value": value, "low": low, "high": high, "measured_off_percent": off}
+    return figure
+
+
+def _run(curve: MeasuredCurve, values: dict[str, float]) -> dict[str, Any]:
+    return {
+        **{key: getattr(curve.run, key) for key in _OF_RUN},
+        "points": len(curve.force) - 1,
+        "figures": dict(values),
+        "warnings": [
+            {"start_s": round(d.start, 4), "end_s": round(d.end, 4), "why": d.why, "used": d.used, "kind": d.kind}
+            for d in curve.warnings
+        ],
+    }

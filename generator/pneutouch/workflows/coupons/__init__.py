@@ -1,5 +1,5 @@
 """Prints that measure a machine, a resin and a leak."""
 
-from pneutouch.workflows.coupons.profile import MeasuredProfile, write_profiles
+from pneutouch.workflows.coupons.results import MeasuredProfile, write_profiles
 
 __all__ = ["MeasuredProfile", "write_profiles"]

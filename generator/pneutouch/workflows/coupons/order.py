@@ -1,19 +1,77 @@
-"""Order of coupons: those that the user asked for, each on its machine and in its material."""
+"""Order of coupons: those that the user asked for, each on its machine and in its material.
 
+Mixes of two resins in known fractions, to be printed as coupons.
+
+The results file to fill in: every nominal listed, every reading empty.
+"""
+
+import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
+
+from pydantic import BaseModel
 
 from pneutouch.body import Solid
 from pneutouch.catalogue import Library, ResolvedDesign, load_scene
-from pneutouch.catalogue.runs import cannot_run
+from pneutouch.catalogue.mixture import mixed_material, mixing
+from pneutouch.catalogue.printers import cannot_run
 from pneutouch.errors import InputError, nearest
 from pneutouch.parts.coupons import COUPONS, Coupon, CouponContext, Nominal
-from pneutouch.parts.mould.open_mould import open_mould
-from pneutouch.spec.design import Membrane, Print
+from pneutouch.parts.mould.size import open_mould
+from pneutouch.spec.coupon import CouponResults
+from pneutouch.spec.design import Membrane, Mould, Print
+from pneutouch.spec.fields import table_of
+from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
-from pneutouch.spec.mould import Mould
 from pneutouch.spec.printer import Printer
-from pneutouch.workflows.coupons.blends import CouponMix, blends
+from pneutouch.spec.toml_text import key_text, value_text
+from pneutouch.wording import counted
+
+FRACTIONS = (0.0, 0.03, 0.06, 0.1, 0.15, 0.2, 0.27, 0.35)
+"""Volume fractions of the stiff resin that are printed: our own choice for TangoPlus with VeroClear, whose curve ends
+at 35.6 %. By each curve of that pair the modulus rises by less than 2.5 times from one to the next, as far as the curve
+is known (docs/background/mixing.md)."""
+
+
+@dataclass(frozen=True, slots=True)
+class CouponMix:
+    """One fraction of a pair ``SOFT+STIFF`` and its resins."""
+
+    pair: str
+    fraction: float
+    material: Material
+
+    @property
+    def about(self) -> str:
+        """Name of its pieces: ``TangoPlus+VeroClear-15``."""
+        return f"{self.pair}-{100 * self.fraction:g}"
+
+
+def resins_of(pair: str, *, file: str | None = None, key: str) -> tuple[str, str]:
+    """The soft and the stiff resin of ``SOFT+STIFF``. Raises InputError for anything else."""
+    names = [name.strip() for name in pair.split("+")]
+    if len(names) != 2 or not all(names) or names[0] == names[1]:
+        raise InputError("write two resins, SOFT+STIFF, such as TangoPlus+VeroClear", file=file, key=key, value=pair)
+    return names[0], names[1]
+
+
+def blends(pair: str, library: Library) -> list[CouponMix]:
+    """Mixes of a pair to print, up to the end of its mixing curve or to the stiffness that a membrane may have.
+
+    Raises InputError if there is no curve."""
+    soft, stiff = resins_of(pair, key="mixing")
+    for name in (soft, stiff):
+        library.load("materials", name, key="mixing")
+    top = mixing(soft, stiff, library, key="mixing").wall_top
+    grades = [
+        Grade.model_validate({"from": soft, "to": stiff, "fraction": fraction})
+        for fraction in FRACTIONS
+        if fraction <= top
+    ]
+    pair = f"{soft}+{stiff}"
+    return [CouponMix(pair, g.fractions[0], mixed_material(g, library, file=None, key="mixing")) for g in grades]
+
 
 MOST_COPIES = 100
 
@@ -237,3 +295,94 @@ def _check_any(options: CouponOptions, families: list[Coupon], items: list[Coupo
             )
     if not items:
         raise InputError("nothing to print", remedy="give another `only`")
+
+
+_HEAD = """\
+# Results of coupons. Fill in what was measured, leave [] for what was not, then:
+#   pneutouch coupons --results FILE    (the path of this file)
+# Two readings at least in a list that is filled. Numbers have a point: [27.5, 28.0]
+"""
+
+
+def results_template(order: CouponOrder) -> str:
+    """TOML that becomes valid once lab and date are given."""
+    blocks = [_HEAD + '# lab = "who measured"\n# date = 2026-11-21']
+    filed: set[tuple[str, float]] = set()
+    for item in order.items:
+        if item.blend is not None:
+            key = item.blend.pair, item.blend.fraction
+            blocks.append(_mixed(item, first=key not in filed))
+            filed.add(key)
+            continue
+        path = [item.coupon.name, item.about]
+        if item.coupon.belongs == "printer":
+            path.insert(1, item.printer_name)
+        blocks.append(_table(item, ".".join(key_text(step) for step in path)))
+    return "\n\n".join(blocks) + "\n"
+
+
+def _mixed(item: CouponItem, *, first: bool) -> str:
+    """A coupon of one fraction: hardness stands in the fraction's own table, dumbbells in one below."""
+    assert item.blend is not None
+    path = f"mixing.{key_text(item.blend.pair)}"
+    lines = [f"[[{path}]]", f"fraction = {value_text(item.blend.fraction)}"] if first else []
+    if item.coupon.name != "puck":
+        return "\n".join([*lines, *([""] if lines else []), _table(item, f"{path}.{item.coupon.name}")])
+    hardness = item.nominals[0]
+    return "\n".join([*lines, _empty(hardness, item.copies)])
+
+
+def _table(item: CouponItem, path: str) -> str:
+    nominals = item.nominals
+    model = _model(item.coupon.name)
+    lines = [f"# {item.coupon.title}: {item.copies} printed", f"[{path}]", *_settings(model)]
+    features = list(dict.fromkeys(nominal.feature for nominal in nominals))
+    if len(features) < len(nominals):
+        lines.append("# came_out = false, in place of readings, where it is missing, broken, blocked or grown together")
+        for feature in features:
+            lines += _rows(feature, [nominal for nominal in nominals if nominal.feature == feature])
+        return "\n".join(lines)
+    if not item.coupon.each:
+        return "\n".join([*lines, *(_empty(nominal, item.copies) for nominal in nominals)])
+    each = table_of(model, item.coupon.each)
+    assert each is not None
+    for _ in range(item.copies):
+        lines += ["", f"[[{path}.{item.coupon.each}]]", *(_reading(each, nominal) for nominal in nominals)]
+    return "\n".join(lines)
+
+
+def _settings(model: type[BaseModel]) -> list[str]:
+    """Plain numbers that state how it was measured, at their defaults."""
+    lines = []
+    for key, info in model.model_fields.items():
+        if isinstance(info.default, float):
+            lines += [
+                *(f"# {line}" for line in textwrap.wrap(info.description or "", 96)),
+                f"{key} = {value_text(info.default)}",
+            ]
+    return lines
+
+
+def _reading(model: type[BaseModel], nominal: Nominal) -> str:
+    default: Any = model.model_fields[nominal.feature].default
+    return f"{nominal.feature} = {value_text(default)}" if isinstance(default, float) else _empty(nominal, 1)
+
+
+def _empty(nominal: Nominal, copies: int) -> str:
+    drawn = "" if nominal.value is None else f"nominal {nominal.value:.4g} {nominal.unit}; "
+    each = f" on each of {copies}" if copies > 1 else ""
+    return f"{nominal.feature} = []  # {drawn}{counted(nominal.readings, 'reading')}{each}"
+
+
+def _rows(feature: str, nominals: list[Nominal]) -> list[str]:
+    rows = [f"  {{ nominal_mm = {value_text(nominal.value)}, measured_mm = [] }}," for nominal in nominals]
+    return [f"{key_text(feature)} = [", *rows, "]"]
+
+
+def _model(coupon: str) -> type[BaseModel]:
+    """The model of one table of a coupon in the results file."""
+    field = next(name for name, info in CouponResults.model_fields.items() if coupon in (name, info.alias))
+    kind: Any = CouponResults.model_fields[field].annotation
+    while not (isinstance(kind, type) and issubclass(kind, BaseModel)):
+        kind = kind.__args__[-1]
+    return kind

@@ -1,22 +1,229 @@
-"""Measured coupons to figures, and to profiles of the lab's own."""
+"""Measured coupons to figures, and to profiles of the lab's own.
 
-from collections.abc import Mapping
+The lab's own mixing curve, from coupons of two resins mixed in known fractions.
+
+A lab's own profile: the shipped one with measured numbers in place of quoted ones.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from pneutouch.bench.finding import CouponFindings, ReadingSource
-from pneutouch.bench.machine import gauges
-from pneutouch.bench.resin import dumbbell, puck
-from pneutouch.bench.volume import leak, volume
+from pneutouch.bench.coupon_resin import MixModulus, dumbbell, puck, stiffness
+from pneutouch.bench.coupons import (
+    MARK,
+    CouponFindings,
+    MeasuredFigure,
+    ProfileChange,
+    ReadingSource,
+    gauges,
+    leak,
+    volume,
+)
 from pneutouch.catalogue import KINDS, Library, load_scene, user_folder
+from pneutouch.catalogue.mixture import mixing
 from pneutouch.errors import InputError
-from pneutouch.spec.coupon import CouponResults, FeatureGauge, read_results
+from pneutouch.output.files import replace_files
+from pneutouch.spec.coupon import CouponResults, FeatureGauge, MixedCoupons, read_results
 from pneutouch.spec.material import Material
-from pneutouch.spec.names import file_name
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import read_toml
-from pneutouch.workflows.coupons.mixing import local_curve
-from pneutouch.workflows.coupons.profile import MeasuredProfile, base_file, local_profiles, write_profiles
+from pneutouch.spec.toml_text import toml_text
+from pneutouch.spec.values import file_name
+from pneutouch.workflows.coupons.order import resins_of
+
+HEAD = "# Written by pneutouch coupons"
+"""First words of every profile that is ours to overwrite."""
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredProfile:
+    """A profile to write: its file, its text, and its changes."""
+
+    path: Path
+    text: str
+    changes: list[dict[str, Any]]
+
+
+def base_file(kind: str, name: str, library: Library) -> Path:
+    """The first profile of a known name that the command did not write; its own where there is no other."""
+    candidates = [root / KINDS[kind].folder / f"{name}.toml" for root in library.folders]
+    there = [path for path in candidates if path.is_file()]
+    return next((path for path in there if not _is_ours(path)), there[0])
+
+
+def local_profiles(
+    changes: Sequence[ProfileChange], source: ReadingSource, library: Library, out: Path
+) -> list[MeasuredProfile]:
+    """One profile for each material and printer that something was measured of, checked but not written.
+
+    Quantities that an earlier run of the command measured and this one did not are kept. Raises InputError if a file
+    of that name was not written by the command.
+    """
+    profiles = []
+    for kind, name in dict.fromkeys((change.kind, change.name) for change in changes):
+        path = out / KINDS[kind].folder / f"{name}.toml"
+        earlier = _earlier(path, [change for change in changes if (change.kind, change.name) == (kind, name)])
+        content = read_toml(base_file(kind, name, library))
+        _carry(earlier, content)
+        change_list = [_put(content, change, path) for change in changes if (change.kind, change.name) == (kind, name)]
+        KINDS[kind].validate(content, str(path))
+        profiles.append(
+            MeasuredProfile(
+                path, head(source, "the shipped profile with the measured numbers") + toml_text(content), change_list
+            )
+        )
+    return profiles
+
+
+def head(source: ReadingSource, what: str) -> str:
+    """The first lines of a profile that the command writes."""
+    return (
+        f"{HEAD} from {source.where} ({source.lab}, {source.date.isoformat()}): {what}.\n"
+        "# Edit this line away and the command will no longer overwrite the file; delete the file to go back.\n"
+    )
+
+
+def write_profiles(profiles: Sequence[MeasuredProfile]) -> None:
+    """Write every profile, or none. Raises InputError if a folder cannot be written."""
+    replace_files({profile.path: profile.text.encode() for profile in profiles})
+
+
+def _is_ours(path: Path) -> bool:
+    with path.open(encoding="utf-8", errors="replace") as file:
+        return file.read(len(HEAD)) == HEAD
+
+
+def _earlier(path: Path, changes: Sequence[ProfileChange]) -> dict[str, Any]:
+    """The content of the file that the command wrote before; empty if there is none."""
+    there = check_ours(path, ", ".join(".".join(change.keys) for change in changes))
+    return read_toml(path) if there else {}
+
+
+def check_ours(path: Path, keys: str) -> bool:
+    """True if the command wrote the file. Raises InputError if it did not; ``keys`` are the entries to write."""
+    if not (path.exists() or path.is_symlink()):
+        return False
+    if path.is_file() and not path.is_symlink() and _is_ours(path):
+        return True
+    raise InputError(
+        "was not written by pneutouch coupons, so it is left as it is",
+        file=path,
+        remedy=f"put {keys} into it by hand, move it away, or give another folder with `out`",
+    )
+
+
+def _carry(earlier: dict[str, Any], content: dict[str, Any]) -> None:
+    """Take over the quantities whose source is a coupon."""
+    for key, value in earlier.items():
+        if not isinstance(value, dict):
+            continue
+        if MARK in str(value.get("source", "")):
+            content[key] = value
+        elif isinstance(content.get(key), dict):
+            _carry(value, content[key])
+
+
+def _put(content: dict[str, Any], change: ProfileChange, path: Path) -> dict[str, Any]:
+    """Put a quantity in its place; its old and new values, as data."""
+    *tables, last = change.keys
+    owner = content
+    for table in tables:
+        owner = owner[table]
+    before = owner.get(last)
+    owner[last] = change.content
+    return {"file": str(path), "key": ".".join(change.keys), "before": before, "after": change.content}
+
+
+def local_curve(
+    pair: str,
+    measured: Sequence[MixedCoupons],
+    source: ReadingSource,
+    library: Library,
+    out: Path,
+    results: CouponFindings,
+) -> MeasuredProfile | None:
+    """The lab's mixing curve of a pair, checked but not written; None if nothing was measured.
+
+    Figures and notes go to ``results``. Raises InputError for unknown resins, for moduli that do not rise with the
+    fraction, and where a curve of that name was not written by the command.
+    """
+    where = f"{source.where}: mixing"
+    soft_name, stiff_name = resins_of(pair, file=source.where, key="mixing")
+    pair = f"{soft_name}+{stiff_name}"
+    soft: Material = library.load("materials", soft_name, file=source.where, key="mixing")
+    stiff: Material = library.load("materials", stiff_name, file=source.where, key="mixing")
+    if soft.kind != "elastomer":
+        raise InputError(f"{where}.{pair}: {soft.label} is rigid; write the soft resin first, SOFT+STIFF")
+    known = stiffness(pair, soft, stiff, measured, source)
+    if not known:
+        return None
+    if known[-1].fraction == 0:
+        raise InputError(
+            f"{where}.{pair}: readings at fraction = 0 alone make no curve; enter them as {soft_name}'s own"
+        )
+    content = _curve(pair, soft_name, stiff_name, known, source)
+    path = out / KINDS["mixing"].folder / f"{pair}.toml"
+    check_ours(path, f"points of {', '.join(f'{point.fraction:g}' for point in known)}")
+    KINDS["mixing"].validate(content, str(path))
+    results.figures += [
+        MeasuredFigure(
+            f"{pair}, {100 * point.fraction:g} %",
+            f"shear modulus, MPa ({point.by})",
+            point.modulus,
+            point.spread,
+            point.count,
+        )
+        for point in known
+    ]
+    results.notes.append(
+        f"{pair}: elongation at break was not measured; add elongation_at_break_percent to the points, or no "
+        "prediction "
+        "has a break strain of a mixed wall"
+    )
+    text = head(replace(source, where=file_name(Path(source.where).name)), "the mixing curve as measured") + toml_text(
+        content
+    )
+    return MeasuredProfile(path, text, _changes(path, content, pair, library))
+
+
+def _curve(pair: str, soft: str, stiff: str, known: Sequence[MixModulus], source: ReadingSource) -> dict[str, Any]:
+    points = [point.content(source) for point in known]
+    if known[0].fraction > 0:
+        points.insert(0, {"fraction": 0.0, "material": soft, "source": "the soft resin as the catalogue has it"})
+    return {
+        "title": f"{soft} with {stiff}, measured",
+        "soft": soft,
+        "stiff": stiff,
+        "assumption": f"{MARK} of known fractions at {len(known)} points, {source.lab}, {source.date.isoformat()}; "
+        "a monotone curve between them",
+        "points": points,
+    }
+
+
+def _changes(path: Path, content: dict[str, Any], pair: str, library: Library) -> list[dict[str, Any]]:
+    """Every point, compared with the curve that was in force before."""
+    before = None
+    if pair in library.paths("mixing"):
+        before = mixing(content["soft"], content["stiff"], library)
+    rows = []
+    for point in content["points"]:
+        if "shear_modulus_MPa" not in point:
+            continue
+        fraction = point["fraction"]
+        old = None
+        if before is not None and fraction <= before.fraction[-1]:
+            old = {"value": float(f"{float(before.modulus_at(fraction)):.4g}")}
+        rows.append(
+            {
+                "file": str(path),
+                "key": f"shear_modulus_MPa at {100 * fraction:g} %",
+                "before": old,
+                "after": {"value": point["shear_modulus_MPa"], "source": point["source"]},
+            }
+        )
+    return rows
 
 
 def enter_results(path: Path, out: Path | None = None, library: Library | None = None) -> dict[str, Any]:

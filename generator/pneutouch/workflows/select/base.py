@@ -1,22 +1,103 @@
-"""The base of a selection: the design that gives everything that the target does not."""
+"""The base of a selection: the design that gives everything that the target does not.
+
+Two base resins to mix: resolved, checked against the printer, and offered to the search as resins.
+
+One gauge that a selection considered, and why it is chosen or not.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from pneutouch.catalogue import DEFAULT, DesignSource, Library, ResolvedDesign, load_scene
-from pneutouch.catalogue.runs import casting_missing, made_by, makers, uncast
-from pneutouch.errors import InputError, PneutouchError
+from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixed_material, mixing
+from pneutouch.catalogue.printers import casting_missing, made_by, makers, uncast
+from pneutouch.errors import InputError, PneutouchError, shown
+from pneutouch.mechanics.atlas_states import resin_outside_atlas
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.selection.mixes import levels
+from pneutouch.selection.problem import CandidateResin
 from pneutouch.spec.design import CALIBRATION, DesignFile
+from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.part import OnePiece, Sleeve
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import parse_changes
 from pneutouch.spec.target import Target
-from pneutouch.workflows.select.mix import USUAL, ResinPair, pair_of
+
+USUAL = "TangoPlus+VeroClear"
+"""The pair a grade is made of where none is named: the paper's resins."""
+
+
+@dataclass(frozen=True)
+class ResinPair:
+    """A soft and a stiff resin with their mixing curve. ``where`` names the file in messages."""
+
+    soft: str
+    stiff: str
+    law: ResolvedMixingCurve
+    library: Library
+    where: str
+
+    @property
+    def name(self) -> str:
+        """``SOFT+STIFF``, as a target names it."""
+        return f"{self.soft}+{self.stiff}"
+
+    def grade(self, *fractions: float) -> Grade:
+        """A constant mix of one fraction, or a grade of fractions at even knots from the pole to the rim."""
+        value = fractions[0] if len(fractions) == 1 else list(fractions)
+        return Grade.model_validate({"from": self.soft, "to": self.stiff, "fraction": value})
+
+    def material(self, grade: Grade) -> Material:
+        """The material of a grade."""
+        return mixed_material(grade, self.library, file=self.where)
+
+    def resin(self, fraction: float) -> CandidateResin:
+        """A constant mix as the search takes a resin."""
+        grade = self.grade(fraction)
+        material = self.material(grade)
+        sensor = material_sensor(material)
+        return CandidateResin(
+            grade.label, material, sensor.wall.shear_modulus, sensor.wall.break_stretch or np.inf, grade
+        )
+
+
+def pair_of(name: str, printer: Printer, library: Library, where: str, named: bool = True) -> ResinPair:
+    """The pair of ``SOFT+STIFF``. Raises InputError if a name is unknown or the printer does not hold both.
+
+    ``named`` is whether the user named the pair.
+    """
+    soft, stiff = (part.strip() for part in name.split("+"))
+    pair = ResinPair(soft, stiff, mixing(soft, stiff, library, file=where, key="given.mix"), library, where)
+    if printer.mode_for(pair.material(pair.grade(0.5 * pair.law.wall_top))) is None:
+        remedy = "name a pair that it holds with `mix`, or another printer with `profile`"
+        raise InputError(
+            f"given.mix = {shown(name)}{'' if named else ' (none was named)'}: the {printer.title} cannot mix "
+            f"{soft} with {stiff}; it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once; "
+            f"{remedy}",
+            file=where,
+        )
+    return pair
+
+
+def mix_resins(pair: ResinPair, ambient_pressure: float) -> tuple[tuple[CandidateResin, ...], dict[str, str]]:
+    """Mixes of a pair that the atlas covers, and why the others are left out."""
+    resins, out = [], {}
+    for fraction in levels(pair.law):
+        resin = pair.resin(round(float(fraction), 4))
+        why = resin_outside_atlas(material_sensor(resin.material).wall, ambient_pressure)
+        if why is None:
+            resins.append(resin)
+        else:
+            out[resin.name] = why
+    return tuple(resins), out
+
 
 _SEARCHED = {
     "membrane.inner_radius_mm": "given.inner_radius_mm (`inner_radius`)",
@@ -196,3 +277,28 @@ def _runs_none(printer: Printer, named: dict[str, Material], where: str, library
         takes.append(f"or give `processes` {' or '.join(processes)}")
     problem = f"the {printer.title} runs {'none of ' if named else ''}{', '.join(named) or 'no known elastomer'}"
     return InputError(problem, file=where, remedy="; ".join(takes) or "give another `profile`")
+
+
+ANY = "any"
+"""Stands for every gauge of the library."""
+
+
+@dataclass(frozen=True, slots=True)
+class GaugeTrial:
+    """A gauge by name; ``smallest_force_N`` by the best design's sensitivity, None if its noise is not known."""
+
+    name: str
+    title: str
+    chosen: bool
+    why: str
+    smallest_force_N: float | None = None
+
+    def document(self) -> dict[str, Any]:
+        """The trial as data."""
+        return {
+            "gauge": self.name,
+            "title": self.title,
+            "chosen": self.chosen,
+            "why": self.why,
+            "smallest_force_N": self.smallest_force_N,
+        }

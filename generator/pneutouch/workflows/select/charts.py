@@ -6,20 +6,18 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.catalogue import Library
-from pneutouch.evaluation.chart_data import ChartPoint, TradeOff, TuningChart, TuningCurve
-from pneutouch.evaluation.tuning import curve, interval
+from pneutouch.evaluation.charts import curve, interval
+from pneutouch.evaluation.sheet_data import ChartPoint, TradeOff, TuningChart, TuningCurve
 from pneutouch.output.files import replace_files
 from pneutouch.report.prose import front_error
-from pneutouch.report.tradeoff import tradeoff_chart
-from pneutouch.report.tuning import tuning_chart
+from pneutouch.report.tradeoff import tradeoff_chart, tuning_chart
 from pneutouch.selection import Candidate
-from pneutouch.selection.contact_front import contact_front
-from pneutouch.selection.front import TradeOffFront, front
+from pneutouch.selection.front import TradeOffFront, contact_front, front
 from pneutouch.selection.problem import SelectionProblem
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
-from pneutouch.workflows.select.contact import CandidateSolver, contact_text
-from pneutouch.workflows.select.run import SelectionRun
+from pneutouch.workflows.select.checks import CandidateSolver, contact_text
+from pneutouch.workflows.select.select import SelectionRun
 
 _SIZE = (130.0, 90.0)
 """Width and height of a chart, mm."""

@@ -6,28 +6,31 @@ from typing import Any
 import numpy as np
 
 from pneutouch.catalogue import Library, ResolvedDesign
+from pneutouch.catalogue.library import elastomers
 from pneutouch.errors import InputError
-from pneutouch.evaluation.elastomers import elastomers
+from pneutouch.evaluation.charts import in_resin
 from pneutouch.evaluation.evaluate import sensor_of
-from pneutouch.evaluation.variants import in_resin
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.limits import Limits
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import rating
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.parts import assemble
-from pneutouch.selection.grade_search import (
+from pneutouch.selection.candidates import evaluated
+from pneutouch.selection.graded import (
     GradeSearch,
     GradeTarget,
     GradeTrial,
     TrialReport,
+    UniformMembrane,
     cost,
     grade_search,
+    middle_wall,
+    nearest_fraction,
     shares,
+    trial_of,
 )
-from pneutouch.selection.graded import UniformMembrane, middle_wall, nearest_fraction, trial_of
 from pneutouch.selection.mixes import levels
-from pneutouch.selection.pool import evaluated
 from pneutouch.selection.problem import SelectionProblem
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
@@ -35,11 +38,9 @@ from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import assignments
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
-from pneutouch.workflows.select.base import base_scene, requested_pair, setting_changes
-from pneutouch.workflows.select.contact import other_contact, without_plate
-from pneutouch.workflows.select.mix import ResinPair
-from pneutouch.workflows.select.passing import judge, source_of
-from pneutouch.workflows.select.run import grade_text, problem_of
+from pneutouch.workflows.select.base import ResinPair, base_scene, requested_pair, setting_changes
+from pneutouch.workflows.select.checks import judge, other_contact, source_of, without_plate
+from pneutouch.workflows.select.select import grade_text, problem_of
 
 _LEVELS = 4
 """Fractions of the scan at pole and rim: moduli twice apart for TangoPlus and VeroClear, 16 trials."""

@@ -7,10 +7,10 @@ import numpy as np
 
 from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.rounding import tenths_below
-from pneutouch.selection.grade_search import GradeTrial, shares
+from pneutouch.selection.graded import GradeTrial, shares
 from pneutouch.units import KPA, ML
+from pneutouch.workflows.select.checks import write_assigned
 from pneutouch.workflows.select.graded import GradedSelectionRun
-from pneutouch.workflows.select.passing import write_assigned
 
 
 def graded_document(selection: GradedSelectionRun) -> dict[str, Any]:

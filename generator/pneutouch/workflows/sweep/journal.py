@@ -2,16 +2,26 @@
 
 A line is ``checksum json``. What does not agree with its checksum was torn by a kill or damaged since: it is dropped
 and its points are computed again.
+
+The work folder next to the output: one process at a time, and nothing left of it at the end.
 """
 
+from __future__ import annotations
+
+import contextlib
+import fcntl
 import json
 import os
+import shutil
+from io import FileIO
 from pathlib import Path
+from types import TracebackType
 from typing import Any
 
 from pneutouch.errors import InputError
 from pneutouch.output.files import digest, write_synced
 from pneutouch.spec.files import read_bytes
+from pneutouch.stopping import cleaned, uninterrupted
 from pneutouch.workflows.sweep.work import Record
 
 _CHECKSUM_DIGITS = 16
@@ -106,3 +116,132 @@ def _is_entry(content: Any) -> bool:
         and isinstance(record.get("values"), dict)
         for record in records
     )
+
+
+_LOCK, _JOURNAL, _FILES, _DATASET = "lock", "journal", "inputs", "dataset"
+_WRITTEN = {_LOCK, _JOURNAL, f"{_JOURNAL}.new", _FILES, _DATASET}
+
+
+class WorkFolder:
+    """``OUT.parts/``, held by a lock from entering to leaving the context.
+
+    The lock is the kernel's and ends with its process however that ends; the number in the file is for the message.
+    """
+
+    def __init__(self, out: Path) -> None:
+        """Raises InputError if ``out`` cannot be a dataset's file."""
+        check_output(out)
+        self.out, self.path = out, out.with_name(f"{out.name}.parts")
+        self.journal, self.files = self.path / _JOURNAL, self.path / _FILES
+        self._lock: FileIO | None = None
+        self._made: list[Path] = []
+
+    def __enter__(self) -> WorkFolder:
+        """Make and lock the folder. Raises InputError if it cannot be, or is held, or holds foreign files."""
+        try:
+            with uninterrupted():
+                self._enter()
+        except OSError as error:
+            raise InputError(
+                f"{self.path}: {error.strerror}", key="out", remedy="give a file where you may write"
+            ) from None
+        except KeyboardInterrupt:
+            cleaned(self._leave)
+            raise
+        return self
+
+    def _enter(self) -> None:
+        while self._lock is None:
+            self._made = self._made or [folder for folder in self.path.absolute().parents if not folder.exists()]
+            self.path.mkdir(parents=True, exist_ok=True)
+            foreign = sorted(path.name for path in self.path.iterdir() if path.name not in _WRITTEN)
+            if foreign:
+                raise InputError(
+                    f"{self.path} holds {foreign[0]}, which no sweep wrote", key="out", remedy="give another `out`"
+                )
+            self._lock = self._take()
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Let go of the lock; a folder without progress in it is removed."""
+        cleaned(self._leave)
+
+    def _leave(self) -> None:
+        if self._lock is None:
+            return
+        if not self.journal.exists() or self.journal.stat().st_size == 0:
+            self._clear()
+        self._lock.close()
+
+    def restart(self) -> None:
+        """Forget all progress."""
+        self.journal.unlink(missing_ok=True)
+
+    def finish(self, content: bytes | None) -> None:
+        """Put the dataset in its place, whole, then remove the folder; None leaves the dataset that is there."""
+        with uninterrupted():
+            self._put(content)
+
+    def _put(self, content: bytes | None) -> None:
+        if content is not None:
+            replace_whole(self.path / _DATASET, self.out, content)
+            _sync_folder(self.out.parent)
+        self.journal.unlink(missing_ok=True)
+
+    def _clear(self) -> None:
+        shutil.rmtree(self.files, ignore_errors=True)
+        for name in (_JOURNAL, f"{_JOURNAL}.new", _DATASET, _LOCK):
+            (self.path / name).unlink(missing_ok=True)
+        for folder in (self.path, *self._made):
+            with contextlib.suppress(OSError):
+                folder.rmdir()
+
+    def _take(self) -> FileIO | None:
+        """The lock, or None if its file was removed by a sweep that ended between opening and locking it."""
+        try:
+            file = FileIO(os.open(self.path / _LOCK, os.O_RDWR | os.O_CREAT, 0o644), "r+")
+        except FileNotFoundError:
+            return None
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if self._is_current(file):
+                file.truncate(0)
+                file.write(f"{os.getpid()}\n".encode())
+                return file
+        except BlockingIOError:
+            holder = file.read(20).decode(errors="replace").strip() or "another process"
+            file.close()
+            raise InputError(
+                f"{self.out}: process {holder} is sweeping into it",
+                key="out",
+                remedy="wait for it, or give another `out`",
+            ) from None
+        file.close()
+        return None
+
+    def _is_current(self, file: FileIO) -> bool:
+        try:
+            return os.path.samestat(os.fstat(file.fileno()), (self.path / _LOCK).stat())
+        except FileNotFoundError:
+            return False
+
+
+def check_output(out: Path) -> None:
+    """Raise InputError where ``out`` cannot be a dataset's file."""
+    if out.suffix != ".nc":
+        raise InputError(f"{out}: a dataset is a netCDF file", key="out", remedy="give a name that ends in .nc")
+    if out.is_symlink() or (out.exists() and not out.is_file()):
+        raise InputError(f"{out} is not a plain file", key="out", remedy="give the name of a file")
+    parent = next(path for path in out.absolute().parents if path.exists())
+    if not parent.is_dir() or not os.access(parent, os.W_OK | os.X_OK):
+        raise InputError(f"{parent} is no folder that you may write to", key="out", remedy="give a file in one")
+
+
+def _sync_folder(folder: Path) -> None:
+    """Make a rename in this folder last through a power cut."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

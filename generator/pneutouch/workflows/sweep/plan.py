@@ -1,17 +1,31 @@
-"""A plan: the varied fields of a design, their values, and the points of the sweep."""
+"""A plan: the varied fields of a design, their values, and the points of the sweep.
+
+A plan from a sweep file or from the flags of the command line.
+
+The kinds of value that a field of the design takes, for the axes of a sweep.
+"""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import Any, Literal, get_origin
+
+from pydantic.fields import FieldInfo
 
 from pneutouch.catalogue import DesignSource
+from pneutouch.catalogue.library import read_given
 from pneutouch.errors import InputError, nearest, shown
 from pneutouch.evaluation.evaluate import CLAMPS
 from pneutouch.mechanics import MODEL_CHOICES
-from pneutouch.mechanics.contact import CLOSURES
+from pneutouch.mechanics.membrane_contact import CLOSURES
 from pneutouch.mechanics.models import USUAL
 from pneutouch.spec.design import CALIBRATION, DesignFile
 from pneutouch.spec.fields import table_of
+from pneutouch.spec.files import design_inside
+from pneutouch.spec.over import MAX_VALUES, parse_over, spread
+from pneutouch.spec.read import Changes
+from pneutouch.spec.values import file_name, is_finite, name_of
 
 PRESSURES = "pneumatics.driving_pressures_kPa"
 """The one field that is a dimension of every sweep: a prediction gives all its states at once."""
@@ -123,3 +137,178 @@ def _check_key(where: str, key: str) -> None:
         raise InputError(f"unknown key.{nearest(field, table.model_fields)}", file=where, key=key)
     if table_name == "document":
         raise InputError("no prediction depends on it", file=where, key=key, remedy="sweep over another table")
+
+
+def _field(key: str) -> FieldInfo | None:
+    """The declaration of ``table.key``; None if there is none."""
+    table_name, _, name = key.partition(".")
+    table = table_of(DesignFile, table_name)
+    return None if table is None else table.model_fields.get(name)
+
+
+def takes_flags(key: str) -> bool:
+    """True if the field is true or false."""
+    field = _field(key)
+    return field is not None and field.annotation is bool
+
+
+def takes_infinity(key: str) -> bool:
+    """True if the field's number may be infinite."""
+    field = _field(key)
+    return field is not None and any(getattr(entry, "allow_inf_nan", False) for entry in field.metadata)
+
+
+def takes_words(key: str) -> bool:
+    """True if the field is one of a few words, or true or false."""
+    field = _field(key)
+    return field is not None and (field.annotation is bool or get_origin(field.annotation) is Literal)
+
+
+KEYS = ("design", "model", "closure", "clamp", "set", "grid", "point")
+"""Keys that a sweep file may hold."""
+
+_RANGE = {"from", "to", "count"}
+
+
+def plan_of_file(path: Path, changes: Changes | None = None, **options: str | None) -> SweepPlan:
+    """Read a sweep file; ``changes`` and ``options`` (model, closure, clamp) override its content.
+
+    Raises InputError naming file, key and value.
+    """
+    where, content = str(path), read_given(path, "give the path of a sweep file; a design to vary is given as `design`")
+    for key in content:
+        if key not in KEYS:
+            raise InputError(f"{key}: unknown key.{nearest(key, KEYS)}", file=where)
+    words = {key: _text(where, key, content[key]) for key in KEYS[:4] if key in content}
+    words |= {key: value for key, value in options.items() if value is not None}
+    design = words.pop("design", "")
+    if not design:
+        raise InputError("design: missing", file=where, remedy='name the base design, such as design = "paper-dome"')
+    design = design_inside(path.parent, design, file=path, key="design")
+    fixed = {key: _value(where, key, v) for key, v in _flat(where, "set", content.get("set", {})).items()}
+    grid = {key: _values(where, key, v) for key, v in _flat(where, "grid", content.get("grid", {})).items()}
+    entries = content.get("point", [])
+    if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+        raise InputError("point: must be a list of tables, each headed [[point]]", file=where)
+    points = tuple(
+        {key: _value(where, key, v, f"point[{k}]: ") for key, v in _flat(where, f"point[{k}]", entry).items()}
+        for k, entry in enumerate(entries)
+    )
+    fixed |= _checked(changes)
+    return _plan(name_of(path), where, design, fixed, grid, points, words)
+
+
+def plan_of_flags(design: str, over: list[str], changes: Changes | None = None, **options: str | None) -> SweepPlan:
+    """A grid from ``table.key=VALUES``: values with commas between, or ``from:to:count``."""
+    grid = {key: _unwrapped(values) for key, values in parse_over(over).items()}
+    return plan_of_grid(design, grid, changes, "over", **options)
+
+
+def plan_of_grid(
+    design: str | DesignSource,
+    grid: Mapping[str, Any],
+    changes: Changes | None = None,
+    where: str = "over",
+    **options: str | None,
+) -> SweepPlan:
+    """A grid over the values of each ``table.key``: a list, or a mapping of ``from``, ``to`` and ``count``.
+
+    ``where`` stands for the file in messages.
+    """
+    values = {key: _values(where, key, entry) for key, entry in grid.items()}
+    words = {key: value for key, value in options.items() if value is not None}
+    name = design.name if isinstance(design, DesignSource) else file_name(Path(design).stem)
+    return _plan(f"{name}-sweep", where, design, _checked(changes), values, (), words)
+
+
+def _plan(
+    name: str,
+    where: str,
+    design: str | DesignSource,
+    fixed: Settings,
+    grid: dict[str, list[Any]],
+    points: tuple[Settings, ...],
+    words: dict[str, str],
+) -> SweepPlan:
+    """The plan; a grid's driving pressures become those of every point, for they are a dimension already."""
+    if PRESSURES in grid:
+        if PRESSURES in fixed:
+            raise InputError("set for all points and varied too", file=where, key=PRESSURES, value=fixed[PRESSURES])
+        fixed = {**fixed, PRESSURES: grid[PRESSURES]}
+    axes = tuple(SweepAxis(key, tuple(values)) for key, values in grid.items() if key != PRESSURES)
+    return SweepPlan(
+        name, where, design, fixed, axes, points or (({},) if PRESSURES in grid and not axes else ()), **words
+    )
+
+
+def _values(where: str, key: str, given: Any) -> list[Any]:
+    """The values of one axis: a list, or a table ``{from, to, count}``."""
+    if isinstance(given, dict):
+        if set(given) != _RANGE:
+            raise InputError("a range has the keys from, to and count", file=where, key=key, value=given)
+        given = spread(where, key, given["from"], given["to"], given["count"])
+    if not isinstance(given, list) or not 1 <= len(given) <= MAX_VALUES:
+        problem = f"must be a list of 1 to {MAX_VALUES} values, or {{from=, to=, count=}}"
+        raise InputError(problem, file=where, key=key, value=given)
+    values = [_scalar(where, key, value, f"{key}[{k}]") for k, value in enumerate(given)]
+    seen: set[Any] = set()
+    for k, value in enumerate(values):
+        if value in seen:
+            raise InputError("every value may appear once only", file=where, key=f"{key}[{k}]", value=value)
+        seen.add(value)
+    return values
+
+
+def _unwrapped(values: list[Any]) -> list[Any]:
+    """The values of one axis; a sweep's are scalars, so that a list in brackets is that list."""
+    return values[0] if len(values) == 1 and isinstance(values[0], list) else values
+
+
+def _value(where: str, key: str, given: Any, before: str = "") -> Value:
+    """The value of one field at one point: a number, a text, true or false, or a list of numbers or of such lists.
+
+    ``before`` stands before the key in messages.
+    """
+    return _entries(where, key, given, f"{before}{key}")
+
+
+def _entries(where: str, key: str, given: Any, label: str) -> Value:
+    if isinstance(given, list):
+        return [_entries(where, key, value, f"{label}[{k}]") for k, value in enumerate(given)]
+    return _scalar(where, key, given, label)
+
+
+def _scalar(where: str, key: str, given: Any, label: str) -> float | int | str | bool:
+    """A value as a journal in JSON can hold it: infinity, where the field takes it, is the text "inf"."""
+    allowed = takes_flags(key) if isinstance(given, bool) else isinstance(given, str) or is_finite(given)
+    if given == math.inf and takes_infinity(key):
+        return "inf"
+    if not allowed:
+        raise InputError("must be a finite number or a name", file=where, key=label, value=given)
+    return given  # type: ignore[no-any-return]
+
+
+def _flat(where: str, table: str, given: Any) -> dict[str, Any]:
+    """Keys as ``table.key``, whether they were written with quotes or TOML made tables of the dots."""
+    if not isinstance(given, dict):
+        raise InputError(f"{table} = {shown(given)}: must be a table", file=where)
+    flat: dict[str, Any] = {}
+    for key, value in given.items():
+        inner = (
+            {f"{key}.{k}": v for k, v in value.items()} if isinstance(value, dict) and "." not in key else {key: value}
+        )
+        for name, item in inner.items():
+            if name in flat:
+                raise InputError(f"{table}: {name} is given twice", file=where)
+            flat[name] = item
+    return flat
+
+
+def _checked(changes: Changes | None) -> Settings:
+    return {key: _value("set", key, value) for key, value in (changes or {}).items()}
+
+
+def _text(where: str, key: str, given: Any) -> str:
+    if not isinstance(given, str) or not given:
+        raise InputError(f"{key} = {shown(given)}: must be a name", file=where)
+    return given

@@ -1,13 +1,64 @@
-"""The label list: the value, place and material of each part, and the meaning of its mark."""
+"""The label list: the value, place and material of each part, and the meaning of its mark.
 
+The print rules over a tray: each distinct shape once, in the mode of its job, with its mark.
+
+A part of a tray as the print rules look at it, its mark included.
+"""
+
+from dataclasses import dataclass
 from typing import Any
 
-from pneutouch.parts.lettering.tally import EXPLAINED
-from pneutouch.tables.csv_write import csv_bytes
+from pneutouch.parts.lettering.mark import EXPLAINED, shape_of
+from pneutouch.printability import Finding, check
+from pneutouch.printability.subject import PrintItem, PrintSubject
+from pneutouch.spec.printer import Mode, Printer
+from pneutouch.tables.csv_table import csv_bytes
 from pneutouch.units import grams
 from pneutouch.wording import counted
 from pneutouch.workflows.tray.lay import TrayJob, TrayLayout, TrayPart, fill, layers
-from pneutouch.workflows.tray.rules import TrayFinding
+
+
+def subject(part: TrayPart, printer: Printer, mode: Mode) -> PrintSubject:
+    """The bodies of a part in its own frame, marked, in the mode of the tray's job.
+
+    They carry no exact shape: that stands in the design frame and has no marks.
+    """
+    items = (PrintItem(body, printer, mode, job=part.label if len(part.bodies) > 1 else "") for body in part.bodies)
+    return PrintSubject(tuple(items), name=part.name)
+
+
+@dataclass(frozen=True, slots=True)
+class TrayFinding:
+    """A finding on a part, and the labels of all parts of the same shape."""
+
+    labels: tuple[str, ...]
+    finding: Finding
+
+    @property
+    def parts(self) -> str:
+        """The labels in short."""
+        return self.labels[0] if len(self.labels) == 1 else f"{self.labels[0]} and {len(self.labels) - 1} more"
+
+    @property
+    def text(self) -> str:
+        """One line: the place, the problem and the remedy."""
+        finding = self.finding
+        return f"{finding.severity}: {self.parts}: {finding.rule}: {finding.message}; {finding.fix}"
+
+
+def findings(layout: TrayLayout) -> tuple[TrayFinding, ...]:
+    """The findings, errors first. Copies, and resins of one kind in one shape, are judged by the first of them."""
+    listed = []
+    for job in layout.jobs:
+        alike: dict[object, list[int]] = {}
+        for k, part in enumerate(job.parts):
+            kinds = tuple((shape_of(solid), solid.material.kind) for solid in part.solids)
+            alike.setdefault(kinds, []).append(k)
+        for places in alike.values():
+            labels = tuple(job.parts[k].label for k in places)
+            judged = check(subject(job.parts[places[0]], layout.printer, job.mode))
+            listed += [TrayFinding(labels, finding) for finding in judged]
+    return tuple(sorted(listed, key=lambda one: one.finding.rank))
 
 
 def rows(layout: TrayLayout) -> list[dict[str, Any]]:

@@ -15,9 +15,7 @@ from pneutouch.packing import PackedPosition, PackingArea, pack
 from pneutouch.parts.lettering.mark import Mark, Marker, shape_of
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.units import UM
-from pneutouch.workflows.tray.expand import ExpandedTray, TrayPiece, TrayVariant, expand
-from pneutouch.workflows.tray.order import TrayOrder
-from pneutouch.workflows.tray.resins import changes, jobs
+from pneutouch.workflows.tray.order import ExpandedTray, TrayOrder, TrayPiece, TrayVariant, changes, expand, jobs
 
 StepReport = Callable[[str], None]
 

@@ -1,16 +1,27 @@
-"""Order of a tray, from a tray file or from the flags of the command line."""
+"""Order of a tray, from a tray file or from the flags of the command line.
 
-from collections.abc import Sequence
+A tray's entries as designs, one a value, and the bodies of each that the tray's printer prints.
+
+Resin changes: which materials can share a job of a printer, in how few jobs, and in which order.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise, permutations
 from pathlib import Path
 from typing import Any
 
-from pneutouch.errors import InputError
+from pneutouch.body import Solid
+from pneutouch.catalogue import Library, load_scene
+from pneutouch.errors import InputError, shown
+from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.files import design_inside, is_file
-from pneutouch.spec.names import file_name, name_of
+from pneutouch.spec.material import Material
 from pneutouch.spec.over import parse_over
+from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import Changes, read_toml, validate
-from pneutouch.spec.tray import LEAST_COPIES, MOST_COPIES, Tray
+from pneutouch.spec.tray import LEAST_COPIES, MOST_COPIES, Entry, EntryValue, Tray
+from pneutouch.spec.values import file_name, name_of
 
 
 @dataclass(frozen=True)
@@ -59,3 +70,201 @@ def order_of_flags(
     title = f"{stem}, {copies} of each" if len(designs) == 1 else f"{len(designs)} designs, {copies} of each"
     content = {"tray": {"title": title, **{k: v for k, v in head.items() if v is not None}}, "entry": entries}
     return TrayOrder(f"{stem}-tray", "the command line", validate(Tray, content, "the command line"), overrides or {})
+
+
+LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"
+"""Without I and O, which read as 1 and 0."""
+
+MOST_PARTS = 2000
+"""More bodies than this are a mistake: a tray holds some hundred."""
+
+
+@dataclass(frozen=True)
+class TrayVariant:
+    """One design of a tray. ``index`` counts from 1, ``letter`` is it in letters; ``key`` and ``value`` vary."""
+
+    index: int
+    letter: str
+    design: str
+    key: str | None
+    value: EntryValue | None
+    copies: int
+    assembly: Assembly
+
+
+@dataclass(frozen=True)
+class TrayPiece:
+    """Part of a value that is printed as one: a body, or the bodies of an assembly grown in one print."""
+
+    value: TrayVariant
+    solids: tuple[Solid, ...]
+
+    @property
+    def materials(self) -> tuple[Material, ...]:
+        """Materials of the bodies."""
+        return tuple(solid.material for solid in self.solids)
+
+
+@dataclass(frozen=True)
+class ExpandedTray:
+    """All pieces of a tray for its printer, and notes on the parts left out."""
+
+    printer: Printer
+    profile: str
+    pieces: tuple[TrayPiece, ...]
+    left_out: tuple[str, ...]
+
+
+def expand(order: TrayOrder, library: Library | None = None) -> ExpandedTray:
+    """Load and draw every design of a tray, without prediction. Raises InputError if one is wrong or none left."""
+    library = library or Library.default()
+    values = [value for entry in order.tray.entry for value in _values(order, entry, library)]
+    values = [
+        TrayVariant(**{**vars(value), "index": k, "letter": letter(k)}) for k, value in enumerate(values, start=1)
+    ]
+    profile = order.tray.tray.profile or values[0].assembly.scene.design.print.profile
+    printer = library.load("printers", profile, file=order.where, key="tray.profile")
+    pieces: list[TrayPiece] = []
+    notes: list[str] = []
+    for value in values:
+        printed, others = _pieces(value, printer, order)
+        pieces += printed
+        notes += others
+    left_out = tuple(dict.fromkeys(notes))
+    if not pieces:
+        raise InputError(
+            f"nothing is left for the {printer.title}: {'; '.join(left_out) or 'no design has such a body'}",
+            file=order.where,
+            remedy=f"give another tray.profile or tray.bodies, or set print.profile to {shown(profile)}",
+        )
+    if sum(len(piece.solids) * piece.value.copies for piece in pieces) > MOST_PARTS:
+        raise InputError(f"more than {MOST_PARTS} bodies", file=order.where, remedy="take fewer copies")
+    return ExpandedTray(printer, profile, tuple(pieces), left_out)
+
+
+def letter(index: int) -> str:
+    """The letters of a value: A to Z without I and O, then AA, AB ..."""
+    text = ""
+    while index > 0:
+        index, digit = divmod(index - 1, len(LETTERS))
+        text = LETTERS[digit] + text
+    return text
+
+
+def _values(order: TrayOrder, entry: Entry, library: Library) -> list[TrayVariant]:
+    key = next(iter(entry.over), None)
+    variants = []
+    for value in entry.over[key] if key is not None else [None]:
+        settings = {**entry.set, **({key: value} if key is not None and value is not None else {})}
+        assembly = _assembly(order, entry, settings, library)
+        variants.append(TrayVariant(0, "", entry.design, key, value, entry.copies, assembly))
+    return variants
+
+
+def _assembly(order: TrayOrder, entry: Entry, settings: dict[str, Any], library: Library) -> Assembly:
+    try:
+        return assemble(load_scene(order.design(entry.design), {**settings, **order.overrides}, library))
+    except InputError as error:
+        raise InputError(f"entry {shown(entry.design)}: {error}", file=order.where) from None
+
+
+def _pieces(value: TrayVariant, printer: Printer, order: TrayOrder) -> tuple[list[TrayPiece], list[str]]:
+    """The pieces of a value by print job, and notes on the parts left out."""
+    assembly, bodies = value.assembly, order.tray.tray.bodies
+    groups: dict[str, list[Solid]] = {}
+    for solid in assembly.solids:
+        groups.setdefault(assembly.job(solid.name), []).append(solid)
+    pieces, notes = [], []
+    for solids in groups.values():
+        names = [solid.name for solid in solids]
+        listed = [name for name in names if bodies is None or name in bodies]
+        machine, _ = assembly.machine(names[0])
+        if not listed:
+            continue
+        if machine != printer:
+            notes.append(f"{' and '.join(names)} of {value.design}: for the {machine.title}")
+            continue
+        if listed != names:
+            notes.append(f"{' and '.join(names)} of {value.design} grow in one print: all of it is on the tray")
+        pieces.append(TrayPiece(value, tuple(solids)))
+    return pieces, notes
+
+
+_EXACT = 7
+"""Up to this many different sets of resins the fewest jobs and the best order are found by trying all."""
+
+
+def jobs(materials: Sequence[tuple[Material, ...]], printer: Printer, where: str = "tray") -> list[list[int]]:
+    """Indices of ``materials`` (those of one part each) by job: fewest jobs, then fewest resins to load.
+
+    A job's base resins must be in the printer at once, in one mode (`Printer.mode_for`). Raises InputError if a part
+    cannot be printed at all.
+    """
+    kinds: dict[frozenset[str], list[int]] = {}
+    for index, alone in enumerate(materials):
+        kinds.setdefault(frozenset(resin for material in alone for resin in material.base_resins), []).append(index)
+        if printer.mode_for(*alone) is None:
+            raise InputError(f"the {printer.title} cannot print {_and(alone)} in one job", file=where)
+    examples = [
+        list({tuple(m.base_resins): m for i in indices for m in materials[i]}.values()) for indices in kinds.values()
+    ]
+    sets, indices = list(kinds), list(kinds.values())
+
+    def fits(group: list[int]) -> bool:
+        return printer.mode_for(*(m for k in group for m in examples[k])) is not None
+
+    def load(group: list[int]) -> frozenset[str]:
+        return frozenset[str]().union(*(sets[k] for k in group))
+
+    orders = [_ordered(groups, list(map(load, groups))) for groups in _fewest(len(kinds), fits)]
+    best = min(orders, key=lambda groups: changes(list(map(load, groups))))
+    return [sorted(i for k in group for i in indices[k]) for group in best]
+
+
+def changes(loads: Sequence[frozenset[str]]) -> int:
+    """Number of resins that are changed from job to job, the first job's not counted."""
+    return sum(len(after - before) for before, after in pairwise(loads))
+
+
+def _fewest(count: int, fits: Callable[[list[int]], bool]) -> list[list[list[int]]]:
+    """All partitions of ``range(count)`` into fewest groups that fit; one by first fit where there are too many."""
+    if count > _EXACT:
+        groups: list[list[int]] = []
+        for k in range(count):
+            home = next((group for group in groups if fits([*group, k])), None)
+            if home is None:
+                groups.append([k])
+            else:
+                home.append(k)
+        return [groups]
+    partitions = [groups for groups in _partitions(count) if all(map(fits, groups))]
+    least = min(map(len, partitions))
+    return [groups for groups in partitions if len(groups) == least]
+
+
+def _partitions(count: int) -> Iterator[list[list[int]]]:
+    if count == 0:
+        yield []
+        return
+    for groups in _partitions(count - 1):
+        for k in range(len(groups)):
+            yield [*groups[:k], [*groups[k], count - 1], *groups[k + 1 :]]
+        yield [*groups, [count - 1]]
+
+
+def _ordered(groups: list[list[int]], loads: Sequence[frozenset[str]]) -> list[list[int]]:
+    """Groups in the order with the fewest changes; the nearest next one where there are too many to try."""
+    if len(loads) <= _EXACT:
+        orders = permutations(range(len(loads)))
+        best = min(orders, key=lambda order: (changes([loads[k] for k in order]), order))
+        return [groups[k] for k in best]
+    order, left = [0], list(range(1, len(loads)))
+    while left:
+        after = min(left, key=lambda k: (len(loads[k] - loads[order[-1]]), k))
+        order.append(after)
+        left.remove(after)
+    return [groups[k] for k in order]
+
+
+def _and(materials: Sequence[Material]) -> str:
+    return " and ".join(dict.fromkeys(material.label for material in materials))

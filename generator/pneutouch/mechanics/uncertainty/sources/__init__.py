@@ -6,14 +6,18 @@ import numpy as np
 
 from pneutouch.arrays import Flags
 from pneutouch.mechanics.atlas.press import SensorBatch
-from pneutouch.mechanics.uncertainty.contact import ContactModel
+from pneutouch.mechanics.uncertainty.contact_model import ContactModel
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
-from pneutouch.mechanics.uncertainty.sources.build import build_sources
 from pneutouch.mechanics.uncertainty.sources.calibrated import calibrated_sources, kept_of_design, kept_of_model
-from pneutouch.mechanics.uncertainty.sources.contact import contact_sources
-from pneutouch.mechanics.uncertainty.sources.model import ModelErrors, model_sources, numerical_sources
+from pneutouch.mechanics.uncertainty.sources.model import (
+    ModelErrors,
+    build_sources,
+    contact_sources,
+    model_sources,
+    numerical_sources,
+    place_sources,
+)
 from pneutouch.mechanics.uncertainty.sources.modulus import ageing_sources, modulus_sources
-from pneutouch.mechanics.uncertainty.sources.place import place_sources
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer

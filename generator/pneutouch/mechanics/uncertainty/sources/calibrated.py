@@ -17,9 +17,7 @@ from pneutouch.mechanics.uncertainty.source import (
     UncertaintySource,
     counting,
 )
-from pneutouch.mechanics.uncertainty.sources.build import GAUGE
-from pneutouch.mechanics.uncertainty.sources.contact import CORRECTION, FRICTION
-from pneutouch.mechanics.uncertainty.sources.model import MODEL_CORRELATION
+from pneutouch.mechanics.uncertainty.sources.model import CORRECTION, FRICTION, GAUGE, MODEL_CORRELATION
 from pneutouch.spec.calibration import CalibratedResponse, SensorCalibration
 from pneutouch.units import KPA, ML
 

@@ -1,4 +1,12 @@
-"""The uncertainty of the model itself: its errors against the paper's Table S1, and the numbers' own error."""
+"""The uncertainty of the model itself: its errors against the paper's Table S1, and the numbers' own error.
+
+The uncertainty of the print and its surroundings: wall, radius, air behind the cavity, weather, driving pressure.
+
+The uncertainty of the contact: an unknown friction, and the part of another contact that the plate's derivatives
+miss.
+
+The uncertainty of a sensitivity that is used where object and place of contact are not known.
+"""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -8,13 +16,30 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.errors import InputError, shown
-from pneutouch.mechanics.atlas.batches import batch_of
-from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.mechanics.anywhere.reading import (
+    FARTHEST,
+    SMALLEST_BALL,
+    STEEPEST_TILT,
+    batch_conditions,
+    place_uncertainty,
+)
+from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
+from pneutouch.mechanics.atlas.respond import AtlasResponse, respond
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.uncertainty.contact_model import ContactModel
 from pneutouch.mechanics.uncertainty.neighbours import joined
-from pneutouch.mechanics.uncertainty.source import FIGURE, FIGURES, SENSITIVITY, UncertaintySource, counting
+from pneutouch.mechanics.uncertainty.source import (
+    CONTACT_FIGURES,
+    FIGURE,
+    FIGURES,
+    SENSITIVITY,
+    Distribution,
+    UncertaintySource,
+    counting,
+)
 from pneutouch.spec.material import Material, PaperMeasurements
+from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
 
 UNEXPLAINED = 1.5
@@ -144,3 +169,130 @@ def numerical_sources(size: int, numerical: Mapping[str, float]) -> list[Uncerta
             )
         )
     return source_list
+
+
+BORE, BORE_TOLERANCE = 2.5, 0.1
+"""Bore of a 4 mm tube (SMC TU0425) and its tolerance, mm. Only outer diameters have a published one, +-0.1 mm for nylon
+(SMC KQ2 precautions); that the bore keeps the same is an assumption."""
+
+UNSTATED_VOLUME = 100.0
+"""Air in fitting and gauge that a stated dead volume may have missed, mm3: an assumption, 20 mm of a 2.5 mm bore."""
+
+WEATHER = 4.5 * KPA
+"""Sea level pressure mostly stays within 960 and 1050 mbar (San Francisco State University, Geosciences, course M301,
+Atmospheric Pressure)."""
+
+GAUGE = 0.02
+"""Temperature characteristic of the SMC PSE543, +-2 % of its range (paper, Supplement C)."""
+
+_LIMITS = 3.0
+"""Standard deviations within which limits that hold nearly always are read (JCGM 100, 4.3.5)."""
+
+_ROOT = np.sqrt(3.0)
+
+_SMC_TUBES = "SMC states outer diameters only"
+_BAROMETER = (
+    "960 to 1050 mbar at sea level (San Francisco State University, Geosciences M301), read as three standard "
+    "deviations to either side; the height of the place is not in it"
+)
+_GAUGE_DATA = (
+    "SMC PSE543, +-2 % (paper, Supplement C); assumed to be of the reading, the gauge being zeroed when vented"
+)
+
+
+def build_sources(batch: SensorBatch, printer: Printer) -> list[UncertaintySource]:
+    """Sources on dimensions, dead volume, ambient and driving pressure of n sensors from one printer."""
+    accuracy = printer.accuracy_mm.nominal
+    origin = (
+        f"{printer.title}, +-{accuracy:g} mm, even between its bounds (JCGM 100, 4.3.7): {printer.accuracy_mm.source}"
+    )
+    bore = 2.0 * BORE_TOLERANCE / BORE
+
+    bores = f"assumed: bore {BORE:g} +-{BORE_TOLERANCE:g} mm, so the volume +-{bore:.0%}; {_SMC_TUBES}"
+    unstated = f"assumed: up to {UNSTATED_VOLUME * 1e-3:g} mL of air that the stated dead volume does not hold"
+    wall, radius = accuracy / _ROOT / batch.wall_thickness, 0.5 * accuracy / _ROOT / batch.inner_radius
+    volume, fitting = bore / _ROOT * np.abs(batch.dead_volume), np.full(len(batch), UNSTATED_VOLUME / _ROOT)
+    ambient, driving = WEATHER / _LIMITS / batch.ambient_pressure, np.full(len(batch), GAUGE / _ROOT)
+
+    def source(name: str, acts_on: str, standard: Array, origin: str, known: bool) -> UncertaintySource:
+        shape: Distribution = "normal" if acts_on == "ambient_pressure" else "rectangular"
+        return UncertaintySource(name, acts_on, standard, shape, counting(len(batch)), origin, known)
+
+    return [
+        source("wall thickness", "wall_thickness", wall, origin, True),
+        source("inner radius", "inner_radius", radius, f"half of the diameter's: {origin}", True),
+        source("tube bore", "dead_volume", volume, bores, False),
+        source("fitting and gauge", "dead_volume", fitting, unstated, False),
+        source("weather", "ambient_pressure", ambient, _BAROMETER, True),
+        source("driving pressure", "driving_pressure", driving, _GAUGE_DATA, False),
+    ]
+
+
+FRICTION, CORRECTION = "friction", "contact correction"
+"""Names of the sources of `contact_sources`."""
+
+WALL_GAP, OBJECT_WALL_GAP = 0.4, 0.7
+"""Greatest difference found of d ln figure / d ln wall between the plate without friction and one with friction, and
+other objects (docs/background/contact.md)."""
+
+
+def contact_sources(contact: ContactModel, others: list[UncertaintySource]) -> list[UncertaintySource]:
+    """Sources of the contact of n sensors; ``others`` act on the wall, whose derivative is the plate's."""
+    size, source_list = len(contact.pressures), []
+    friction = contact.friction
+    if friction is not None:
+        for figure in CONTACT_FIGURES:
+            known = np.isfinite(friction.standard[figure])
+            source_list.append(
+                UncertaintySource(
+                    FRICTION,
+                    FIGURE,
+                    np.where(known, friction.standard[figure], 0.0),
+                    "log-rectangular",
+                    counting(size, only=(figure,)) & known,
+                    friction.origin,
+                    False,
+                )
+            )
+    walls = np.zeros(size)
+    for source in others:
+        walls = np.hypot(walls, source.moves.get("wall_thickness", 0.0))
+    return [*source_list, _of_wall(contact, walls)]
+
+
+def _of_wall(contact: ContactModel, walls: Array) -> UncertaintySource:
+    gap = WALL_GAP if contact.sensor.protocol.body is None else OBJECT_WALL_GAP
+    return UncertaintySource(
+        CORRECTION,
+        FIGURE,
+        gap * walls / np.sqrt(3.0),
+        "rectangular",
+        counting(walls.size, only=CONTACT_FIGURES[:-1]),
+        f"the derivative by the wall is that of a plate without friction; greatest difference found {gap:g} "
+        f"(d ln {FIGURES[0]} / d ln wall)",
+        True,
+    )
+
+
+PLACE = "place of contact"
+"""Name of the source of `place_sources`."""
+
+_ORIGIN = (
+    f"assumed (Type B, JCGM 100, 4.3.7): a ball of {SMALLEST_BALL:g} R0 radius or more, its curvature even, its axis "
+    f"even over the disc of {FARTHEST:g} R0; a plate tilted by up to {np.degrees(STEEPEST_TILT):.0f} degrees; root "
+    "mean square of the logarithm of the force read over the true one"
+)
+
+
+def place_sources(batch: SensorBatch) -> list[UncertaintySource]:
+    """The source of n sensors; it counts for those that the table of contact anywhere covers."""
+    standard = place_uncertainties(batch, respond(batch))
+    known = np.isfinite(standard)
+    counts = counting(standard.size, only=(SENSITIVITY,)) & known
+    return [UncertaintySource(PLACE, FIGURE, np.where(known, standard, 0.0), "lognormal", counts, _ORIGIN, False)]
+
+
+def place_uncertainties(batch: SensorBatch, response: AtlasResponse) -> Array:
+    """Relative standard uncertainties (n,) of sensors with their responses; NaN outside the table."""
+    domes = batch_conditions(batch, response.limit_pressure, response.cavity_volume)
+    return place_uncertainty(domes, response.range_end / batch.inner_radius)

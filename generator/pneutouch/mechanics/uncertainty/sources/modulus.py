@@ -6,10 +6,10 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.catalogue.mixture import FROM_CURVE
-from pneutouch.mechanics.uncertainty.hardness import logarithmic_change, logarithmic_slope, shore_a
+from pneutouch.mechanics.paper_sensor import logarithmic_change, logarithmic_slope, shore_a
 from pneutouch.mechanics.uncertainty.source import SENSITIVITY, UncertaintySource, counting
 from pneutouch.spec.material import HARDEST, Material
-from pneutouch.spec.quantity import Quantity
+from pneutouch.spec.values import Quantity
 
 ASSUMED_FACTOR = 2.7
 """High over low of a modulus for which no independent value is known: an assumption, taken from the four estimates of

@@ -1,0 +1,389 @@
+"""First contact of each loading: detected against the force's noise, then extrapolated to zero force.
+
+Indentations of a run, found from the position alone: clear of the sensor, going in, staying.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.bench.record import Blocks
+from pneutouch.errors import InputError
+
+NOISE = 5.0
+"""Standard deviations of the position within which the plate is taken to stay: a false alarm in a million."""
+
+TURN = 0.05
+"""Share of the whole travel by which the plate must turn back to begin another indentation. The smallest of the paper's
+(0.5 mm of 6.9 mm, and the clearance) is three times as long."""
+
+NEAR, STAY = 0.02, 0.005
+"""Shares of an indentation's travel: the first for overshoot at its end, the second for the hold."""
+
+WIDE, FEW = 0.05, 8
+"""Share of the travel, and number of blocks: with fewer than `FEW` blocks at the clear end, as in a loop without rest,
+those within `WIDE` of it count."""
+
+_LEAST_SHARE = 20.0
+"""The plate moves where its travel is more than so many standard deviations of its position."""
+
+_ACTIVE = 5.0
+"""Position is reversed where the force varies so many times more at its low end than at its high end."""
+
+_MOVES = 0.2
+"""Share of its greatest speed from which on the plate is taken to move."""
+
+
+class Excursion(NamedTuple):
+    """One loading and unloading, as block numbers, ends exclusive.
+
+    ``clear`` is the stretch before it with the plate at its clear end, ``hold`` the stay at its deep end, ``out`` where
+    the unloading ends (the next clear stretch, or the record).
+    """
+
+    clear: tuple[int, int]
+    hold: tuple[int, int]
+    out: int
+
+
+def excursions(blocks: Blocks) -> tuple[list[Excursion], bool]:
+    """All loadings and unloadings, and whether the record begins with the plate in (that one is left out).
+
+    No speed and no length is presumed: all limits are shares of the travel or multiples of the position's noise, so
+    that a run in a wrong unit is still segmented correctly, and its magnitude reveals the unit. Missed samples do not
+    matter, as no differences of neighbours are taken. Raises InputError if the plate does not move, or moves out of
+    the sensor when it presses."""
+    place = _smooth(blocks.position)
+    noise, span = position_noise(blocks.position), float(np.ptp(place))
+    if span <= _LEAST_SHARE * noise or place.size < FEW:
+        raise InputError(
+            f"position: the plate never moves: from {place.min():.4g} to {place.max():.4g} mm",
+            file=blocks.file,
+            remedy="is columns.position the right column?",
+        )
+    _check_direction(blocks, place, span)
+    turns = _turns(place, max(2 * NOISE * noise, TURN * span))
+    tops = [at for at, high in turns if high]
+    lows = [at for at, high in turns if not high]
+    parts: list[Excursion] = []
+    previous = 0
+    for top in tops:
+        before = [low for low in lows if low < top]
+        after = next((low for low in lows if low > top), place.size - 1)
+        if not before:
+            previous = after
+            continue
+        start = max(previous, parts[-1].hold[1] if parts else 0)
+        hold = _stay(place[before[-1] : after + 1], place[before[-1]], noise)
+        hold = (hold[0] + before[-1], hold[1] + before[-1])
+        clear = _clear(place[start : hold[0]], float(place[before[-1]]), float(place[top]), noise)
+        parts.append(Excursion((clear[0] + start, clear[1] + start), hold, place.size))
+        previous = after
+    ends = [*(one.clear[0] for one in parts[1:]), place.size]
+    parts = [one._replace(out=end) for one, end in zip(parts, ends, strict=True)]
+    return parts, bool(tops) and (not lows or tops[0] < lows[0])
+
+
+def position_noise(position: Array) -> float:
+    """Standard deviation of a block's position, mm, from second differences, which an even move does not enter."""
+    if position.size < 3:
+        return 0.0
+    return float(1.4826 * np.median(np.abs(np.diff(position, 2))) / np.sqrt(6))
+
+
+def _smooth(values: Array) -> Array:
+    """Running median of three: a single wild position is no turn."""
+    if values.size < 3:
+        return values
+    inner = np.median(np.stack([values[:-2], values[1:-1], values[2:]]), axis=0)
+    return np.concatenate([values[:1], inner, values[-1:]])
+
+
+def _check_direction(blocks: Blocks, place: Array, span: float) -> None:
+    # While the plate moves, for a channel may also change in a rest, as a pressure does that is reset.
+    speed = np.abs(np.gradient(place, blocks.time))
+    moving = speed > _MOVES * speed.max()
+    low = blocks.force[moving & (place < place.min() + 0.1 * span)]
+    high = blocks.force[moving & (place > place.max() - 0.1 * span)]
+    if min(low.size, high.size) < 3:
+        return
+    if low.std() > _ACTIVE * high.std() and np.ptp(low) > TURN * np.ptp(blocks.force):
+        raise InputError(
+            f"the force changes where position is low ({place.min():.4g} mm) and is constant where it is high "
+            f"({place.max():.4g} mm)",
+            file=blocks.file,
+            remedy="position must count into the sensor: invert columns.position.sign",
+        )
+
+
+def _turns(place: Array, least: float) -> list[tuple[int, bool]]:
+    """Turning points with at least ``least`` mm between neighbours: block and whether it is a high one, in order."""
+    turns: list[tuple[int, bool]] = []
+    values = place.tolist()
+    low = high = 0
+    rising: bool | None = None
+    for k, value in enumerate(values):
+        if value > values[high]:
+            high = k
+        if value < values[low]:
+            low = k
+        if rising is not False and values[high] - value > least:
+            turns.append((high, True))
+            rising, low = False, k
+        elif rising is not True and value - values[low] > least:
+            turns.append((low, False))
+            rising, high = True, k
+    if rising is not None:
+        turns.append((high, True) if rising else (low, False))
+    return turns
+
+
+def _stay(place: Array, low: float, noise: float) -> tuple[int, int]:
+    """Blocks for which the plate stays at the deep end of an excursion: the first, and the one after the last."""
+    top = float(place.max())
+    level = float(np.median(place[place >= top - max(NEAR * (top - low), NOISE * noise)]))
+    at = np.flatnonzero(np.abs(place - level) <= max(STAY * (top - low), NOISE * noise))
+    if not at.size:
+        peak = int(place.argmax())
+        return peak, peak + 1
+    return int(at[0]), int(at[-1]) + 1
+
+
+def _clear(place: Array, low: float, top: float, noise: float) -> tuple[int, int]:
+    """Blocks for which the plate is at its clear end before it goes in, first and last."""
+    at = np.flatnonzero(place <= low + max(STAY * (top - low), NOISE * noise))
+    if at.size < FEW:
+        at = np.flatnonzero(place <= low + WIDE * (top - low))
+    return int(at[0]), int(at[-1]) + 1
+
+
+BEFORE = 1.0
+"""Seconds before contact over which force and pressure without contact are read: after a reset has settled, and long
+enough that the mean of them adds little noise. Our choice."""
+
+THRESHOLD = 6.0
+"""Noise standard deviations of a block beyond which the force is contact: one false alarm in 10^9 blocks."""
+
+LEAST_FORCE = 1e-3
+"""Least force of a contact as a share of the run's greatest force, for a channel with next to no noise."""
+
+FIRST, CLEARLY = 0.01, 20.0
+"""The loading is fitted up to this share of the run's greatest force, or this many noise standard deviations if that is
+more. A dome's force grows a hundredfold over its range, and only its first hundredth is of one power of the travel."""
+
+BENDS = tuple(np.linspace(0.0, 1.0, 21).tolist())
+"""F ~ (1 - w) x + w x^2 near contact, x the travel over that of the fitted stretch: w = 0 for a shell or an inflated
+membrane, which begin straight, w = 1 for a dome whose stiffness grows from none; between them lies a solid sphere
+(Hertz, x^1.5) to a few hundredths of the stretch. One w is fitted for all of a run."""
+
+UNSURE = 4.0
+"""Standard error of an onset over the median of the run above which a contact is too light for a fit: our choice."""
+
+_LEAST_POINTS, _MOST_POINTS = 6, 200
+_BACK = 3
+"""Length of the stretch without contact in the fit, as a multiple of that with contact."""
+
+_GRID = 81
+
+
+class Baseline(NamedTuple):
+    """A stretch without contact: block numbers, means, slopes (per s) and detrended variances of force and pressure."""
+
+    start: int
+    end: int
+    mean: tuple[float, float]
+    slope: tuple[float, float]
+    between: tuple[float, float]
+    within: tuple[float, float]
+
+
+class ContactOnset(NamedTuple):
+    """First contact: time and plate position; ``fitted`` is False where the position is the median of the others."""
+
+    time: float
+    position: float
+    fitted: bool
+
+
+def baseline(blocks: Blocks, start: int, end: int) -> Baseline:
+    """Mean and scatter of force and pressure without contact over blocks ``start`` to ``end`` (at least one)."""
+    time = blocks.time[start:end]
+    centred = time - time.mean()
+    means, slopes, between, within = [], [], [], []
+    for values, spread in ((blocks.force, blocks.force_spread), (blocks.pressure, blocks.pressure_spread)):
+        part = values[start:end]
+        square = float(centred @ centred)
+        slope = float(centred @ part) / square if part.size > 2 else 0.0
+        rest = part - part.mean() - slope * centred
+        means.append(float(part.mean()))
+        slopes.append(slope)
+        between.append(float(rest @ rest) / max(part.size - 2, 1))
+        within.append(float(np.mean(spread[start:end] ** 2)))
+    return Baseline(
+        start, end, (means[0], means[1]), (slopes[0], slopes[1]), (between[0], between[1]), (within[0], within[1])
+    )
+
+
+def first_baseline(blocks: Blocks, one: Excursion) -> Baseline:
+    """The last `BEFORE` seconds at the clear end, at most the later half of them, so that a reset is over."""
+    start, end = one.clear
+    late = int(np.searchsorted(blocks.time[start:end], blocks.time[end - 1] - BEFORE)) + start
+    begin = max(late, (start + end) // 2)
+    return baseline(blocks, min(begin, max(end - 4, start)), end)
+
+
+def threshold(blocks: Blocks, bases: list[Baseline], parts: list[Excursion]) -> tuple[float, int]:
+    """Force in N that is contact, and the sign of the pressed force (-1 where the sign of the column is wrong)."""
+    noise = float(np.sqrt(np.mean([base.between[0] for base in bases])))
+    off = [blocks.force[one.clear[1] : one.hold[1]] - base.mean[0] for one, base in zip(parts, bases, strict=True)]
+    high, low = max(float(part.max()) for part in off), min(float(part.min()) for part in off)
+    return max(THRESHOLD * noise, LEAST_FORCE * max(high, -low)), 1 if high >= -low else -1
+
+
+def onsets(
+    blocks: Blocks, parts: list[Excursion], bases: list[Baseline], least: float, sign: int
+) -> list[ContactOnset | None]:
+    """First contact of each loading; None for a loading without one.
+
+    Contact begins in the block after the last one of the loading that is within ``least`` N of the force without
+    contact. From there F = c ((1 - w) x + w x^2), x = position - onset, is fitted up to a small force (`FIRST`), with a
+    stretch without contact before it, by least squares with onset and c free for each loading and w common to all.
+    Where a hold presses but its loading is too light to be fitted (`UNSURE`), the onset is the median of the others.
+
+    Bias, as tested, at 5 mm/s with 0.02 N of noise a sample at 4 kHz, in the median of a run: below 0.01 mm for a force
+    that grows evenly, 0.04 mm for one that begins evenly and grows a hundredfold as a dome's does, 0.05 mm for
+    travel^1.5 and 0.09 mm for travel^1.8, which begins with next to no force. A force that lags by a time constant T
+    comes out late by at most speed times T."""
+    crossed = [_crossing(blocks, one, base, least, sign) for one, base in zip(parts, bases, strict=True)]
+    top = max(
+        float((sign * (blocks.force[one.hold[0] : one.hold[1]] - base.mean[0])).max())
+        for one, base in zip(parts, bases, strict=True)
+    )
+    limit = max(FIRST * top, CLEARLY / THRESHOLD * least)
+    loadings = [
+        None if at is None else _loading(blocks, one, base, at, limit, sign)
+        for at, one, base in zip(crossed, parts, bases, strict=True)
+    ]
+    real = [loading for loading in loadings if loading is not None]
+    if not real:
+        return [None] * len(parts)
+    length = float(np.median([loading.length for loading in real]))
+    bends = np.array(BENDS)
+    bend = bends[[int(np.argmin(np.sum([_search(loading, bends, length)[1] for loading in real], axis=0)))]]
+    fits = [None if loading is None else float(_search(loading, bend, length)[0][0]) for loading in loadings]
+    # A loading that ends before the fitted force gives its onset late; where all do, there is no better.
+    some = any(loading.reaches for loading in real)
+    errors = [
+        np.inf
+        if loading is None or fit is None or (some and not loading.reaches)
+        else _error(loading, fit, float(bend[0]), length)
+        for loading, fit in zip(loadings, fits, strict=True)
+    ]
+    limit_error = UNSURE * float(np.median([error for error in errors if error < np.inf]))
+    middle = float(
+        np.median([fit for fit, error in zip(fits, errors, strict=True) if fit is not None and error <= limit_error])
+    )
+    contacts: list[ContactOnset | None] = []
+    for fit, error, one, base in zip(fits, errors, parts, bases, strict=True):
+        fitted = fit is not None and error <= limit_error
+        place = fit if fit is not None and fitted else middle
+        touches = fitted or _presses(blocks, one, base, least, sign, middle)
+        contacts.append(ContactOnset(_time_at(blocks, one, place), place, fitted) if touches else None)
+    return contacts
+
+
+def _presses(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign: int, onset: float) -> bool:
+    """True if a hold presses, judged by the mean of its later half, although no single block of the loading shows
+    it."""
+    at = slice((one.hold[0] + one.hold[1]) // 2, one.hold[1])
+    force = sign * (blocks.force[at] - base.mean[0])
+    count = min(force.size, base.end - base.start)
+    return bool(blocks.position[at].mean() > onset and force.mean() > least * np.sqrt(2 / count))
+
+
+def _error(loading: _Loading, onset: float, bend: float, length: float) -> float:
+    """Standard error of a fitted onset, mm, with the factor c free."""
+    over = np.maximum(loading.position - onset, 0.0) / length
+    shape = (1 - bend) * over + bend * over**2
+    slope = (over > 0) * ((1 - bend) + 2 * bend * over) / length
+    square = float(shape @ shape)
+    if square <= 0:
+        return float(np.inf)
+    factor = float(loading.force @ shape) / square
+    rest = loading.force - factor * shape
+    slope = factor * (slope - shape * float(slope @ shape) / square)
+    steep = float(slope @ slope)
+    return float(np.sqrt(rest @ rest / max(loading.force.size - 2, 1) / steep)) if steep > 0 else float(np.inf)
+
+
+def _crossing(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign: int) -> int | None:
+    """The block from which the force stays beyond its noise; None if it does not before the hold."""
+    start, end = one.clear[1] - 1, max(one.hold[0] + 1, one.clear[1] + 1)
+    force = sign * (blocks.force[start:end] - base.mean[0])
+    peak = int(force.argmax())
+    if force[peak] <= least:
+        return None
+    below = np.flatnonzero(force[:peak] <= least)
+    return start + (int(below[-1]) + 1 if below.size else 0)
+
+
+class _Loading(NamedTuple):
+    """The first part of a loading: position, force less that without contact, bounds of the onset, travel; ``reaches``
+    where the force comes to that up to which loadings are fitted."""
+
+    position: Array
+    force: Array
+    low: float
+    high: float
+    length: float
+    reaches: bool
+
+
+def _loading(blocks: Blocks, one: Excursion, base: Baseline, at: int, limit: float, sign: int) -> _Loading:
+    deepest = max(one.hold[0] + 1, at + 2)
+    beyond = np.flatnonzero(sign * (blocks.force[at:deepest] - base.mean[0]) > limit)
+    end = min(at + max(int(beyond[0]) if beyond.size else deepest, _LEAST_POINTS), deepest)
+    start = max(one.clear[1] - 1, at - _BACK * max(end - at, _LEAST_POINTS))
+    position, force = blocks.position[start:end], sign * (blocks.force[start:end] - base.mean[0])
+    first, last = float(blocks.position[at]), float(blocks.position[end - 1])
+    step = (last - first) / max(end - 1 - at, 1)
+    low = max(first - 1.5 * (last - first) - 2 * step, float(position.min()))
+    if position.size > _MOST_POINTS:
+        starts = np.linspace(0, position.size, _MOST_POINTS, endpoint=False).astype(int)
+        counts = np.diff(np.append(starts, position.size))
+        position, force = np.add.reduceat(position, starts) / counts, np.add.reduceat(force, starts) / counts
+    return _Loading(
+        position, force, min(low, first), first + 0.5 * step, max(last - first, step, 1e-9), beyond.size > 0
+    )
+
+
+def _search(loading: _Loading, bends: Array, length: float) -> tuple[Array, Array]:
+    """Best onset and its squared misfit for each bend, (m,): a grid, then a finer one about its best."""
+    low, high = np.full(bends.size, loading.low), np.full(bends.size, loading.high)
+    best, misfit = low, np.zeros(bends.size)
+    for _ in range(3):
+        tries = low[:, None] + (high - low)[:, None] * np.linspace(0, 1, _GRID)
+        over = np.maximum(loading.position - tries[..., None], 0.0) / length
+        shape = over * (1 - bends[:, None, None] * (1 - over))
+        square = np.maximum((shape * shape).sum(axis=-1), 1e-300)
+        left = (loading.force @ loading.force) - (shape @ loading.force) ** 2 / square
+        at = left.argmin(axis=1)
+        row = np.arange(bends.size)
+        best, misfit = tries[row, at], left[row, at]
+        step = (high - low) / (_GRID - 1)
+        low, high = np.maximum(best - 2 * step, loading.low), np.minimum(best + 2 * step, loading.high)
+    return best, misfit
+
+
+def _time_at(blocks: Blocks, one: Excursion, onset: float) -> float:
+    """Time at which the plate passes the onset."""
+    start = max(one.clear[1] - 1, 0)
+    place = blocks.position[start : one.hold[0] + 1]
+    below = np.flatnonzero(place < onset)
+    k = start + (int(below[-1]) if below.size else 0)
+    if k + 1 >= blocks.time.size or blocks.position[k + 1] <= blocks.position[k]:
+        return float(blocks.time[k])
+    return float(np.interp(onset, blocks.position[k : k + 2], blocks.time[k : k + 2]))

@@ -1,0 +1,66 @@
+"""Profiles that can make a material, and the refusal of a named one that cannot."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pneutouch.catalogue.library import Library
+from pneutouch.errors import InputError
+from pneutouch.spec.material import Casting, Material
+from pneutouch.spec.printer import Printer
+
+
+def makers(material: Material, library: Library) -> dict[str, Printer]:
+    """The profiles that make a material, by name; files that are not valid are passed over, as `list` does."""
+    printers = library.readable("printers", Printer)
+    return {name: one for name, one in printers.items() if one.mode_for(material) is not None}
+
+
+def casting_missing(printer: Printer, material: Material) -> bool:
+    """True if a profile could cast a material but the material's file has no table [casting]."""
+    return printer.is_casting and not material.is_cast and set(material.base_resins) <= set(printer.resins)
+
+
+def uncast(printer: Printer, material: Material, file: str) -> InputError:
+    """The refusal of a material that is to be cast and whose ``file`` does not state how."""
+    needed = [key for key, field in Casting.model_fields.items() if field.is_required()]
+    remedy = (
+        f"the profile {printer.title} casts {material.label}: add the table [casting] with {', '.join(needed)}, or fit "
+        "it again: pneutouch fit-material --like DragonSkin20"
+    )
+    return InputError("missing", file=file, key="casting", remedy=remedy)
+
+
+def cannot_run(
+    printer: Printer, name: str | None, material: Material, library: Library | None, setting: str, **place: Any
+) -> InputError:
+    """The refusal of a material that a profile does not make.
+
+    ``name`` is the material's, None of a mix; ``setting`` is what takes another profile, such as ``print.profile``;
+    ``place`` holds file, key and value of what was given.
+    """
+    if casting_missing(printer, material):
+        known = {} if library is None else library.paths("materials")
+        return uncast(printer, material, str(known.get(name or "", place.get("file") or name)))
+    at_once = f"it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once"
+    remedy = at_once if library is None else f"{at_once}; {made_by(material, library, setting)}"
+    return InputError(f"the {printer.title} cannot run {material.label}", remedy=remedy, **place)
+
+
+def made_by(material: Material, library: Library, setting: str) -> str:
+    """The profiles that make a material and their processes, as a remedy."""
+    profiles = [f"{name} (process {one.process})" for name, one in makers(material, library).items()]
+    if not profiles:
+        casts = next(
+            (one for one in library.readable("printers", Printer).values() if casting_missing(one, material)), None
+        )
+        if casts is not None:
+            return f"{material.label} has no table [casting], which the profile {casts.title} needs"
+        return f"no profile runs {material.label}; {own_profile(material)}"
+    return f"{material.label} takes {setting} {' or '.join(profiles)}"
+
+
+def own_profile(material: Material) -> str:
+    """Remedy for a material that no profile can make."""
+    resins = ", ".join(material.base_resins)
+    return f"add {resins} to the resins of a profile of your own: pneutouch new NAME --from PROFILE"

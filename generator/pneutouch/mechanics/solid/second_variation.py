@@ -1,0 +1,372 @@
+"""The second variation of the total energy around the axis, for displacements of n waves on an axisymmetric state.
+
+A displacement is u_r = a cos(n t), u_z = b cos(n t), u_theta = c sin(n t) of the angle t around the axis, with nodal
+a, b, c on the mesh of the meridian. Integrals over the angle are taken over half their value for n = 0, where the
+second variation is then that of the axisymmetric solid. It is a polynomial K0 + n K1 + n^2 K2.
+
+The second variation around the axis of what acts on the faces of the wall: gas, contact, friction and base.
+
+Second derivatives of an isotropic energy by the shears that an axisymmetric deformation does not have.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.arrays import Array, Index
+from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
+from pneutouch.mechanics.laws.strain import BY_A, BY_AH, BY_HH, BY_J, BY_JH, Strain
+from pneutouch.mechanics.solid.banded import AssemblyPattern
+from pneutouch.mechanics.solid.elements import (
+    F_RR,
+    F_RZ,
+    F_ZR,
+    F_ZZ,
+    HOOP,
+    IN_PLANE,
+    RADIAL,
+    area_ratio,
+    gauss_square,
+    line_shapes,
+    pressure_modes,
+    strain_operator,
+)
+from pneutouch.mechanics.solid.mesh import SolidMesh
+from pneutouch.mechanics.solid.model import PointFields, SolidModel
+from pneutouch.mechanics.solid.newton import SolverState
+
+IN_R, IN_Z, AROUND = range(3)
+"""Displacements of a node: a and b in the meridian, c around the axis."""
+
+
+@dataclass(frozen=True)
+class HarmonicBlocks:
+    """Coefficients of 1, n and n^2 of one family of blocks, each (n_blocks, 3 n, 3 n): a, b, c node by node."""
+
+    constant: Array
+    linear: Array
+    square: Array
+
+    def at(self, n: int) -> Array:
+        """The blocks for n waves."""
+        return np.asarray(self.constant + n * self.linear + n * n * self.square)
+
+
+def empty_blocks(blocks: int, nodes: int) -> Array:
+    """Zeros, indexed by block, node, displacement, node, displacement."""
+    return np.zeros((blocks, nodes, 3, nodes, 3))
+
+
+def block_family(parts: tuple[Array, Array, Array]) -> HarmonicBlocks:
+    """Coefficients indexed as those of `empty_blocks`."""
+    size = 3 * parts[0].shape[1]
+    return HarmonicBlocks(*(part.reshape(-1, size, size) for part in parts))
+
+
+def with_around(meridian: Array, around: Array | None = None) -> Array:
+    """Blocks of the axisymmetric solid (n_blocks, 2 n, 2 n) with those of displacements around the axis, (n_blocks, n,
+    n), or with space for them."""
+    nodes = meridian.shape[1] // 2
+    out = empty_blocks(meridian.shape[0], nodes)
+    out[:, :, :AROUND, :, :AROUND] = meridian.reshape(-1, nodes, 2, nodes, 2)
+    if around is not None:
+        out[:, :, AROUND, :, AROUND] = around
+    return out
+
+
+def face_blocks(solid: SolidModel, state: SolverState) -> list[HarmonicBlocks]:
+    """Families of the edges of the inner and of the outer wall, and where the wall can meet a flange of those edges
+    with its top: there without the work of sliding around the axis."""
+    inner, outer = _gas(solid, state), _contact(solid, state)
+    if solid.base is not None:
+        inner, outer = (
+            face if base is None else _with(face, *base)
+            for face, base in zip((inner, outer), solid.base.waves(state.x), strict=True)
+        )
+    for term in state.terms[len(solid.supports) :]:
+        if term.blocks is not None:
+            outer = _with(outer, term.blocks, term.around)
+    if not solid.meeting.size:
+        return [inner, outer]
+    fold, empty = state.terms[1].fold_blocks, empty_blocks(*solid.meeting.shape)
+    return [inner, outer, block_family((empty if fold is None else with_around(fold), empty, empty.copy()))]
+
+
+def _with(face: HarmonicBlocks, meridian: Array, around: Array | None) -> HarmonicBlocks:
+    more = with_around(meridian, around)
+    return HarmonicBlocks(face.constant + more.reshape(face.constant.shape), face.linear, face.square)
+
+
+def _contact(solid: SolidModel, state: SolverState) -> HarmonicBlocks:
+    """Second variation of the contact's energy: a point that moves around the axis moves outwards, too."""
+    contact, touch = solid.contact, state.touch
+    empty = empty_blocks(*solid.mesh.outer.shape)
+    if touch is None:
+        return block_family((empty, empty.copy(), empty.copy()))
+    around = None
+    if touch.slope.any():
+        radius = np.maximum(contact.positions(state.x)[0], 1.0e-300)
+        load = -contact.weight * touch.traction * touch.slope / radius
+        around = np.einsum("eq,qi,qk->eik", load, contact.shape, contact.shape)
+    constant = with_around(contact.hessian(touch, touch.traction > 0.0), around)
+    return block_family((constant, empty, empty.copy()))
+
+
+def _gas(solid: SolidModel, state: SolverState) -> HarmonicBlocks:
+    """Second variation of the cavity volume by edges of the inner wall, times the pressure.
+
+    V = (1/2) integral of z_s [h, h_t] - z_t [h, h_s] over the surface, h the horizontal position: to second order
+    pi integral of z'(a^2 + 2 n a c + c^2) + r b'(2 a + n c) + n b (r c' - r' c) along the meridian.
+    """
+    edges, pressure = solid.mesh.inner, state.filling.pressure
+    n = edges.shape[1]
+    point, weight = np.polynomial.legendre.leggauss(n)
+    value, slope = line_shapes(point, n)
+    line = state.x[edges]
+    r, by_r, by_z = line[..., 0] @ value.T, line[..., 0] @ slope.T, line[..., 1] @ slope.T
+
+    def form(load: Array, left: Array, right: Array) -> Array:
+        return np.asarray(-np.pi * pressure * np.einsum("eq,qi,qk->eik", weight * load, left, right))
+
+    rising = 2.0 * form(by_z, value, value)
+    cross = form(r, slope, value) + form(r, value, slope) - form(by_r, value, value)
+    constant = with_around(-pressure * solid.cavity.hessian(state.x), rising)
+    linear = empty_blocks(edges.shape[0], n)
+    for field, block in ((IN_R, rising), (IN_Z, cross)):
+        linear[:, :, field, :, AROUND] = block
+        linear[:, :, AROUND, :, field] = np.swapaxes(block, 1, 2)
+    return block_family((constant, linear, np.zeros_like(linear)))
+
+
+R_T, Z_T, T_R, T_Z = range(4)
+"""The shears of a point: F_(r theta), F_(z theta), F_(theta R) and F_(theta Z)."""
+
+
+def shear_moduli(law: Hyperelastic, strains: Array, pressure: Array) -> Array:
+    """Hessian (n_points, 4, 4) by the shears, in MPa, of the law's energy plus ``pressure`` (n_points,), MPa, times J.
+
+    ``strains`` (n_points, 5) as in `kinematics`. The deformation gradient is block diagonal, so its principal axes are
+    two in the plane and the hoop. A shear between one of the first two and the hoop leaves the third alone: there the
+    energy is that of a plane deformation, a function of a = |F|^2 and j = det F of this pair, with the Hessian 2 W_a
+    for each shear alone and -W_j for both. It is smooth where stretches coincide.
+    """
+    e, d = 0.5 * (strains[:, F_RR] + strains[:, F_ZZ]), 0.5 * (strains[:, F_RR] - strains[:, F_ZZ])
+    k, g = 0.5 * (strains[:, F_ZR] - strains[:, F_RZ]), 0.5 * (strains[:, F_ZR] + strains[:, F_RZ])
+    # F = rotation(left) diag(stretches) rotation(right); left + right has the direction (e, k), left - right (d, g).
+    mean, half = np.hypot(e, k), np.hypot(d, g)
+    stretch, hoop = np.stack([mean + half, mean - half]), strains[:, HOOP]
+    other = stretch[::-1]
+    jet = law.energy(Strain((stretch**2 + hoop**2).ravel(), (stretch * hoop).ravel(), other.ravel())).data
+    alone = 2.0 * jet[BY_A].reshape(2, -1)
+    both = -(jet[BY_J].reshape(2, -1) + pressure * other)
+    safe = np.where(half > 0.0, half, 1.0)
+    cos_sum, sin_sum, cos_gap, sin_gap = e / mean, k / mean, d / safe, g / safe
+    even, odd = 0.5 * (alone[0] + alone[1]), 0.5 * (alone[0] - alone[1])
+    out = np.empty((strains.shape[0], 4, 4))
+    twice_left = odd * (cos_sum * cos_gap - sin_sum * sin_gap), odd * (sin_sum * cos_gap + cos_sum * sin_gap)
+    twice_right = odd * (cos_sum * cos_gap + sin_sum * sin_gap), odd * (sin_sum * cos_gap - cos_sum * sin_gap)
+    out[:, R_T, R_T], out[:, Z_T, Z_T] = even + twice_left[0], even - twice_left[0]
+    out[:, R_T, Z_T] = out[:, Z_T, R_T] = twice_left[1]
+    out[:, T_R, T_R], out[:, T_Z, T_Z] = even + twice_right[0], even - twice_right[0]
+    out[:, T_R, T_Z] = out[:, T_Z, T_R] = -twice_right[1]
+    even, odd = 0.5 * (both[0] + both[1]), 0.5 * (both[0] - both[1])
+    out[:, R_T, T_R] = out[:, T_R, R_T] = even * cos_sum + odd * cos_gap
+    out[:, R_T, T_Z] = out[:, T_Z, R_T] = odd * sin_gap - even * sin_sum
+    out[:, Z_T, T_R] = out[:, T_R, Z_T] = odd * sin_gap + even * sin_sum
+    out[:, Z_T, T_Z] = out[:, T_Z, Z_T] = even * cos_sum - odd * cos_gap
+    return out
+
+
+#: Gradients of a scalar: by R, by Z, over R.
+_BY_R, _BY_Z, _OVER_R = range(3)
+
+
+class HarmonicSolid:
+    """The operators of a solid that do not depend on its state, and the second variation at a state."""
+
+    def __init__(self, solid: SolidModel) -> None:
+        self.solid = solid
+        mesh = solid.mesh
+        points, weights = gauss_square(solid.scheme.gauss)
+        b, measure, position = strain_operator(solid.rest, mesh.cells, points)
+        self._weight = measure * weights
+        relative = solid.grade(position[..., 0], position[..., 1])
+        self._relative = (relative * self._weight).ravel()
+        mean = (relative * self._weight).sum(axis=1) / self._weight.sum(axis=1)
+        self._kappa = (solid.material.bulk_ratio * mean)[:, None, None]
+        self._tested = pressure_modes(points, self._weight, solid.scheme.pressure) * self._weight[:, None, :]
+        n_cells, n_points = self._weight.shape
+        gradients = [b[:, :, row, RADIAL] for row in (F_RR, F_RZ, HOOP)]
+        self._gradient = np.stack(gradients, axis=2)
+        self._tall = self._gradient.reshape(n_cells, 3 * n_points, -1)
+        self._wide = np.ascontiguousarray(np.swapaxes(self._tall, 1, 2))
+        self._over = np.ascontiguousarray(self._gradient[:, :, _OVER_R])
+        self._over_wide = np.ascontiguousarray(np.swapaxes(self._over, 1, 2))
+        families = [mesh.cells, mesh.inner, mesh.outer, *([] if solid.meeting.size == 0 else [solid.meeting])]
+        self.unknowns = _number(solid)
+        tables = [self.unknowns[x].reshape(x.shape[0], -1) for x in families]
+        self._pattern = AssemblyPattern(tables, int(self.unknowns.max()) + 1)
+        signs = np.ones((mesh.nodes.shape[0], 3))
+        signs[mesh.axis, AROUND] = -1.0
+        by_block = [signs[x].reshape(x.shape[0], -1) for x in families]
+        self._turned = [np.flatnonzero((sign < 0.0).any(axis=1)) for sign in by_block]
+        pairs = zip(by_block, self._turned, strict=True)
+        self._signs = [sign[at, :, None] * sign[at, None, :] for sign, at in pairs]
+        self._on_axis = self.unknowns[mesh.axis, IN_R]
+
+    def expand(self, n: int, vector: Array) -> Array:
+        """Nodal displacements a, b, c (n_nodes, 3) of the unknowns of n waves."""
+        out = np.where(self.unknowns >= 0, vector[self.unknowns], 0.0)
+        out[self.solid.mesh.axis, AROUND] *= -1.0
+        if n > 1:
+            out[self.solid.mesh.axis] = 0.0
+        return np.asarray(out)
+
+    def bands(self, state: SolverState, numbers: tuple[int, ...]) -> dict[int, Array]:
+        """Lower bands of the second variation for numbers of waves of at least one, by number.
+
+        On the axis b is zero; c is -a for one wave, a displacement across the axis, and for more waves all are zero:
+        their rows and columns hold a large diagonal alone. The trapped gas adds nothing: such displacements keep the
+        volume to first order.
+        """
+        families, constant = self.blocks(state), None
+        out = {}
+        for n in numbers:
+            if len(numbers) == 1:
+                out[n] = self._assembled([family.at(n) for family in families])
+            else:
+                if constant is None:
+                    names = ("constant", "linear", "square")
+                    constant, linear, square = (self._assembled([getattr(f, p) for f in families]) for p in names)
+                out[n] = constant + n * linear + n * n * square
+            if n > 1:
+                _fix(out[n], self._on_axis)
+        return out
+
+    def _assembled(self, blocks: list[Array]) -> Array:
+        """Band of a sum of blocks, whose signs of c on the axis are turned in place."""
+        for block, turned, sign in zip(blocks, self._turned, self._signs, strict=True):
+            block[turned] *= sign
+        return self._pattern.matrix(blocks)
+
+    def blocks(self, state: SolverState) -> list[HarmonicBlocks]:
+        """The second variation by cells, by edges of the inner and of the outer wall, and where the wall can meet a
+        flange by those edges with its top: there without the work of sliding around the axis."""
+        return [self.wall(state.local), *face_blocks(self.solid, state)]
+
+    def wall(self, local: PointFields) -> HarmonicBlocks:
+        """Second variation of the stored energy by cells."""
+        d, n_cells = self._shears(local), self._weight.shape[0]
+        constant = with_around(self.solid.stiffness(local))
+        nodes = constant.shape[1]
+        linear, square = empty_blocks(n_cells, nodes), empty_blocks(n_cells, nodes)
+        constant[:, :, AROUND, :, AROUND] = self._product(_around(d))
+        for field, block in zip((IN_R, IN_Z), self._mixed(local, d), strict=True):
+            linear[:, :, field, :, AROUND] = block
+            linear[:, :, AROUND, :, field] = np.swapaxes(block, 1, 2)
+        hoop = local.jets[BY_HH]
+        for i, k, values in (
+            (IN_R, IN_R, d[:, R_T, R_T]),
+            (IN_Z, IN_Z, d[:, Z_T, Z_T]),
+            (IN_R, IN_Z, d[:, R_T, Z_T]),
+            (AROUND, AROUND, hoop),
+        ):
+            block = np.matmul(self._over_wide, values.reshape(n_cells, -1, 1) * self._over)
+            square[:, :, i, :, k] = block
+            square[:, :, k, :, i] = block
+        self._add_swelling(local, linear, square)
+        return block_family((constant, linear, square))
+
+    def _product(self, form: Array) -> Array:
+        """Blocks (n_cells, n, n) of a form of the gradients of two displacements, (n_points, 3, 3)."""
+        n_cells, n_points = self._weight.shape
+        moved = np.matmul(form.reshape(n_cells, n_points, 3, 3), self._gradient)
+        return np.asarray(np.matmul(self._wide, moved.reshape(n_cells, 3 * n_points, -1)))
+
+    def _shears(self, local: PointFields) -> Array:
+        """Weighted Hessian by the shears, nondimensional, with the averaged pressure; (n_points, 4, 4)."""
+        n_cells, n_points = self._weight.shape
+        change = (area_ratio(local.strains) * local.strains[:, HOOP] - 1.0).reshape(n_cells, n_points, 1)
+        content = np.matmul(self._tested, change)
+        pressure = (self._kappa * np.matmul(np.swapaxes(self._tested, 1, 2), content)).ravel()
+        scale = self._relative / self.solid.mu
+        moduli = shear_moduli(self.solid.material, local.strains, pressure / scale)
+        return np.asarray(moduli * scale[:, None, None])
+
+    def _mixed(self, local: PointFields, d: Array) -> tuple[Array, Array]:
+        """Blocks between a and c, and between b and c: the part in n."""
+        by_hoop = local.jets[BY_AH][:, None] * local.basis[:, 0, IN_PLANE]
+        by_hoop += local.jets[BY_JH][:, None] * local.basis[:, 1, IN_PLANE]
+        forms = []
+        for columns, shear in (((F_RR, F_RZ), R_T), ((F_ZR, F_ZZ), Z_T)):
+            form = np.zeros((d.shape[0], 3, 3))
+            form[:, _BY_R, _OVER_R], form[:, _BY_Z, _OVER_R] = by_hoop[:, columns[0]], by_hoop[:, columns[1]]
+            form[:, _OVER_R, _OVER_R] = d[:, shear, R_T]
+            form[:, _OVER_R, _BY_R], form[:, _OVER_R, _BY_Z] = -d[:, shear, T_R], -d[:, shear, T_Z]
+            forms.append(form)
+        forms[0][:, _OVER_R, _OVER_R] += local.jets[BY_HH]
+        return self._product(forms[0]), self._product(forms[1])
+
+    def _add_swelling(self, local: PointFields, linear: Array, square: Array) -> None:
+        """Add the contribution of the averaged volume's stiffness with c, in place."""
+        n_cells, n_points = self._weight.shape
+        nodes = linear.shape[1]
+        area = area_ratio(local.strains)
+        in_plane = local.basis[:, 1, IN_PLANE] * local.strains[:, HOOP:]
+        by_a = np.stack([in_plane[:, F_RR], in_plane[:, F_RZ], area], axis=1)
+        by_b = np.stack([in_plane[:, F_ZR], in_plane[:, F_ZZ]], axis=1)
+        tested = self._tested[..., None]
+        swell_a, swell_b, swell_c = (
+            np.matmul(
+                (tested * values.reshape(n_cells, 1, n_points, -1)).reshape(n_cells, tested.shape[1], -1),
+                self._gradient[:, :, rows].reshape(n_cells, -1, nodes),
+            )
+            for values, rows in (
+                (by_a, slice(None)),
+                (by_b, slice(_BY_R, _OVER_R)),
+                (area[:, None], slice(_OVER_R, None)),
+            )
+        )
+        stiff = self._kappa * swell_c
+        for field, swell in ((IN_R, swell_a), (IN_Z, swell_b)):
+            block = np.matmul(np.swapaxes(swell, 1, 2), stiff)
+            linear[:, :, field, :, AROUND] += block
+            linear[:, :, AROUND, :, field] += np.swapaxes(block, 1, 2)
+        square[:, :, AROUND, :, AROUND] += np.matmul(np.swapaxes(swell_c, 1, 2), stiff)
+
+
+def _around(d: Array) -> Array:
+    """The form of c with itself: its strains are -c/R in r theta, and its gradients in theta R and theta Z."""
+    form = np.empty((d.shape[0], 3, 3))
+    places = ((_BY_R, T_R, 1.0), (_BY_Z, T_Z, 1.0), (_OVER_R, R_T, -1.0))
+    for i, row, sign in places:
+        for k, column, other in places:
+            form[:, i, k] = sign * other * d[:, row, column]
+    return form
+
+
+def _number(solid: SolidModel) -> Index:
+    """Unknowns (n_nodes, 3) in the order of the axisymmetric solid's, -1 where fixed; on the axis a and c are one."""
+    mesh: SolidMesh = solid.mesh
+    free = np.ones((mesh.nodes.shape[0], 3), dtype=bool)
+    free[mesh.axis] = True, False, False
+    free[mesh.sliding, IN_Z] = False
+    free[mesh.clamped] = False
+    order = np.argsort(solid.dofs.max(axis=1), kind="stable")
+    numbers = np.empty(free.shape, dtype=np.intp)
+    ranked = free[order]
+    numbers[order] = np.where(ranked, np.cumsum(ranked).reshape(ranked.shape) - 1, -1)
+    numbers[mesh.axis, AROUND] = numbers[mesh.axis, IN_R]
+    return numbers
+
+
+def _fix(band: Array, unknowns: Index) -> None:
+    """Uncouple unknowns of a lower band, in place: their diagonal becomes the largest of all."""
+    width, largest = band.shape[0] - 1, float(np.abs(band[0]).max())
+    for unknown in unknowns[unknowns >= 0]:
+        back = np.arange(1, min(width, int(unknown)) + 1)
+        band[back, unknown - back] = 0.0
+        band[:, unknown] = 0.0
+        band[0, unknown] = largest

@@ -1,0 +1,267 @@
+"""A sensor under another contact than the atlas's plate without friction, by the solid's answers.
+
+The atlas gives the derivatives by wall, radius, gas and driving pressure. The derivative by the modulus, which is
+uncertain by far the most, and that by the friction are the solid's, with the contact itself
+(docs/background/contact.md).
+
+Answers of the solid for a sensor under its contact, at the few driving pressures that suffice.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.errors import ComputationError
+from pneutouch.mechanics.atlas.press import batch_of
+from pneutouch.mechanics.contact_correction import GRIPS, plate_alone
+from pneutouch.mechanics.prediction import SensorState
+from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
+from pneutouch.mechanics.uncertainty.neighbours import joined, log_figures
+from pneutouch.mechanics.uncertainty.source import CONTACT_FIGURES, FIGURES
+
+SAME = 1e-6
+"""Driving pressures nearer to each other than this, MPa, are one."""
+
+
+@lru_cache(maxsize=128)
+def pressed_logs(sensor: Sensor, pressures: tuple[float, ...]) -> Array:
+    """Logarithms of the figures at ascending driving pressures, MPa, (figures, n), read-only; all NaN if the solid
+    cannot solve the highest. The chart, the budget and the curves of a datasheet need the same ones again."""
+    from pneutouch.mechanics.solid_states import solid_states
+
+    try:
+        logs = state_logs(solid_states(sensor, np.array(pressures)))
+    except ComputationError:
+        logs = np.full((len(FIGURES), len(pressures)), np.nan)
+    logs.setflags(write=False)
+    return logs
+
+
+def state_logs(states: Sequence[SensorState], correction: ResponseCorrection | None = None) -> Array:
+    """Logarithms of the figures of solved states, (figures, n); NaN for a missing figure. The factors of a
+    ``correction`` that the states hold are taken out."""
+    rows = np.full((len(FIGURES), len(states)), np.nan)
+    for k, state in enumerate(states):
+        if state.figures is not None:
+            force, rise = (1.0, 1.0) if correction is None else correction.at(state.driving_pressure)
+            fitted = state.figures.scaled(1.0 / force, 1.0 / rise)
+            rows[CONTACT_FIGURES, k] = (
+                fitted.sensitivity_kPa_per_N,
+                fitted.stiffness,
+                fitted.force_range[1],
+                state.range_end,
+            )
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray(np.log(rows))
+
+
+def solved_at(
+    sensor: Sensor, pressures: Sequence[float], states: Sequence[SensorState], least: int = 3
+) -> tuple[Array, Array]:
+    """Driving pressures (k,) from which those at ``pressures`` follow, and the logarithms of the figures (figures, k).
+
+    ``states`` of the sensor are taken as they are. What lies beyond them is solved at its ends, without the highest
+    that the solid cannot be driven to, and the middle of all where there are fewer than ``least`` then.
+    """
+    given, bare = state_logs(states, sensor.correction), sensor.replace(waves=0)
+    known = {state.driving_pressure: given[:, k] for k, state in enumerate(states)}
+    outside = [p for p in pressures if not known or not min(known) - SAME <= p <= max(known) + SAME]
+    for count in range(len(outside), 0, -1):
+        some = tuple(dict.fromkeys((outside[0], outside[count - 1])))
+        solved = pressed_logs(bare, some)
+        if not np.isnan(solved).all():
+            known.update(zip(some, solved.T, strict=True))
+            break
+    between_them = any(not _among(p, known) for p in pressures)
+    if between_them and 2 <= len(known) < least:
+        middle = 0.5 * (min(known) + max(known))
+        known[middle] = pressed_logs(bare, (middle,))[:, 0]
+    if not known:
+        return np.array(pressures), np.full((len(FIGURES), len(pressures)), np.nan)
+    at = sorted(known)
+    return np.array(at), np.stack([known[p] for p in at], axis=1)
+
+
+def _among(pressure: float, others: dict[float, Array]) -> bool:
+    return any(abs(pressure - other) <= SAME for other in others)
+
+
+def between(where: Array, at: Array, values: Array) -> Array:
+    """Straight lines between values (figures, k) at driving pressures (k,), at others (n,); NaN above the highest, and
+    below the lowest, that have one."""
+    rows = np.full((len(values), where.size), np.nan)
+    for row, line in zip(rows, values, strict=True):
+        good = np.isfinite(line)
+        if good.any():
+            inside = (where >= at[good][0] - SAME) & (where <= at[good][-1] + SAME)
+            row[inside] = np.interp(where[inside], at[good], line[good])
+    return rows
+
+
+SPREAD = 2.0
+"""A stated coefficient may be this factor off in either direction, even in its logarithm: an assumption. Dry rubber on
+plastic has a coefficient near 1, which dust, speed and load move by as much."""
+
+LEAST_GRIP = 1.0
+"""Least coefficient of a surface that is stated to grip: an assumption, that of dry rubber on plastic."""
+
+_KURTOSIS = 1.8
+"""Kurtosis of a rectangular distribution."""
+
+_LEAST_STEP = 0.1
+"""Least half step in ln modulus: below it the noise of the ends of ranges shows in a difference."""
+
+_RANGE = CONTACT_FIGURES[-1]
+_SAME_END = 1e-6
+"""Ends of ranges nearer to each other than this, in the logarithm, are one."""
+
+
+@dataclass(frozen=True)
+class FrictionSpread:
+    """Effect of an unknown coefficient of friction on n sensors.
+
+    Attributes:
+        standard: Standard uncertainties of the logarithm of the figures, (figures, n); NaN if no equilibrium was
+            found at another coefficient.
+        elasticities: d ln figure / d ln coefficient, (figures, n); None for a surface that grips.
+        origin: Assumed distribution of the coefficient.
+    """
+
+    standard: Array
+    elasticities: Array | None
+    origin: str
+
+
+@dataclass(frozen=True)
+class ContactShift:
+    """Logarithms of the figures under the contact, by the solid, less those under the plate, by the atlas.
+
+    Attributes:
+        half: Distance of the nodes in ln modulus.
+        nodes: At moduli exp(-half), 1 and exp(half) times that of the sensor, (3, figures, n).
+    """
+
+    half: float
+    nodes: Array
+
+    def at(self, by: Array) -> Array:
+        """Shift at ln modulus over that of the sensor (k, n), (figures, k, n): a parabola, constant beyond its
+        nodes."""
+        t = np.clip(by / self.half, -1.0, 1.0)
+        less, here, more = self.nodes[:, :, None]
+        return np.asarray(here + 0.5 * t * (more - less) + 0.5 * t**2 * (more - 2.0 * here + less))
+
+    def row(self, row: int) -> "ContactShift":
+        """Shift of one sensor."""
+        return ContactShift(self.half, self.nodes[:, :, row : row + 1])
+
+
+@dataclass(frozen=True)
+class ContactModel:
+    """One sensor under its contact at n ascending driving pressures, MPa.
+
+    ``states`` are those of the solid where it has been solved already, at these or at other driving pressures; between
+    them, and ``least`` pressures, the logarithm of the figures over those under the plate is straight.
+    What another modulus or friction changes is solved at the lowest and the highest pressure and is straight between,
+    unless an event ends the range. ``fitted_spread`` is the standard uncertainty of the coefficient where a calibration
+    fitted it.
+    """
+
+    sensor: Sensor
+    pressures: tuple[float, ...]
+    states: Sequence[SensorState] = ()
+    fitted_spread: float | None = None
+    least: int = 3
+
+    @cached_property
+    def logs(self) -> Array:
+        """Logarithms of the figures under the contact, (figures, n)."""
+        at, solved = self._solved
+        if at.size == len(self.pressures) and np.abs(at - np.array(self.pressures)).max() <= SAME:
+            return solved
+        return self.ratio + log_figures(batch_of(plate_alone(self.sensor), self.pressures))
+
+    @cached_property
+    def ratio(self) -> Array:
+        """Logarithms of the figures under the contact over those under the plate, by the atlas, (figures, n)."""
+        at, solved = self._solved
+        plate = log_figures(batch_of(plate_alone(self.sensor), at))
+        return between(np.array(self.pressures), at, solved - plate)
+
+    def shift(self, half: float) -> ContactShift:
+        """The shift over a spread of the modulus; a side that the solid cannot solve is as the middle."""
+        half = max(half, _LEAST_STEP)
+        here = self.logs - log_figures(batch_of(plate_alone(self.sensor), self.pressures))
+        modulus = self.sensor.wall.shear_modulus
+        less, more = (self._change(self.sensor.replace(shear_modulus=f * modulus)) for f in np.exp([-half, half]))
+        nodes = np.stack([here + less, here, here + more])
+        # Neither the free state nor its limit point depends on the contact.
+        nodes[:, [i for i in range(len(FIGURES)) if i not in CONTACT_FIGURES]] = 0.0
+        return ContactShift(half, np.where(np.isnan(nodes), nodes[1], nodes))
+
+    @cached_property
+    def friction(self) -> FrictionSpread | None:
+        """Effect of the unknown coefficient; None without friction."""
+        stated = self.sensor.protocol.friction
+        if self.fitted_spread is not None:
+            return self._fitted(min(stated, GRIPS), self.fitted_spread)
+        if stated == 0.0:
+            return None
+        if np.isinf(stated):
+            change = self._change(self.sensor.replace(friction=LEAST_GRIP))
+            # As likely anywhere from none of the change to the whole of it, about an end: mean square c^2 / 3.
+            origin = f"assumed: a coefficient from {LEAST_GRIP:g} to grip; the solid at both ends"
+            return FrictionSpread(np.abs(change) / np.sqrt(3.0), None, origin)
+        u = np.log(SPREAD) / np.sqrt(3.0)
+        far = np.sqrt(_KURTOSIS) * u
+        down, up = (self._change(self.sensor.replace(friction=stated * float(np.exp(x)))) for x in (-far, far))
+        half = 0.5 * (up - down)
+        slope = np.where(np.isnan(half), np.where(np.isnan(up), -down, up), half)
+        bend = np.nan_to_num(0.5 * (up + down))
+        # Three-point rule with the moments of the rectangle: weights 1/(2 kurtosis) at both sides.
+        weight = 1.0 / _KURTOSIS
+        variance = weight * (slope**2 + bend**2) - (weight * bend) ** 2
+        origin = (
+            f"assumed: {stated:g}, even in its logarithm from 1/{SPREAD:g} to {SPREAD:g} times as much; the solid at "
+            f"{stated * np.exp(-far):.2g} and {stated * np.exp(far):.2g}"
+        )
+        return FrictionSpread(np.sqrt(variance), slope / far, origin)
+
+    def _fitted(self, value: float, spread: float) -> FrictionSpread:
+        """Spread by a fitted coefficient: the difference over its standard uncertainty, within 0 and grip."""
+        ends = max(value - spread, 0.0), min(value + spread, GRIPS)
+        down, up = (self._change(self.sensor.replace(friction=np.inf if x >= GRIPS else x)) for x in ends)
+        slope = (up - down) / max(ends[1] - ends[0], 1e-9)
+        origin = f"fitted: {value:.3g}, standard uncertainty {spread:.2g}; the solid at {ends[0]:.2g} and {ends[1]:.2g}"
+        return FrictionSpread(np.abs(slope) * spread, value * slope, origin)
+
+    @cached_property
+    def _solved(self) -> tuple[Array, Array]:
+        """Driving pressures (k,) that the sensor is solved at, and the logarithms of its figures (figures, k)."""
+        return solved_at(self.sensor, self.pressures, self.states, self.least)
+
+    def _change(self, sensor: Sensor) -> Array:
+        """Change of the logarithms of another sensor's figures under its contact, less the change under the plate,
+        (figures, n); NaN beyond the highest driving pressure at which the solid can solve it."""
+        at, solved = self._solved
+        for count in range(at.size, 0, -1):
+            rows = np.unique([0, count - 1])
+            changes = pressed_logs(sensor.replace(waves=0), tuple(at[rows].tolist())) - solved[:, rows]
+            if not np.isnan(changes).all():
+                break
+        if count > rows.size and not self._to_the_depth(solved[:, :count], changes):
+            inner = pressed_logs(sensor.replace(waves=0), tuple(at[1 : count - 1].tolist())) - solved[:, 1 : count - 1]
+            rows, changes = np.arange(count), np.hstack([changes[:, :1], inner, changes[:, 1:]])
+        if sensor.wall != self.sensor.wall:
+            plates = [batch_of(plate_alone(one), at[rows]) for one in (sensor, self.sensor)]
+            there, here = np.split(log_figures(joined(plates)), 2, axis=1)
+            changes = changes - (there - here)
+        return between(np.array(self.pressures), at[rows], changes)
+
+    def _to_the_depth(self, solved: Array, changes: Array) -> bool:
+        """True if no event ends the range: an event does so at a travel that jumps from pressure to pressure."""
+        ends = np.abs([*(solved[_RANGE] - np.log(self.sensor.protocol.depth)), *changes[_RANGE]])
+        return bool((ends < _SAME_END).all())

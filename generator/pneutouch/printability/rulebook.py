@@ -1,0 +1,100 @@
+"""Run every rule over a subject.
+
+Rules on the mould of a cast membrane: each part on its printer, and the mould's functions: fill, close, let go.
+"""
+
+from collections.abc import Callable
+
+from pneutouch.parts.mould import MouldAssembly
+from pneutouch.printability.finding import Finding
+from pneutouch.printability.rules import (
+    build_volume,
+    casting,
+    cleaning,
+    driving,
+    faces,
+    feature_sizes,
+    joints,
+    mesh,
+    mould,
+    resins,
+)
+from pneutouch.printability.subject import PrintItem, PrintSubject
+from pneutouch.printability.view import PrintView, SensorContext
+
+Rule = Callable[[PrintView], list[Finding]]
+
+RULES: dict[str, Rule] = {
+    "mesh": mesh.check_mesh,
+    "contact faces": faces.check_contact_faces,
+    "envelope": build_volume.check_envelope,
+    "resins": resins.check_resins,
+    "walls": feature_sizes.CHECKS["walls"],
+    "pins": feature_sizes.CHECKS["pins"],
+    "holes": feature_sizes.CHECKS["holes"],
+    "channels": feature_sizes.CHECKS["channels"],
+    "gaps": joints.check_gaps,
+    "emboss": feature_sizes.CHECKS["emboss"],
+    "edges": feature_sizes.check_edges,
+    "hollows": cleaning.check_hollows,
+    "cleaning": cleaning.check_cleaning,
+    "matte": faces.check_matte,
+    "layers": build_volume.check_layers,
+    "filling": casting.filling,
+    "bubbles": casting.bubbles,
+    "inhibition": casting.inhibition,
+    "glue": joints.check_glue,
+    "driving": driving.check_driving,
+    "mixing curve": resins.check_mixing_curve,
+    "freedom": joints.check_freedom,
+}
+
+
+def check(subject: PrintSubject, sensor_context: SensorContext | None = None) -> list[Finding]:
+    """All findings, errors first.
+
+    Bodies whose mesh bounds no solid get the findings that need none: mesh, envelope and resins. Rules on the sensor's
+    working (driving, layers, mixing curve) and on casting report nothing without ``sensor_context``.
+    """
+    view = PrintView(subject, sensor_context)
+    return sorted((finding for rule in RULES.values() for finding in rule(view)), key=lambda finding: finding.rank)
+
+
+MouldRule = Callable[[MouldAssembly], list[Finding]]
+
+MOULD_RULES: dict[str, MouldRule] = {
+    "mould fit": mould.check_mould_fit,
+    "mould filling": mould.check_mould_filling,
+    "release": mould.check_mould_release,
+}
+
+_HINTS = {
+    "walls": "raise mould.wall_mm, or take another mould.profile",
+    "holes": "drill it after printing, or take a wider mould.vent_diameter_mm or mould.sprue_diameter_mm",
+    "channels": "drill it after printing, or take a wider mould.vent_diameter_mm or mould.sprue_diameter_mm",
+    "envelope": "take fewer mould.cavities, less mould.wall_mm or another mould.profile",
+    "resins": "take another mould.material or mould.profile",
+    "gaps": "raise mould.wall_mm, or take another mould.profile",
+}
+"""Remedies in the design for findings of the printing rules on parts of a mould."""
+
+_LEFT_TO_RAYS = ("edges", "mesh")
+"""Rules of printing whose remarks on a mould stand elsewhere: its edges close on one another, and `mould` measures
+its meshes."""
+
+
+def mould_subject(mould: MouldAssembly) -> PrintSubject:
+    """The parts of a mould as they are printed, each a job of its own; the cap lies with its pockets up."""
+    items = []
+    for body, solid in zip(mould.bodies, mould.solids, strict=True):
+        up = (0.0, 0.0, -1.0 if solid.name == "mould-cap" else 1.0)
+        items.append(PrintItem(body, mould.printer, mould.mode, solid, up=up, hints=_HINTS))
+    return PrintSubject(tuple(items), name=f"{mould.scene.name}-mould")
+
+
+def check_mould(mould: MouldAssembly) -> list[Finding]:
+    """All findings on a mould, errors first."""
+    printed = check(mould_subject(mould))
+    kept = [finding for finding in printed if finding.rule not in _LEFT_TO_RAYS or finding.severity == "error"]
+    more = [finding for rule in MOULD_RULES.values() for finding in rule(mould)]
+    return sorted([*kept, *more], key=lambda finding: finding.rank)

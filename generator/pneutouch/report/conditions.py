@@ -1,0 +1,292 @@
+"""Temperature, speed, humidity and ageing: calculated or quoted, never guessed.
+
+The gauge on a datasheet: its range, and the smallest force that it detects.
+
+Speed of the sensor's reading, in rows of a datasheet.
+
+The datasheet's rows on contact off the axis: sideways force, moment, and the harmonics that the answer took.
+
+The table of a datasheet that sets a mix by its pair's mixing curves side by side.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.evaluation.sheet_data import SheetData
+from pneutouch.mechanics.prediction import CurveOutcome, SensorState
+from pneutouch.rounding import tenths_below
+from pneutouch.units import KPA
+
+NOT_TESTED = "not tested"
+
+
+def environment(sheet: SheetData) -> list[list[str]]:
+    """Rows of quantity, value and basis."""
+    rows = _air(sheet) if sheet.gas is not None else _drift_alone(sheet)
+    material = sheet.scene.membrane_material
+    if material.shore_a and material.shore_a_one_year:
+        text = f"Shore A {material.shore_a.text()} to {material.shore_a_one_year.text()}"
+        rows.append(["Ageing, one year in light and air", text, "paper, Table 1"])
+    return [*rows, ["Humidity, oils, ozone, UV", NOT_TESTED, ""]]
+
+
+def _air(sheet: SheetData) -> list[list[str]]:
+    """Effects of the air at the lowest and the highest driving pressure."""
+    gas, states = sheet.gas, sheet.prediction.states
+    assert gas is not None
+    ends = [0, len(states) - 1] if len(states) > 1 else [0]
+    at = " and ".join(f"{states[k].driving_pressure / KPA:g}" for k in ends) + " kPa"
+
+    def values(numbers: Array, form: str, unit: str) -> str:
+        texts = [format(float(numbers[k]), form) if np.isfinite(numbers[k]) else "–" for k in ends]
+        return " and ".join(texts) + f" {unit}"
+
+    rigid = values(1 / gas.wall_give, ".1f", "times")
+    drift = f"ideal gas in the yielding dome at {at}, 20 °C; a rigid cavity would show {rigid} as much"
+    fast = f"sensitivity with adiabatic over that with isothermal air, over the same travel at {at}"
+    return [
+        ["Zero drift of the sealed gas", values(gas.by_temperature_kPa_per_K, ".2f", "kPa/K"), drift],
+        ["the same as force", values(gas.force_by_temperature, ".2f", "N/K"), "drift over the predicted sensitivity"],
+        ["Fast contact", values(gas.fast_over_slow, ".2f", "times"), fast],
+    ]
+
+
+def _drift_alone(sheet: SheetData) -> list[list[str]]:
+    """Outside the atlas: the drift from the predicted inflation curve; fast contact is unknown."""
+    state, drift_kPa_per_K = sheet.prediction.states[0], sheet.zero_drift_kPa_per_K
+    at = f"at {state.driving_pressure / KPA:g} kPa, 20 °C"
+    rows = [["Zero drift of the sealed gas", f"{drift_kPa_per_K:.2f} kPa/K", f"ideal gas in the yielding dome {at}"]]
+    if state.figures is not None:
+        force = f"{drift_kPa_per_K / state.figures.sensitivity_kPa_per_N:.2f} N/K"
+        rows.append(["the same as force", force, "drift over the predicted sensitivity"])
+    return [*rows, ["Fast contact", "not known", "computed for sensors inside the atlas alone"]]
+
+
+def gauge_range(sheet: SheetData) -> list[str]:
+    """Range, unit and note of the gauge."""
+    gauge, reading = sheet.scene.gauge, sheet.gauge
+    note = f"{reading.title}, the paper's, assumed"
+    if gauge is not None:
+        note = f"{reading.title} ({_breakable(gauge.order_code)})"
+    if gauge is not None and gauge.is_absolute:
+        note += (
+            f"; absolute, {gauge.range_kPa.low:g} to {gauge.range_kPa.high:g} kPa: it reads the ambient pressure too, "
+            "which must be subtracted"
+        )
+    return [f"{reading.low_kPa:.4g} to {reading.limit_kPa:.4g}", "kPa gauge", note]
+
+
+def _breakable(code: str) -> str:
+    """An order code that a narrow column may break, at a space of no width after every eighth character."""
+    return "\u200b".join(code[start : start + 8] for start in range(0, len(code), 8))
+
+
+def gauge_volume(sheet: SheetData) -> str:
+    """Volume that the gauge adds to the dead volume, in words; empty if the design names no gauge."""
+    gauge = sheet.scene.gauge
+    if gauge is None:
+        return ""
+    if gauge.inner_volume_mL is None:
+        return "; the gauge's own volume is not known and not counted"
+    return f" and gauge {sheet.assembly.gauge_volume_mL:.3f} mL"
+
+
+def detection(sheet: SheetData) -> list[list[str]]:
+    """Rows of quantity, value and basis: the smallest force, and the warming that reads the same."""
+    reading, forces = sheet.gauge, sheet.gauge.forces
+    ends = forces if len(forces) < 2 else (forces[0], forces[-1])
+    at = " and ".join(f"{one.driving_pressure / KPA:g}" for one in ends) + " kPa"
+    if reading.threshold_kPa is None:
+        return [["Smallest force detected", "not known", f"{reading.limited_by} ({reading.title})"]]
+    band = "" if reading.rate_Hz is None else f", to {reading.rate_Hz / 2:g} Hz"
+    return [
+        [
+            "Smallest force detected",
+            _both([one.force for one in ends], "N"),
+            f"{reading.criterion}{band}, at {at}; limited by {reading.limited_by} ({reading.title})",
+        ],
+        [
+            "at first contact",
+            _both([one.at_first_contact for one in ends], "N"),
+            f"warming by {_both([one.warming for one in ends], 'K')} reads as much as the row above",
+        ],
+    ]
+
+
+def _both(values: list[float | None], unit: str) -> str:
+    return " and ".join("–" if value is None else f"{value:.2g}" for value in values) + f" {unit}"
+
+
+_DASH = "–"
+
+
+def speed_rows(sheet: SheetData) -> list[list[str]]:
+    """Rows of quantity, value and basis at the lowest and the highest driving pressure; empty without the figures."""
+    if sheet.speed is None:
+        return []
+    states = sheet.speed.states
+    ends = [states[0], states[-1]] if len(states) > 1 else [states[0]]
+    rate_Hz = sheet.speed.rate_Hz
+    gauge = "" if rate_Hz is None else f"; the gauge reads {rate_Hz:g} times a second"
+    bands = ", ".join(dict.fromkeys(state.bandwidth_limit or _DASH for state in ends))
+    narrow = ", ".join(dict.fromkeys(state.within_limit or _DASH for state in ends))
+    after = _values([1e3 * state.delay for state in ends], ".2g", "ms")
+    return [
+        [
+            "First resonance",
+            _values([state.resonance for state in ends], ".3g", "Hz"),
+            "line as drawn, force at first contact",
+        ],
+        [
+            "Bandwidth",
+            _values([state.bandwidth for state in ends], ".3g", "Hz"),
+            f"gain within 3 dB; limit: {bands}{gauge}",
+        ],
+        ["Gain within 5 %", _values([state.within for state in ends], ".2g", "Hz"), f"limit: {narrow}"],
+        [
+            "Rise time",
+            _values([1e3 * state.rise_time for state in ends], ".2g", "ms"),
+            f"10 to 90 %, step of force; half after {after}",
+        ],
+    ]
+
+
+def _values(numbers: Sequence[float | None], form: str, unit: str) -> str:
+    texts = [_DASH if number is None else format(number, form) for number in numbers]
+    return f"{' and '.join(texts)} {unit}"
+
+
+OFF_AXIS = (
+    "Driving\nkPa",
+    "Indentation\nmm",
+    "Force\nN",
+    "Sideways force\nN",
+    "Moment\nN mm",
+    "Harmonics\nto order",
+    "Last change\n%",
+)
+"""Columns of the table of contact off the axis."""
+
+CAPTION = (
+    "At the end of the range, of the dome on the object: the sideways force in the plane of symmetry, positive towards "
+    "the offset or the side on which a plate rises; the moment about the centre of the base plane. The last raise of "
+    "the harmonics changed sensitivity, force or pressure rise by the last change at most; the sideways force settles "
+    "later than these."
+)
+
+SHEAR = (
+    "Driving\nkPa",
+    "Moved to\nmm",
+    "Force\nN",
+    "Sideways force\nN",
+    "Moment\nN mm",
+    "Pressure rise\nkPa",
+    "Greatest sideways force\nN",
+    "Slips throughout from\nmm",
+)
+"""Columns of the table of an object that moves sideways after pressing."""
+
+SHEAR_CAPTION = (
+    "The object moves sideways at the depth that it was pressed to. At the end of that travel, of the dome on the "
+    "object: force, sideways force and moment as above, and the pressure rise; the sideways force where it is greatest "
+    "against the travel; the first computed travel at which every point of the contact slides."
+)
+
+
+def off_axis_rows(states: tuple[SensorState, ...]) -> list[list[str]]:
+    """One row a driving pressure that was pressed off the axis."""
+    rows = []
+    for state in states:
+        beyond = state.beyond_axis
+        if beyond is None:
+            continue
+        end = min(state.range_end, float(state.indentation[-1]))
+        curves = (state.force, beyond.sideways, beyond.moment)
+        force, sideways, moment = (float(np.interp(end, state.indentation, curve)) for curve in curves)
+        rows.append(
+            [
+                f"{state.driving_pressure / KPA:g}",
+                f"{end:.2f}",
+                f"{force:.3f}",
+                f"{sideways:.3f}",
+                f"{moment:.2f}",
+                f"{beyond.order}",
+                f"{100.0 * beyond.last_change:.2g}",
+            ]
+        )
+    return rows
+
+
+def shear_rows(states: tuple[SensorState, ...]) -> list[list[str]]:
+    """One row a driving pressure at which the object moved sideways; a dash for a figure that was not reached."""
+    rows = []
+    for state in states:
+        sheared = None if state.beyond_axis is None else state.beyond_axis.shear
+        if sheared is None:
+            continue
+        columns = (
+            (sheared.travel, ".2f"),
+            (sheared.force, ".3f"),
+            (sheared.sideways, ".3f"),
+            (sheared.moment, ".2f"),
+            (sheared.rise / KPA, ".2f"),
+        )
+        ends = [f"{column[-1]:{digits}}" if column.size else "-" for column, digits in columns]
+        peak = "-" if sheared.peak is None else f"{sheared.peak:.3f}"
+        slips = "-" if sheared.slips_from is None else f"{sheared.slips_from:.2f}"
+        rows.append([f"{state.driving_pressure / KPA:g}", *ends, peak, slips])
+    return rows
+
+
+DASH = "–"
+
+_CAPTION = (
+    "The fraction of the stiff resin is printed exactly; its modulus is assumed. The published characterizations of "
+    "such mixes differ, and none is of these two resins: each column predicts this design if its curve is true "
+    "(docs/background/mixing.md). A curve measured on coupons of the printer in use replaces all of them."
+)
+_BEYOND = (
+    "{curves}: the wall holds more of the stiff resin than this curve covers. The column takes its "
+    "stiffest; the wall may be rigid there."
+)
+
+
+def curves_section(sheet: SheetData) -> dict[str, Any]:
+    """Head, rows and lines of the table: a row a figure, a column a curve, the softest first."""
+    if not sheet.curves:
+        return {"known": False, "head": [], "rows": [], "lines": []}
+    head = ["Figure", *(f"{one.by_curve.curve}: {one.by_curve.place}" for one in sheet.curves), "Unit"]
+    rows = [
+        _row("Mean shear modulus", "MPa", [f"{one.by_curve.shear_modulus_MPa.nominal:.2f}" for one in sheet.curves])
+    ]
+    for k, state in enumerate(sheet.prediction.states):
+        at = f"at {state.driving_pressure / KPA:g} kPa"
+        states = [one.states[k] if k < len(one.states) else None for one in sheet.curves]
+        rows.append(_row(f"Sensitivity {at}", "kPa/N", [_sensitivity(one) for one in states]))
+        rows.append(_row(f"Force range {at}", "N", [_range(one) for one in states]))
+    rows.append(_row("Rated pressure", "kPa", [_rated(one) for one in sheet.curves]))
+    beyond = ", ".join(one.by_curve.curve for one in sheet.curves if one.by_curve.beyond)
+    lines = [_CAPTION, *([_BEYOND.format(curves=beyond)] if beyond else [])]
+    return {"known": True, "head": head, "rows": rows, "lines": lines}
+
+
+def _row(name: str, unit: str, values: list[str]) -> list[str]:
+    return [name, *values, unit]
+
+
+def _sensitivity(state: SensorState | None) -> str:
+    return DASH if state is None or state.figures is None else f"{state.figures.sensitivity_kPa_per_N:.3f}"
+
+
+def _range(state: SensorState | None) -> str:
+    if state is None or state.figures is None:
+        return DASH
+    low, high = state.figures.force_range
+    return f"{low:.1f} to {high:.1f}"
+
+
+def _rated(outcome: CurveOutcome) -> str:
+    return DASH if outcome.rated is None else f"{tenths_below(outcome.rated / KPA):.1f}"

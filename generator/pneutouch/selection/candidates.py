@@ -1,0 +1,279 @@
+"""Candidates with their predicted figures, and how far each is inside or outside every limit.
+
+The rated pressure of candidates: that which `check` and the datasheet state of the design.
+
+Candidates over all resins and all that is free: a coarse scan; the sensitivity met exactly along one direction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from pneutouch.arrays import Array, Flags, Index, distinct
+from pneutouch.mechanics.atlas.respond import BREAK, EDGE, OUTSIDE, AtlasResponse, respond
+from pneutouch.mechanics.atlas.table import least_limit
+from pneutouch.mechanics.limits import RATED_SHARE
+from pneutouch.mechanics.rating import rated_pressure
+from pneutouch.selection.problem import SelectionProblem
+
+
+def rated(problem: SelectionProblem, resin: Array, radius: Array, wall: Array) -> Array:
+    """Rated pressures of candidates, (n,), MPa; resin (n,) numbers, radius and wall (n,) mm.
+
+    Without a known spread the limits count as designed.
+    """
+    batch = problem.batch(resin, radius, wall, np.zeros_like(radius))
+    limit = batch.shear_modulus * least_limit(batch.wall_ratio, batch.break_stretch)
+    spread = np.zeros_like(limit)
+    if problem.limit_spread is not None:
+        for number in distinct(resin):
+            rows = resin == number
+            spread[rows] = problem.limit_spread(problem.resins[int(number)], batch.take(rows))
+    return rated_pressure(limit, spread, batch.gauge_limit)
+
+
+REQUIREMENTS = ("sensitivity", "force range", "stiffness", "outer diameter", "footprint", "rated pressure")
+"""Requirements of a user, who may drop any; the rated pressure stands for the driving pressure that must not be above
+it."""
+
+
+class CandidatePool(NamedTuple):
+    """Candidates, (n,) each: number of the resin, mm, MPa, and the response."""
+
+    resin: Array
+    radius: Array
+    wall: Array
+    pressure: Array
+    response: AtlasResponse
+
+    def take(self, rows: Index | Flags) -> CandidatePool:
+        """Some of the candidates."""
+        return CandidatePool(
+            self.resin[rows], self.radius[rows], self.wall[rows], self.pressure[rows], self.response.take(rows)
+        )
+
+    @property
+    def force(self) -> Array:
+        """Force that the range reaches: at its end, or where the slope has halved before."""
+        lines = self.response.lines
+        return np.fmin(lines.force_high, lines.saturation_force)
+
+
+def evaluated(problem: SelectionProblem, resin: Array, radius: Array, wall: Array, pressure: Array) -> CandidatePool:
+    """Candidates with their responses from the atlas, times the factors of the problem where there are any."""
+    batch = problem.batch(resin, radius, wall, pressure)
+    response = respond(batch, problem.steps)
+    if problem.factors is not None:
+        response = problem.factors.corrected(batch, response)
+    return CandidatePool(resin, radius, wall, pressure, response)
+
+
+def joined(pools: list[CandidatePool]) -> CandidatePool:
+    """Several pools as one."""
+    resin, radius, wall, pressure = (
+        np.concatenate(column) for column in zip(*((p.resin, p.radius, p.wall, p.pressure) for p in pools), strict=True)
+    )
+    return CandidatePool(resin, radius, wall, pressure, AtlasResponse.join([pool.response for pool in pools]))
+
+
+def margins(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
+    """Relative margin to each limit, (n,) each: negative where it is broken, -inf where it is unknown.
+
+    Requirements: sensitivity (1 on the spot, 0 at the tolerance), force range, stiffness, outer diameter, footprint.
+    Limits: limit point (to RATED_SHARE of it), rated pressure, break strain, gauge range (at the required force),
+    printable wall, plate (the contact stays off its edge), connector (space for its parts).
+    """
+    lines, margin_of = pool.response.lines, {}
+    if problem.sensitivity_kPa_per_N is not None:
+        margin_of["sensitivity"] = (
+            1.0 - np.abs(lines.sensitivity_kPa_per_N / problem.sensitivity_kPa_per_N - 1.0) / problem.tolerance
+        )
+    if problem.force_range is not None:
+        margin_of["force range"] = pool.force / problem.force_range - 1.0
+    least, most = problem.stiffness
+    if least is not None or most is not None:
+        with np.errstate(divide="ignore"):
+            margin_of["stiffness"] = np.minimum(
+                np.inf if least is None else lines.stiffness / least - 1.0,
+                np.inf if most is None else most / lines.stiffness - 1.0,
+            )
+    if problem.max_diameter is not None:
+        margin_of["outer diameter"] = problem.max_diameter / (2.0 * (pool.radius + pool.wall)) - 1.0
+    margin_of |= _limits(problem, pool)
+    if problem.limit_spread is not None:
+        with np.errstate(divide="ignore"):
+            margin_of["rated pressure"] = rated(problem, pool.resin, pool.radius, pool.wall) / pool.pressure - 1.0
+    margin_of |= _connector(problem, pool)
+    known = np.isfinite(lines.sensitivity_kPa_per_N) & (pool.response.ends != OUTSIDE)
+    return {
+        name: np.where(known & np.isfinite(margin) | (known & (margin > 0)), margin, -np.inf)
+        for name, margin in margin_of.items()
+    }
+
+
+def _limits(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
+    strain = np.array([resin.break_stretch for resin in problem.resins])[pool.resin.astype(np.intp)] - 1.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        break_margin = strain / (pool.response.max_stretch - 1.0) - 1.0
+        return {
+            "limit point": RATED_SHARE * pool.response.limit_pressure / pool.pressure - 1.0,
+            # A range that ends by the break strain ends on it, to the rounding of that end.
+            "break strain": np.where(pool.response.ends == BREAK, np.maximum(break_margin, 0.0), break_margin),
+            "gauge range": (problem.gauge_limit - pool.pressure) / _rise(problem, pool) - 1.0,
+            "printable wall": pool.wall / problem.least_wall - 1.0 + 1e-9,
+            "plate": np.where(
+                pool.response.ends == EDGE, pool.response.range_end / (problem.depth_share * pool.radius) - 1.0, np.inf
+            ),
+        }
+
+
+def _connector(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
+    """Margins of the connector, drawn once for each size of the dome."""
+    if problem.connector is None:
+        return {}
+    sizes, number = np.unique(np.stack([pool.radius, pool.wall]), axis=1, return_inverse=True)
+    fit = problem.connector(sizes[0], sizes[1])
+    # Space that is there is enough: more of it makes no better sensor.
+    margin_of = {"connector": np.where(fit.margin < 0.0, fit.margin, np.inf)[number]}
+    if problem.max_footprint is not None:
+        margin_of["footprint"] = (problem.max_footprint / fit.diameter - 1.0 + 1e-9)[number]
+    return margin_of
+
+
+def _rise(problem: SelectionProblem, pool: CandidatePool) -> Array:
+    """Pressure rise at the required force, or at the end of a shorter range; none without a requirement."""
+    force, rise = pool.response.force, pool.response.rise
+    if problem.force_range is None:
+        return np.zeros(force.shape[0])
+    after = np.clip((force < problem.force_range).sum(axis=1), 1, force.shape[1] - 1)
+    rows = np.arange(force.shape[0])
+    low, high = force[rows, after - 1], force[rows, after]
+    share = np.clip((problem.force_range - low) / (high - low), 0.0, 1.0)
+    return np.asarray(rise[rows, after - 1] + share * (rise[rows, after] - rise[rows, after - 1]))
+
+
+_RADII, _RATIOS, _PRESSURES = 8, 14, 6
+"""Points of the scan in each free direction; the last free one, along which the sensitivity is met, gets `_LINE`."""
+_LINE = 16
+_POLISH = 4
+
+
+@dataclass(frozen=True)
+class CandidateGrid:
+    """Candidates as a block, the last axis being the direction along which the sensitivity is met; (..., n) each."""
+
+    resin: Array
+    radius: Array
+    wall: Array
+    pressure: Array
+
+
+def search(problem: SelectionProblem) -> CandidatePool | None:
+    """Every candidate evaluated: the scan, and the points on it where the sensitivity is the target.
+
+    None if no size is inside the bounds.
+    """
+    grid = scan(problem)
+    if grid.radius.size == 0:
+        return None
+    coarse = evaluated(problem, *(part.ravel() for part in (grid.resin, grid.radius, grid.wall, grid.pressure)))
+    if problem.sensitivity_kPa_per_N is None or grid.radius.shape[-1] < 2:
+        return coarse
+    exact = _met(problem, grid, coarse)
+    return coarse if exact is None else joined([exact, coarse])
+
+
+def scan(problem: SelectionProblem) -> CandidateGrid:
+    """A coarse grid over resin and the free parameters, inside atlas range, size limit and the printer's least wall."""
+    resins = np.arange(len(problem.resins), dtype=float)
+    line = _RADII if problem.inner_radius is None else _LINE
+    ratios = _ratios(problem, _RATIOS if problem.inner_radius is None else line)
+    # axes: resin, pressure, wall, radius
+    low, high = problem.radii(ratios)
+    share = np.linspace(0.0, 1.0, _RADII if problem.inner_radius is None else 1)
+    if problem.wall_thickness is not None and problem.inner_radius is None:
+        radius = problem.wall_thickness / ratios[:, None]
+    else:
+        radius = low[:, None] * (np.maximum(high, low) / low)[:, None] ** share
+        radius[high < low] = np.nan
+    ratio = np.broadcast_to(ratios[:, None], radius.shape)
+    keep = np.isfinite(radius).all(axis=1)
+    radius, ratio = radius[keep], ratio[keep]
+    if problem.wall_thickness is not None and problem.inner_radius is None:
+        radius, ratio = radius.T, ratio.T
+    pressures = _pressures(problem, resins, ratio, radius)
+    shape = (resins.size, pressures.shape[1], *ratio.shape)
+    resin = np.broadcast_to(resins[:, None, None, None], shape)
+    radius, ratio = np.broadcast_to(radius, shape), np.broadcast_to(ratio, shape)
+    blocks = [resin, radius, ratio * radius, np.broadcast_to(pressures, shape)]
+    if ratio.shape[-1] == 1:
+        # Nothing is free along the radius: the line runs along the wall, else along the pressure.
+        axis = 2 if ratio.shape[2] > 1 else 1
+        blocks = [np.moveaxis(block, axis, -1) for block in blocks]
+    return CandidateGrid(*blocks)
+
+
+def _ratios(problem: SelectionProblem, count: int) -> Array:
+    box = problem.recipe
+    if problem.inner_radius is not None and problem.wall_thickness is not None:
+        return np.array([problem.wall_thickness / problem.inner_radius])
+    low, high = box.thinnest, box.thickest
+    if problem.inner_radius is not None:
+        low = max(low, problem.least_wall / problem.inner_radius)
+        if problem.max_diameter is not None:
+            high = min(high, 0.5 * problem.max_diameter / problem.inner_radius - 1.0)
+    if problem.wall_thickness is not None and problem.max_diameter is not None:
+        low = max(low, problem.wall_thickness / (0.5 * problem.max_diameter - problem.wall_thickness))
+    return np.geomspace(low, high, count) if low < high else np.zeros(0)
+
+
+def _pressures(problem: SelectionProblem, resins: Array, ratio: Array, radius: Array) -> Array:
+    """Driving pressures over (resin, pressure, wall, radius): the one given, or shares of each rated pressure."""
+    if problem.driving_pressure is not None:
+        return np.full((resins.size, 1, *ratio.shape), problem.driving_pressure)
+    alone = problem.inner_radius is not None and problem.wall_thickness is not None
+    shares = np.linspace(0.0, 1.0, _LINE if alone else _PRESSURES)
+    flat, wall = radius.ravel(), (ratio * radius).ravel()
+    top = np.array([rated(problem, np.full(flat.size, number), flat, wall).reshape(ratio.shape) for number in resins])
+    return np.asarray(shares[:, None, None] * top[:, None])
+
+
+def _met(problem: SelectionProblem, grid: CandidateGrid, coarse: CandidatePool) -> CandidatePool | None:
+    """Points between neighbours of the scan where the sensitivity passes the target; None if it never does."""
+    assert problem.sensitivity_kPa_per_N is not None
+    off = _log_ratio(problem.sensitivity_kPa_per_N, coarse).reshape(grid.radius.shape)
+    with np.errstate(invalid="ignore"):
+        passes = off[..., :-1] * off[..., 1:] <= 0.0
+    where = np.nonzero(passes)
+    if where[0].size == 0:
+        return None
+    after = (*where[:-1], where[-1] + 1)
+    ends = [(part[where], part[after]) for part in (grid.radius, grid.wall, grid.pressure)]
+    resin, low, high = grid.resin[where], off[where], off[after]
+    left, right = np.zeros(low.size), np.ones(low.size)
+    share = left
+    for _ in range(_POLISH):
+        share = left + (right - left) * np.clip(low / np.where(low == high, 1.0, low - high), 0.02, 0.98)
+        radius, wall, pressure = (_between(a, b, share) for a, b in ends)
+        pool = evaluated(problem, resin, radius, wall, pressure)
+        here = np.nan_to_num(_log_ratio(problem.sensitivity_kPa_per_N, pool))
+        same = here * low > 0.0
+        left, right = np.where(same, share, left), np.where(same, right, share)
+        low, high = np.where(same, here, 0.5 * low), np.where(same, 0.5 * high, here)
+    return pool
+
+
+def _log_ratio(target_kPa_per_N: float, pool: CandidatePool) -> Array:
+    """Logarithm of the sensitivity over the target; NaN without a sensitivity."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray(np.log(pool.response.lines.sensitivity_kPa_per_N / target_kPa_per_N))
+
+
+def _between(a: Array, b: Array, share: Array) -> Array:
+    """Geometric where both are positive, for sizes; straight for pressures that start at zero."""
+    if np.all(a > 0) and np.all(b > 0):
+        return np.asarray(a * (b / a) ** share)
+    return np.asarray(a + share * (b - a))

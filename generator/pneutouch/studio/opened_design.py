@@ -1,0 +1,171 @@
+"""A job of the page: a file that was given to it, as a design that the page can show.
+
+The state of the page that is a design from elsewhere.
+"""
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from pneutouch import __version__
+from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
+from pneutouch.catalogue.library import is_specimen
+from pneutouch.errors import InputError, PneutouchError, one_line
+from pneutouch.evaluation.evaluate import PredictionOptions
+from pneutouch.formats import KEY, check_format
+from pneutouch.output.recipe import scene_kinds
+from pneutouch.spec.files import read_bytes
+from pneutouch.spec.read import read_toml
+from pneutouch.spec.values import name_of
+from pneutouch.studio.candidate import state_of
+from pneutouch.studio.question import Question
+
+
+def nearest_state(source: DesignSource, bases: Mapping[str, str], library: Library) -> Question:
+    """The state whose design is that of ``source``, in every field.
+
+    Its base is the one of the same name, else the one from which the design differs in the fewest fields. Raises
+    InputError where the design is wrong, and where no state of the page is this very design.
+    """
+    design = source.changed({})
+    states: list[dict[str, Any]] = []
+    for base in bases:
+        try:
+            states.append(state_of(design, base, bases, library))
+        except PneutouchError:
+            # A base whose file cannot be read is none to start from.
+            continue
+    if not states:
+        raise InputError("no design of this page can be read", remedy="mend the design files that pneutouch list names")
+    # By the same limits as what comes from a browser.
+    question = Question.of(min(states, key=lambda state: (state["base"] != source.name, len(state["values"]))))
+    if question.source(bases, library).changed({}).model_dump() != design.model_dump():
+        remedy = "build it by its file with the commands"
+        raise InputError("has values that the page cannot hold", file=source.where, remedy=remedy)
+    return question
+
+
+_MOST_EXPORTED = 64 * 1024
+_EXPORT_KEYS = {KEY, "version", "base", "values"}
+
+_ENDINGS = "a 3MF that pneutouch build wrote, a design file (.toml), or an exported design (.json)"
+
+Content = dict[str, Any]
+Bases = Mapping[str, str]
+
+
+def open_file(arguments: Mapping[str, Any], folder: Path, report: Callable[[int, int, str | None], None]) -> Content:
+    """Read the one file of ``files``; the state of the page that shows its design, and notes on parts that the page
+    cannot show.
+
+    ``name`` is the design's, ``question`` the state, ``notes`` are lines for the user. Raises InputError that names
+    file, key and value.
+    """
+    if len(arguments["files"]) != 1:
+        raise InputError("one file is opened at a time", remedy="give one file")
+    path = Path(arguments["files"][0]["path"])
+    try:
+        return _opened(path, arguments["bases"], Library.default())
+    except PneutouchError as error:
+        raise _by_name(error, path) from None
+
+
+def _opened(path: Path, bases: Bases, library: Library) -> Content:
+    readers = {".3mf": _from_3mf, ".toml": _from_toml, ".json": _from_export}
+    reader = readers.get(path.suffix.lower())
+    if reader is None:
+        raise InputError("the page opens no file of this kind", file=path, remedy=f"give {_ENDINGS}")
+    return reader(path, bases, library)
+
+
+def _from_toml(path: Path, bases: Bases, library: Library) -> Content:
+    content = read_toml(path)
+    if is_specimen(content):
+        remedy = "give the design of a sensor; pneutouch build takes a specimen"
+        raise InputError("a texture specimen, which has no curves to show", file=path, remedy=remedy)
+    source = DesignSource(name_of(path), content, str(path))
+    load_scene(source, {}, library)
+    return _content(source.name, nearest_state(source, bases, library), [])
+
+
+def _from_3mf(path: Path, bases: Bases, library: Library) -> Content:
+    # What reads meshes loads for a 3MF alone.
+    from pneutouch.export.threemf_read import read_threemf
+    from pneutouch.output.recipe import other_versions, read_recipe
+
+    package = read_threemf(path)
+    recipe = read_recipe(package)
+    scene = recipe.scene
+    source = DesignSource(scene.name, scene.design.model_dump(by_alias=True), str(path))
+    notes = [f"made with {each}" for each in other_versions(package, recipe)]
+    notes += _other_parts(scene, load_scene(source, {}, library))
+    notes += _other_options(recipe.options)
+    if notes:
+        notes.append(f"pneutouch build {path.name} builds it as it was")
+    return _content(scene.name, nearest_state(source, bases, library), notes)
+
+
+def _from_export(path: Path, bases: Bases, library: Library) -> Content:
+    content = _json(path)
+    if KEY not in content:
+        remedy = "give a file that Export wrote on this page"
+        raise InputError("not a design that was exported here", file=path, remedy=remedy)
+    check_format("exported-design", content, path)
+    if set(content) != _EXPORT_KEYS or not isinstance(content["version"], str):
+        raise InputError(f"an exported design has the keys {', '.join(sorted(_EXPORT_KEYS))}", file=path)
+    question = Question.of({"base": content["base"], "values": content["values"]})
+    source = question.source(bases, library)
+    load_scene(source, {}, library)
+    version = one_line(content["version"])
+    notes = [] if version == __version__ else [f"exported by pneutouch {version} (here {__version__})"]
+    return _content(source.name, question, notes)
+
+
+def _json(path: Path) -> Content:
+    try:
+        content = json.loads(read_bytes(path, _MOST_EXPORTED, "exported design"))
+    except (ValueError, RecursionError):
+        raise InputError("not JSON", file=path, remedy=f"give {_ENDINGS}") from None
+    if not isinstance(content, dict):
+        raise InputError("not an exported design", file=path, remedy=f"give {_ENDINGS}")
+    return content
+
+
+def _content(name: str, question: Question, notes: list[str]) -> Content:
+    return {"name": name, "question": question.document(), "notes": notes}
+
+
+def _other_parts(scene: ResolvedDesign, here: ResolvedDesign) -> list[str]:
+    """Parts of a recipe whose name stands for something else here."""
+    parts = [key for key in scene_kinds() if key != "design" and _data(scene, key) != _data(here, key)]
+    return [f"its {key.replace('_', ' ')} is not the one of this name here, which the page takes" for key in parts]
+
+
+def _data(scene: ResolvedDesign, key: str) -> Any:
+    part = getattr(scene, key)
+    return None if part is None else part.model_dump(mode="json")
+
+
+def _other_options(options: PredictionOptions) -> list[str]:
+    """Options of a prediction that the page does not have."""
+    usual = PredictionOptions()
+    given = {key: getattr(options, key) for key in ("closure", "clamp")}
+    other = [f"{key} {value}" for key, value in given.items() if value != getattr(usual, key)]
+    if options.model not in ("solid", "harmonic"):
+        other.insert(0, f"model {options.model}")
+    return [f"it was predicted with {', '.join(other)}, the page predicts without"] if other else []
+
+
+def _by_name(error: PneutouchError, path: Path) -> InputError:
+    """The error with the name that the user gave in place of where the file lies."""
+    place = f"{path.parent}/"
+    first, *others = [InputError(_words(each).replace(place, "")) for each in (error, *error.others)]
+    first.others = tuple(others)
+    return first
+
+
+def _words(error: PneutouchError) -> str:
+    """The message of an error without those of the errors after it."""
+    alone = InputError(error.problem, file=error.file, key=error.key, value=error.value, remedy=error.remedy)
+    return alone.message()

@@ -1,0 +1,165 @@
+"""A voxel stack of a design: the bodies printed with the membrane, one PNG a layer, in a folder of its own."""
+
+import re
+import zlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pneutouch import __version__
+from pneutouch.catalogue import Library
+from pneutouch.errors import InputError, nearest
+from pneutouch.export.voxels.png import encode, table
+from pneutouch.export.voxels.raster import BACKGROUND, VoxelBody, VoxelJob, blend, raster
+from pneutouch.export.voxels.slices import VoxelSlicer
+from pneutouch.export.voxels.stack import MANIFEST, manifest, shortfalls, slice_name
+from pneutouch.output.files import check_writable, digest, exchange, json_bytes
+from pneutouch.parts import Assembly
+from pneutouch.printability import Finding, refuse
+from pneutouch.printability.rules.voxels import check_stack
+from pneutouch.spec.printer import Mode
+from pneutouch.stopping import parent_folders, temporary_folder, uninterrupted
+
+Progress = Callable[[int, int], None]
+"""Called with the slices written and all of them."""
+
+SEED = 1
+
+_SLICE = re.compile(r".*_[0-9]+\.png")
+
+
+@dataclass(frozen=True)
+class VoxelPlan:
+    """Plan of a stack before it is made: the job, its mode, and the findings on it."""
+
+    assembly: Assembly
+    job: VoxelJob
+    mode: Mode
+    findings: tuple[Finding, ...]
+
+    def refuse(self) -> None:
+        """Raise RuleBrokenError where a rule is broken; it names the design file and the key."""
+        scene = self.assembly.scene
+        refuse(self.findings, scene.where, "print.profile", scene.design.print.profile)
+
+
+def plan_voxels(
+    assembly: Assembly, *, mode: str | None = None, library: Library | None = None, coarser: float = 1.0
+) -> VoxelPlan:
+    """Plan the stack of the print job that the membrane is in; ``mode`` names a print mode, else it is the design's.
+
+    Raises InputError for an unknown mode and for a mix of unknown fraction.
+    """
+    scene = assembly.scene
+    printer, _ = assembly.machine("membrane")
+    chosen = _mode(assembly, mode)
+    library = library or Library.default()
+    solids = [solid for solid in assembly.solids if assembly.job(solid.name) == assembly.job("membrane")]
+    names = {"membrane": scene.design.membrane.material, "connector": scene.design.connector.material}
+    bodies = []
+    for solid in solids:
+        table_name = "membrane" if solid.name == "membrane" else "connector"
+        mixed = blend(solid.material, str(names[table_name]), library, f"{scene.where}: {table_name}.material")
+        bodies.append(VoxelBody(solid, mixed))
+    grid = raster(
+        [body.inside for body in bodies],
+        printer.pixel.dpi,
+        chosen.layer_um,
+        upright=assembly.stands_up("membrane"),
+        coarser=coarser,
+    )
+    job = VoxelJob(tuple(bodies), grid, tuple(printer.resins), SEED)
+    findings = check_stack(printer, chosen, job.used, len(grid.z), grid.size, "membrane")
+    return VoxelPlan(assembly, job, chosen, tuple(findings))
+
+
+def stack_folder(out: Path, name: str) -> Path:
+    """The folder of a design's stack, next to its output folder."""
+    return out / f"{name}-voxels"
+
+
+def write_voxels(
+    plan: VoxelPlan, out: Path, input_hash: str, progress: Progress = lambda done, all_: None
+) -> tuple[Path, list[str]]:
+    """Write the stack into ``out/<name>-voxels/``; returns the folder, and a line for each fraction that is not met.
+
+    The folder appears whole or not at all. Raises RuleBrokenError, with nothing written, where a rule is broken,
+    and InputError where the folder cannot be written.
+    """
+    plan.refuse()
+    scene = plan.assembly.scene
+    printer, _ = plan.assembly.machine("membrane")
+    about = {
+        "name": scene.name,
+        "input_hash": input_hash,
+        "printer": printer.title,
+        "mode": plan.mode.name,
+        "orientation": scene.design.print.orientation,
+        "versions": {"pneutouch": __version__, "zlib": zlib.ZLIB_RUNTIME_VERSION},
+        "print_frame_offset_mm": plan.assembly.print_offset.tolist(),
+    }
+    folder = stack_folder(out, scene.name)
+    slicer = write_stack(plan.job, folder, f"{scene.name}_", about, progress)
+    return folder, shortfalls(plan.job, slicer)
+
+
+def write_stack(
+    job: VoxelJob, folder: Path, prefix: str, about: Mapping[str, Any], progress: Progress = lambda done, all_: None
+) -> VoxelSlicer:
+    """Slice a job into a hidden folder and rename that to ``folder``. One slice at a time is in memory.
+
+    Raises InputError that names the folder where it cannot be written, the disk is full, or foreign files lie
+    in it; nothing is left behind then, and an earlier stack stays.
+    """
+    check_stack_folder(folder)
+    try:
+        with parent_folders(folder), temporary_folder(prefix=f".{folder.name}.", within=folder.parent) as fresh:
+            slicer = VoxelSlicer(job)
+            hashes = []
+            colours = table([BACKGROUND, *job.colours.values()])
+            for number, labels in enumerate(slicer):
+                content = encode(labels, colours, job.raster.dpi)
+                (fresh / slice_name(prefix, number)).write_bytes(content)
+                hashes.append(digest(content))
+                progress(number + 1, len(job.raster.z))
+            (fresh / MANIFEST).write_bytes(json_bytes(manifest(job, slicer, hashes, about, prefix)))
+            with uninterrupted():
+                fresh.chmod(0o755)
+                if folder.exists():
+                    exchange(folder, fresh)
+                else:
+                    fresh.rename(folder)
+            return slicer
+    except OSError as error:
+        raise InputError(
+            f"{folder}: {error.strerror or error}",
+            key="out",
+            remedy="no stack was written, and an earlier one is unchanged",
+        ) from None
+
+
+def check_stack_folder(folder: Path) -> None:
+    """Raise InputError where a stack cannot be written into ``folder`` or foreign files lie in it."""
+    if not folder.is_dir() or folder.is_symlink() or not any(folder.iterdir()):
+        check_writable(folder)
+        return
+    if not (folder / MANIFEST).is_file():
+        raise InputError(
+            f"{folder} holds files but no {MANIFEST}: not written by pneutouch", key="out", remedy="give another folder"
+        )
+    foreign = next(
+        (path for path in sorted(folder.iterdir()) if path.name != MANIFEST and not _SLICE.fullmatch(path.name)), None
+    )
+    if foreign is not None:
+        raise InputError(f"{foreign} is not of the stack that is to be replaced", key="out", remedy="move it elsewhere")
+
+
+def _mode(assembly: Assembly, name: str | None) -> Mode:
+    printer, default = assembly.machine("membrane")
+    if name is None:
+        return default
+    match = next((mode for mode in printer.mode if mode.name.lower() == name.lower()), None)
+    if match is None:
+        raise InputError(f"unknown.{nearest(name, [mode.name for mode in printer.mode])}", key="voxel_mode", value=name)
+    return match

@@ -1,0 +1,244 @@
+"""The command behind ``pneutouch calibrate``: a campaign's folder in, its calibration and files out.
+
+Further tests of a calibrated sensor, at no more than its rated pressure.
+"""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from pneutouch.bench.calibrate import NAMES, Observations
+from pneutouch.bench.calibrate.other_states import further_tests
+from pneutouch.bench.record import MeasuredCurve
+from pneutouch.catalogue import KINDS, DesignSource, Library, known_design, load_scene, split_calibration, user_folder
+from pneutouch.errors import InputError
+from pneutouch.evaluation.calibrated import check_fitted
+from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.evaluation.resins import rating_of
+from pneutouch.output.files import check_writable
+from pneutouch.parts import assemble
+from pneutouch.spec.calibration import SensorCalibration
+from pneutouch.spec.campaign import CAMPAIGN
+from pneutouch.spec.design import CALIBRATION
+from pneutouch.spec.read import parse_changes
+from pneutouch.workflows.calibrate.files import (
+    CampaignSource,
+    check_place,
+    check_unlike,
+    default_name,
+    folder_of,
+    prepare,
+    savable,
+    save,
+    write_calibration,
+)
+from pneutouch.workflows.calibrate.fit import FITTED_KINDS, Calibration, calibrate, chosen_sensor, observations_of
+from pneutouch.workflows.calibrate.record import OutcomeRecord
+from pneutouch.workflows.characterize import (
+    CampaignData,
+    Progress,
+    Reading,
+    answers,
+    load_curves,
+    read_as,
+    same_failures,
+    sound,
+    undisputed,
+)
+
+
+def with_further_tests(calibration: Calibration, source: CampaignSource) -> Calibration:
+    """The calibration with the further tests that would reduce its uncertainty most."""
+    return replace(calibration, further=further_tests(calibration.fit, _rated(calibration, source)))
+
+
+def _rated(calibration: Calibration, source: CampaignSource) -> float:
+    """The rated pressure of the calibrated sensor, MPa; as designed where the fit cannot be a calibration."""
+    scene = calibration.scene
+    try:
+        known = KINDS["calibrations"].validate(savable(calibration, source), "calibration")
+    except InputError:
+        known = None
+    assert known is None or isinstance(known, SensorCalibration)
+    scene = replace(scene, calibration=known)
+    return rating_of(scene, sensor_of(assemble(scene))).pressure
+
+
+@dataclass(frozen=True, slots=True)
+class CalibrationOptions:
+    """Options of a calibration: see the command. ``into`` holds ``calibrations``; None: the user's folder."""
+
+    data: Path
+    design: str | DesignSource | None
+    sensor: str | None
+    names: tuple[str, ...]
+    hold_out: tuple[float, ...]
+    priors: bool
+    save: str | None
+    replace: bool
+    out: Path
+    into: Path | None = None
+
+    @property
+    def root(self) -> Path:
+        """The folder that the calibration goes into, below ``calibrations``."""
+        return user_folder() if self.into is None else self.into
+
+
+@dataclass(frozen=True)
+class CalibrationOutcome:
+    """A calibration that was written.
+
+    Attributes:
+        document: The calibration's document with ``calibration`` (its name, or None), ``written``, ``failures`` and
+            ``read_as``.
+        calibration: The calibration itself.
+        source: Source of its runs.
+        design_given: The design as a command takes it.
+        assignments: Changes of the campaign to it.
+    """
+
+    document: OutcomeRecord
+    calibration: Calibration
+    source: CampaignSource
+    design_given: str
+    assignments: list[str]
+
+
+def run_calibration(
+    options: CalibrationOptions,
+    library: Library | None = None,
+    progress: Progress = lambda done, total: None,
+    reading: Reading | None = None,
+) -> CalibrationOutcome:
+    """Read, fit and write.
+
+    The places of all files are checked before the fit. A fit that cannot be a calibration is reported: without ``save``
+    the document's ``calibration`` is None and its last note says why. Raises InputError.
+    """
+    library = library or Library.default()
+    if options.save is not None:
+        check_place(options.save, options.root)
+    loaded = load_curves(options.data, progress=progress, reading=reading)
+    sensor = chosen_sensor(loaded.campaign, options.sensor)
+    design = options.design or known_design(loaded.campaign, loaded.folder, library)
+    if design is None:
+        raise InputError("names no design", file=options.data, remedy="give `design`")
+    # A design that is calibrated already is fitted from its drawing again, or the prior would hold the data twice.
+    changes = {**parse_changes(loaded.campaign.assignments), CALIBRATION: None}
+    scene = load_scene(design, changes, library)
+    built = sensor_of(assemble(scene))
+    check_fitted(scene, built)
+    pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
+    expected = answers(design, changes, pairs, "solid" if built.protocol.other_contact else "atlas", library)
+    curves, refused, questions = sound(loaded, expected)
+    _check_left(options.data, loaded, sensor, curves, refused)
+    _, observations, notes = observations_of(loaded.campaign, curves, loaded.injections, scene, sensor)
+    used_files = {curve.run.file for curve in observations.curves}
+    notes = [*notes, *(f"{file}: {text}" for file, text in questions if file in used_files)]
+    source = _source(options.data, loaded, sensor, observations)
+    name = options.save or default_name(scene.name, sensor)
+    _check_places(options, name, folder_of(scene.name, sensor, options.out), source)
+    calibration = calibrate(
+        observations,
+        scene,
+        options.names,
+        priors=options.priors,
+        hold_out_kPa=options.hold_out,
+        sensor=sensor,
+        title=loaded.campaign.title,
+        notes=notes,
+    )
+    calibration = with_further_tests(calibration, source)
+    written, unsaved = _write(options, calibration, name, source)
+    failures = [list(failure) for failure in (*loaded.failures, *refused)]
+    document: OutcomeRecord = {
+        **calibration.document,
+        "notes": [*calibration.notes_for_reader, *unsaved],
+        "calibration": None if unsaved else name,
+        "written": [str(path) for path in written],
+        "failures": failures,
+        "read_as": read_as(undisputed(loaded.sources, refused), len(loaded.campaign.runs)),
+    }
+    return CalibrationOutcome(document, calibration, source, _named(design), loaded.campaign.assignments)
+
+
+def _check_left(
+    data: Path, loaded: CampaignData, sensor: str, curves: Sequence[MeasuredCurve], refused: Sequence[tuple[str, str]]
+) -> None:
+    """Raise InputError, with the reasons, where the sensor has runs to fit and none of them can be used."""
+    files = {run.file for run in loaded.campaign.runs if run.sensor == sensor and run.kind in FITTED_KINDS}
+    left = {curve.run.file for curve in curves} | {run.file for run, _, _ in loaded.injections}
+    reasons = [(file, why) for file, why in (*loaded.failures, *refused) if file in files]
+    if reasons and not files & left:
+        lines = [f"{named}: {why}" for named, why in same_failures(reasons)]
+        raise InputError("\n".join([f"no run of sensor {sensor} can be used", *lines]), file=data)
+
+
+def _write(
+    options: CalibrationOptions, calibration: Calibration, name: str, source: CampaignSource
+) -> tuple[list[Path], list[str]]:
+    """Write the fit's report and the calibration: the written files, and a note if there is no calibration.
+
+    Raises InputError if ``save`` requires one; the report is written nevertheless.
+    """
+    unsaved: list[str] = []
+    try:
+        savable(calibration, source)
+    except InputError as error:
+        unsaved.append(f"no calibration was saved: {error.problem}; {error.remedy}")
+        if options.save is not None:
+            folder = write_calibration(calibration, options.out, source, unsaved)
+            problem = f"{error.problem} (the fit is in {folder})"
+            file = None if error.key else options.data
+            raise InputError(problem, file=file, key=error.key, remedy=error.remedy) from None
+    written = [write_calibration(calibration, options.out, source, unsaved)]
+    if not unsaved:
+        written.append(_saved(calibration, name, options.root, source, replace=options.replace))
+    return written, unsaved
+
+
+def _check_places(options: CalibrationOptions, name: str, folder: Path, source: CampaignSource) -> None:
+    """Raise InputError, before the fit, where its output or its calibration could not be written."""
+    check_writable(folder)
+    path = check_place(name, options.root)
+    # An unknown parameter is refused by the fit, before it computes.
+    if not options.replace and set(options.names) <= set(NAMES):
+        check_unlike(path, source.digest, options.names, options.hold_out)
+
+
+def _saved(calibration: Calibration, name: str, root: Path, source: CampaignSource, *, replace: bool) -> Path:
+    saved = prepare(calibration, name, root, source, replace=replace)
+    save(saved)
+    return saved.path
+
+
+def save_calibration(outcome: CalibrationOutcome, name: str | None = None, *, replace: bool = False) -> Path:
+    """Write a calibration into the user's folder under a name (None: of design and sensor).
+
+    Raises InputError as `prepare` and `save` do.
+    """
+    calibration = outcome.calibration
+    name = name or outcome.document["calibration"] or default_name(calibration.scene.name, calibration.sensor)
+    return _saved(calibration, name, user_folder(), outcome.source, replace=replace)
+
+
+def _named(design: str | DesignSource) -> str:
+    """The design as a command takes it, without a calibration."""
+    return design.name if isinstance(design, DesignSource) else split_calibration(design, Library.default())[0]
+
+
+def _source(data: Path, loaded: CampaignData, sensor: str, observations: Observations) -> CampaignSource:
+    """Source of the runs; the digest is over the campaign file and the files of the runs that were used."""
+    labels = {injection.label for injection in observations.injections}
+    used = [curve.run for curve in observations.curves]
+    used += [run for run, _, _ in loaded.injections if run.sensor == sensor and run.label in labels]
+    campaign = data / CAMPAIGN if data.is_dir() else data
+    whole = hashlib.sha256()
+    for path in (campaign, *(loaded.folder / name for name in sorted({run.file for run in used}))):
+        with path.open("rb") as file:
+            whole.update(hashlib.file_digest(file, "sha256").digest())
+    ages = [run.age_days for run in used]
+    given = loaded.campaign
+    return CampaignSource(whole.hexdigest(), given.lab, given.simulated, sum(ages) / len(ages))

@@ -1,0 +1,317 @@
+"""Driving pressures for the tasks of a sensor, with the gas that each takes and how long it stays.
+
+Driving pressures as plain data, in the units of their names.
+
+Changes of a design whose driving pressure alone does not reach a required figure.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pneutouch.catalogue import DesignSource, Library
+from pneutouch.errors import PneutouchError
+from pneutouch.mechanics import predict
+from pneutouch.mechanics.line.air import REFERENCE_TEMPERATURE
+from pneutouch.mechanics.sealed_gas import SealedGas
+from pneutouch.rounding import rounded
+from pneutouch.spec.read import Changes
+from pneutouch.spec.tasks import TASK_FIGURES, DrivingTask
+from pneutouch.units import KPA, ML
+from pneutouch.workflows.driving.pressures import (
+    BUDGET_KEYS,
+    DrivingSolution,
+    LeakSource,
+    PressureBand,
+    ReachCurves,
+    ReachProgress,
+    figure_of,
+    possible,
+    reach_curves,
+    solutions,
+)
+
+_FIELDS = {
+    "wall_thickness": ("membrane.wall_thickness_mm", 1.0),
+    "inner_radius": ("membrane.inner_radius_mm", 1.0),
+    "shear_modulus": ("shear modulus of the resin, MPa", 1.0),
+    "dead_volume": ("pneumatics.dead_volume_mL", ML),
+}
+"""Inputs of the model that a design can change: the user's name for each, and its unit in that of the model."""
+
+_FARTHEST = 2.0
+"""Greatest factor on an input for which its derivative is followed: our choice."""
+
+
+@dataclass(frozen=True)
+class OfflineChange:
+    """A change of one input: its name, value before and after in the unit of the name, and the figure that results."""
+
+    what: str
+    before: float
+    after: float
+    predicted: float
+
+
+def offline_changes(curves: ReachCurves, figure: str, value: float) -> list[OfflineChange]:
+    """Changes of one input each by which the figure comes nearer to the value, least change first.
+
+    The input is moved by the elasticity of the figure at the nearest state; ``predicted`` is what the model then has.
+    """
+    values = curves.values(figure)
+    if np.isnan(values).all():
+        return []
+    nearest = curves.states[int(np.nanargmin(np.abs(np.log(values / value))))]
+    best = figure_of(nearest, figure)
+    _, entry = min(curves.budgets, key=lambda known: abs(known[0] - nearest.driving_pressure))
+    elasticities = entry.get("elasticities", {}).get(BUDGET_KEYS.get(figure, figure), {})
+    changes = []
+    for name, (what, unit) in _FIELDS.items():
+        slope, before = elasticities.get(name, 0.0), _input(curves, name)
+        if abs(slope) * np.log(_FARTHEST) < abs(np.log(value / best)) or before <= 0.0:
+            continue
+        after = before * (value / best) ** (1.0 / slope)
+        predicted = _with(curves, name, after, nearest.driving_pressure, figure)
+        if predicted is not None and abs(np.log(predicted / value)) < abs(np.log(best / value)):
+            changes.append(OfflineChange(what, before / unit, after / unit, predicted))
+    return sorted(changes, key=lambda change: abs(np.log(change.after / change.before)))
+
+
+def _input(curves: ReachCurves, name: str) -> float:
+    sensor = curves.evaluation.sensor
+    parts = (sensor.dome, sensor.wall, sensor.gas)
+    return float(next(getattr(part, name) for part in parts if hasattr(part, name)))
+
+
+def _with(curves: ReachCurves, name: str, value: float, pressure: float, figure: str) -> float | None:
+    """The figure with one input changed, at a driving pressure in MPa; None if the model has none."""
+    sensor = curves.evaluation.sensor.replace(**{name: value})
+    try:
+        states = predict("changed", sensor, [pressure], model=curves.model).states
+    except PneutouchError:
+        return None
+    changed = figure_of(states[0], figure)
+    return None if np.isnan(changed) else changed
+
+
+HOLD_SHARE = 0.01
+"""The figure may change by this share while the sealed gas holds it: our choice."""
+
+
+@dataclass(frozen=True)
+class SealedState:
+    """The gas of one state.
+
+    Attributes:
+        injected: From the vented sensor, volume at ambient pressure, mm3.
+        moved: From the task before (the vented sensor before the first), mm3.
+        by_temperature: Change of the pressure, MPa/K.
+        slope: Change of the figure over the driving pressure, in its unit over MPa; None at a jump.
+        step: Change of the driving pressure that changes the figure by `HOLD_SHARE`, MPa; None at an extremum.
+        loss: Fall of the pressure by the leak, MPa/s; None if the leak is not known.
+        hold: Time in which the leak changes the figure by `HOLD_SHARE`, s; None if one of both is not known.
+    """
+
+    injected: float
+    moved: float
+    by_temperature: float
+    slope: float | None
+    step: float | None
+    loss: float | None
+    hold: float | None
+
+
+@dataclass(frozen=True)
+class TaskAnswer:
+    """A task and the driving pressures that do it, the preferred one (the lowest) first.
+
+    Without a solution: ``changes`` of the design, and the band in which the sensor in hand may reach it all the same.
+    """
+
+    task: DrivingTask
+    solutions: tuple[DrivingSolution, ...]
+    gas: SealedState | None
+    changes: tuple[OfflineChange, ...] = ()
+    possible: PressureBand | None = None
+
+    @property
+    def reached(self) -> bool:
+        """True if a driving pressure does it."""
+        return bool(self.solutions)
+
+
+@dataclass(frozen=True)
+class DrivingSchedule:
+    """The answers to tasks in their order, and the curves they were solved on."""
+
+    curves: ReachCurves
+    answers: tuple[TaskAnswer, ...]
+    leak: LeakSource | None
+
+    @property
+    def reached(self) -> bool:
+        """True if every task has a driving pressure."""
+        return all(answer.reached for answer in self.answers)
+
+
+def driving_schedule(
+    design: str | DesignSource,
+    tasks: Sequence[DrivingTask],
+    changes: Changes | None = None,
+    *,
+    library: Library | None = None,
+    model: str = "auto",
+    leak: LeakSource | None = None,
+    progress: ReachProgress = lambda done, total, what: None,
+    **options: object,
+) -> DrivingSchedule:
+    """Solve every task of a design for its driving pressure.
+
+    ``leak`` is what was measured on this design. ``options`` are those of `evaluation.evaluate`. Raises InputError.
+    """
+    curves = reach_curves(design, changes or {}, library=library, model=model, progress=progress, **options)
+    solved = [tuple(solutions(curves, task.figure, task.value)) for task in tasks]
+    gas, conductance = curves.gas, None
+    if leak is not None:
+        conductance = leak.conductance(gas, curves.evaluation.assembly)
+    answers, before = [], 0.0
+    for task, states in zip(tasks, solved, strict=True):
+        if states:
+            sealed = _sealed(curves, gas, task, states[0].state.driving_pressure, before, conductance)
+            before = sealed.injected
+            answers.append(TaskAnswer(task, states, sealed))
+        else:
+            moved = tuple(offline_changes(curves, task.figure, task.value))
+            answers.append(TaskAnswer(task, (), None, moved, possible(curves, task.figure, task.value)))
+    return DrivingSchedule(curves, tuple(answers), leak)
+
+
+def _sealed(
+    curves: ReachCurves, gas: SealedGas, task: DrivingTask, pressure: float, before: float, conductance: float | None
+) -> SealedState:
+    """The gas at a driving pressure (MPa) that is among the states; ``before`` is the gas injected already, mm3."""
+    k = int(np.searchsorted(gas.pressure, pressure))
+    values = curves.values(task.figure)
+    near = slice(max(0, k - 1), k + 2)
+    slope = float(np.gradient(values[near], gas.pressure[near])[min(k, 1)])
+    known = bool(np.isfinite(slope))
+    step = HOLD_SHARE * task.value / abs(slope) if known and slope != 0.0 else None
+    hold = None
+    if conductance is not None and step is not None and pressure > 0.0:
+        hold = gas.holding_time(conductance, pressure, pressure - step)
+    injected = float(gas.injected[k])
+    return SealedState(
+        injected=injected,
+        moved=injected - before,
+        by_temperature=float(gas.by_temperature(REFERENCE_TEMPERATURE)[k]),
+        slope=slope if known else None,
+        step=step,
+        loss=None if conductance is None else float(gas.loss(conductance)[k]),
+        hold=hold,
+    )
+
+
+_DIGITS = 6
+
+_NO_LEAK = "no leak was measured; give the results of the coupon leak-cap or of a leak run"
+
+
+def schedule_document(schedule: DrivingSchedule) -> dict[str, Any]:
+    """The whole answer."""
+    curves, rating = schedule.curves, schedule.curves.evaluation.rating
+    leak = schedule.leak
+    source = None if leak is None else {"rate_kPa_per_min": leak.rate_kPa_per_min, "at_kPa": leak.pressure_kPa}
+    content = {
+        "design": curves.evaluation.scene.name,
+        "model": curves.model,
+        "rated_pressure_kPa": rating.pressure / KPA,
+        "highest_kPa": float(curves.pressures[-1]) / KPA,
+        "limit": curves.evaluation.prediction.limits.binding,
+        "is_fitted": rating.is_fitted,
+        "dead_volume_mL": curves.gas.dead_volume / ML,
+        "ambient_pressure_kPa": curves.gas.ambient / KPA,
+        "temperature_C": REFERENCE_TEMPERATURE - 273.15,
+        "leak": {"unknown": _NO_LEAK} if leak is None else {**(source or {}), "measured": leak.where},
+        "reach": {figure: reach_document(curves, figure) for figure in TASK_FIGURES.values()},
+        "tasks": [_task(answer, rating.pressure) for answer in schedule.answers],
+    }
+    return rounded(content, _DIGITS)
+
+
+def reach_document(curves: ReachCurves, figure: str) -> dict[str, Any] | None:
+    """Least and greatest value of a figure and where, over all driving pressures and up to the rated pressure."""
+    pressures, values = curves.pressures, curves.values(figure)
+    if np.isnan(values).all():
+        return None
+    within = np.where(pressures <= curves.evaluation.rating.pressure, values, np.nan)
+    ends = {"": values} | ({} if np.isnan(within).all() else {"rated_": within})
+    return {
+        f"{part}{end}{what}": float(of[k]) / unit
+        for part, column in ends.items()
+        for end, k in (("low", int(np.nanargmin(column))), ("high", int(np.nanargmax(column))))
+        for what, of, unit in (("", column, 1.0), ("_at_kPa", pressures, KPA))
+    }
+
+
+def _task(answer: TaskAnswer, rated: float) -> dict[str, Any]:
+    task = answer.task
+    content: dict[str, Any] = {
+        "task": task.name,
+        "requirement": task.figure,
+        "value": task.value,
+        "reached": answer.reached,
+        "solutions": [_solution(one, rated) for one in answer.solutions],
+    }
+    if answer.gas is not None:
+        content["gas"] = _gas(answer.gas)
+    else:
+        content["possible_band"] = _band(answer.possible)
+        content["offline"] = [
+            {"what": one.what, "before": one.before, "after": one.after, "predicted": one.predicted}
+            for one in answer.changes
+        ]
+    return content
+
+
+def _solution(solution: DrivingSolution, rated: float) -> dict[str, Any]:
+    state = solution.state
+    return {
+        "driving_pressure_kPa": state.driving_pressure / KPA,
+        "band": _band(solution.band),
+        "above_rating": state.driving_pressure > rated,
+        "apex_height_outer_mm": state.apex_outer,
+        "cavity_volume_mL": state.cavity_volume / ML,
+        **{figure: figure_of(state, figure) for figure in TASK_FIGURES.values()},
+    }
+
+
+def _band(band: PressureBand | None) -> dict[str, Any] | None:
+    if band is None:
+        return None
+    ends = {"low_kPa": band.low / KPA, "high_kPa": band.high / KPA}
+    return {**ends, "open_low": band.open_low, "open_high": band.open_high}
+
+
+def _gas(gas: SealedState) -> dict[str, Any]:
+    by_temperature_kPa_per_K = gas.by_temperature / KPA
+    percent_per_kPa = None
+    if gas.slope is not None:
+        percent_per_kPa = 0.0 if gas.step is None else math.copysign(100.0 * HOLD_SHARE / (gas.step / KPA), gas.slope)
+    return {
+        "injected_mL": gas.injected / ML,
+        "moved_mL": gas.moved / ML,
+        "by_temperature_kPa_per_K": by_temperature_kPa_per_K,
+        "figure_by_temperature_percent_per_K": None
+        if percent_per_kPa is None
+        else percent_per_kPa * by_temperature_kPa_per_K,
+        "figure_by_pressure_percent_per_kPa": percent_per_kPa,
+        "hold_percent": 100.0 * HOLD_SHARE,
+        "step_kPa": None if gas.step is None else gas.step / KPA,
+        "loss_kPa_per_min": None if gas.loss is None else 60.0 * gas.loss / KPA,
+        "hold_s": None if gas.hold is None or np.isinf(gas.hold) else gas.hold,
+    }

@@ -1,0 +1,214 @@
+"""A sensor's pressure-to-force model for a microcontroller, for Python and for other programs.
+
+Tabulate a design's sensor, compare the table with the full model, and write it in the forms that are used.
+
+A design's sensor as a model of a simulator.
+
+Tabulate a design's press at its driving pressures and write its sensor for a simulator.
+
+Content of a folder of a simulator's model, in ten lines.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pneutouch import __version__
+from pneutouch.errors import InputError, nearest
+from pneutouch.evaluation.evaluate import Evaluation
+from pneutouch.evaluation.reader import curve_of, reader_difference, reader_grid
+from pneutouch.evaluation.reader_record import reader_record
+from pneutouch.export.reader.render import reader_files, sketch_note
+from pneutouch.export.simulator.description import mjcf_files, urdf_files
+from pneutouch.export.simulator.model import PressTable, SimulatedSensor, press_table, simulated_sensor
+from pneutouch.mechanics import predict
+from pneutouch.output.files import check_writable, digest, json_bytes, with_manifest, write_folder
+from pneutouch.output.files import write_folder as write_files
+from pneutouch.output.recipe import BuildRecipe
+from pneutouch.rounding import rounded
+from pneutouch.units import KPA
+
+
+@dataclass(frozen=True)
+class ReaderResult:
+    """A reader: the name of its folder, its document, its other files by name, and why there is no sketch."""
+
+    name: str
+    document: dict[str, Any]
+    files: dict[str, bytes]
+    note: str | None
+
+
+def make_reader(evaluation: Evaluation) -> ReaderResult:
+    """The reader of an evaluated design. Raises InputError and ComputationError as `evaluation.reader.reader_grid`."""
+    grid = reader_grid(evaluation)
+    record = reader_record(evaluation, grid)
+    known = reader_difference(evaluation, grid, record)
+    full_N = record["box"]["contact_force_N"][1]
+    record["difference"] = {
+        "nominal_N": known.nominal_N,
+        "nominal_percent": 100.0 * known.nominal_N / full_N,
+        "other_conditions_N": known.other_conditions_N,
+        "other_conditions_percent": 100.0 * known.other_conditions_N / full_N,
+        "states": known.states,
+    }
+    record["source"] = {"sha256": _source(evaluation), "version": __version__}
+    calibration, gauge = evaluation.scene.design.calibration_name, evaluation.scene.gauge
+    name = evaluation.scene.name if calibration is None else _calibrated(evaluation, calibration)
+    return ReaderResult(f"{name}-reader", record, reader_files(record, name, gauge), sketch_note(gauge))
+
+
+def _calibrated(evaluation: Evaluation, calibration: str) -> str:
+    name = evaluation.scene.name
+    return calibration if calibration.startswith(name) else f"{name}-{calibration}"
+
+
+def _source(evaluation: Evaluation) -> str:
+    """SHA-256 of all that a reader follows from: the design with all that it names, options, version."""
+    return digest(json_bytes({"inputs": BuildRecipe.of(evaluation).inputs(), "version": __version__}))
+
+
+def write_reader(result: ReaderResult, out: Path) -> Path:
+    """Write ``out/<design>-reader/``; the same input, the same bytes. Returns that folder."""
+    folder = out / result.name
+    check_writable(folder)
+    files = {"reader.json": json_bytes(result.document), **result.files}
+    write_folder(folder, with_manifest(files, result.name, result.document["source"]))
+    return folder
+
+
+_MUJOCO = """\
+# {name} in MuJoCo
+
+    import mujoco, dome_force
+    model = mujoco.MjModel.from_xml_path("{name}.xml")
+    dome_force.install(model, driving_pressure_kPa={pressure})  # table: {pressures} kPa
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data)
+    data.sensor("{name}_pressure_kPa").data, data.sensor("{name}_force_N").data, data.sensor("{name}_status").data
+
+The dome is a sphere on the sliding joint {name}_indentation (m, inwards). Valid to {depth} mm; status is 1 beyond.
+Without `install` the joint has no force. No shear, no rate, no contact off the axis: docs/howto/simulators.md.
+"""
+
+_URDF = """\
+# {name} as a link of URDF
+
+- Link {name}: origin in the base plane of the dome on its axis, z outwards; lengths in m.
+- Mass {mass:.4g} g with the inertia of all bodies, by their exact volumes and nominal densities.
+- visual: the print meshes. collision: the convex hull of each body, rigid.
+- Frame {name}_mount: the rearmost face of the sensor, z = {rear:.4g} mm.
+- Frame {name}_contact: the apex at {pressure} kPa, z = {apex:.4g} mm.
+- Mesh paths are relative to this file; where a tool needs a package, put package://NAME/ in front of them.
+- URDF has no force over indentation: for that take the export for MuJoCo, or reader.json of `export-reader`.
+"""
+
+
+def readme(sensor: SimulatedSensor, kind: str) -> bytes:
+    """The README of a model."""
+    table = sensor.tables[0]
+    text = {"mujoco": _MUJOCO, "urdf": _URDF}[kind].format(
+        name=sensor.name,
+        pressure=f"{table.driving_pressure_kPa:g}",
+        pressures=", ".join(f"{one.driving_pressure_kPa:g}" for one in sensor.tables),
+        depth=f"{1e3 * min(one.indentation[-1] for one in sensor.tables):.2f}",
+        mass=1e3 * sensor.inertia.mass,
+        rear=1e3 * sensor.rear,
+        apex=1e3 * table.apex,
+    )
+    return text.encode()
+
+
+SIMULATORS = {"mujoco": mjcf_files, "urdf": urdf_files}
+"""Writers of the files of a simulator's model, by the name of its format."""
+
+STEPS = 80
+"""Steps of a press: the spline through them is within 1 % of the model from a fiftieth of the range on."""
+
+_DIGITS = 6
+
+
+@dataclass(frozen=True)
+class SimulatorResult:
+    """A model: the name of its folder, its document, and its files by path."""
+
+    name: str
+    document: dict[str, Any]
+    files: dict[str, bytes]
+    inputs: dict[str, Any]
+
+
+def make_simulator(evaluation: Evaluation, kind: str) -> SimulatorResult:
+    """The sensor of an evaluated design for a simulator of `SIMULATORS`.
+
+    Raises InputError for another simulator and for contact off the axis, ComputationError where a press has no range.
+    """
+    if kind not in SIMULATORS:
+        raise InputError(f"unknown.{nearest(kind, SIMULATORS)}", key="simulator", value=kind)
+    off_axis = evaluation.sensor.protocol.off_axis
+    if off_axis is not None:
+        raise InputError(off_axis, key="simulator", value=kind, remedy="the joint of the model moves along the axis")
+    sensor = _simulated(evaluation)
+    files = {"README.md": readme(sensor, kind), **SIMULATORS[kind](sensor)}
+    name = f"{sensor.name}-{kind}"
+    return SimulatorResult(name, _document(evaluation, sensor, kind), files, BuildRecipe.of(evaluation).inputs())
+
+
+def _simulated(evaluation: Evaluation) -> SimulatedSensor:
+    assembly, membrane = evaluation.assembly, evaluation.scene.membrane_material
+    layout = assembly.layout
+    dome = (layout.inner_radius, layout.wall, membrane.density_g_per_cm3.nominal)
+    return simulated_sensor(evaluation.scene.name, assembly.bodies, assembly.solids, dome, press_tables(evaluation))
+
+
+def press_tables(evaluation: Evaluation, steps: int = STEPS) -> tuple[PressTable, ...]:
+    """The press at the design's driving pressures, in equal steps."""
+    sensor, options = evaluation.sensor.replace(steps=steps), evaluation.options
+    prediction = predict(
+        evaluation.scene.name,
+        sensor,
+        [state.driving_pressure for state in evaluation.prediction.states],
+        model=evaluation.prediction.model,
+        closure=options.closure,
+    )
+    tables = []
+    for state in prediction.states:
+        curve = curve_of(state, sensor)
+        rise_kPa = curve.rise / KPA
+        at_kPa = state.driving_pressure / KPA
+        tables.append(press_table(at_kPa, state.apex_outer, curve.indentation, curve.force, rise_kPa))
+    return tuple(tables)
+
+
+def _document(evaluation: Evaluation, sensor: SimulatedSensor, kind: str) -> dict[str, Any]:
+    content = {
+        "design": sensor.name,
+        "simulator": kind,
+        "model": evaluation.prediction.model,
+        "version": __version__,
+        "mass_g": 1e3 * sensor.inertia.mass,
+        "centre_of_mass_mm": (1e3 * sensor.inertia.centre).tolist(),
+        "inertia_about_centre_g_mm2": (1e9 * sensor.inertia.about_centre).tolist(),
+        "states": [
+            {
+                "driving_pressure_kPa": table.driving_pressure_kPa,
+                "apex_height_outer_mm": 1e3 * table.apex,
+                "range_end_mm": 1e3 * float(table.indentation[-1]),
+                "contact_force_N": float(table.force[-1]),
+                "pressure_kPa": float(table.pressure_kPa[-1]),
+                "greatest_stiffness_N_per_mm": 1e-3 * table.stiffest,
+            }
+            for table in sensor.tables
+        ],
+    }
+    return rounded(content, _DIGITS, 1e-9)
+
+
+def write_simulator(result: SimulatorResult, out: Path) -> Path:
+    """Write ``out/<design>-<simulator>/``; the same input, the same bytes. Returns that folder."""
+    folder = out / result.name
+    check_writable(folder)
+    write_files(folder, with_manifest(result.files, result.name, result.inputs))
+    return folder

@@ -1,1 +1,0 @@
-"""Plan of the measurement of a printed sensor, with the expected figures."""

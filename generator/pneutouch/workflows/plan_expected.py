@@ -1,0 +1,195 @@
+"""Readings of a planned campaign if the prediction holds, and the places where the rig cannot follow."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pneutouch.bench.protocol import CLEARANCE, RunProtocol
+from pneutouch.bench.simulate.curve import PressCurve, PressCurves, line_pressure, sensor_pressure
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.errors import InputError
+from pneutouch.mechanics.rating import Rating
+from pneutouch.spec.campaign import Rig
+from pneutouch.units import KPA, ML
+
+RESOLVED = 3.0
+"""A first step below this many resolutions of the force sensor is no detection (IUPAC's limit of detection)."""
+
+ROUND = tuple(ML * digit * 10.0**power for power in (-2, -1, 0, 1) for digit in (1, 2, 5))
+"""Round volumes that a syringe can push, mm3."""
+
+MORE = 0.1 * ML
+"""Extra dead volume whose effect is shown as well, mm3: 20 mm of a 2.5 mm bore, our choice."""
+
+_OF_RATED, _OF_RANGE = 0.5, 0.8
+"""Air pushed into the sensor may take it to this share of its rated pressure, into the line to this one of the gauge's
+range: our choice, so that neither is strained by the test."""
+
+_LEAK_SHARE = 0.01
+"""The leak may take this share of the first step's rise while one indentation lasts: our choice."""
+
+
+@dataclass(frozen=True)
+class PlanViolation:
+    """Part of the plan that exceeds the rig or the sensor."""
+
+    rule: str
+    message: str
+    resin: str = ""
+    driving_pressure_kPa: float | None = None
+    depth_mm: float | None = None
+
+    def document(self) -> dict[str, Any]:
+        """The violation as data."""
+        return dict(vars(self))
+
+
+def points(curve: PressCurve, depths: tuple[float, ...]) -> list[dict[str, float | None]]:
+    """Expected force, pressure rise and cavity pressure at plate travels; null beyond the predicted range."""
+    known = [depth for depth in depths if curve.covers(depth)]
+    force, rise = curve.at(np.minimum(known, curve.reach)) if known else (np.zeros(0), np.zeros(0))
+    known_points = {d: (float(f), float(r) / KPA) for d, f, r in zip(known, force, rise, strict=True)}
+    driving_kPa = curve.driving / KPA
+    return [
+        {
+            "depth_mm": depth,
+            "force_N": known_points[depth][0] if depth in known_points else None,
+            "pressure_rise_kPa": known_points[depth][1] if depth in known_points else None,
+            "cavity_pressure_kPa": driving_kPa + known_points[depth][1] if depth in known_points else None,
+        }
+        for depth in depths
+    ]
+
+
+def curve_warnings(
+    resin: str, rating: Rating, curve: PressCurve, tests: Mapping[str, RunProtocol], rig: Rig
+) -> list[PlanViolation]:
+    """Limits that the kinds of run at one driving pressure would pass; ``tests`` are their protocols by kind."""
+    driving_kPa = curve.driving / KPA
+    depths = tuple(sorted({depth for test in tests.values() for depth in test.depths}))
+    expected = points(curve, depths)
+    violations = []
+
+    def over(rule: str, key: str, limit: float, text: str) -> None:
+        beyond = [p for p in expected if p[key] is not None and p[key] > limit]  # type: ignore[operator]
+        if beyond:
+            first, last = beyond[0], beyond[-1]
+            before = depths[depths.index(float(first["depth_mm"] or 0.0)) - 1] if first is not expected[0] else None
+            stop = "leave this pressure out" if before is None else f"stop at {before:g} mm"
+            report(rule, first["depth_mm"], text.format(limit=limit, least=first[key], most=last[key], stop=stop))
+
+    def report(rule: str, depth: float | None, text: str) -> None:
+        kinds = "" if depth is None else f" ({', '.join(k for k, t in tests.items() if max(t.depths) >= depth)})"
+        at = "" if depth is None else f", from {depth:.2f} mm on{kinds}"
+        violations.append(PlanViolation(rule, f"{resin}, {driving_kPa:g} kPa{at}: {text}", resin, driving_kPa, depth))
+
+    over(
+        "force range",
+        "force_N",
+        rig.force_range_N,
+        "expected force of {least:.1f} to {most:.1f} N passes the force sensor's {limit:g} N; {stop}, or take a larger "
+        "sensor",
+    )
+    over(
+        "pressure range",
+        "cavity_pressure_kPa",
+        rig.pressure_range_kPa,
+        "expected cavity pressure of {least:.1f} to {most:.1f} kPa passes the gauge's {limit:g} kPa; {stop}, or take a "
+        "wider gauge",
+    )
+    lost = [depth for depth in depths if not curve.covers(depth)]
+    if lost and curve.ends is not None:
+        report(
+            "range end",
+            lost[0],
+            f"predicted range ends at {curve.ends[1]:.2f} mm ({curve.ends[0]}); readings beyond belong to no figure",
+        )
+    if rating.severity(curve.driving) is not None:
+        remedy = rating.remedy_for(curve.driving)
+        raised = "" if remedy is None else f"; to raise it, {remedy}"
+        report("rated pressure", None, f"{rating.excess(curve.driving)}, {rating.basis}{raised}")
+    first = expected[0]["force_N"]
+    if first is not None and first < RESOLVED * rig.force_resolution_N:
+        report(
+            "force resolution",
+            None,
+            f"expected force of {first:.3f} N at the first step, {depths[0]:g} mm, is below {RESOLVED:g} resolutions "
+            f"of {rig.force_resolution_N:g} N",
+        )
+    return violations
+
+
+def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[PlanViolation]:
+    """Warning if the stage does not reach the deepest step from its clearance."""
+    need = max(depths) + CLEARANCE
+    if need <= rig.travel_mm:
+        return []
+    text = f"the deepest step and {CLEARANCE:g} mm clearance need {need:.2f} mm; the stage has {rig.travel_mm:g} mm"
+    return [PlanViolation("travel", text, depth_mm=max(depths))]
+
+
+def refuse_above_limits(resin: str, rating: Rating, scene: ResolvedDesign) -> None:
+    """Raise InputError for a driving pressure of the design at which the sensor as designed meets a limit."""
+    for k, pressure_kPa in enumerate(scene.design.pneumatics.driving_pressures_kPa):
+        if rating.severity(pressure_kPa * KPA) == "error":
+            raise InputError(
+                f"{resin}: {rating.excess(pressure_kPa * KPA)}",
+                file=scene.where,
+                key=f"pneumatics.driving_pressures_kPa[{k}]",
+                value=pressure_kPa,
+                remedy=f"must be at most {rating.pressure_kPa:.1f} kPa, the rated pressure: {rating.basis}",
+            )
+
+
+def injection(pressed: PressCurves, rating: Rating, rig: Rig) -> dict[str, Any]:
+    """Pressures after round volumes of room air, into closed line and unpressed sensor; kPa, null where unknown."""
+    sensor, ambient = pressed.sensor, pressed.sensor.gas.ambient_pressure
+    volumes = np.array(ROUND)
+    bare = sensor_pressure(volumes, pressed.inflation, 0.0, ambient)
+    ceiling = min(_OF_RATED * rating.pressure, _OF_RANGE * rig.pressure_range_kPa * KPA)
+    # The sensor with no dead volume reads most: it decides what may be pushed.
+    fits = np.flatnonzero(np.nan_to_num(bare, nan=np.inf) <= ceiling)
+    into_sensor = None if not fits.size else float(volumes[fits[-1]])
+    into_line = None
+    if sensor.gas.dead_volume > 0:
+        line = line_pressure(volumes, sensor.gas.dead_volume, ambient)
+        fits = np.flatnonzero(line <= _OF_RANGE * rig.pressure_range_kPa * KPA)
+        into_line = None if not fits.size else float(volumes[fits[-1]])
+    rows = [] if into_sensor is None else _rows(pressed, into_sensor)
+    return {
+        "dead_volume_mL": sensor.gas.dead_volume / ML,
+        "cavity_volume_mL": float(pressed.inflation.volume[0]) / ML,
+        "sensor_volume_mL": None if into_sensor is None else into_sensor / ML,
+        "sensor": rows,
+        "more_dead_volume_mL": MORE / ML,
+        "line_volume_mL": None if into_line is None else into_line / ML,
+        "line_pressure_kPa": None
+        if into_line is None
+        else float(line_pressure(np.array(into_line), sensor.gas.dead_volume, ambient)) / KPA,
+    }
+
+
+def _rows(pressed: PressCurves, most: float) -> list[dict[str, float]]:
+    sensor = pressed.sensor
+    volumes = np.linspace(0.2, 1.0, 5) * most
+    stated_kPa, bare_kPa, more_kPa = (
+        sensor_pressure(volumes, pressed.inflation, dead, sensor.gas.ambient_pressure) / KPA
+        for dead in (sensor.gas.dead_volume, 0.0, sensor.gas.dead_volume + MORE)
+    )
+    return [
+        {
+            "volume_mL": float(v) / ML,
+            "pressure_kPa": float(p),
+            "without_dead_volume_kPa": float(q),
+            "with_more_dead_volume_kPa": float(r),
+        }
+        for v, p, q, r in zip(volumes, stated_kPa, bare_kPa, more_kPa, strict=True)
+    ]
+
+
+def leak_limit(rise: float, test: RunProtocol) -> float:
+    """Greatest leak, kPa/min: `_LEAK_SHARE` of the first step's expected rise (kPa) while that indentation lasts."""
+    seconds = test.hold + 2 * (test.depths[0] + CLEARANCE) / test.speed
+    return 60.0 * _LEAK_SHARE * rise / seconds

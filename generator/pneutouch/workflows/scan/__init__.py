@@ -1,1 +1,0 @@
-"""A texture scanned by a sensor, and domes that separate two textures."""

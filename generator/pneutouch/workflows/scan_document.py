@@ -1,0 +1,211 @@
+"""A scan as the document that ``scan`` prints and ``scan.json`` keeps, and as its figure.
+
+A scan as a folder: signals, document, figure and manifest.
+"""
+
+import io
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pneutouch.formats import versioned
+from pneutouch.output.files import check_writable, json_bytes, with_manifest, write_folder
+from pneutouch.report.scalogram import ScannedState, scalogram_chart
+from pneutouch.rounding import rounded
+from pneutouch.texture.detect import Detection
+from pneutouch.texture.scalogram import scalogram
+from pneutouch.texture.scan import NOISE, RATE, STEP, pressure_amplitude
+from pneutouch.texture.separate import noise_amplitude
+from pneutouch.texture.signal import Signal, decimated
+from pneutouch.texture.substrate import FIRST_ZERO, BarRow, patch_filter
+from pneutouch.units import KPA
+from pneutouch.workflows.scan import AnalysedSignal, ScanRun
+from pneutouch.workflows.specimen import inputs as specimen_inputs
+
+ASSUMPTIONS = (
+    "the dome's flat-plate contact, frictionless; uniform pressure over the patch; no inertia, no relaxation",
+    "the specimen is linear elastic and bonded to a rigid floor; its bars stand still and its surface is flat: no "
+    "relief",
+    "amplitudes of single patterns are 1.15 to 1.35 times those of finite elements at pitch 6 mm under a small patch "
+    "and up to 4.4 times at "
+    "3 mm; near a zero of the patch filter they mean no more than 'small' (docs/background/texture.md)",
+    f"noise: white, {NOISE / KPA:g} kPa rms a sample unless given, in steps of {STEP / KPA:.4f} kPa: assumed, the "
+    "paper states none",
+    "air at constant temperature (Boyle) with the design's dead volume",
+)
+
+_DIGITS = 7
+
+
+def document(run: ScanRun) -> dict[str, Any]:
+    """All results of a scan; names carry their units."""
+    content = {
+        "specimen": run.specimen.name,
+        "design": run.design.name,
+        "control": run.options.control,
+        "preload_N": run.options.preload,
+        "speed_mm_per_s": run.path.speed,
+        "path_mm": [run.path.start, run.path.end],
+        "sampling_Hz": RATE,
+        "kept_Hz": 5 * run.kept,
+        "noise_kPa": run.options.noise / KPA,
+        "seed": run.options.seed,
+        "range_kPa": run.sensor.gas.gauge_limit / KPA,
+        "patterns": [_pattern(run, row) for row in run.bars],
+        "states": [_state(run, number, seen) for number, seen in enumerate(run.seen)],
+        "assumptions": list(ASSUMPTIONS),
+    }
+    return rounded(content, _DIGITS)
+
+
+def inputs(run: ScanRun) -> dict[str, Any]:
+    """Everything that the result depends on, as data; measured signals by their file names."""
+    design = run.design
+    options = run.options
+    return {
+        "specimen": specimen_inputs(run.specimen),
+        "design": design.design.model_dump(mode="json"),
+        "membrane": design.membrane_material.model_dump(mode="json"),
+        "dead_volume_mm3": rounded(run.sensor.gas.dead_volume, _DIGITS),
+        "pressures_kPa": [rounded(p / KPA, _DIGITS) for p in options.pressures],
+        "preload_N": options.preload,
+        "control": options.control,
+        "speed_mm_per_s": run.path.speed,
+        "noise_kPa": options.noise / KPA,
+        "seed": options.seed,
+        "data": [path.name for path in options.data],
+    }
+
+
+def spectra(run: ScanRun) -> str:
+    """Signals, less their mean and decimated, and scalograms side by side; SVG."""
+    frequencies = sorted(set(run.frequencies.values()))
+    low, high = frequencies[0] / 2.0, frequencies[-1] * 2.0
+    states = []
+    for seen in run.seen:
+        kept = decimated(seen.signal, high)
+        mean = float(kept.pressure.mean())
+        shown = Signal(kept.start, kept.step, kept.pressure - mean)
+        states.append(
+            ScannedState(f"{seen.label}, about {mean / KPA:.3g} kPa", shown, scalogram(seen.signal, low, high))
+        )
+    return scalogram_chart(states, {_names(run, frequency): frequency for frequency in frequencies})
+
+
+def _names(run: ScanRun, frequency: float) -> str:
+    names = [name for name, known in run.frequencies.items() if known == frequency]
+    return (
+        names[0] if len(names) == 1 else " + ".join([names[0], *(name.removeprefix("pattern ") for name in names[1:])])
+    )
+
+
+def _pattern(run: ScanRun, row: BarRow) -> dict[str, Any]:
+    frequency = run.frequencies[row.name]
+    young = run.specimen.inclusion.young_modulus_MPa
+    return {
+        "name": row.name,
+        "pitch_mm": row.pitch,
+        "width_mm": row.width,
+        "height_mm": row.height,
+        "depth_mm": row.depth,
+        "from_mm": float(row.edges.min()),
+        "to_mm": float(row.edges.max()),
+        "frequency_Hz": frequency,
+        "bending_length_mm": None if young is None else row.bending_length(young.nominal, run.matrix.shear_modulus),
+        "noise_amplitude_kPa": noise_amplitude(frequency, run.options.noise) / KPA,
+    }
+
+
+def _state(run: ScanRun, number: int, seen: AnalysedSignal) -> dict[str, Any]:
+    content: dict[str, Any] = {
+        "label": seen.label,
+        "signal": f"signal-{number + 1}.csv",
+        "duration_s": seen.signal.duration,
+    }
+    at = seen.touch
+    if at is not None and seen.substrate is not None and seen.scan is not None:
+        content |= {
+            "driving_pressure_kPa": at.driving_pressure / KPA,
+            "contact_radius_mm": at.contact_radius,
+            "indentation_mm": at.indentation,
+            "stiffness_N_per_mm": at.stiffness,
+            "pressure_slope_kPa_per_mm": at.pressure_slope / KPA,
+            "pressure_kPa": at.pressure / KPA,
+            "model": at.model,
+            "specimen_compliance_mm_per_N": float(seen.substrate.compliance(4096).mean()),
+            "clipped": bool(abs(seen.signal.pressure).max() >= run.sensor.gas.gauge_limit),
+            "notes": _notes(run.bars, at.contact_radius),
+        }
+    detections: Sequence[Detection | None] = seen.detections or [None] * len(run.bars)
+    content["patterns"] = [_detection(run, seen, row, one) for row, one in zip(run.bars, detections, strict=True)]
+    return content
+
+
+def _detection(run: ScanRun, seen: AnalysedSignal, row: BarRow, detection: Detection | None) -> dict[str, Any]:
+    """One pattern in one signal. Patterns of one pitch share one detection: a spectrum does not distinguish them."""
+    text: dict[str, Any] = {"name": row.name, "true_frequency_Hz": run.frequencies[row.name]}
+    if seen.touch is not None and seen.substrate is not None:
+        swing = pressure_amplitude(seen.touch, seen.substrate, row, run.path.control)
+        relief = abs(seen.substrate.amplitude(row)) * seen.touch.preload
+        # Relief goes through the patch alone.
+        felt = abs(float(patch_filter(np.asarray(2.0 * math.pi / row.pitch), seen.touch.contact_radius)))
+        text |= {
+            "model_amplitude_kPa": swing / KPA,
+            "sinking_amplitude_um": relief * 1e3,
+            "relief_equivalent_um": 1e3 * relief / felt,
+        }
+    if detection is None:
+        return text | {"detected": False}
+    return text | {
+        "detected": detection.detected,
+        "detected_frequency_Hz": detection.frequency,
+        "amplitude_kPa": detection.amplitude / KPA,
+        "noise_floor_kPa": detection.floor / KPA,
+        "detection_figure": detection.ratio,
+        "threshold": detection.threshold,
+        "p_value": detection.p_value,
+        "level": detection.level,
+        "frequency_error_relative": detection.frequency / detection.target - 1.0,
+    }
+
+
+def _notes(bars: Sequence[BarRow], radius: float) -> list[str]:
+    """Notes on the patch: its effect on the patterns' pitches."""
+    near = sorted({row.pitch for row in bars if row.pitch < 4.0 * radius})
+    if not near:
+        return []
+    blind = 2.0 * math.pi / FIRST_ZERO * radius
+    return [
+        f"pitches {', '.join(f'{pitch:g}' for pitch in near)} mm are below twice the patch ({4 * radius:.2f} mm), "
+        "which averages "
+        f"over them; of bars at the surface it feels nothing at a pitch of {blind:.2f} mm"
+    ]
+
+
+def write_scan(run: ScanRun, out: Path) -> Path:
+    """Write signals, document, figure and manifest into ``out/<specimen>-<design>-scan/``."""
+    folder = out / run.name
+    check_writable(folder)
+    files = {"scan.json": json_bytes(versioned("scan", document(run))), "scan.svg": spectra(run).encode()}
+    for number, seen in enumerate(run.seen):
+        files[f"signal-{number + 1}.csv"] = signal_csv(seen, run.bars, run.kept)
+    write_folder(folder, with_manifest(files, run.name, inputs(run)))
+    return folder
+
+
+def signal_csv(seen: AnalysedSignal, bars: Sequence[BarRow], highest: float) -> bytes:
+    """A signal decimated for ``highest`` Hz; a simulated one with place, noiseless pressure and true patterns."""
+    kept = decimated(seen.signal, highest)
+    columns = {"time_s": kept.time, "pressure_kPa": kept.pressure / KPA}
+    if seen.scan is not None:
+        every = np.searchsorted(seen.signal.time, kept.time - 0.5 * seen.signal.step)
+        columns["place_mm"] = seen.scan.place[every]
+        columns["noiseless_kPa"] = seen.scan.clean[every] / KPA
+        columns |= {f"bar_{k + 1}": row.covers(seen.scan.place[every]) for k, row in enumerate(bars)}
+    text = io.StringIO()
+    text.write(",".join(columns) + "\n")
+    np.savetxt(text, np.stack(list(columns.values()), axis=1), fmt="%.9g", delimiter=",")
+    return text.getvalue().encode()

@@ -1,0 +1,306 @@
+"""A target to designs: resolves its names, searches, confirms the best by the solid, writes the chosen one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from pneutouch.catalogue import Library, ResolvedDesign
+from pneutouch.catalogue.library import CachedLibrary, elastomers
+from pneutouch.catalogue.printers import casting_missing
+from pneutouch.errors import InputError
+from pneutouch.evaluation.evaluate import Evaluation
+from pneutouch.mechanics.atlas.table import shipped
+from pneutouch.mechanics.atlas_states import resin_outside_atlas
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.rating import LIMIT_ERROR
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.uncertainty import measured_errors
+from pneutouch.mechanics.uncertainty.propagate import limit_spread
+from pneutouch.selection import Candidate, CandidateResin, SelectionProblem, SelectionResult, choose
+from pneutouch.selection.choose import Refine
+from pneutouch.selection.contact_search import ContactSelection, choose_by_solid
+from pneutouch.selection.mixes import met_by_fraction
+from pneutouch.spec.grade import Grade
+from pneutouch.spec.material import Material
+from pneutouch.spec.read import assignments
+from pneutouch.spec.target import Target
+from pneutouch.spec.toml_text import value_text
+from pneutouch.units import KPA
+from pneutouch.workflows.select.base import (
+    GaugeTrial,
+    ResinPair,
+    base_scene,
+    mix_resins,
+    prints,
+    requested_pair,
+    setting_changes,
+    with_connector,
+)
+from pneutouch.workflows.select.checks import (
+    CandidateSolver,
+    RejectedDesign,
+    base_around,
+    base_sensor,
+    connector_fit,
+    dead_volume,
+    judge,
+    other_contact,
+    sensitivity_uncertainties,
+    sized_as,
+    source_of,
+    without_plate,
+)
+
+_CONFIRMED = 3
+"""Designs that are confirmed by the solid."""
+_NOTHING = SelectionResult([], None, [], 0)
+_PLATE_SHARE = 1.25
+"""Radius over R0 of a plate that no base gives: the contact of an inflated dome grows past R0."""
+
+
+@dataclass(frozen=True)
+class Confirmation:
+    """The result of the solid for a design: sensitivity (kPa/N) and whether it lies within the stated uncertainty."""
+
+    sensitivity_kPa_per_N: float
+    within: bool
+
+
+@dataclass(frozen=True)
+class SelectionRun:
+    """An answer with everything needed to show, check and write it.
+
+    changes: what the target changes in its base, by ``table.key``. left_out: resins and why. rejected: designs that
+    ``check`` would reject, best first. judged: designs of the answer that pass ``check``, as it predicts them, by rank.
+    gauges: those considered, where the target leaves the gauge open.
+    by_solid: how the search went where the solid answers the base's contact and the atlas does not.
+    """
+
+    target: Target
+    base: ResolvedDesign
+    changes: dict[str, Any]
+    sensor: Sensor
+    problem: SelectionProblem
+    answer: SelectionResult
+    left_out: dict[str, str]
+    rejected: tuple[RejectedDesign, ...] = ()
+    judged: Mapping[int, Evaluation] = field(default_factory=dict)
+    confirmed: tuple[Confirmation, ...] = ()
+    by_solid: ContactSelection | None = None
+    gauges: tuple[GaugeTrial, ...] = ()
+
+    def assignments(self, choice: Candidate) -> list[str]:
+        """Changes that turn the base design into a choice, as ``table.key=value``."""
+        pool = choice.pool
+        radius, pressure_kPa = float(pool.radius[0]), float(pool.pressure[0]) / KPA
+        pressures = sorted({0.0, round(pressure_kPa, 6)})
+        values = [
+            f"membrane.material={_written(choice.resin)}",
+            f"membrane.inner_radius_mm={radius:.6g}",
+            f"membrane.wall_thickness_mm={float(pool.wall[0]):.6g}",
+            f"pneumatics.driving_pressures_kPa={pressures}",
+        ]
+        if self.base.design.indentation.depth_mm is not None:
+            # A depth in millimetres belongs to the base's own dome: it goes with the radius.
+            values.append(f"indentation.depth_mm={self.problem.depth_share * radius:.8g}")
+        plate = 2 * float(self.problem.plate(pool.radius)[0])
+        if self.base.design.contact.is_plate and plate > self.base.design.indentation.plate_diameter_mm:
+            values.append(f"indentation.plate_diameter_mm={plate:g}")
+        return values + assignments(self.changes)
+
+    def footprint(self, choice: Candidate) -> float:
+        """Diameter of the whole sensor, mm: membrane, flange and connector; a port at its side stands out of it."""
+        assert self.problem.connector is not None
+        return float(self.problem.connector(choice.pool.radius, choice.pool.wall).diameter[0])
+
+    def sensor_of(self, choice: Candidate) -> Sensor:
+        """A choice as a sensor, in everything else the base design's."""
+        pool, resin = choice.pool, choice.resin
+        batch = self.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
+        return sized_as(self.sensor, batch, 0).replace(
+            depth=float(batch.depth[0]),
+            shear_modulus=resin.shear_modulus,
+            law=None,
+            poisson_ratio=self.problem.recipe.poisson_ratio,
+            break_stretch=None if np.isinf(resin.break_stretch) else resin.break_stretch,
+            base=base_around(self.base, float(pool.radius[0]), float(pool.wall[0])),
+        )
+
+
+STEPS = ("base", "search", "print rules", "solid")
+"""The steps that a selection reports, in order."""
+
+
+def select(
+    target: Target,
+    where: str,
+    library: Library | None = None,
+    *,
+    written: int | None = None,
+    progress: Callable[[str], None] = lambda step: None,
+) -> SelectionRun:
+    """Answer a target. Raises InputError if it names something unknown; ``where`` names the file in messages.
+
+    The best design and that of rank ``written``, to be saved, pass all that ``check`` looks at; those between them
+    the print rules. Designs that do not are taken out of the answer.
+    """
+    library = CachedLibrary((library or Library.default()).folders)
+    progress("base")
+    scene = base_scene(target, where, library)
+    sensor = base_sensor(scene)
+    pair = requested_pair(target, where, scene.printer, library)
+    if pair is None:
+        resins, left_out = _resins(target, where, scene, sensor, library)
+    else:
+        resins, left_out = mix_resins(pair, sensor.gas.ambient_pressure)
+    problem = problem_of(target, scene, sensor, resins)
+    progress("search")
+    run = SelectionRun(target, scene, setting_changes(target, library), sensor, problem, _NOTHING, left_out)
+    run = _answered(run, None if pair is None else _refined(pair), library)
+    progress("print rules")
+    run = _passing(run, written, library)
+    if run.by_solid is not None:
+        return run
+    progress("solid")
+    best = enumerate(run.answer.designs[:_CONFIRMED], start=1)
+    return replace(run, confirmed=tuple(_confirm(run, choice, run.judged.get(rank)) for rank, choice in best))
+
+
+def _answered(run: SelectionRun, refine: Refine | None, library: Library) -> SelectionRun:
+    """The run with its answer: by the atlas, or by the solid where that alone covers the base's contact."""
+    target, problem = run.target, run.problem
+    weights = target.weights.robustness, target.weights.tunability
+    errors = measured_errors(library.all("materials", Material))
+    anywhere = target.weights.contact_anywhere
+    uncertainty = partial(sensitivity_uncertainties, run.base, run.sensor, errors, anywhere=anywhere)
+    laws = [resin.name for resin in problem.resins if resin.material.law is not None]
+    other = other_contact(run.sensor) or (f"the atlas has no law as that of {laws[0]}" if laws else None)
+    if other is not None and anywhere:
+        raise InputError(
+            f"the table of contact anywhere is for designs that a central plate calibrates, and {other}",
+            key="weights.contact_anywhere",
+            value=True,
+            remedy="leave out contact_anywhere, or the contact",
+        )
+    if other is None:
+        return replace(run, answer=choose(problem, weights, uncertainty, refine))
+    run = replace(run, problem=without_plate(problem, run.sensor))
+    solver = CandidateSolver(run.base, run.assignments, library)
+    selection = choose_by_solid(run.problem, weights, solver.expanded, solver, refine)
+    return replace(run, answer=selection.result, by_solid=selection, left_out=run.left_out | selection.unsettled)
+
+
+def _passing(run: SelectionRun, written: int | None, library: Library) -> SelectionRun:
+    """The answer without the designs that do not pass; looked at by rank until enough do."""
+    passed: list[Candidate] = []
+    rejected: list[RejectedDesign] = []
+    judged: dict[int, Evaluation] = {}
+    waiting = list(run.answer.designs)
+    while waiting and len(passed) < (written or 1):
+        choice, rank = waiting.pop(0), len(passed) + 1
+        source = source_of(run.base, run.assignments(choice))
+        reason, evaluation = judge(source, library, predicted=rank in (1, written))
+        if reason is not None:
+            rejected.append(RejectedDesign(choice, *reason))
+            continue
+        passed.append(choice)
+        if evaluation is not None:
+            judged[rank] = evaluation
+    answer = replace(run.answer, designs=[*passed, *waiting])
+    return replace(run, answer=answer, rejected=tuple(rejected), judged=judged)
+
+
+def _written(resin: CandidateResin) -> str:
+    """A resin as a design names it: by its name, or as the mix that it is."""
+    return resin.name if resin.grade is None else grade_text(resin.grade)
+
+
+def grade_text(grade: Grade) -> str:
+    """A grade as a design file has it."""
+    return value_text(grade.model_dump(by_alias=True, exclude_none=True))
+
+
+def _refined(pair: ResinPair) -> Refine:
+    return lambda problem, pool: met_by_fraction(problem, pool, pair.law, pair.resin)
+
+
+def _resins(
+    target: Target, where: str, scene: ResolvedDesign, sensor: Sensor, library: Library
+) -> tuple[tuple[CandidateResin, ...], dict[str, str]]:
+    """Resins the printer runs and the atlas covers, and why others of its process are left out."""
+    casting = scene.printer.is_casting
+    offered = (name for name, one in elastomers(library, casting).items() if one.is_cast == casting)
+    names = target.given.materials or sorted(offered)
+    resins, out = [], {}
+    for name in names:
+        material = library.load("materials", name, file=where, key="given.materials")
+        # A cast resin's law is the solid's: the search goes by the neo-Hookean fit, corrected by the solid.
+        plain = material.model_copy(update={"law": None}) if casting else material
+        wall = material_sensor(plain).wall
+        if casting_missing(scene.printer, material):
+            out[name] = "its file has no table [casting]"
+        elif not prints(scene, material):
+            out[name] = f"the {scene.printer.title} cannot run it{with_connector(scene)}"
+        elif (why := resin_outside_atlas(wall, sensor.gas.ambient_pressure)) is not None:
+            out[name] = why
+        else:
+            resins.append(CandidateResin(name, material, wall.shear_modulus, wall.break_stretch or np.inf))
+    return tuple(resins), out
+
+
+def problem_of(
+    target: Target, scene: ResolvedDesign, sensor: Sensor, resins: tuple[CandidateResin, ...]
+) -> SelectionProblem:
+    """The search in numbers, on a base with its sensor."""
+    required, given = target.target, target.given
+    feature = scene.printer.smallest.wall("elastomer")
+    return SelectionProblem(
+        resins=resins,
+        sensitivity_kPa_per_N=required.sensitivity_kPa_per_N,
+        tolerance=required.tolerance_percent / 100,
+        driving_pressure=None if required.driving_pressure_kPa is None else required.driving_pressure_kPa * KPA,
+        force_range=required.force_range_N,
+        stiffness=(required.stiffness_least_N_per_mm, required.stiffness_most_N_per_mm),
+        max_diameter=required.max_diameter_mm,
+        inner_radius=given.inner_radius_mm,
+        wall_thickness=given.wall_thickness_mm,
+        least_wall=feature.least or feature.recommended,
+        ambient_pressure=sensor.gas.ambient_pressure,
+        dead_volume=dead_volume(scene, sensor),
+        plate_radius=sensor.protocol.plate_radius,
+        gauge_limit=sensor.gas.gauge_limit,
+        depth_share=min(sensor.protocol.depth / sensor.dome.inner_radius, shipped().recipe.deepest),
+        steps=sensor.protocol.steps,
+        recipe=shipped().recipe,
+        plate_share=0.0 if "plate_diameter_mm" in scene.design.indentation.model_fields_set else _PLATE_SHARE,
+        max_footprint=required.max_footprint_mm,
+        connector=connector_fit(scene),
+        anywhere=target.weights.contact_anywhere,
+        limit_spread=lambda resin, batch: limit_spread(batch, resin.material, scene.printer, LIMIT_ERROR).standard,
+    )
+
+
+def _confirm(selection: SelectionRun, choice: Candidate, judged: Evaluation | None) -> Confirmation:
+    """The solid's sensitivity, compared with that of the atlas; of a design judged already it is known."""
+    from pneutouch.mechanics.solid_states import solid_states
+
+    if judged is None:
+        wall = material_sensor(choice.resin.material).wall
+        sensor = selection.sensor_of(choice).replace(law=wall.law, largest_stretch=wall.largest_stretch)
+        state = solid_states(sensor, choice.pool.pressure)[0]
+    else:
+        driven = float(choice.pool.pressure[0])
+        state = min(judged.prediction.states, key=lambda state: abs(state.driving_pressure - driven))
+    figures = state.figures
+    if figures is None:
+        return Confirmation(float("nan"), False)
+    stated_kPa_per_N = float(choice.pool.response.lines.sensitivity_kPa_per_N[0])
+    return Confirmation(
+        figures.sensitivity_kPa_per_N,
+        bool(abs(np.log(figures.sensitivity_kPa_per_N / stated_kPa_per_N)) <= choice.expanded),
+    )

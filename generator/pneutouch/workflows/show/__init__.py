@@ -1,1 +1,0 @@
-"""Content of a 3MF or of a voxel stack."""

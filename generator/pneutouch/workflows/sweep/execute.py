@@ -1,0 +1,164 @@
+"""Run a sweep: resolve, go on where it stopped, compute, write the dataset, clear up."""
+
+import contextlib
+from collections import Counter
+from collections.abc import Callable, Generator, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from pneutouch.catalogue import Library
+from pneutouch.errors import ComputationError, InputError, joined
+from pneutouch.stopping import uninterrupted
+from pneutouch.workflows.sweep.dataset import dataset, netcdf, stored_dataset, stored_fingerprint
+from pneutouch.workflows.sweep.journal import Journal, WorkFolder
+from pneutouch.workflows.sweep.plan import SweepPlan
+from pneutouch.workflows.sweep.work import Record, SweepStudy, chunks, study, unpack
+from pneutouch.workflows.sweep.workers import cores, in_pool, in_process, on_cluster
+
+Progress = Callable[[int, int], None]
+"""Called with the number of points done and of all points."""
+
+
+@dataclass(frozen=True, slots=True)
+class SweepResult:
+    """A finished sweep: its file, how many points it has, how many of them were ``computed`` by this call, and how
+    many states are ok, refused or failed."""
+
+    path: Path
+    points: int
+    computed: int
+    states: dict[str, int]
+    input_hash: str
+
+
+@dataclass(frozen=True, slots=True)
+class ComputeResources:
+    """Computers of a sweep: ``workers`` processes here (None: one a core), or the cluster of ``scheduler``."""
+
+    workers: int | None = None
+    scheduler: str | None = None
+
+
+def sweep(
+    plan: SweepPlan,
+    out: Path,
+    machines: ComputeResources = ComputeResources(),
+    *,
+    fresh: bool = False,
+    progress: Progress = lambda done, total: None,
+    library: Library | None = None,
+) -> SweepResult:
+    """Compute every point of a plan and write the dataset to ``out``; returns a record of the work.
+
+    Progress is kept in ``out`` with ``.parts`` added. A stopped sweep, however it was stopped, goes on there and
+    ends with the same bytes. ``fresh`` forgets progress and replaces another sweep's dataset.
+
+    Raises InputError before any work starts, ComputationError where it stopped half way, its progress kept. A
+    KeyboardInterrupt passes with a note of the progress that is kept.
+    """
+    if machines.workers is not None and machines.workers < 1:
+        raise InputError("must be at least 1", key="workers", value=machines.workers)
+    resolved = study(plan, library or Library.default())
+    with WorkFolder(out) as folder:
+        journal = Journal(folder.journal, resolved.fingerprint)
+        records = {} if fresh else _fitting(journal.read(), resolved)
+        if _is_there(resolved, out, fresh=fresh, resumed=bool(records)):
+            folder.finish(None)
+            return _outcome(resolved, out, 0, stored_dataset(out)["status"].values.ravel().tolist())
+        if fresh:
+            folder.restart()
+        before = len(records)
+        with _keeping(folder, records, plan.count):
+            _compute(resolved, machines, folder, journal, records, progress)
+            content = dataset(resolved, records)
+            folder.finish(netcdf(content))
+        return _outcome(resolved, out, plan.count - before, content["status"].values.ravel().tolist())
+
+
+def _fitting(records: dict[int, Record], study: SweepStudy) -> dict[int, Record]:
+    """Records that hold a state for every driving pressure of their point; the points of others are computed again."""
+    return {
+        index: record
+        for index, record in records.items()
+        if 0 <= index < study.plan.count and len(record["states"]) == len(study.point(index).driving_pressures_kPa)
+    }
+
+
+def _is_there(study: SweepStudy, out: Path, *, fresh: bool, resumed: bool) -> bool:
+    """True if ``out`` is this sweep's dataset already. Raises InputError if it is something to be kept."""
+    if not out.exists():
+        return False
+    stored = stored_fingerprint(out)
+    if stored == study.fingerprint:
+        return not fresh
+    if not fresh and not resumed:
+        raise InputError(
+            f"{out} is the dataset of another sweep (input hash {stored[:12]}, this one {study.fingerprint[:12]})",
+            key="out",
+            remedy="`fresh` replaces it, or give another `out`",
+        )
+    return False
+
+
+def _compute(
+    study: SweepStudy,
+    machines: ComputeResources,
+    folder: WorkFolder,
+    journal: Journal,
+    records: dict[int, Record],
+    progress: Progress,
+) -> None:
+    """Fill ``records`` with every point, each kept in the journal as soon as it is done."""
+    total = study.plan.count
+    progress(len(records), total)
+    with contextlib.closing(_batches(study, machines, folder, records)) as batches:
+        for batch in batches:
+            with uninterrupted():
+                journal.append(batch)
+                records.update((record["point"], record) for record in batch)
+            progress(len(records), total)
+
+
+@contextlib.contextmanager
+def _keeping(folder: WorkFolder, records: dict[int, Record], total: int) -> Iterator[None]:
+    """Report how far the work came where anything stops it, and that it goes on from there."""
+
+    def kept() -> str:
+        return f"{len(records)} of {total} points are done and kept in {folder.path}"
+
+    remedy = "the same command (without `fresh`) goes on from there"
+    try:
+        yield
+    except KeyboardInterrupt as error:
+        if records:
+            error.add_note(f"{kept()}; {remedy.replace('`', '')}")
+        raise
+    except ComputationError as error:
+        raise joined((error, ComputationError(kept(), remedy=remedy))) from None
+    except OSError as error:
+        first = ComputationError(f"{error.filename or folder.path}: cannot be written: {error.strerror or error}")
+        raise joined((first, ComputationError(kept(), remedy=remedy))) from None
+
+
+def _batches(
+    study: SweepStudy, machines: ComputeResources, folder: WorkFolder, records: dict[int, Record]
+) -> Generator[list[Record], None, None]:
+    """Records of the points that are missing, as they are done."""
+    pieces = chunks(study, [i for i in range(study.plan.count) if i not in records])
+    workers = min(machines.workers or cores(), len(pieces))
+    if machines.scheduler is not None:
+        yield from on_cluster(study, pieces, machines.scheduler)
+        return
+    unpack(study.files, folder.files)
+    yield from in_pool(pieces, folder.files, workers) if workers > 1 else in_process(pieces, folder.files)
+
+
+def _outcome(study: SweepStudy, out: Path, computed: int, states: list[str]) -> SweepResult:
+    counted = Counter(states)
+    return SweepResult(
+        out,
+        study.plan.count,
+        computed,
+        {name: counted[name] for name in ("ok", "refused", "failed")},
+        study.fingerprint,
+    )
