@@ -13,6 +13,7 @@ PACKAGE = Path(pneutouch.__file__).parent
 LAYERS = [
     {"errors", "formats", "wording", "stopping", "units", "arrays", "rounding", "packing", "tables"},
     {"spec"},
+    {"results"},
     {"catalogue"},
     {"shape"},
     {"body"},

@@ -1,6 +1,7 @@
 """Numbers of a document rounded: the last bits differ between processors, and no figure needs them."""
 
 import math
+from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar, cast
 
 _ROUNDING = 1e-9
@@ -15,8 +16,11 @@ def rounded(value: _Json, digits: int, nothing: float = 0.0) -> _Json:
         result = float(f"{value:.{digits}g}") + 0.0 if abs(value) >= nothing else 0.0
     elif isinstance(value, dict):
         result = {key: rounded(item, digits, nothing) for key, item in value.items()}
-    elif isinstance(value, list):
-        result = [rounded(item, digits, nothing) for item in value]
+    elif isinstance(value, list | tuple):
+        result = type(value)(rounded(item, digits, nothing) for item in value)
+    elif is_dataclass(value) and not isinstance(value, type):
+        held = {f.name: rounded(getattr(value, f.name), digits, nothing) for f in fields(value)}
+        result = replace(value, **held)
     return cast("_Json", result)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -24,6 +23,7 @@ from pneutouch.mechanics.anywhere.reading import (
     state_conditions,
 )
 from pneutouch.mechanics.anywhere.table import ContactPlaces, DomeConditions
+from pneutouch.results.behaviour import ContactAnywhere, ContactErrors, ContactPlace
 from pneutouch.rounding import rounded
 from pneutouch.spec.contact import ContactKind
 from pneutouch.units import KPA
@@ -86,32 +86,29 @@ def place_unknown(prediction: SensorPrediction, sensor: Sensor, states: Sequence
     return None if why is None else f"the table of contact anywhere does not cover the sensor: {why}"
 
 
-def contact_anywhere_document(prediction: SensorPrediction, sensor: Sensor) -> dict[str, Any]:
-    """``contact_anywhere`` of a prediction: errors of the force read, percent, null where a reading is not reached."""
+def contact_anywhere(prediction: SensorPrediction, sensor: Sensor) -> ContactAnywhere:
+    """Errors of the force read where object and place of contact are unknown, percent; None where a reading is not
+    reached."""
     chart = contact_chart(prediction, sensor)
     if isinstance(chart, str):
-        return {"unknown": chart}
-    states = [
-        {
-            "driving_pressure_kPa": pressure_kPa,
-            "pressure_rise_kPa": list(chart.rises_kPa[k]),
-            "contact_force_N": list(chart.forces[k]),
-            "force_error_percent": [list(row.errors_percent[k]) for row in chart.rows],
-            "standard_uncertainty_relative": chart.standard_uncertainties[k],
-        }
+        return ContactAnywhere(unknown=chart)
+    states = tuple(
+        ContactErrors(
+            driving_pressure_kPa=pressure_kPa,
+            pressure_rise_kPa=chart.rises_kPa[k],
+            contact_force_N=chart.forces[k],
+            force_error_percent=tuple(row.errors_percent[k] for row in chart.rows),
+            standard_uncertainty_relative=chart.standard_uncertainties[k],
+        )
         for k, pressure_kPa in enumerate(chart.driving_pressures_kPa)
-    ]
-    contacts = [
-        {"object": row.kind, "radius_mm": row.radius, "offset_mm": row.offset, "tilt_deg": row.tilt_deg}
-        for row in chart.rows
-    ]
-    document = {
-        "contacts": contacts,
-        "states": states,
-        "plate_offset_without_effect_mm": chart.free_offset,
-        "table_error_relative": TABLE_ERROR,
-    }
-    return rounded(document, _DIGITS)
+    )
+    record = ContactAnywhere(
+        contacts=tuple(ContactPlace(row.kind, row.radius, row.offset, row.tilt_deg) for row in chart.rows),
+        states=states,
+        plate_offset_without_effect_mm=chart.free_offset,
+        table_error_relative=TABLE_ERROR,
+    )
+    return rounded(record, _DIGITS)
 
 
 def _percent(domes: DomeConditions, places: ContactPlaces, levels: Array) -> Array:

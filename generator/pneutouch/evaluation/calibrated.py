@@ -8,8 +8,8 @@ import math
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.mechanics.contact_correction import GRIPS, outside_fit
-from pneutouch.mechanics.prediction import ErrorEstimate
 from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
+from pneutouch.results.prediction import SensitivityError
 from pneutouch.spec.calibration import CalibratedResponse, SensorCalibration
 from pneutouch.spec.design import CALIBRATION
 from pneutouch.units import KPA, ML
@@ -126,7 +126,7 @@ def _span(factors: list[float]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def calibrated_error(calibration: SensorCalibration) -> ErrorEstimate | None:
+def calibrated_error(calibration: SensorCalibration) -> SensitivityError | None:
     """The part of ``error_estimate`` on sensitivity by the residuals; None if no curve was measured."""
     response = calibration.response
     if response is None:
@@ -139,11 +139,7 @@ def calibrated_error(calibration: SensorCalibration) -> ErrorEstimate | None:
     )
     held_errors = [abs(error) for error in response.held_out_sensitivity_errors]
     greatest = max([*response.sensitivity_errors_relative, *held_errors])
-    return {
-        "sensitivity_relative": greatest,
-        "sensitivity_basis": basis,
-        "summary": [f"Sensitivity: up to {greatest:.1%}; {basis}."],
-    }
+    return SensitivityError(greatest, basis, f"Sensitivity: up to {greatest:.1%}; {basis}.")
 
 
 def check_fitted(scene: ResolvedDesign, sensor: Sensor) -> None:

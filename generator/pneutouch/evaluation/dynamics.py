@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneutouch.evaluation.sheet_data import SpeedData, SpeedState
 from pneutouch.mechanics.line.air import AirState
 from pneutouch.mechanics.line.dynamics import GasLine, SensorDynamics
 from pneutouch.mechanics.line.elements import Duct, GasVolume
 from pneutouch.mechanics.line.transient import BandFigures, StepFigures, band_figures, step_figures
 from pneutouch.mechanics.viscous.prony import Prony, prony_series
 from pneutouch.parts.air_path import AirPiece, air_path
+from pneutouch.results.behaviour import DynamicRecord, Dynamics, LinePiece
+from pneutouch.rounding import rounded
 from pneutouch.units import KPA, ML
 
 if TYPE_CHECKING:
@@ -26,6 +27,8 @@ GAP = "gap"
 
 GAUGE_RATE = "sampling of the gauge"
 """Limit of the bandwidth by the gauge, next to those of `mechanics.line.band`."""
+
+_DIGITS = 6
 
 _SAME = 1e-6
 """Relative difference of dead volumes below which they are one."""
@@ -135,25 +138,19 @@ def gauge_rate_Hz(scene: ResolvedDesign) -> float | None:
     return None if rate is None else rate.nominal
 
 
-def dynamics_document(figures: SensorBandwidth) -> dict[str, Any]:
-    """The figures as data, see docs/background/dynamics.md."""
-    note = {} if figures.note is None else {"note": figures.note}
-    return {
-        "basis": list(BASIS),
-        "line": [
-            {
-                "part": piece.name,
-                "length_mm": piece.length,
-                "inner_diameter_mm": 2.0 * piece.radius,
-                "volume_mL": piece.volume / ML,
-            }
-            for piece in figures.pieces
-        ],
-        "end_volume_mL": figures.end_volume / ML,
-        "gauge_rate_Hz": figures.rate_Hz,
-        **note,
-        "states": [_state_document(state, figures.rate_Hz) for state in figures.states],
-    }
+def dynamics(figures: SensorBandwidth) -> Dynamics:
+    """The figures in boundary units, see docs/background/dynamics.md."""
+    record = Dynamics(
+        basis=BASIS,
+        line=tuple(
+            LinePiece(piece.name, piece.length, 2.0 * piece.radius, piece.volume / ML) for piece in figures.pieces
+        ),
+        end_volume_mL=figures.end_volume / ML,
+        gauge_rate_Hz=figures.rate_Hz,
+        states=tuple(_state_record(state, figures.rate_Hz) for state in figures.states),
+        note=figures.note,
+    )
+    return rounded(record, _DIGITS)
 
 
 BASIS = (
@@ -164,34 +161,21 @@ BASIS = (
 )
 
 
-def _state_document(state: DynamicState, rate_Hz: float | None) -> dict[str, Any]:
+def _state_record(state: DynamicState, rate_Hz: float | None) -> DynamicRecord:
     band, step = state.band, state.step
     usable_Hz, limited = state.usable(rate_Hz)
-    return {
-        "driving_pressure_kPa": state.driving_pressure / KPA,
-        "relaxation_source": state.source,
-        "first_resonance_Hz": band.resonance,
-        "resonance_gain": band.resonance_gain,
-        "bandwidth_3_dB_Hz": usable_Hz,
-        "bandwidth_limited_by": limited,
-        "within_5_percent_Hz": band.within_tolerance,
-        "within_5_percent_limited_by": band.limited_by,
-        "delay_ms": 1e3 * step.delay,
-        "rise_time_ms": 1e3 * step.rise_time,
-        "overshoot_percent": 100.0 * step.overshoot,
-        "fast_gas_over_slow": state.dynamics.at_once().fast_gas,
-        "fast_wall_over_slow": state.dynamics.fast_wall,
-    }
-
-
-def speed_data(figures: SensorBandwidth) -> SpeedData:
-    """Speed as a datasheet shows it: every driving pressure in the first series of relaxation data."""
-    first = {state.driving_pressure: state for state in reversed(figures.states)}
-    rows = []
-    for state in (first[pressure] for pressure in sorted(first)):
-        band, step = state.band, state.step
-        usable_Hz, limit = state.usable(figures.rate_Hz)
-        within = band.within_tolerance, band.limited_by
-        front = step.delay, step.rise_time, step.overshoot
-        rows.append(SpeedState(state.driving_pressure, band.resonance, usable_Hz, limit, *within, *front))
-    return SpeedData(tuple(rows), figures.rate_Hz, figures.note)
+    return DynamicRecord(
+        driving_pressure_kPa=state.driving_pressure / KPA,
+        relaxation_source=state.source,
+        first_resonance_Hz=band.resonance,
+        resonance_gain=band.resonance_gain,
+        bandwidth_3_dB_Hz=usable_Hz,
+        bandwidth_limited_by=limited,
+        within_5_percent_Hz=band.within_tolerance,
+        within_5_percent_limited_by=band.limited_by,
+        delay_ms=1e3 * step.delay,
+        rise_time_ms=1e3 * step.rise_time,
+        overshoot_percent=100.0 * step.overshoot,
+        fast_gas_over_slow=state.dynamics.at_once().fast_gas,
+        fast_wall_over_slow=state.dynamics.fast_wall,
+    )

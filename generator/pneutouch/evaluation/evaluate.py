@@ -20,9 +20,9 @@ from pneutouch.mechanics import Sensor, SensorPrediction, predict
 from pneutouch.mechanics.gauge_reading import gauge_reading
 from pneutouch.mechanics.models import DEFAULT_TOLERANCE, USUAL
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.prediction import ErrorEstimate
 from pneutouch.mechanics.viscous.prony import AGED, ageing_ratio
 from pneutouch.parts import Assembly, assemble
+from pneutouch.results.prediction import SensitivityError
 from pneutouch.spec.read import Changes
 from pneutouch.units import KPA
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from pneutouch.evaluation.dynamics import SensorBandwidth
     from pneutouch.mechanics.prediction import CurveOutcome
     from pneutouch.mechanics.rating import Rating
-    from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
+    from pneutouch.results.uncertainty import UncertaintyRecord
     from pneutouch.mechanics.viscous.describe import ViscousRuns
     from pneutouch.printability import Finding
     from pneutouch.printability.estimate import JobEstimate
@@ -113,16 +113,16 @@ class Evaluation:
     def uncertainty(self) -> tuple[UncertaintyRecord, ...]:
         """Uncertainty of the figures of each state; computed on first use, so that a sweep without it saves the
         time."""
-        from pneutouch.evaluation.uncertainty import documents
+        from pneutouch.evaluation.uncertainty import uncertainties
 
-        return documents(self.prediction, self.sensor, self.scene, lambda: self.resins)
+        return uncertainties(self.prediction, self.sensor, self.scene, lambda: self.resins)
 
     @cached_property
     def rating(self) -> Rating:
         """The rated pressure, by the limits of the prediction's model."""
         from pneutouch.mechanics.rating import rating
 
-        error = abs(self.prediction.error_estimate["limit_pressure_relative"])
+        error = abs(self.prediction.error_estimate.limit_pressure_relative)
         scene = self.scene
         known = (scene.membrane_material, scene.printer, scene.calibration)
         return rating(self.prediction.limits, self.sensor, *known, numerical=error)
@@ -199,7 +199,6 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
             model=options.model,
             closure=options.closure,
             tolerance=options.tolerance,
-            sensitivity_error=lambda model: _sensitivity_error(scene, sensor, model, options.closure),
         )
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None
@@ -207,6 +206,8 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
         if error.file is None and (error.key or "").startswith("contact."):
             error.file = scene.where
         raise
+    known = _sensitivity_error(scene, sensor, prediction.model, options.closure)
+    prediction = replace(prediction, error_estimate=prediction.error_estimate.with_sensitivity(known))
     check_plate(scene, prediction)
     check_first_touch(scene, prediction)
     more = [shift] if options.aged else []
@@ -220,7 +221,7 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
     return Evaluation(scene, assembly, sensor, prediction, options, find_resins)
 
 
-def _sensitivity_error(scene: ResolvedDesign, sensor: Sensor, model: str, closure: str) -> ErrorEstimate:
+def _sensitivity_error(scene: ResolvedDesign, sensor: Sensor, model: str, closure: str) -> SensitivityError:
     """The model's known error in sensitivity: by the calibration where there is one, else against Table S1."""
     known = None if scene.calibration is None else calibrated_error(scene.calibration)
     return known or sensitivity_error(scene.membrane_material, sensor, model, closure)

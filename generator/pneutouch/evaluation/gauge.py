@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.evaluation.sheet_data import DetectableForce, SheetGauge
 from pneutouch.mechanics import SensorPrediction, SensorState
-from pneutouch.mechanics.gauge_reading import SIGMAS, GaugeReading, gauge_reading
+from pneutouch.mechanics.gauge_reading import SIGMAS, gauge_reading
+from pneutouch.mechanics.gauge_reading import GaugeReading as Reading
 from pneutouch.mechanics.line.air import REFERENCE_TEMPERATURE
+from pneutouch.results.behaviour import GaugeReading, GaugeState
 from pneutouch.rounding import rounded
 from pneutouch.units import KPA
 
@@ -22,42 +23,21 @@ _DIGITS = 6
 CRITERION = f"{SIGMAS:g} standard deviations of the difference of two readings"
 
 
-def reading_of(scene: ResolvedDesign) -> GaugeReading:
+def reading_of(scene: ResolvedDesign) -> Reading:
     """The gauge of a design at its ambient pressure; that of the paper's rig where it names none."""
     return gauge_reading(scene.gauge, scene.design.pneumatics.ambient_pressure_kPa * KPA)
 
 
-def detectable_forces(scene: ResolvedDesign, prediction: SensorPrediction) -> tuple[DetectableForce, ...]:
-    """The smallest force at each driving pressure, by the design's gauge."""
-    threshold = reading_of(scene).threshold
-    return tuple(_detectable(threshold, zero_drift_kPa_per_K(scene, prediction, s), s) for s in prediction.states)
-
-
-def sheet_gauge(scene: ResolvedDesign, prediction: SensorPrediction) -> SheetGauge:
-    """The gauge and its smallest forces as a datasheet shows them."""
-    reading = reading_of(scene)
-    return SheetGauge(
-        reading.title,
-        reading.low / KPA,
-        reading.limit / KPA,
-        None if reading.threshold is None else reading.threshold / KPA,
-        reading.rate_Hz,
-        reading.limited_by,
-        CRITERION,
-        detectable_forces(scene, prediction),
-    )
-
-
-def _detectable(threshold: float | None, drift_kPa_per_K: float, state: SensorState) -> DetectableForce:
+def _smallest_force(threshold: float | None, drift_kPa_per_K: float, state: SensorState) -> GaugeState:
+    """The smallest force by a threshold (MPa) of the gauge, and the forces that a drift of the zero reads as."""
+    at_kPa = state.driving_pressure / KPA
     if state.figures is None:
-        return DetectableForce(state.driving_pressure, None, None, drift_kPa_per_K, None, None)
+        return GaugeState(at_kPa, None, None, drift_kPa_per_K, None, None)
     slope = state.figures.sensitivity_kPa_per_N * KPA
     force = None if threshold is None else threshold / slope
     first = None if threshold is None else force_at_rise(state.force, state.pressure_rise, threshold)
     warming = None if threshold is None or drift_kPa_per_K <= 0 else threshold / (drift_kPa_per_K * KPA)
-    return DetectableForce(
-        state.driving_pressure, force, first, drift_kPa_per_K, drift_kPa_per_K * KPA / slope, warming
-    )
+    return GaugeState(at_kPa, force, first, drift_kPa_per_K, drift_kPa_per_K * KPA / slope, warming)
 
 
 def force_at_rise(force: np.ndarray, rise: np.ndarray, threshold: float) -> float | None:
@@ -89,36 +69,30 @@ def zero_drift_kPa_per_K(scene: ResolvedDesign, prediction: SensorPrediction, st
     return absolute / REFERENCE_TEMPERATURE * slope / (slope + gas) / KPA
 
 
-def gauge_document(evaluation: Evaluation) -> dict[str, Any]:
-    """The gauge and the smallest forces in boundary units; ``name`` is None if the paper's is assumed."""
-    scene, reading = evaluation.scene, reading_of(evaluation.scene)
-    pressures = {
-        "reads_from_kPa": reading.low,
-        "reads_to_kPa": reading.limit,
-        "noise_kPa": reading.noise,
-        "step_kPa": reading.step,
-        "threshold_kPa": reading.threshold,
-    }
-    content = {
-        "name": scene.design.pneumatics.gauge,
-        "title": reading.title,
-        "reference": "absolute" if reading.absolute else "gauge",
-        **{key: None if value is None else value / KPA for key, value in pressures.items()},
-        "rate_Hz": reading.rate_Hz,
-        "bandwidth_Hz": None if reading.rate_Hz is None else reading.rate_Hz / 2,
-        "criterion": CRITERION,
-        "limited_by": reading.limited_by,
-        "inner_volume_counted_mL": evaluation.assembly.gauge_volume_mL,
-        "states": [
-            {
-                "driving_pressure_kPa": one.driving_pressure / KPA,
-                "smallest_force_N": one.force,
-                "smallest_force_at_first_contact_N": one.at_first_contact,
-                "zero_drift_kPa_per_K": one.drift_kPa_per_K,
-                "zero_drift_N_per_K": one.drift_N_per_K,
-                "warming_that_reads_as_smallest_force_K": one.warming,
-            }
-            for one in detectable_forces(scene, evaluation.prediction)
-        ],
-    }
-    return rounded(content, _DIGITS)
+def gauge_record(evaluation: Evaluation) -> GaugeReading:
+    """The gauge of a design and the smallest force at each driving pressure; ``name`` is None where the paper's is
+    assumed."""
+    scene, reading, prediction = evaluation.scene, reading_of(evaluation.scene), evaluation.prediction
+    record = GaugeReading(
+        name=scene.design.pneumatics.gauge,
+        title=reading.title,
+        reference="absolute" if reading.absolute else "gauge",
+        reads_from_kPa=reading.low / KPA,
+        reads_to_kPa=reading.limit / KPA,
+        noise_kPa=_in_kPa(reading.noise),
+        step_kPa=_in_kPa(reading.step),
+        threshold_kPa=_in_kPa(reading.threshold),
+        rate_Hz=reading.rate_Hz,
+        bandwidth_Hz=None if reading.rate_Hz is None else reading.rate_Hz / 2,
+        criterion=CRITERION,
+        limited_by=reading.limited_by,
+        inner_volume_counted_mL=evaluation.assembly.gauge_volume_mL,
+        states=tuple(
+            _smallest_force(reading.threshold, zero_drift_kPa_per_K(scene, prediction, s), s) for s in prediction.states
+        ),
+    )
+    return rounded(record, _DIGITS)
+
+
+def _in_kPa(pressure: float | None) -> float | None:
+    return None if pressure is None else pressure / KPA

@@ -6,14 +6,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneutouch.evaluation.sheet_data import AgeingData, LoadingLoop, RelaxationCurve, ViscousData, ViscousRow
+from pneutouch.evaluation.sheet_data import AgeingData, LoadingLoop, RelaxationCurve, ViscousCurves
 from pneutouch.mechanics import Sensor, SensorPrediction
 from pneutouch.mechanics.viscous.prony import ageing_ratio, ageing_unknown, unknown
+from pneutouch.results.behaviour import BySource, Hold, Loop, Viscous, ViscousState, WholeLoop
+from pneutouch.rounding import rounded
 from pneutouch.spec.material import Material
+from pneutouch.units import KPA
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.viscous.describe import ViscousRuns
     from pneutouch.mechanics.viscous.runs import LoopRun, RelaxationRun
+
+_DIGITS = 6
 
 # The runs are followed on the atlas or by the solid, which a prediction by the membrane model must not load.
 
@@ -31,37 +36,53 @@ def viscous_runs(prediction: SensorPrediction, material: Material, sensor: Senso
     return describe(sensor, material, [state.driving_pressure for state in prediction.states], depth)
 
 
-def viscous_data(runs: ViscousRuns | str) -> ViscousData | str:
-    """The figures and curves of all runs, or why there are none."""
+def viscous(runs: ViscousRuns | str) -> Viscous:
+    """Relaxation and hysteresis of every state in every source of data."""
     if isinstance(runs, str):
-        return runs
+        return Viscous(unknown=runs)
     from pneutouch.mechanics.viscous.describe import RAMP_SPEED
 
-    rows = tuple(
-        _row(pressure, j, runs.held[i][j], {speed: of[i][j] for speed, of in runs.loops.items()})
+    states = tuple(
+        ViscousState(pressure / KPA, tuple(_by_source(runs, i, j) for j in range(len(runs.sources))))
         for i, pressure in enumerate(runs.driving_pressures)
-        for j in range(len(runs.sources))
     )
+    record = Viscous(
+        depth_mm=runs.depth, ramp_speed_mm_per_s=RAMP_SPEED, sources=runs.sources, basis=runs.basis, states=states
+    )
+    return rounded(record, _DIGITS)
+
+
+def _by_source(runs: ViscousRuns, i: int, j: int) -> BySource:
+    return BySource(_hold(runs.held[i][j]), tuple(_pressed(speed, of[i][j]) for speed, of in runs.loops.items()))
+
+
+def _hold(run: RelaxationRun) -> Hold:
+    if run.ended is not None:
+        return Hold(ended=run.ended)
+    (force, force_decade), (rise, rise_decade) = run.drop(run.force), run.drop(run.rise)
+    return Hold(100 * force, 100 * force_decade, 100 * rise, 100 * rise_decade, 1.0, float(np.round(run.times[-1], 9)))
+
+
+def _pressed(speed: float, run: LoopRun) -> Loop:
+    hysteresis = run.hysteresis()
+    if hysteresis is None:
+        return Loop(speed_mm_per_s=speed, ended=run.ended)
+    width, area = hysteresis
+    return WholeLoop(
+        speed_mm_per_s=speed,
+        width_percent=100 * width,
+        area_percent=100 * area,
+        contact_lost_at_mm=run.contact_lost,
+        ended=run.ended,
+    )
+
+
+def viscous_curves(runs: ViscousRuns | str) -> ViscousCurves | None:
+    """The curves of a hold and of the quicker loop at the highest driving pressure, one a source."""
+    if isinstance(runs, str):
+        return None
     quick = list(runs.loops.values())[-1]
-    held, loops = tuple(map(_curve, runs.held[-1])), tuple(map(_loop, quick[-1]))
-    return ViscousData(runs.depth, RAMP_SPEED, runs.sources, runs.basis, rows, held, loops)
-
-
-def _row(pressure: float, j: int, held: RelaxationRun, loops: dict[float, LoopRun]) -> ViscousRow:
-    losses = None
-    if held.ended is None:
-        (force, _), (rise, decade) = held.drop(held.force), held.drop(held.rise)
-        losses = force, rise, decade
-    measures = {speed: run.hysteresis() for speed, run in loops.items()}
-    ended: dict[float | str, str] = {speed: run.ended for speed, run in loops.items() if run.ended}
-    return ViscousRow(
-        pressure,
-        j,
-        losses,
-        {speed: None if measure is None else measure[0] for speed, measure in measures.items()},
-        ended | ({"held": held.ended} if held.ended else {}),
-        tuple(run.contact_lost for run in loops.values() if run.contact_lost is not None),
-    )
+    return ViscousCurves(tuple(map(_curve, runs.held[-1])), tuple(map(_loop, quick[-1])))
 
 
 def _curve(run: RelaxationRun) -> RelaxationCurve | None:

@@ -14,10 +14,10 @@ from pneutouch.errors import ComputationError
 from pneutouch.evaluation.anywhere import contact_chart
 from pneutouch.evaluation.charts import air, resin_curves, tradeoff, tuning
 from pneutouch.evaluation.contact_object import object_section
-from pneutouch.evaluation.dynamics import speed_data
+from pneutouch.evaluation.dynamics import dynamics
 from pneutouch.evaluation.evaluate import Evaluation
-from pneutouch.evaluation.gauge import sheet_gauge, zero_drift_kPa_per_K
-from pneutouch.evaluation.relaxation import ageing_data, viscous_data
+from pneutouch.evaluation.gauge import gauge_record, zero_drift_kPa_per_K
+from pneutouch.evaluation.relaxation import ageing_data, viscous, viscous_curves
 from pneutouch.evaluation.sheet_data import ComparedMembrane, PressedView, SheetData, SiliconePour
 from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.evaluation.uncertainty import unknown
@@ -103,9 +103,10 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         rating=evaluation.rating,
         numerical_error=stated_error(prediction.model, sensor),
         zero_drift_kPa_per_K=zero_drift_kPa_per_K(scene, prediction, states[0]),
-        gauge=sheet_gauge(scene, prediction),
+        gauge=gauge_record(evaluation),
         resin_curves=resin_curves(sensor, evaluation.alike, highest, prediction.model, prediction.closure, states),
-        viscous=viscous_data(evaluation.viscous_runs),
+        viscous=viscous(evaluation.viscous_runs),
+        viscous_curves=viscous_curves(evaluation.viscous_runs),
         ageing=ageing_data(prediction, material, sensor),
         constants=constant_membranes(sensor, prediction),
         published_kPa_per_N=published,
@@ -113,7 +114,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         other_contact=sensor.protocol.other_contact is not None,
         object_section=object_section(sensor),
         pressed=pressed_view(prediction),
-        speed=speed_data(evaluation.bandwidth),
+        speed=dynamics(evaluation.bandwidth),
         pour=silicone_pour(evaluation.assembly),
         curves=evaluation.curves,
     )

@@ -15,10 +15,11 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.prediction import CurveOutcome, SensorPrediction, SensorState
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.uncertainty import GasNotes
-    from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
     from pneutouch.parts import Assembly
     from pneutouch.printability import Finding
     from pneutouch.printability.estimate import JobEstimate
+    from pneutouch.results.behaviour import Dynamics, GaugeReading, Viscous
+    from pneutouch.results.uncertainty import UncertaintyRecord
     from pneutouch.selection.front import TradeOffFront
     from pneutouch.spec.contact import ContactKind
 
@@ -40,45 +41,14 @@ class LoadingLoop(NamedTuple):
     rise_out: Array
 
 
-class ViscousRow(NamedTuple):
-    """One driving pressure in one series of relaxation data.
+class ViscousCurves(NamedTuple):
+    """Curves and loops (the quicker ones) at the highest driving pressure, one a source; None where a run ended early.
 
     Attributes:
-        driving_pressure: MPa.
-        series: Index of the series.
-        losses: Shares of force and of pressure rise lost from 1 to 600 s, and of pressure rise per decade; or None.
-        hysteresis: Width of the loop over full scale by speed (mm/s); None without an unloading branch.
-        ended: By speed (mm/s), or "held": why a run could not be followed further.
-        contact_lost: Plate travel, mm, at which the dome leaves the plate, in the loops where it does.
+        held: None where the run ended before 1 s.
+        loops: None without an unloading branch.
     """
 
-    driving_pressure: float
-    series: int
-    losses: tuple[float, float, float] | None
-    hysteresis: dict[float, float | None]
-    ended: dict[float | str, str]
-    contact_lost: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class ViscousData:
-    """Relaxation and hysteresis of a sensor; curves and loops (the quicker ones) at the highest driving pressure.
-
-    Attributes:
-        depth: Indentation of the runs, mm.
-        ramp_speed: Speed of the press before the hold, mm/s.
-        sources: One source a series.
-        basis: Assumptions of the model.
-        rows: One row a driving pressure and series.
-        held: One curve a series; None if the run ended before 1 s.
-        loops: One loop a series; None without an unloading branch.
-    """
-
-    depth: float
-    ramp_speed: float
-    sources: tuple[str, ...]
-    basis: tuple[str, ...]
-    rows: tuple[ViscousRow, ...]
     held: tuple[RelaxationCurve | None, ...]
     loops: tuple[LoadingLoop | None, ...]
 
@@ -89,71 +59,6 @@ class AgeingData(NamedTuple):
 
     modulus_ratio: float
     sensitivity_change: tuple[tuple[float, float], ...]
-
-
-class DetectableForce(NamedTuple):
-    """The smallest force at one driving pressure (MPa); None if unknown.
-
-    Attributes:
-        driving_pressure: MPa.
-        force: Smallest change of a force within the range, N: the threshold over the fitted sensitivity.
-        at_first_contact: Smallest force on the untouched dome, N, by a power law through the curve's first points.
-        drift_kPa_per_K: Pressure change of the sealed gas by temperature.
-        drift_N_per_K: The force that reads the same.
-        warming: Change of temperature, K, that reads as ``force`` does.
-    """
-
-    driving_pressure: float
-    force: float | None
-    at_first_contact: float | None
-    drift_kPa_per_K: float
-    drift_N_per_K: float | None
-    warming: float | None
-
-
-class SheetGauge(NamedTuple):
-    """Readings of the gauge (gauge pressures, kPa) and its threshold.
-
-    Attributes:
-        title: Its name.
-        low_kPa, limit_kPa: Least and greatest pressure read.
-        threshold_kPa: Smallest change of pressure detected; None if unknown.
-        rate_Hz: Readings a second; None if unknown.
-        limited_by: Property of the gauge that sets the threshold.
-        criterion: When a change counts as detected.
-        forces: The smallest force at each driving pressure.
-    """
-
-    title: str
-    low_kPa: float
-    limit_kPa: float
-    threshold_kPa: float | None
-    rate_Hz: float | None
-    limited_by: str
-    criterion: str
-    forces: tuple[DetectableForce, ...]
-
-
-class SpeedState(NamedTuple):
-    """Speed of a sensor at a driving pressure (MPa): Hz and s, None without a limit (docs/background/dynamics.md)."""
-
-    driving_pressure: float
-    resonance: float | None
-    bandwidth: float | None
-    bandwidth_limit: str | None
-    within: float | None
-    within_limit: str | None
-    delay: float
-    rise_time: float
-    overshoot: float
-
-
-class SpeedData(NamedTuple):
-    """Speed of a sensor by driving pressure; ``rate_Hz`` of the gauge is None if it is unknown."""
-
-    states: tuple[SpeedState, ...]
-    rate_Hz: float | None
-    note: str | None
 
 
 @dataclass(frozen=True)
@@ -184,6 +89,7 @@ class SheetData:
         gauge: Range of its gauge, and the smallest force at each driving pressure.
         resin_curves: The same sensor in every resin, by title.
         viscous: Relaxation and hysteresis, or why they are not predicted.
+        viscous_curves: Their curves at the highest driving pressure; None where they are not predicted.
         ageing: Change after a year, or why it is unknown.
         constants: Membranes of constant mix to compare a graded one with.
         published_kPa_per_N: Published sensitivities of this sensor by driving pressure, kPa.
@@ -210,9 +116,9 @@ class SheetData:
     rating: Rating
     numerical_error: float
     zero_drift_kPa_per_K: float
-    gauge: SheetGauge
+    gauge: GaugeReading
     resin_curves: dict[str, ResinCurve]
-    viscous: ViscousData | str
+    viscous: Viscous
     ageing: AgeingData | str
     constants: tuple[ComparedMembrane, ...] = ()
     published_kPa_per_N: Mapping[float, float] = field(default_factory=dict)
@@ -223,7 +129,8 @@ class SheetData:
     other_contact: bool = False
     object_section: Array | None = None
     pressed: PressedView | None = None
-    speed: SpeedData | None = None
+    speed: Dynamics | None = None
+    viscous_curves: ViscousCurves | None = None
     pour: SiliconePour | None = None
     curves: tuple[CurveOutcome, ...] = ()
 

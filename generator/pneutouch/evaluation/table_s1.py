@@ -14,7 +14,7 @@ import numpy as np
 
 from pneutouch.mechanics import Sensor, predict
 from pneutouch.mechanics.paper_sensor import is_paper_sensor, material_sensor
-from pneutouch.mechanics.prediction import ErrorEstimate
+from pneutouch.results.prediction import SensitivityError
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
@@ -79,7 +79,7 @@ def is_near_paper(sensor: Sensor) -> bool:
     return bool(close and known and sensor.gas.dead_volume <= NEAR_DEAD_VOLUME * cavity and sensor.dome.flange is None)
 
 
-def sensitivity_error(material: Material, sensor: Sensor, model: str, closure: str) -> ErrorEstimate:
+def sensitivity_error(material: Material, sensor: Sensor, model: str, closure: str) -> SensitivityError:
     """The part of ``error_estimate`` on sensitivity: greatest and single relative errors, and their basis.
 
     Unknown where nothing was measured, and where the sensor is not near the one that was.
@@ -99,13 +99,9 @@ def sensitivity_error(material: Material, sensor: Sensor, model: str, closure: s
     known = [abs(error) for error in errors if error is not None]
     pairs = ", ".join(f"{e:+.0%} at {p:g} kPa" for e, p in zip(errors, PRESSURES, strict=True) if e is not None)
     basis = "this model on the paper's sensor in the same resin against its Table S1, nothing fitted"
-    return {
-        "sensitivity_relative": float(np.max(known)) if known else None,
-        "sensitivity_relative_0kPa_22kPa": errors,
-        "sensitivity_basis": basis,
-        "summary": [f"Sensitivity: {pairs or 'no figure'}; {basis}."],
-    }
+    greatest = float(np.max(known)) if known else None
+    return SensitivityError(greatest, basis, f"Sensitivity: {pairs or 'no figure'}; {basis}.", tuple(errors))
 
 
-def _unknown(why: str) -> ErrorEstimate:
-    return {"sensitivity_relative": None, "sensitivity_basis": why, "summary": [f"Sensitivity: error unknown; {why}."]}
+def _unknown(why: str) -> SensitivityError:
+    return SensitivityError(None, why, f"Sensitivity: error unknown; {why}.")

@@ -12,7 +12,7 @@ of the even wall of the same mean modulus, -0.47 too.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,7 +23,8 @@ from pneutouch.evaluation.calibrated import friction_spread
 from pneutouch.evaluation.contact_object import contact_notes
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
-from pneutouch.mechanics.models import DISCRETISATION, NUMERICAL, stated_error
+from pneutouch.mechanics.models import LIMIT_DISCRETISATION, NUMERICAL, stated_error
+from pneutouch.results.uncertainty import FigureRecord, SampledInterval, SampleRecord, UncertaintyRecord
 from pneutouch.rounding import rounded
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
@@ -33,7 +34,6 @@ from pneutouch.units import KPA
 if TYPE_CHECKING:
     from pneutouch.mechanics.atlas.press import SensorBatch
     from pneutouch.mechanics.uncertainty import Budget, ContactModel
-    from pneutouch.mechanics.uncertainty.record import FigureRecord, IntervalRecord, SampleRecord, UncertaintyRecord
 
 
 GAP, STEEP_GAP = 0.2, 0.45
@@ -153,8 +153,7 @@ def known(
         spread = None if calibration is None else friction_spread(calibration)
         contact = ContactModel(sensor, tuple(float(p) for p in pressures), states, spread)
     batch = batch_of(plate_alone(sensor), pressures)
-    limit_error = DISCRETISATION["limit_pressure_relative"]
-    numerical = {"sensitivity_kPa_per_N": stated_error(model, sensor), "limit_pressure_kPa": limit_error}
+    numerical = {"sensitivity_kPa_per_N": stated_error(model, sensor), "limit_pressure_kPa": LIMIT_DISCRETISATION}
     near, errors = is_near_paper(sensor), model_errors(material, materials)
     estimate = budget(
         batch,
@@ -170,7 +169,7 @@ def known(
     return SensorBudget(batch, estimate, contact)
 
 
-def documents(
+def uncertainties(
     prediction: SensorPrediction,
     sensor: Sensor,
     scene: ResolvedDesign,
@@ -189,7 +188,7 @@ def documents(
         why = _softer_unknown(sensor)
         notes_of_wall += (_soft_note(sensor),)
     if why is not None:
-        return tuple({"unknown": why} for _ in states)
+        return tuple(UncertaintyRecord(unknown=why) for _ in states)
     from pneutouch.mechanics.uncertainty import FIGURES, document, gas_text, text
 
     pressures, materials = [state.driving_pressure for state in states], list(resins().values())
@@ -214,16 +213,17 @@ def documents(
     for row, (state, notes) in enumerate(zip(states, gas_text(estimate.batch), strict=True)):
         values = _values(prediction, state)
         entry = document(estimate.budget, row, values, (*notes_of_wall, *notes), calibrated=calibrated)
-        missing = entry["figures"].keys() - values.keys()
-        for name in missing:
-            del entry["figures"][name], entry["elasticities"][name]
+        elasticities = dict(entry.elasticities or {})
         if friction is not None and friction.elasticities is not None:
             for name, slope in zip(FIGURES, friction.elasticities[:, row], strict=True):
-                if name in entry["elasticities"] and np.isfinite(slope):
-                    entry["elasticities"][name]["friction"] = float(slope)
-        entry["summary"] = text(estimate.budget, row, calibrated=calibrated)
-        if samples:
-            entry["monte_carlo"] = _sampled(estimate, row, samples, entry["figures"])
+                if name in elasticities and np.isfinite(slope):
+                    elasticities[name] = {**elasticities[name], "friction": float(slope)}
+        entry = replace(
+            entry,
+            elasticities=elasticities,
+            summary=text(estimate.budget, row, calibrated=calibrated),
+            monte_carlo=_sampled(estimate, row, samples, entry.known) if samples else None,
+        )
         content.append(rounded(entry, _DIGITS, _NOTHING))
     return tuple(content)
 
@@ -251,13 +251,11 @@ def _sampled(estimate: SensorBudget, row: int, samples: int, figures: Mapping[st
 
     budget = estimate.budget
     drawn = monte_carlo(estimate.batch, budget.sources, row, samples, shift=budget.shift)
-    intervals: dict[str, IntervalRecord] = {}
+    intervals: dict[str, SampledInterval] = {}
     for i, name in enumerate(FIGURES):
         if name in figures and drawn.lost[i] < 1:
-            scale = figures[name]["value"] / float(budget.values[i, row])
-            intervals[name] = {
-                "low": scale * float(drawn.low[i]),
-                "high": scale * float(drawn.high[i]),
-                "lost": float(drawn.lost[i]),
-            }
-    return {"samples": samples, "figures": intervals}
+            scale = figures[name].value / float(budget.values[i, row])
+            intervals[name] = SampledInterval(
+                scale * float(drawn.low[i]), scale * float(drawn.high[i]), float(drawn.lost[i])
+            )
+    return SampleRecord(samples, intervals)

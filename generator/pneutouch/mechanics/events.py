@@ -1,7 +1,6 @@
 """Events under the plate: detected and located, never averaged over."""
 
 from dataclasses import dataclass
-from typing import TypedDict
 
 import numpy as np
 
@@ -16,15 +15,6 @@ _NEAR_BASE = 0.98
 """Share of R0 at which the contact counts as having reached the base; beyond it the free arc has no space."""
 
 
-class EventRecord(TypedDict):
-    """An event in boundary units."""
-
-    kind: str
-    indentation_mm: float
-    ends_range: bool
-    message: str
-
-
 @dataclass(frozen=True, slots=True)
 class Event:
     """An event at an indentation (mm); ``ends_range`` where figures must not be fitted beyond it."""
@@ -33,15 +23,6 @@ class Event:
     indentation: float
     ends_range: bool
     message: str
-
-    def document(self) -> EventRecord:
-        """The event in boundary units."""
-        return {
-            "kind": self.kind,
-            "indentation_mm": self.indentation,
-            "ends_range": self.ends_range,
-            "message": self.message,
-        }
 
 
 def events(sensor: Sensor, indentation: Array, pressed: PressedStates, closure: str) -> list[Event]:

@@ -6,7 +6,6 @@ import numpy as np
 
 from pneutouch.mechanics.inflation import LIMIT_HEIGHT, LIMIT_PRESSURE, pressure, thickness_stretch
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.units import KPA
 
 RATED_SHARE = 0.9
 """Share of the binding limit that a sensor is rated at, and warned above: the dome grows fast near the limit point."""
@@ -24,16 +23,6 @@ class LimitPoint:
     apex_outer: float
     driving_pressure: float
     thickness_stretch: float
-
-    def document(self) -> dict[str, float]:
-        """The limit point in boundary units."""
-        return {
-            "apex_height_inner_mm": self.apex_inner,
-            "apex_height_outer_mm": self.apex_outer,
-            "driving_pressure_kPa": self.driving_pressure / KPA,
-            "membrane_stretch": self.membrane_stretch,
-            "thickness_stretch": self.thickness_stretch,
-        }
 
     @property
     def membrane_stretch(self) -> float:

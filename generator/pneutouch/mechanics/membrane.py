@@ -14,9 +14,10 @@ from pneutouch.mechanics.inflation import (
 )
 from pneutouch.mechanics.limits import limit_point, limits
 from pneutouch.mechanics.membrane_contact import PressedStates, TrappedGas, press
-from pneutouch.mechanics.prediction import ErrorEstimate, InflationCurve, ModelResult, SensorState
+from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.units import KPA
 
 
@@ -26,15 +27,16 @@ def error_against_exact_membrane(sensor: Sensor, driving_pressures: Array) -> Er
     scale = sensor.dome.inner_radius / (sensor.wall.shear_modulus * sensor.dome.wall_thickness)
     heights = height_errors(driving_pressures * scale)
     greatest = float(heights[np.argmax(np.abs(heights))])
-    return {
-        "limit_pressure_relative": limit_pressure,
-        "limit_apex_height_relative": limit_height,
-        "apex_height_relative": greatest,
-        "summary": [
+    return ErrorEstimate(
+        sensitivity_relative=None,
+        limit_pressure_relative=limit_pressure,
+        limit_apex_height_relative=limit_height,
+        apex_height_relative=greatest,
+        summary=(
             f"Against the exact membrane: limit pressure {limit_pressure:+.1%}, apex height there {limit_height:+.1%}, "
-            f"apex heights at the driving pressures up to {greatest:+.1%}."
-        ],
-    }
+            f"apex heights at the driving pressures up to {greatest:+.1%}.",
+        ),
+    )
 
 
 _FINE = 8

@@ -39,7 +39,7 @@ def _outcome(
     answer = _predicted(there, pressures, prediction)
     if answer is None:
         return CurveOutcome(by_curve, (), None)
-    error = abs(answer.error_estimate["limit_pressure_relative"])
+    error = abs(answer.error_estimate.limit_pressure_relative)
     return CurveOutcome(
         by_curve, answer.states, rating(answer.limits, there, material, printer, numerical=error).pressure
     )

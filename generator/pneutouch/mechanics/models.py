@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import TypedDict
 
 from pneutouch.errors import InputError
-from pneutouch.mechanics.prediction import ErrorEstimate
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.spec.values import plain_number
 
 MODELS = ("membrane", "atlas", "solid")
@@ -22,7 +22,8 @@ DEFAULT_TOLERANCE = 0.02
 HARMONICS_SETTLED = 0.01
 """The last raise of the harmonics changes sensitivity, force and pressure by less than this share."""
 
-DISCRETISATION: ErrorEstimate = {"sensitivity_discretisation_relative": 0.011, "limit_pressure_relative": 0.002}
+SENSITIVITY_DISCRETISATION = 0.011
+LIMIT_DISCRETISATION = 0.002
 """Greatest relative errors of the solid at its default resolution against a refined mesh
 (docs/background/accuracy.md)."""
 
@@ -41,8 +42,8 @@ _MEMBRANE = 17.0
 
 NUMERICAL = {
     "membrane": _MEMBRANE,
-    "atlas": DISCRETISATION["sensitivity_discretisation_relative"] + TABULATION,
-    "solid": DISCRETISATION["sensitivity_discretisation_relative"],
+    "atlas": SENSITIVITY_DISCRETISATION + TABULATION,
+    "solid": SENSITIVITY_DISCRETISATION,
 }
 """Relative error in sensitivity of each model as a numerical answer: its distance from the exact solution of its
 equations, or for the membrane from the solid's. Effects that the equations leave out come on top, for every model."""

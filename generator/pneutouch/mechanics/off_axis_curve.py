@@ -3,25 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NotRequired, TypedDict
 
 from pneutouch.arrays import Array
-from pneutouch.units import KPA
-
-
-class ShearRecord(TypedDict):
-    """A shear as ``predict`` prints it: lists of one length, and figures that are None if they are not reached."""
-
-    shear_mm: list[float]
-    contact_force_N: list[float]
-    sideways_force_N: list[float]
-    moment_N_mm: list[float]
-    pressure_rise_kPa: list[float]
-    sliding_percent: list[float]
-    stiffness_N_per_mm: float | None
-    peak_sideways_force_N: float | None
-    slips_throughout_mm: float | None
-    ended: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,33 +34,6 @@ class ShearCurve:
             stiffness=None if self.stiffness is None else force * self.stiffness,
             peak=None if self.peak is None else force * self.peak,
         )
-
-    def document(self) -> ShearRecord:
-        """The curve in boundary units."""
-        return {
-            "shear_mm": self.travel.tolist(),
-            "contact_force_N": self.force.tolist(),
-            "sideways_force_N": self.sideways.tolist(),
-            "moment_N_mm": self.moment.tolist(),
-            "pressure_rise_kPa": (self.rise / KPA).tolist(),
-            "sliding_percent": (100 * self.sliding).tolist(),
-            "stiffness_N_per_mm": self.stiffness,
-            "peak_sideways_force_N": self.peak,
-            "slips_throughout_mm": self.slips_from,
-            "ended": self.ended,
-        }
-
-
-class OffAxisRecord(TypedDict):
-    """Additions of contact off the axis to a curve: the number of harmonics, the change by the last raise of their
-    order (greatest of sensitivity, force, pressure rise and a shear's sideways force), and lists as long as the
-    curve's."""
-
-    harmonics: int
-    last_change_percent: float
-    sideways_force_N: list[float]
-    moment_N_mm: list[float]
-    shear: NotRequired[ShearRecord]
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,15 +65,3 @@ class OffAxisCurve:
         to_end = replace(self.to_end, force=force * self.to_end.force, rise=rise * self.to_end.rise)
         sideways, moment = force * self.sideways, force * self.moment
         return replace(self, sideways=sideways, moment=moment, to_end=to_end, shear=sheared)
-
-    def document(self) -> OffAxisRecord:
-        """The curve in boundary units."""
-        record: OffAxisRecord = {
-            "harmonics": self.order,
-            "last_change_percent": 100 * self.last_change,
-            "sideways_force_N": self.sideways.tolist(),
-            "moment_N_mm": self.moment.tolist(),
-        }
-        if self.shear is not None:
-            record["shear"] = self.shear.document()
-        return record

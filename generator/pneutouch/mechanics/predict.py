@@ -13,7 +13,6 @@ from pneutouch.mechanics.membrane import error_against_exact_membrane, membrane_
 from pneutouch.mechanics.membrane_contact import CLOSURES
 from pneutouch.mechanics.models import (
     DEFAULT_TOLERANCE,
-    DISCRETISATION,
     HARMONICS_SETTLED,
     MODEL_CHOICES,
     NUMERICAL,
@@ -25,7 +24,7 @@ from pneutouch.mechanics.models import (
     stated_error,
     usual_model,
 )
-from pneutouch.mechanics.prediction import ErrorEstimate, ModelResult, SensorPrediction
+from pneutouch.mechanics.prediction import ModelResult, SensorPrediction
 from pneutouch.mechanics.sensor import IndentationProtocol, ResponseCorrection, Sensor
 from pneutouch.units import KPA, ML
 
@@ -92,10 +91,6 @@ _OTHER = "take `model` auto or solid"
 _OFF_AXIS = "take `model` auto or harmonic"
 
 
-def _merged(one: ErrorEstimate, other: ErrorEstimate) -> ErrorEstimate:
-    return {**one, **other, "summary": [*one.get("summary", []), *other.get("summary", [])]}
-
-
 def predict(
     design: str,
     sensor: Sensor,
@@ -104,13 +99,11 @@ def predict(
     model: str = "solid",
     closure: str = "variational",
     tolerance: float = DEFAULT_TOLERANCE,
-    sensitivity_error: Callable[[str], ErrorEstimate] | None = None,
 ) -> SensorPrediction:
     """Predict a sensor at ascending driving pressures (MPa) with one model; ``closure`` is the membrane's.
 
     ``auto`` takes the cheapest model whose stated error meets the tolerance (a fraction) and gives the reason.
-    ``sensitivity_error`` gives the known error of a model in sensitivity for this resin. Raises InputError for
-    an unknown model or closure and for a sensor outside the atlas's box, BeyondLimitError beyond the limit point,
+    Raises InputError for an unknown model or closure and for a sensor outside the atlas's box, BeyondLimitError beyond the limit point,
     ComputationError where no equilibrium is found.
     """
     if model not in (*MODEL_CHOICES, USUAL):
@@ -124,12 +117,10 @@ def predict(
     # The factors were found against the solid's answers: the membrane's errors are others.
     correction = ResponseCorrection() if chosen == "membrane" else sensor.correction
     errors, assumptions = _stated(chosen, sensor, pressures)
-    if sensitivity_error is not None:
-        errors = _merged(errors, sensitivity_error(chosen))
     if sensor.dome.base is not None and chosen != "membrane":
         assumptions = (*(line for line in assumptions if line not in _THROUGH_BASE), _ON_BASE)
     if why:
-        errors = _merged({"model_choice": why, "summary": [f"Model {chosen}: {why}."]}, errors)
+        errors = replace(errors, model_choice=why, summary=(f"Model {chosen}: {why}.", *errors.summary))
     dead, ambient_kPa = sensor.gas.dead_volume, sensor.gas.ambient_pressure / KPA
     gas = f"dead volume {dead / ML:.4g} mL, ambient pressure {ambient_kPa:g} kPa"
     held = _CLAMPED_FLANGE if chosen == "solid" and sensor.dome.flange is not None else _CLAMPED_BASE
@@ -231,23 +222,33 @@ def _stated(model: str, sensor: Sensor, pressures: Array) -> tuple[ErrorEstimate
     fitted = "" if largest is None else f", fitted to tension up to a stretch of {largest:g}"
     law = f"law {sensor.wall.hyperelastic.convention}{fitted}, Poisson ratio {sensor.wall.poisson_ratio:g}"
     if model == "atlas":
-        errors: ErrorEstimate = {
-            **DISCRETISATION,
-            "sensitivity_tabulation_relative": TABULATION,
-            "summary": [_TABULATION_SUMMARY],
-        }
+        errors = _discretised(_TABULATION_SUMMARY, sensitivity_tabulation_relative=TABULATION)
         return errors, (law, f"{_BODY}; {_NOT_CHECKED}", *_solid_assumptions(sensor))
     waves = sensor.protocol.waves
     if model == "harmonic":
         text = f"{_HARMONIC_BODY}; what is not symmetric about the planes of symmetry of the scene is left out"
-        errors = {**DISCRETISATION, "sensitivity_discretisation_relative": stated_error(model, sensor)}
-        return {**errors, "summary": [_HARMONIC_SUMMARY]}, (law, text, *_solid_assumptions(sensor))
+        errors = _discretised(_HARMONIC_SUMMARY, stated_error(model, sensor))
+        return errors, (law, text, *_solid_assumptions(sensor))
     checked = f"sway and lobes are looked for with up to {waves} waves around the axis" if waves else _NOT_CHECKED
-    errors = {**DISCRETISATION, "summary": [_DISCRETISATION_SUMMARY]}
+    errors = _discretised(_DISCRETISATION_SUMMARY)
     if sensor.protocol.body is not None:
-        share = OBJECT_DISCRETISATION
-        errors = {**DISCRETISATION, "sensitivity_discretisation_relative": share, "summary": [_OBJECT_SUMMARY]}
+        errors = _discretised(_OBJECT_SUMMARY, OBJECT_DISCRETISATION)
     return errors, (law, f"{_BODY}; {checked}", *_solid_assumptions(sensor))
+
+
+def _discretised(
+    summary: str,
+    sensitivity_relative: float = SENSITIVITY_DISCRETISATION,
+    sensitivity_tabulation_relative: float | None = None,
+) -> ErrorEstimate:
+    """The errors of finite elements; the atlas adds that of its table."""
+    return ErrorEstimate(
+        sensitivity_relative=None,
+        limit_pressure_relative=LIMIT_DISCRETISATION,
+        sensitivity_discretisation_relative=sensitivity_relative,
+        sensitivity_tabulation_relative=sensitivity_tabulation_relative,
+        summary=(summary,),
+    )
 
 
 def _solid_assumptions(sensor: Sensor) -> tuple[str, ...]:

@@ -1,7 +1,7 @@
 """The rated pressure: how far a sensor may be driven, the uncertainty of its limits included."""
 
 from dataclasses import dataclass
-from typing import Literal, NamedTuple, TypedDict
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -9,22 +9,20 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.contact_correction import outside_fit
 from pneutouch.mechanics.limits import RATED_SHARE, Limits
-from pneutouch.mechanics.models import DISCRETISATION
+from pneutouch.mechanics.models import LIMIT_DISCRETISATION
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.propagate import COUPON, COVERAGE, limit_spread
-from pneutouch.rounding import rounded, tenths_below
+from pneutouch.rounding import tenths_below
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
 
-LIMIT_ERROR = DISCRETISATION["limit_pressure_relative"]
+LIMIT_ERROR = LIMIT_DISCRETISATION
 """Greatest relative error of the limit pressure of solid and atlas as a numerical answer."""
 
 _WORTH = 1.05
 """A measured modulus is advised where it raises the rated pressure by this factor at least: our choice."""
-
-_DIGITS = 6
 
 
 class UncertainLimit(NamedTuple):
@@ -34,30 +32,6 @@ class UncertainLimit(NamedTuple):
     nominal: float
     low: float
     high: float
-
-
-class RatingFinding(TypedDict):
-    """A driving pressure above the rated pressure."""
-
-    severity: Literal["error", "warning"]
-    driving_pressure_kPa: float
-    message: str
-
-
-class RatingRecord(TypedDict):
-    """The rating in boundary units."""
-
-    rated_pressure_kPa: float
-    share: float
-    coverage_factor: float
-    limit: str
-    limit_kPa: float
-    limit_low_kPa: float
-    limit_high_kPa: float
-    basis: str
-    rated_pressure_with_measured_modulus_kPa: float | None
-    remedy: str | None
-    findings: list[RatingFinding]
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,29 +111,6 @@ class Rating:
     def remedy_for(self, pressure: float) -> str | None:
         """The remedy if it lets the sensor be driven at a pressure (MPa); None if only less pressure does."""
         return self.remedy if self.measured >= pressure else None
-
-    def document(self, driving_pressures: list[float]) -> RatingRecord:
-        """The rating in boundary units, with its findings on driving pressures (MPa)."""
-        limit, remedy = self.limit, self.remedy
-        judged = [(p, self.severity(p)) for p in driving_pressures]
-        content: RatingRecord = {
-            "rated_pressure_kPa": self.pressure / KPA,
-            "share": RATED_SHARE,
-            "coverage_factor": COVERAGE,
-            "limit": limit.name,
-            "limit_kPa": limit.nominal / KPA,
-            "limit_low_kPa": limit.low / KPA,
-            "limit_high_kPa": limit.high / KPA,
-            "basis": self.basis,
-            "rated_pressure_with_measured_modulus_kPa": None if remedy is None else self.measured / KPA,
-            "remedy": remedy,
-            "findings": [
-                {"severity": severity, "driving_pressure_kPa": p / KPA, "message": self.excess(p)}
-                for p, severity in judged
-                if severity is not None
-            ],
-        }
-        return rounded(content, _DIGITS)
 
 
 def rated_pressure(limit: Array, spread: Array, gauge: Array | float) -> Array:

@@ -15,10 +15,10 @@ from pneutouch.mechanics.line.air import ADIABATIC, REFERENCE_TEMPERATURE
 from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.uncertainty.neighbours import neighbourhood
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
-from pneutouch.mechanics.uncertainty.record import FigureRecord, IntervalRecord, UncertaintyRecord
 from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, SENSITIVITY
 from pneutouch.mechanics.uncertainty.sources.model import FRICTION, PLACE
 from pneutouch.mechanics.uncertainty.sources.modulus import AGEING
+from pneutouch.results.uncertainty import FigureRecord, IntervalRecord, UncertaintyRecord
 from pneutouch.units import KPA
 
 _TRAVEL = 0.98
@@ -127,7 +127,8 @@ def document(
     Args:
         budget: Result of `budget`.
         row: Index of the sensor.
-        values: The figures by another model, by name, with the budget's relative uncertainty; the atlas's else.
+        values: The figures by another model, by name, with the budget's relative uncertainty; the atlas's else. Those
+            that it does not compute are left out.
         notes: More notes, such as `gas_text`.
         calibrated: True if to add to each figure ``at_calibration``, its interval without the ageing since then.
 
@@ -136,23 +137,17 @@ def document(
     """
     known = [i for i in range(len(FIGURES)) if np.isfinite(budget.standard[i, row])]
     given = values or {}
-    figures = {FIGURES[i]: _figure(budget, i, row, given.get(FIGURES[i])) for i in known}
-    if calibrated:
-        for i in known:
-            width = _fresh_width(budget, i, row)
-            value = figures[FIGURES[i]]["value"]
-            ends: IntervalRecord = {"low": value * float(np.exp(-width)), "high": value * float(np.exp(width))}
-            figures[FIGURES[i]]["at_calibration"] = ends
-    return {
-        "coverage_factor": COVERAGE,
-        "figures": figures,
-        "sources": [d for s in budget.sources if s.counts[:, row].any() for d in s.documents(row)],
-        "elasticities": {
+    kept = known if values is None else [i for i in known if FIGURES[i] in values]
+    return UncertaintyRecord(
+        coverage_factor=COVERAGE,
+        figures={FIGURES[i]: _figure(budget, i, row, given.get(FIGURES[i]), calibrated) for i in kept},
+        sources=tuple(d for s in budget.sources if s.counts[:, row].any() for d in s.documents(row)),
+        elasticities={
             FIGURES[i]: dict(zip(INPUTS, budget.derivatives.elasticities[:, i, row].tolist(), strict=True))
-            for i in known
+            for i in kept
         },
-        "notes": [*_notes(budget, row), *notes],
-    }
+        notes=(*_notes(budget, row), *notes),
+    )
 
 
 def _fresh_width(budget: Budget, figure: int, row: int) -> float:
@@ -161,20 +156,25 @@ def _fresh_width(budget: Budget, figure: int, row: int) -> float:
     return COVERAGE * float(np.sqrt(budget.variances[kept, figure, row].sum()))
 
 
-def _figure(budget: Budget, figure: int, row: int, given: float | None) -> FigureRecord:
+def _figure(budget: Budget, figure: int, row: int, given: float | None, calibrated: bool) -> FigureRecord:
     value = float(budget.values[figure, row]) if given is None else given
     width = float(budget.expanded[figure, row])
     freedom = float(budget.freedom[figure, row])
-    return {
-        "value": value,
-        "expanded_uncertainty": value * float(np.sinh(width)),
-        "low": value * float(np.exp(-width)),
-        "high": value * float(np.exp(width)),
-        "standard_uncertainty_relative": 0.5 * width,
-        "degrees_of_freedom": freedom if np.isfinite(freedom) else None,
-        "nonlinear": bool(budget.nonlinear[figure, row]),
-        "shares": shares(budget, FIGURES[figure], row),
-    }
+    return FigureRecord(
+        value=value,
+        expanded_uncertainty=value * float(np.sinh(width)),
+        low=value * float(np.exp(-width)),
+        high=value * float(np.exp(width)),
+        standard_uncertainty_relative=0.5 * width,
+        degrees_of_freedom=freedom if np.isfinite(freedom) else None,
+        nonlinear=bool(budget.nonlinear[figure, row]),
+        shares=shares(budget, FIGURES[figure], row),
+        at_calibration=_interval(value, _fresh_width(budget, figure, row)) if calibrated else None,
+    )
+
+
+def _interval(value: float, width: float) -> IntervalRecord:
+    return IntervalRecord(value * float(np.exp(-width)), value * float(np.exp(width)))
 
 
 def shares(budget: Budget, figure: str, row: int = 0) -> dict[str, float]:

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.mechanics.uncertainty.record import SourceRecord
+from pneutouch.results.uncertainty import SourceRecord
 
 FIGURES = (
     "sensitivity_kPa_per_N",
@@ -119,16 +119,16 @@ class UncertaintySource:
 
     def _document(self, row: int, acts_on: str, standard: float) -> SourceRecord:
         absolute = acts_on == INPUTS[DEAD]
-        return {
-            "name": self.name,
-            "acts_on": acts_on,
-            "standard_uncertainty": standard * (1e-3 if absolute else 1.0),
-            "unit": "mL" if absolute else "relative",
-            "distribution": self.distribution,
-            "figures": [name for name, counts in zip(FIGURES, self.counts[:, row], strict=True) if counts],
-            "known": self.known,
-            "origin": self.origin,
-        }
+        return SourceRecord(
+            name=self.name,
+            acts_on=acts_on,
+            standard_uncertainty=standard * (1e-3 if absolute else 1.0),
+            unit="mL" if absolute else "relative",
+            distribution=self.distribution,
+            figures=tuple(name for name, counts in zip(FIGURES, self.counts[:, row], strict=True) if counts),
+            known=self.known,
+            origin=self.origin,
+        )
 
 
 def counting(size: int, *, only: tuple[int, ...] = (), without: tuple[int, ...] = ()) -> Flags:

@@ -227,26 +227,6 @@ class ViscousRuns:
     loops: dict[float, list[list[LoopRun]]]
     basis: tuple[str, ...] = BASIS
 
-    def document(self) -> dict[str, Any]:
-        """The figures as data: one entry a state, one a source in it."""
-        return {
-            "depth_mm": self.depth,
-            "ramp_speed_mm_per_s": RAMP_SPEED,
-            "sources": list(self.sources),
-            "basis": list(self.basis),
-            "states": [
-                {
-                    "driving_pressure_kPa": pressure / KPA,
-                    "by_source": [self._of_source(i, j) for j in range(len(self.sources))],
-                }
-                for i, pressure in enumerate(self.driving_pressures)
-            ],
-        }
-
-    def _of_source(self, i: int, j: int) -> dict[str, Any]:
-        loops = [{"speed_mm_per_s": speed, **_looped(runs[i][j])} for speed, runs in self.loops.items()]
-        return {"relaxation": _held(self.held[i][j]), "hysteresis": loops}
-
 
 def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[float], depth: float) -> ViscousRuns:
     """Press a sensor at driving pressures (MPa) to a depth (mm) in every series of its resin.
@@ -292,29 +272,3 @@ def ageing_shift(sensor: Sensor, material: Material, driving_pressures: Sequence
         for one in (sensor, old)
     )
     return ratio, after_kPa_per_N / before_kPa_per_N - 1.0
-
-
-def _held(run: RelaxationRun) -> dict[str, Any]:
-    if run.ended is not None:
-        return {"ended": run.ended}
-    (force, force_decade), (rise, rise_decade) = run.drop(run.force), run.drop(run.rise)
-    return {
-        "force_loss_percent": 100 * force,
-        "force_loss_percent_per_decade": 100 * force_decade,
-        "pressure_rise_loss_percent": 100 * rise,
-        "pressure_rise_loss_percent_per_decade": 100 * rise_decade,
-        "from_s": 1.0,
-        "to_s": float(np.round(run.times[-1], 9)),
-    }
-
-
-def _looped(run: LoopRun) -> dict[str, Any]:
-    hysteresis, ended = run.hysteresis(), {} if run.ended is None else {"ended": run.ended}
-    if hysteresis is None:
-        return ended
-    return {
-        "width_percent": 100 * hysteresis[0],
-        "area_percent": 100 * hysteresis[1],
-        "contact_lost_at_mm": run.contact_lost,
-        **ended,
-    }

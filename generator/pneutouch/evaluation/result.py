@@ -1,0 +1,252 @@
+"""A prediction as a record: the states of the model in boundary units, their uncertainty, and what else is known."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from pneutouch.arrays import Array
+from pneutouch.evaluation.anywhere import contact_anywhere
+from pneutouch.evaluation.contact_object import contact_document
+from pneutouch.evaluation.dynamics import dynamics
+from pneutouch.evaluation.gauge import gauge_record
+from pneutouch.evaluation.relaxation import viscous
+from pneutouch.evaluation.uncertainty import uncertainties
+from pneutouch.mechanics.response import tangent_stiffness
+from pneutouch.mechanics.viscous.prony import AGED, ageing_ratio
+from pneutouch.results.behaviour import Aged, CalibratedBy
+from pneutouch.results.prediction import (
+    ByMixingCurve,
+    Curve,
+    EventRecord,
+    InflationRecord,
+    LimitPointRecord,
+    LimitsRecord,
+    MixState,
+    OffAxisRecord,
+    PredictionRecord,
+    RatingFinding,
+    RatingRecord,
+    ShearRecord,
+    State,
+)
+from pneutouch.rounding import rounded
+from pneutouch.units import KPA, ML
+
+if TYPE_CHECKING:
+    from pneutouch.evaluation.evaluate import Evaluation
+    from pneutouch.mechanics.limits import LimitPoint, Limits
+    from pneutouch.mechanics.off_axis_curve import OffAxisCurve, ShearCurve
+    from pneutouch.mechanics.prediction import CurveOutcome, SensorPrediction, SensorState
+    from pneutouch.mechanics.rating import Rating
+
+_DIGITS = 6
+"""Significant digits: more than the figures have, fewer than differ between processors."""
+
+_MODEL_DIGITS = 12
+"""Significant digits of the model's own figures: rounding of the last bits differs between processors."""
+
+_NOTHING = 1e-12
+"""Forces and pressure rises below this (N, kPa) are rounding."""
+
+
+def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
+    """A prediction with its rating and the uncertainty of every state, sampled as well where ``samples`` > 0."""
+    uncertainty = evaluation.uncertainty
+    if samples:
+        uncertainty = uncertainties(
+            evaluation.prediction, evaluation.sensor, evaluation.scene, lambda: evaluation.resins, samples
+        )
+    record = by_model(evaluation.prediction)
+    anywhere = evaluation.scene.design.contact.anywhere
+    return replace(
+        record,
+        states=tuple(replace(s, uncertainty=u) for s, u in zip(record.states, uncertainty, strict=True)),
+        contact=contact_document(evaluation.scene).get("contact"),
+        rating=rating_record(evaluation.rating, [state.driving_pressure for state in evaluation.prediction.states]),
+        dead_volume_note=evaluation.assembly.dead_volume_note or None,
+        contact_anywhere=contact_anywhere(evaluation.prediction, evaluation.sensor) if anywhere else None,
+    )
+
+
+def predicted_in_full(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
+    """`predicted` with relaxation and speed, and with gauge, mixing curves, calibration and age where there are any."""
+    scene = evaluation.scene
+    return replace(
+        predicted(evaluation, samples),
+        viscous=viscous(evaluation.viscous_runs),
+        dynamics=dynamics(evaluation.bandwidth),
+        gauge=None if scene.gauge is None else gauge_record(evaluation),
+        mixing_curves=by_mixing_curve(evaluation.curves),
+        calibration=_calibrated_by(evaluation),
+        aged=_aged(evaluation) if evaluation.options.aged else None,
+    )
+
+
+def by_model(prediction: SensorPrediction) -> PredictionRecord:
+    """A prediction by the model alone, without rating and uncertainty."""
+    inflation = prediction.inflation
+    record = PredictionRecord(
+        design=prediction.design,
+        model=prediction.model,
+        closure=prediction.closure,
+        error_estimate=prediction.error_estimate,
+        limit_point=None if prediction.limit_point is None else _limit_point(prediction.limit_point),
+        limits=_limits(prediction.limits),
+        dead_volume_mL=prediction.dead_volume / ML,
+        inflation=InflationRecord(
+            apex_height_inner_mm=_numbers(inflation.apex_inner),
+            apex_height_outer_mm=_numbers(inflation.apex_outer),
+            cavity_volume_mL=_numbers(inflation.volume / ML),
+            driving_pressure_kPa=_numbers(inflation.pressure / KPA),
+        ),
+        states=tuple(_state(state) for state in prediction.states),
+        assumptions=prediction.assumptions,
+    )
+    return rounded(record, _MODEL_DIGITS, _NOTHING)
+
+
+def _state(state: SensorState) -> State:
+    f = state.figures
+    return State(
+        driving_pressure_kPa=state.driving_pressure / KPA,
+        apex_height_inner_mm=state.apex_inner,
+        apex_height_outer_mm=state.apex_outer,
+        cavity_volume_mL=state.cavity_volume / ML,
+        range_end_mm=state.range_end,
+        sensitivity_kPa_per_N=f.sensitivity_kPa_per_N if f else None,
+        sensitivity_through_origin_kPa_per_N=f.sensitivity_through_origin_kPa_per_N if f else None,
+        r_squared=f.r_squared if f else None,
+        nonlinearity_percent=100 * f.nonlinearity if f else None,
+        stiffness_N_per_mm=f.stiffness if f else None,
+        force_range_N=f.force_range if f else None,
+        saturation_force_N=f.saturation_force if f else None,
+        curve=_curve(state),
+        events=tuple(EventRecord(e.kind, e.indentation, e.ends_range, e.message) for e in state.events),
+        off_axis=None if state.beyond_axis is None else _off_axis(state.beyond_axis),
+    )
+
+
+def _curve(state: SensorState) -> Curve:
+    return Curve(
+        indentation_mm=_numbers(state.indentation),
+        contact_force_N=_numbers(state.force),
+        pressure_rise_kPa=_numbers(state.pressure_rise / KPA),
+        contact_radius_mm=_numbers(state.contact_radius),
+        max_stretch=_numbers(state.max_stretch),
+        tangent_stiffness_N_per_mm=_numbers(tangent_stiffness(state.indentation, state.force)),
+        max_von_mises_MPa=() if state.max_von_mises is None else _numbers(state.max_von_mises),
+    )
+
+
+def _off_axis(curve: OffAxisCurve) -> OffAxisRecord:
+    return OffAxisRecord(
+        harmonics=curve.order,
+        last_change_percent=100 * curve.last_change,
+        sideways_force_N=_numbers(curve.sideways),
+        moment_N_mm=_numbers(curve.moment),
+        shear=None if curve.shear is None else _shear(curve.shear),
+    )
+
+
+def _shear(curve: ShearCurve) -> ShearRecord:
+    return ShearRecord(
+        shear_mm=_numbers(curve.travel),
+        contact_force_N=_numbers(curve.force),
+        sideways_force_N=_numbers(curve.sideways),
+        moment_N_mm=_numbers(curve.moment),
+        pressure_rise_kPa=_numbers(curve.rise / KPA),
+        sliding_percent=_numbers(100 * curve.sliding),
+        stiffness_N_per_mm=curve.stiffness,
+        peak_sideways_force_N=curve.peak,
+        slips_throughout_mm=curve.slips_from,
+        ended=curve.ended,
+    )
+
+
+def _limit_point(point: LimitPoint) -> LimitPointRecord:
+    return LimitPointRecord(
+        point.driving_pressure / KPA,
+        point.apex_inner,
+        point.apex_outer,
+        membrane_stretch=point.membrane_stretch,
+        thickness_stretch=point.thickness_stretch,
+    )
+
+
+def _limits(limits: Limits) -> LimitsRecord:
+    return LimitsRecord(
+        limit_point_kPa=None if limits.limit_point is None else limits.limit_point / KPA,
+        break_strain_kPa=None if limits.break_strain is None else limits.break_strain / KPA,
+        gauge_range_kPa=limits.gauge / KPA,
+        binding=limits.binding,
+        law_range_kPa=None if limits.law_range is None else limits.law_range / KPA,
+    )
+
+
+def rating_record(rating: Rating, driving_pressures: Sequence[float]) -> RatingRecord:
+    """The rating in boundary units, with its findings on driving pressures (MPa)."""
+    from pneutouch.mechanics.limits import RATED_SHARE
+    from pneutouch.mechanics.uncertainty.propagate import COVERAGE
+
+    limit, remedy = rating.limit, rating.remedy
+    record = RatingRecord(
+        rated_pressure_kPa=rating.pressure / KPA,
+        share=RATED_SHARE,
+        coverage_factor=COVERAGE,
+        limit=limit.name,
+        limit_kPa=limit.nominal / KPA,
+        limit_low_kPa=limit.low / KPA,
+        limit_high_kPa=limit.high / KPA,
+        basis=rating.basis,
+        rated_pressure_with_measured_modulus_kPa=None if remedy is None else rating.measured / KPA,
+        remedy=remedy,
+        findings=tuple(
+            RatingFinding(severity, pressure / KPA, rating.excess(pressure))
+            for pressure in driving_pressures
+            if (severity := rating.severity(pressure)) is not None
+        ),
+    )
+    return rounded(record, _DIGITS)
+
+
+def by_mixing_curve(outcomes: Sequence[CurveOutcome]) -> tuple[ByMixingCurve, ...]:
+    """The sensor by every mixing curve of its mix, the softest first."""
+    records = tuple(
+        ByMixingCurve(
+            curve=one.by_curve.curve,
+            place=one.by_curve.place,
+            shear_modulus_MPa=one.by_curve.shear_modulus_MPa.nominal,
+            beyond_last_point=one.by_curve.beyond,
+            rated_pressure_kPa=None if one.rated is None else one.rated / KPA,
+            states=tuple(_mix_state(state) for state in one.states),
+        )
+        for one in outcomes
+    )
+    return rounded(records, _DIGITS)
+
+
+def _mix_state(state: SensorState) -> MixState:
+    figures = state.figures
+    slope = None if figures is None else figures.sensitivity_kPa_per_N
+    return MixState(state.driving_pressure / KPA, slope, None if figures is None else figures.force_range[1])
+
+
+def _calibrated_by(evaluation: Evaluation) -> CalibratedBy | None:
+    calibration, name = evaluation.scene.calibration, evaluation.scene.design.calibration
+    if calibration is None:
+        return None
+    assert name is not None
+    return CalibratedBy(name=name, title=calibration.title, **calibration.source.model_dump())
+
+
+def _aged(evaluation: Evaluation) -> Aged:
+    calibration = evaluation.scene.calibration
+    remaining = 1.0 if calibration is None else calibration.remaining_year
+    ratio = ageing_ratio(evaluation.scene.membrane_material) ** remaining
+    return Aged(rounded(ratio, _DIGITS), AGED)
+
+
+def _numbers(values: Array) -> tuple[float, ...]:
+    return tuple(values.tolist())

@@ -1,0 +1,269 @@
+"""What a sensor does beside its static figures: gauge, relaxation, speed, contact off the centre, ageing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from pydantic import Field
+
+from pneutouch.spec.calibration import CalibrationSource
+
+
+@dataclass(frozen=True, slots=True)
+class GaugeState:
+    """The smallest force at one driving pressure; None where it is not known."""
+
+    driving_pressure_kPa: float
+    """Gauge pressure before contact."""
+    smallest_force_N: float | None
+    """Smallest force that is detected on the range."""
+    smallest_force_at_first_contact_N: float | None
+    """Smallest force that is detected at first contact."""
+    zero_drift_kPa_per_K: float
+    """Change of the pressure without contact by temperature."""
+    zero_drift_N_per_K: float | None
+    """The same, read as a force."""
+    warming_that_reads_as_smallest_force_K: float | None
+    """Warming whose drift reads as the smallest force."""
+
+
+@dataclass(frozen=True, slots=True)
+class GaugeReading:
+    """The pressure gauge and the smallest force that it detects."""
+
+    name: str | None
+    """Name of the gauge; null where the one of the paper is assumed."""
+    title: str
+    """Title."""
+    reference: Literal["gauge", "absolute"]
+    """Reference pressure of the gauge."""
+    reads_from_kPa: float
+    """Least gauge pressure that is read."""
+    reads_to_kPa: float
+    """Greatest gauge pressure that is read."""
+    noise_kPa: float | None
+    """Standard deviation of one reading."""
+    step_kPa: float | None
+    """Smallest step of a reading."""
+    threshold_kPa: float | None
+    """Pressure rise that counts as detected."""
+    rate_Hz: float | None
+    """Readings a second."""
+    bandwidth_Hz: float | None
+    """Half of the rate: faster changes are not followed."""
+    criterion: str
+    """Criterion, in words."""
+    limited_by: str | None
+    """Effect that limits it."""
+    inner_volume_counted_mL: float | None
+    """Gas inside the gauge that is counted in the dead volume."""
+    states: tuple[GaugeState, ...]
+    """One entry a driving pressure."""
+
+
+@dataclass(frozen=True, slots=True)
+class Hold:
+    """Losses after the plate has stopped; or when the run ended."""
+
+    force_loss_percent: float | None = None
+    """Fall of the force at constant travel from from_s to to_s, over its value at from_s."""
+    force_loss_percent_per_decade: float | None = None
+    """Fall of the force in a decade of time, by least squares over the logarithm of time, over its value at from_s."""
+    pressure_rise_loss_percent: float | None = None
+    """Fall of the pressure rise at constant travel from from_s to to_s, over its value at from_s."""
+    pressure_rise_loss_percent_per_decade: float | None = None
+    """Fall of the pressure rise in a decade of time, by least squares over the logarithm of time, over its value at from_s."""
+    from_s: float | None = None
+    """Start of the time that is looked at, from the end of the ramp."""
+    to_s: float | None = None
+    """End of that time."""
+    ended: str | None = None
+    """Why it ended early."""
+
+
+@dataclass(frozen=True, slots=True)
+class Loop:
+    """Loading and unloading at one speed, where the run was not followed to its end."""
+
+    speed_mm_per_s: float
+    """Speed of the plate."""
+    ended: str | None = None
+    """Why it ended early."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WholeLoop(Loop):
+    """Loading and unloading at one speed."""
+
+    width_percent: float
+    """Width of the loop at half travel, over full scale."""
+    area_percent: float
+    """Area of the loop over that under the loading curve."""
+    contact_lost_at_mm: float | None
+    """Travel at which the object leaves the sensor as it is withdrawn; null: it does not before the start."""
+
+
+@dataclass(frozen=True, slots=True)
+class BySource:
+    """One source of relaxation data."""
+
+    relaxation: Hold
+    """After the plate has stopped."""
+    hysteresis: tuple[Loop, ...]
+    """Loops, one entry a speed."""
+
+
+@dataclass(frozen=True, slots=True)
+class ViscousState:
+    """Relaxation and hysteresis at one driving pressure."""
+
+    driving_pressure_kPa: float
+    """Gauge pressure before contact."""
+    by_source: tuple[BySource, ...]
+    """One entry a source of relaxation data."""
+
+
+@dataclass(frozen=True, slots=True)
+class Viscous:
+    """Relaxation and hysteresis; or ``unknown`` alone, the reason why there is none."""
+
+    unknown: str | None = None
+    """Reason why there is none; then every other key is left out."""
+    depth_mm: float | None = None
+    """Plate travel after first contact."""
+    ramp_speed_mm_per_s: float | None = None
+    """Speed at which it is pressed before the hold."""
+    sources: tuple[str, ...] = ()
+    """Sources that it follows from."""
+    basis: tuple[str, ...] = ()
+    """Basis of it."""
+    states: tuple[ViscousState, ...] = ()
+    """One entry a driving pressure."""
+
+
+@dataclass(frozen=True, slots=True)
+class LinePiece:
+    """One piece of the gas line."""
+
+    part: str
+    """Piece of the line."""
+    length_mm: float
+    """Length."""
+    inner_diameter_mm: float
+    """Inside diameter."""
+    volume_mL: float
+    """Volume."""
+
+
+@dataclass(frozen=True, slots=True)
+class DynamicRecord:
+    """Speed of the reading at one driving pressure, in one series of relaxation data."""
+
+    driving_pressure_kPa: float
+    """Gauge pressure before contact."""
+    relaxation_source: str | None
+    """Source of the relaxation data that are used; null: none is known."""
+    first_resonance_Hz: float | None
+    """First resonance; null: there is none."""
+    resonance_gain: float | None
+    """Gain at the resonance."""
+    bandwidth_3_dB_Hz: float | None
+    """Frequency up to which the gain is within 3 dB."""
+    bandwidth_limited_by: str | None
+    """Effect that limits that frequency."""
+    within_5_percent_Hz: float | None
+    """Frequency up to which the gain is within 5 %."""
+    within_5_percent_limited_by: str | None
+    """Effect that limits that frequency."""
+    delay_ms: float
+    """Time from a step of force to half of the reading."""
+    rise_time_ms: float
+    """Time from 10 to 90 % of the reading."""
+    overshoot_percent: float
+    """Greatest reading over the last one, less 100 %."""
+    fast_gas_over_slow: float
+    """Stiffness of the gas at once over that of a slow change."""
+    fast_wall_over_slow: float | None
+    """Stiffness of the wall at once over that of a slow change."""
+
+
+@dataclass(frozen=True, slots=True)
+class Dynamics:
+    """Speed of the reading."""
+
+    basis: tuple[str, ...]
+    """Basis of it."""
+    line: tuple[LinePiece, ...]
+    """Pieces from the cavity to the gauge."""
+    end_volume_mL: float
+    """Gas volume at the end of the line."""
+    gauge_rate_Hz: float | None
+    """Readings of the gauge a second; null: not known."""
+    states: tuple[DynamicRecord, ...]
+    """One entry a driving pressure."""
+    note: str | None = None
+    """A note in words."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContactPlace:
+    """One contact off the centre."""
+
+    object: str
+    """Object that presses the sensor: plate, ball, cone, ring, profile, edge or cylinder."""
+    radius_mm: float | None
+    """Radius of the object; null: a plate."""
+    offset_mm: float
+    """Distance of the contact from the axis."""
+    tilt_deg: float
+    """Angle that the plate leans by."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContactErrors:
+    """Errors of the force read at one driving pressure."""
+
+    driving_pressure_kPa: float
+    """Gauge pressure before contact."""
+    pressure_rise_kPa: tuple[float, ...]
+    """Cavity pressure less driving pressure."""
+    contact_force_N: tuple[float, ...]
+    """Force on the object."""
+    force_error_percent: tuple[tuple[float | None, ...], ...]
+    """Error of the force read, over the true one; one list a contact, null where the reading is not reached."""
+    standard_uncertainty_relative: float | None
+    """Standard uncertainty over the value."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContactAnywhere:
+    """Errors of the force read where object and place of contact are unknown; or ``unknown`` alone."""
+
+    unknown: str | None = None
+    """Reason why there is none; then every other key is left out."""
+    contacts: tuple[ContactPlace, ...] = ()
+    """Objects and places of contact."""
+    states: tuple[ContactErrors, ...] = ()
+    """One entry a driving pressure."""
+    plate_offset_without_effect_mm: float | None = None
+    """Offset up to which a plate presses as if it were central."""
+    table_error_relative: float | None = None
+    """Known error of the table that the errors are from."""
+
+
+@dataclass(frozen=True, slots=True)
+class Aged:
+    """The modulus after a year over the fresh one, and what that assumes."""
+
+    modulus_ratio: float
+    """Modulus after a year over the fresh one."""
+    assumes: str
+    """Assumption behind it."""
+
+
+class CalibratedBy(CalibrationSource):
+    """The calibration that a prediction is of, with the measurement behind it."""
+
+    name: str = Field(description="Name of the calibration.")
+    title: str = Field(description="Title of the calibration.")

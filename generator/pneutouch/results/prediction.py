@@ -1,0 +1,337 @@
+"""A prediction as the program states it: figures, curves, limits and rating of a sensor, in boundary units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+from pneutouch.results.behaviour import Aged, CalibratedBy, ContactAnywhere, Dynamics, GaugeReading, Viscous
+from pneutouch.results.uncertainty import UncertaintyRecord
+
+
+@dataclass(frozen=True, slots=True)
+class SensitivityError:
+    """The known error of a model in sensitivity."""
+
+    relative: float | None
+    """Greatest relative error; None if it is unknown."""
+    basis: str
+    """What the error was found against."""
+    summary: str
+    """The same in a sentence."""
+    by_pressure: tuple[float | None, ...] = ()
+    """Relative errors at 0 and 22 kPa, where the paper measured them."""
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorEstimate:
+    """Stated errors of a prediction: relative ones as fractions, and a summary in sentences."""
+
+    limit_pressure_relative: float
+    """Known error of the limit pressure."""
+    sensitivity_relative: float | None
+    """Greatest known error of the sensitivity; null: not known."""
+    sensitivity_basis: str = ""
+    """Basis of the error of the sensitivity."""
+    sensitivity_relative_0kPa_22kPa: tuple[float | None, ...] = ()
+    """The same without driving pressure and at 22 kPa."""
+    sensitivity_discretisation_relative: float | None = None
+    """Error of the sensitivity by the mesh."""
+    sensitivity_tabulation_relative: float | None = None
+    """Error of the sensitivity by the table."""
+    limit_apex_height_relative: float | None = None
+    """Known error of the apex height at the limit point."""
+    apex_height_relative: float | None = None
+    """Known error of the apex heights."""
+    model_choice: str | None = None
+    """Why this model was taken."""
+    summary: tuple[str, ...] = ()
+    """In sentences."""
+
+
+    def with_sensitivity(self, error: SensitivityError) -> ErrorEstimate:
+        """The same with the known error in sensitivity."""
+        return replace(
+            self,
+            sensitivity_relative=error.relative,
+            sensitivity_basis=error.basis,
+            sensitivity_relative_0kPa_22kPa=error.by_pressure,
+            summary=(*self.summary, error.summary),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """A loading curve, lists of one length."""
+
+    indentation_mm: tuple[float, ...]
+    """Travel of the object after first contact."""
+    contact_force_N: tuple[float, ...]
+    """Force on the object."""
+    pressure_rise_kPa: tuple[float, ...]
+    """Cavity pressure less driving pressure."""
+    contact_radius_mm: tuple[float, ...]
+    """Radius of the edge of contact."""
+    max_stretch: tuple[float, ...]
+    """Greatest principal stretch in the wall."""
+    tangent_stiffness_N_per_mm: tuple[float, ...]
+    """Local slope of contact force over indentation."""
+    max_von_mises_MPa: tuple[float, ...] = ()
+    """Greatest von Mises stress in the wall."""
+
+
+@dataclass(frozen=True, slots=True)
+class EventRecord:
+    """An event on a loading curve."""
+
+    kind: str
+    """Kind."""
+    indentation_mm: float
+    """Travel of the object after first contact."""
+    ends_range: bool
+    """True if figures hold up to there alone."""
+    message: str
+    """In words."""
+
+
+@dataclass(frozen=True, slots=True)
+class ShearRecord:
+    """An object that moves sideways after pressing: lists of one length, and figures, None if they are not reached."""
+
+    shear_mm: tuple[float, ...]
+    """Travel sideways at constant height."""
+    contact_force_N: tuple[float, ...]
+    """Force on the object."""
+    sideways_force_N: tuple[float, ...]
+    """Force of the dome on the object towards the offset."""
+    moment_N_mm: tuple[float, ...]
+    """Moment of the dome on the object about the centre of the base plane."""
+    pressure_rise_kPa: tuple[float, ...]
+    """Cavity pressure less driving pressure."""
+    sliding_percent: tuple[float, ...]
+    """Share of the contact that slides."""
+    stiffness_N_per_mm: float | None
+    """Mean slope of contact force over indentation, first contact to range end."""
+    peak_sideways_force_N: float | None
+    """Sideways force where it is greatest; null: not reached."""
+    slips_throughout_mm: float | None
+    """First travel at which every point of the contact slides; null: not reached."""
+    ended: str | None
+    """Why it ended early."""
+
+
+@dataclass(frozen=True, slots=True)
+class OffAxisRecord:
+    """Additions of contact off the axis to a curve: lists as long as the curve."""
+
+    harmonics: int
+    """Greatest order of the harmonics that were taken."""
+    last_change_percent: float
+    """Change by the last raise of their order."""
+    sideways_force_N: tuple[float, ...]
+    """Force of the dome on the object towards the offset."""
+    moment_N_mm: tuple[float, ...]
+    """Moment of the dome on the object about the centre of the base plane."""
+    shear: ShearRecord | None = None
+    """The object moves sideways after pressing; lists of one length."""
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """A sensor at one driving pressure; figures are None where no line can be fitted."""
+
+    driving_pressure_kPa: float
+    """Gauge pressure before contact."""
+    apex_height_inner_mm: float
+    """Apex height of the inner surface, inflated, before contact."""
+    apex_height_outer_mm: float
+    """Apex height of the outer surface, inflated, before contact."""
+    cavity_volume_mL: float
+    """Gas under the inflated dome, before contact."""
+    range_end_mm: float
+    """Indentation up to which the figures hold."""
+    sensitivity_kPa_per_N: float | None
+    """Slope of the pressure rise over the contact force, first contact to range end."""
+    sensitivity_through_origin_kPa_per_N: float | None
+    """The slope of a line through the origin."""
+    r_squared: float | None
+    """Coefficient of determination of the straight line."""
+    nonlinearity_percent: float | None
+    """Greatest distance from the straight line over the full-scale rise."""
+    stiffness_N_per_mm: float | None
+    """Mean slope of contact force over indentation, first contact to range end."""
+    force_range_N: tuple[float, float] | None
+    """Least and greatest contact force of the range."""
+    saturation_force_N: float | None
+    """Force at which the local slope falls below half of the fitted one; null: there is none."""
+    curve: Curve
+    """Curve, lists of one length."""
+    events: tuple[EventRecord, ...]
+    """Events along the curve."""
+    off_axis: OffAxisRecord | None = None
+    """Additions of contact off the axis to the curve."""
+    uncertainty: UncertaintyRecord | None = None
+    """Uncertainty of the figures, or the reason why there is none."""
+
+
+@dataclass(frozen=True, slots=True)
+class LimitPointRecord:
+    """The limit point; stretches by the membrane theory alone."""
+
+    driving_pressure_kPa: float
+    """Gauge pressure before contact."""
+    apex_height_inner_mm: float
+    """Apex height of the inner surface, inflated, before contact."""
+    apex_height_outer_mm: float
+    """Apex height of the outer surface, inflated, before contact."""
+    membrane_stretch: float | None = None
+    """Stretch of the wall's middle surface at the pole."""
+    thickness_stretch: float | None = None
+    """Wall thickness over the unloaded one at the pole."""
+
+
+@dataclass(frozen=True, slots=True)
+class LimitsRecord:
+    """The limits of the driving pressure, and which binds."""
+
+    limit_point_kPa: float | None
+    """Driving pressure of the limit point; null: there is none."""
+    break_strain_kPa: float | None
+    """Driving pressure at which the resin may tear; null: not before the limit point."""
+    gauge_range_kPa: float
+    """Greatest gauge pressure that the gauge reads."""
+    binding: str
+    """The limit that is met first."""
+    law_range_kPa: float | None = None
+    """Driving pressure at which the wall leaves the stretches that its law was fitted to."""
+
+
+@dataclass(frozen=True, slots=True)
+class InflationRecord:
+    """Free inflation, lists of one length."""
+
+    apex_height_inner_mm: tuple[float, ...]
+    """Apex height of the inner surface, inflated, before contact."""
+    apex_height_outer_mm: tuple[float, ...]
+    """Apex height of the outer surface, inflated, before contact."""
+    cavity_volume_mL: tuple[float, ...]
+    """Gas under the inflated dome, before contact."""
+    driving_pressure_kPa: tuple[float, ...]
+    """Gauge pressure before contact."""
+
+
+@dataclass(frozen=True, slots=True)
+class RatingFinding:
+    """A driving pressure above the rated pressure."""
+
+    severity: Literal["error", "warning"]
+    """How serious it is."""
+    driving_pressure_kPa: float
+    """Gauge pressure before contact."""
+    message: str
+    """In words."""
+
+
+@dataclass(frozen=True, slots=True)
+class RatingRecord:
+    """The rated pressure and what it follows from."""
+
+    rated_pressure_kPa: float
+    """Greatest driving pressure to be used."""
+    share: float
+    """Share of the lower end that is allowed."""
+    coverage_factor: float
+    """Coverage factor of the intervals."""
+    limit: str
+    """Limit that it follows from."""
+    limit_kPa: float
+    """That limit."""
+    limit_low_kPa: float
+    """Lower end of the limit's interval."""
+    limit_high_kPa: float
+    """Upper end of the limit's interval."""
+    basis: str
+    """Basis of it."""
+    rated_pressure_with_measured_modulus_kPa: float | None
+    """The rated pressure if coupons confirmed the modulus; null: the same."""
+    remedy: str | None
+    """Advice that would raise it; null: none."""
+    findings: tuple[RatingFinding, ...]
+    """Findings."""
+
+
+@dataclass(frozen=True, slots=True)
+class MixState:
+    """The sensor by one mixing curve at one driving pressure."""
+
+    driving_pressure_kPa: float
+    """Gauge pressure before contact."""
+    sensitivity_kPa_per_N: float | None
+    """Slope of the pressure rise over the contact force, first contact to range end."""
+    force_range_end_N: float | None
+    """Contact force at the end of the range."""
+
+
+@dataclass(frozen=True, slots=True)
+class ByMixingCurve:
+    """The sensor by one mixing curve of its mix."""
+
+    curve: str
+    """Curve, lists of one length."""
+    place: Literal["softer", "in use", "stiffer"]
+    """Place relative to the curve in use."""
+    shear_modulus_MPa: float
+    """Small-strain shear modulus."""
+    beyond_last_point: bool
+    """True if a fraction is beyond the curve's last point."""
+    rated_pressure_kPa: float | None
+    """Greatest driving pressure to be used."""
+    states: tuple[MixState, ...]
+    """One entry a driving pressure."""
+
+
+@dataclass(frozen=True, slots=True)
+class PredictionRecord:
+    """A prediction: the sensor as a whole, and its states in order of driving pressure."""
+
+    design: str
+    """Name of the design."""
+    model: str
+    """Model that computed it."""
+    closure: str | None
+    """Contact closure of the membrane model; null for other models."""
+    error_estimate: ErrorEstimate
+    """Stated errors, relative ones as fractions."""
+    limit_point: LimitPointRecord | None
+    """Limit point of the inflation; null: there is none."""
+    limits: LimitsRecord
+    """Limits of the driving pressure."""
+    dead_volume_mL: float
+    """Gas volume behind the cavity."""
+    inflation: InflationRecord
+    """Inflation before contact, lists of one length."""
+    states: tuple[State, ...]
+    """One entry a driving pressure."""
+    assumptions: tuple[str, ...]
+    """Assumptions, in sentences."""
+    rating: RatingRecord | None = None
+    """Rated pressure and what it follows from."""
+    contact: Mapping[str, Any] | None = None
+    """What presses the sensor, by the keys of [contact]; left out for a frictionless plate."""
+    dead_volume_note: str | None = None
+    """Note on a stated dead volume that is an idealisation."""
+    contact_anywhere: ContactAnywhere | None = None
+    """Errors of the force read where object and place are unknown."""
+    viscous: Viscous | None = None
+    """Relaxation and hysteresis, or why they are unknown."""
+    dynamics: Dynamics | None = None
+    """How fast the sensor reads."""
+    gauge: GaugeReading | None = None
+    """Pressure gauge."""
+    mixing_curves: tuple[ByMixingCurve, ...] = ()
+    """The sensor by every mixing curve of its mix, the softest first."""
+    calibration: CalibratedBy | None = None
+    """Calibration of the sensor in hand."""
+    aged: Aged | None = None
+    """Ageing that is counted."""

@@ -1,0 +1,35 @@
+"""Records as plain data.
+
+A record is a frozen dataclass: its fields are the keys of a document, in their order, and the text below a field is its
+help. A field without a default is always written. A field with one is left out of a document while it holds it.
+Standard dataclasses, not pydantic's: records are made by this program alone and need no validation, and the 30 classes
+of a prediction are defined in a fifth of the time.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+
+def plain(value: Any) -> Any:
+    """JSON data of a record, of a mapping or sequence of records, or of a number or text."""
+    if dataclasses.is_dataclass(value):
+        return {
+            f.name: plain(held) for f in dataclasses.fields(value) if not left_out(f, held := getattr(value, f.name))
+        }
+    if isinstance(value, Mapping):
+        return {key: plain(held) for key, held in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(held) for held in value]
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+
+
+def left_out(field: dataclasses.Field[Any], held: Any) -> bool:
+    """True if a document leaves a field out because it holds its default."""
+    if field.default is dataclasses.MISSING:
+        return False
+    return held is field.default or (isinstance(held, tuple | str) and held == field.default)
