@@ -61,7 +61,7 @@ def test_imports_run_one_way():
 
 DRAWN_FROM = {
     "pneutouch.mechanics.prediction",
-    "pneutouch.mechanics.uncertainty.record",
+    "pneutouch.results",
     "pneutouch.evaluation.sheet_data",
     "pneutouch.evaluation.comparison_record",
 }

@@ -10,8 +10,10 @@ from scipy.interpolate import PchipInterpolator
 
 from pneutouch.catalogue.mixture import ArcProfile, mixed_material, mixing
 from pneutouch.errors import InputError
+from pneutouch.evaluation.result import by_model
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.results.record import plain as data
 from pneutouch.spec.grade import Grade
 from pneutouch.units import KPA
 from tests.catalogue.mixes import LAW, LIBRARY, mixed
@@ -72,7 +74,7 @@ def test_a_constant_mix_equal_to_a_catalogue_resin_has_its_figures(name, fractio
     pressures = [0.0, 12 * KPA, 22 * KPA]
     # Without the break strain: that of a mix is read between resins, and the limits are no figure of the sensor.
     ours, theirs = (
-        predict("x", material_sensor(m).replace(break_stretch=None), pressures, model="atlas").document()
+        data(by_model(predict("x", material_sensor(m).replace(break_stretch=None), pressures, model="atlas")))
         for m in (mixed(fraction), resin)
     )
     for one, other in zip(ours["states"], theirs["states"], strict=True):

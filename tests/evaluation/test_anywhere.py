@@ -12,10 +12,11 @@ from typer.testing import CliRunner
 
 import pneutouch
 from pneutouch.cli.app import app
-from pneutouch.evaluation.anywhere import contact_anywhere_document, contact_chart
-from pneutouch.evaluation.document import prediction_document
+from pneutouch.evaluation.anywhere import contact_anywhere, contact_chart
+from pneutouch.evaluation.result import predicted
 from pneutouch.mechanics.uncertainty.source import FIGURES
 from pneutouch.report.anywhere import contact_figures, contact_section
+from pneutouch.results.record import plain as data
 
 S, SOURCE = "sensitivity_kPa_per_N", "place of contact"
 
@@ -31,15 +32,15 @@ def anywhere(evaluated):
 
 
 def test_it_is_off_by_default(plain):
-    document = prediction_document(plain)
+    document = data(predicted(plain))
     assert "contact_anywhere" not in document
-    for entry in plain.uncertainty:
+    for entry in map(data, plain.uncertainty):
         assert SOURCE not in entry["figures"][S]["shares"]
         assert any("misalignment" in note for note in entry["notes"])
 
 
 def test_it_widens_the_sensitivity_by_its_variance_and_nothing_else(plain, anywhere):
-    before, after = plain.uncertainty[0]["figures"], anywhere.uncertainty[0]["figures"]
+    before, after = data(plain.uncertainty[0])["figures"], data(anywhere.uncertainty[0])["figures"]
     chart = contact_chart(anywhere.prediction, anywhere.sensor)
     u, wide, narrow = (
         chart.standard_uncertainties[0],
@@ -54,19 +55,19 @@ def test_it_widens_the_sensitivity_by_its_variance_and_nothing_else(plain, anywh
 
 
 def test_the_summary_names_what_a_measurement_can_improve_first(anywhere):
-    entry = anywhere.uncertainty[0]
+    entry = data(anywhere.uncertainty[0])
     share = entry["figures"][S]["shares"][SOURCE]
     assert "measure first: ageing" in entry["summary"]
     assert f"An unknown place of contact has {share:.0%} of the variance." in entry["summary"]
 
 
 def test_driving_pressure_makes_the_share_smaller(anywhere):
-    shares = [entry["figures"][S]["shares"][SOURCE] for entry in anywhere.uncertainty]
+    shares = [entry["figures"][S]["shares"][SOURCE] for entry in map(data, anywhere.uncertainty)]
     assert np.all(np.diff(shares) < 0.0)
 
 
 def test_the_source_states_what_it_assumes(anywhere):
-    (source,) = (one for one in anywhere.uncertainty[0]["sources"] if one["name"] == SOURCE)
+    (source,) = (one for one in data(anywhere.uncertainty[0])["sources"] if one["name"] == SOURCE)
     assert not source["known"] and source["figures"] == [S]
     for words in ("JCGM 100", "0.3 R0", "0.6 R0", "20 degrees"):
         assert words in source["origin"]
@@ -74,7 +75,7 @@ def test_the_source_states_what_it_assumes(anywhere):
 
 @pytest.mark.slow
 def test_samples_agree_with_the_interval(anywhere):
-    sampled = prediction_document(anywhere, samples=4000)["states"][0]["uncertainty"]
+    sampled = data(predicted(anywhere, samples=4000))["states"][0]["uncertainty"]
     interval, drawn = sampled["figures"][S], sampled["monte_carlo"]["figures"][S]
     assert math.log(drawn["high"] / drawn["low"]) == pytest.approx(
         math.log(interval["high"] / interval["low"]), rel=0.06
@@ -82,7 +83,7 @@ def test_samples_agree_with_the_interval(anywhere):
 
 
 def test_the_prediction_states_errors_of_each_contact(anywhere):
-    content = prediction_document(anywhere)["contact_anywhere"]
+    content = data(predicted(anywhere))["contact_anywhere"]
     assert [state["driving_pressure_kPa"] for state in content["states"]] == [0, 22]
     for state in content["states"]:
         assert len(state["force_error_percent"]) == len(content["contacts"])
@@ -115,7 +116,7 @@ def test_the_flag_is_short_for_the_key_of_the_design():
 )
 def test_outside_the_table_the_reason_stands_in_its_place(plain, change, reason):
     sensor = plain.sensor.replace(**change)
-    content = contact_anywhere_document(plain.prediction, sensor)
+    content = data(contact_anywhere(plain.prediction, sensor))
     assert list(content) == ["unknown"] and reason in content["unknown"]
     section = contact_section(contact_chart(plain.prediction, sensor))
     assert not section["known"] and reason in section["why"]
@@ -130,7 +131,7 @@ def test_a_design_with_a_ball_states_why_the_place_is_not_counted(evaluated):
         "pneumatics.driving_pressures_kPa=[0]",
         "indentation.depth_mm=2",
     )
-    (entry,) = evaluation.uncertainty
+    (entry,) = map(data, evaluation.uncertainty)
     assert SOURCE not in entry["figures"][S]["shares"]
     assert any("place of contact is not in the budget" in note and "ball" in note for note in entry["notes"])
 
@@ -154,7 +155,7 @@ def test_edges_have_rows_next_to_those_of_balls(plain):
     labels = [row[0] for row in contact_section(chart)["rows"]]
     assert f"edge of {size:.3g} mm radius, across the pole" in labels
     assert f"edge of {0.3 * size:.3g} mm radius, {0.3 * size:.3g} mm off the axis" in labels
-    contacts = contact_anywhere_document(plain.prediction, plain.sensor)["contacts"]
+    contacts = data(contact_anywhere(plain.prediction, plain.sensor))["contacts"]
     assert [one["object"] for one in contacts] == [row.kind for row in chart.rows]
     assert {one["object"] for one in contacts} == {"ball", "edge", "plate"}
 

@@ -11,6 +11,7 @@ from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.uncertainty import known
 from pneutouch.mechanics.uncertainty import FIGURES, monte_carlo
 from pneutouch.report.certainty import SENSITIVITY
+from pneutouch.results.record import plain as data
 from pneutouch.units import KPA, ML
 from tests.evaluation.calibrated import (
     AT,
@@ -55,8 +56,8 @@ def test_curves_and_figures_are_corrected_between_the_pressures_that_were_measur
 
 
 def test_the_uncertainty_is_the_calibrations(place):
-    old = evaluate("paper-dome", AT, model="atlas", library=place).uncertainty
-    new = predicted(place).uncertainty
+    old = data(evaluate("paper-dome", AT, model="atlas", library=place).uncertainty)
+    new = data(predicted(place).uncertainty)
     for k, (before, after) in enumerate(zip(old, new, strict=True)):
         names = {source["name"] for source in after["sources"]}
         assert not names & {"published modulus", "modulus between prints", "wall thickness", "tube bore"}
@@ -80,8 +81,8 @@ def test_far_from_what_was_measured_the_models_error_stays_even_where_the_correc
     response = {key: [value] for key, value in values.items()}
     content = changed(source={"driving_pressures_kPa": [0.0]}, response=response)
     at = {**DEAD, "pneumatics.driving_pressures_kPa": [0.0, 18.0]}
-    there, far = predicted(library_of(tmp_path, library, content), at).uncertainty
-    plain = evaluate("paper-dome", at, model="atlas", library=library).uncertainty[1]
+    there, far = map(data, predicted(library_of(tmp_path, library, content), at).uncertainty)
+    plain = data(evaluate("paper-dome", at, model="atlas", library=library).uncertainty[1])
 
     def standard(entry):
         return {source["name"]: source["standard_uncertainty"] for source in entry["sources"]}.get("model", 0.0)
@@ -96,7 +97,7 @@ def test_far_from_what_was_measured_the_models_error_stays_even_where_the_correc
 @pytest.mark.parametrize("error", [0.01, 0.03])
 def test_the_scatter_of_the_runs_and_the_gauges_of_the_rig_are_in_the_interval(error, library, tmp_path):
     place = library_of(tmp_path, library, changed(response={"sensitivity_errors_relative": [error, error]}))
-    (entry,) = predicted(place, {**DEAD, "pneumatics.driving_pressures_kPa": [12.0]}).uncertainty
+    (entry,) = map(data, predicted(place, {**DEAD, "pneumatics.driving_pressures_kPa": [12.0]}).uncertainty)
     sources = {s["name"]: s["standard_uncertainty"] for s in entry["sources"] if SENSITIVITY in s["figures"]}
     figure = entry["figures"][SENSITIVITY]
     stated = {"model as calibrated": error}
@@ -113,7 +114,7 @@ def test_few_degrees_of_freedom_of_the_runs_are_those_of_the_figure(freedom, lib
     """0 stands for an assumed scatter, which has none (JCGM 100, G.4.3) and is not known."""
     content = changed(response={"errors_freedom": freedom}, source={"age_days": 400.0})
     place = library_of(tmp_path, library, content)
-    (entry,) = predicted(place, {**DEAD, "pneumatics.driving_pressures_kPa": [12.0]}).uncertainty
+    (entry,) = map(data, predicted(place, {**DEAD, "pneumatics.driving_pressures_kPa": [12.0]}).uncertainty)
     figure = entry["figures"]["force_at_range_end_N"]
     (source,) = (
         s for s in entry["sources"] if s["name"] == "model as calibrated" and "force_at_range_end_N" in s["figures"]
@@ -132,7 +133,7 @@ def test_what_is_left_of_the_year_ages(library, tmp_path):
     standards = {}
     for age in ages:
         place = library_of(tmp_path, library, changed(source={"age_days": age}))
-        sources = predicted(place, DEAD).uncertainty[0]["sources"]
+        sources = data(predicted(place, DEAD).uncertainty[0])["sources"]
         standards[age] = {source["name"]: source["standard_uncertainty"] for source in sources}
     for age, share in ages.items():
         assert standards[age].get("ageing", 0.0) == pytest.approx(share * standards[0.0]["ageing"])
@@ -163,7 +164,7 @@ def test_correlated_parameters_spread_as_samples_of_them_do(place):
 def test_the_widest_file_that_is_taken_gives_finite_figures(error, library, tmp_path):
     content = changed(response={**held(error), "sensitivity_errors_relative": [2.0, 2.0]})
     place = library_of(tmp_path, library, {**content, "covariance": np.diag([4.0, 4.0, 100.0]).tolist()})
-    for entry in predicted(place).uncertainty:
+    for entry in map(data, predicted(place).uncertainty):
         for figure in entry["figures"].values():
             assert figure is None or all(np.isfinite(figure[key]) for key in ("low", "high") if figure.get(key))
         json.dumps(entry, allow_nan=False)

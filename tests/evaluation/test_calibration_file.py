@@ -13,7 +13,9 @@ from pneutouch.catalogue.library import elastomers
 from pneutouch.catalogue.listing import listing
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.evaluation.result import by_model
 from pneutouch.output.recipe import BuildRecipe, evaluate_recipe, read_recipe
+from pneutouch.results.record import plain as data
 from pneutouch.spec.design import CALIBRATION
 from tests.evaluation.calibrated import AT, CONTENT, DEAD, changed, held, library_of, predicted
 
@@ -100,7 +102,7 @@ def test_a_recipe_carries_it_and_is_the_same_again(place, tmp_path):
     package = Package(**{**fields, "path": tmp_path / "a.3mf", "recipe": recipe.text(), "metadata": metadata})
     again = evaluate_recipe(read_recipe(package))
     assert BuildRecipe.of(again).text() == recipe.text()
-    assert json.dumps(again.prediction.document()) == json.dumps(predicted(place).prediction.document())
+    assert json.dumps(data(by_model(again.prediction))) == json.dumps(data(by_model(predicted(place).prediction)))
     plain = BuildRecipe.of(evaluate("paper-dome", AT, model="atlas", library=place))
     assert "calibration" not in plain.inputs() and "calibration" not in plain.inputs()["design"]
 
@@ -149,12 +151,12 @@ def test_the_recipe_of_a_calibrated_build_is_shown(place):
 @pytest.mark.parametrize("simulated", [False, True])
 def test_text_and_sheet_state_the_specimen_and_that_data_are_simulated(simulated, library, tmp_path):
     from pneutouch.cli.prediction_text import prediction_text
-    from pneutouch.evaluation.document import full_document
+    from pneutouch.evaluation.result import predicted_in_full
     from pneutouch.evaluation.sheet import sheet_data
     from pneutouch.report.sheet import content_of
 
     content = changed(source={"simulated": simulated})
     evaluation = predicted(library_of(tmp_path, library, content))
     sensor = content["source"]["sensor"]
-    for text in (prediction_text(full_document(evaluation)), content_of(sheet_data(evaluation, ""))["status"]):
+    for text in (prediction_text(predicted_in_full(evaluation)), content_of(sheet_data(evaluation, ""))["status"]):
         assert f"sensor {sensor}" in text and ("SIMULATED DATA" in text) is simulated

@@ -23,6 +23,7 @@ from pneutouch.evaluation.uncertainty import known
 from pneutouch.mechanics.uncertainty.neighbours import log_figures, moved
 from pneutouch.mechanics.uncertainty.source import DEAD, FIGURE, FIGURES, INPUTS
 from pneutouch.mechanics.uncertainty.sources.model import MODEL_CORRELATION, table_s1_errors
+from pneutouch.results.record import plain as data
 from pneutouch.spec.material import Material
 
 WALLS = "membrane.wall_thickness_mm=1.5", "membrane.wall_thickness_mm=1.9"
@@ -46,7 +47,7 @@ def pair(evaluated):
 
 
 def test_effects_add_up_to_the_uncertainty_of_the_figure(pair):
-    document = pair[0].uncertainty[0]
+    document = data(pair[0].uncertainty[0])
     for figure, entry in document["figures"].items():
         total = sum(effect.size**2 for effect in effects_of(document, figure))
         assert total == pytest.approx(entry["standard_uncertainty_relative"] ** 2, rel=1e-5, abs=1e-15)
@@ -64,7 +65,7 @@ def test_effects_add_up_to_the_uncertainty_of_the_figure(pair):
 def test_the_uncertainty_of_a_difference_is_that_of_samples_with_shared_sources(pair, figure):
     """Two walls of one resin: the resin's sources drawn once for both, the model's errors drawn correlated."""
     logs = [_sampled(evaluation, side, FIGURES.index(figure)) for side, evaluation in enumerate(pair)]
-    one, other = (effects_of(evaluation.uncertainty[0], figure) for evaluation in pair)
+    one, other = (effects_of(data(evaluation.uncertainty[0]), figure) for evaluation in pair)
     stated = math.sqrt(variance_of_ratio(one, other, same_resin=True))
     assert stated == pytest.approx(float(np.nanstd(logs[1] - logs[0])), rel=0.12)
     assert math.sqrt(variance_of_ratio(one, other, same_resin=False)) > 1.3 * stated

@@ -8,9 +8,10 @@ import pytest
 
 from pneutouch.catalogue import DEFAULT
 from pneutouch.errors import InputError
-from pneutouch.evaluation.document import prediction_document
 from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.evaluation.result import predicted
 from pneutouch.report.curves import shapes
+from pneutouch.results.record import plain as data
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import validate
 
@@ -35,11 +36,11 @@ def test_a_plate_by_its_new_key_answers_as_by_its_old_one():
     driven = {"pneumatics.driving_pressures_kPa": [12.0]}
     old = evaluate(DEFAULT, {**driven, "indentation.plate_diameter_mm": 25.0}, model="atlas")
     new = evaluate(DEFAULT, {**driven, "contact.plate_diameter_mm": 25.0}, model="atlas")
-    assert prediction_document(old) == prediction_document(new)
+    assert data(predicted(old)) == data(predicted(new))
 
 
 def test_a_ball_is_answered_by_the_solid_alone_and_stated(ball):
-    document = prediction_document(ball)
+    document = data(predicted(ball))
     assert document["model"] == "solid"
     stated = {"object": "ball", "label": "ball of 10 mm radius", "ball_radius_mm": 10.0, "friction": 0.0}
     assert document["contact"] == stated
@@ -84,7 +85,7 @@ def test_models_of_a_plate_refuse_another_object_and_name_the_one_that_answers(m
 def test_friction_reaches_the_solid_and_the_document(friction, stated):
     given = {"contact.friction": friction, "pneumatics.driving_pressures_kPa": [0.0], "indentation.depth_mm": 4.0}
     rough = evaluate("paper-dome", given, model="auto")
-    document = prediction_document(rough)
+    document = data(predicted(rough))
     assert (document["model"], document["contact"]["friction"]) == ("solid", stated)
     json.dumps(document, allow_nan=False)
     assert rough.sensor.protocol.friction == float(friction)

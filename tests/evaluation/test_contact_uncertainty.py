@@ -11,7 +11,8 @@ import pytest
 
 from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.charts import curve, under_contact
-from pneutouch.evaluation.uncertainty import documents, known
+from pneutouch.evaluation.result import by_model
+from pneutouch.evaluation.uncertainty import known, uncertainties
 from pneutouch.mechanics.contact_correction import plate_alone
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indenter import ball, cone
@@ -20,6 +21,7 @@ from pneutouch.mechanics.uncertainty import FIGURES, INPUTS, ContactModel, batch
 from pneutouch.mechanics.uncertainty.contact_model import SPREAD
 from pneutouch.mechanics.uncertainty.neighbours import log_figures
 from pneutouch.mechanics.uncertainty.source import CONTACT_FIGURES, DEAD, SENSITIVITY
+from pneutouch.results.record import plain as data
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
@@ -45,7 +47,7 @@ def rough():
 
 
 def test_an_unknown_coefficient_has_the_share_that_the_solid_gives_it(rough):
-    said = rough.uncertainty[0]
+    said = data(rough.uncertainty[0])
     (source,) = [one for one in said["sources"] if one["name"] == "friction" and STATED in one["figures"]]
     half, double = (logs(rough.sensor.replace(friction=f), 0.0)[0] for f in (0.5 / SPREAD, 0.5 * SPREAD))
     assert half - double > 0.05
@@ -67,16 +69,16 @@ def test_the_derivative_by_the_modulus_is_the_solids_with_friction(rough):
         logs(rough.sensor.replace(shear_modulus=f * rough.sensor.wall.shear_modulus), pressure)[0]
         for f in (math.exp(0.1), math.exp(-0.1))
     )
-    found = rough.uncertainty[1]["elasticities"][STATED]["shear_modulus"]
+    found = data(rough.uncertainty[1])["elasticities"][STATED]["shear_modulus"]
     assert found == pytest.approx((more - less) / 0.2, abs=0.02)
-    assert any(note.startswith("the contact has friction (0.5)") for note in rough.uncertainty[1]["notes"])
+    assert any(note.startswith("the contact has friction (0.5)") for note in data(rough.uncertainty[1])["notes"])
 
 
 def test_the_figures_are_in_the_units_of_a_prediction(evaluated):
     answer = evaluated("paper-dome", model="atlas")
     found = np.exp(log_figures(batch_of(plate_alone(answer.sensor), (22 * KPA,)))[:, 0])
-    (state,) = [one for one in answer.prediction.document()["states"] if one["driving_pressure_kPa"] == 22.0]
-    limit_kPa = answer.prediction.document()["limit_point"]["driving_pressure_kPa"]
+    (state,) = [one for one in data(by_model(answer.prediction))["states"] if one["driving_pressure_kPa"] == 22.0]
+    limit_kPa = data(by_model(answer.prediction))["limit_point"]["driving_pressure_kPa"]
     assert found[:2] == pytest.approx([state["sensitivity_kPa_per_N"], limit_kPa], rel=1e-6)
 
 
@@ -133,11 +135,11 @@ def test_between_the_pressures_that_are_solved_the_derivatives_are_the_solids(ev
 def test_the_limit_pressure_and_the_height_know_of_no_friction(rough):
     smooth = evaluate("paper-dome", {"membrane.material": "FLX9970", "pneumatics.driving_pressures_kPa": [22.0]})
     for name in ("limit_pressure_kPa", "apex_height_outer_mm"):
-        own, other = (one.uncertainty[-1]["figures"][name] for one in (rough, smooth))
+        own, other = (data(one.uncertainty[-1])["figures"][name] for one in (rough, smooth))
         assert own["low"] == pytest.approx(other["low"], rel=1e-5)
         assert own["high"] == pytest.approx(other["high"], rel=1e-5)
-    assert not any(source["name"] == "friction" for source in smooth.uncertainty[0]["sources"])
-    assert any("misalignment, friction" in note for note in smooth.uncertainty[0]["notes"])
+    assert not any(source["name"] == "friction" for source in data(smooth.uncertainty[0])["sources"])
+    assert any("misalignment, friction" in note for note in data(smooth.uncertainty[0])["notes"])
 
 
 @pytest.mark.slow
@@ -154,7 +156,7 @@ def test_the_tuning_curve_passes_through_the_solids_states(rough):
 
 @pytest.mark.slow
 def test_samples_of_the_same_sources_give_nearly_the_same_interval_with_friction(rough):
-    for said in documents(rough.prediction, rough.sensor, rough.scene, lambda: rough.resins, 3000):
+    for said in map(data, uncertainties(rough.prediction, rough.sensor, rough.scene, lambda: rough.resins, 3000)):
         own, drawn = said["figures"][STATED], said["monte_carlo"]["figures"][STATED]
         assert np.log(drawn["high"] / drawn["low"]) == pytest.approx(np.log(own["high"] / own["low"]), rel=0.12)
 
@@ -220,7 +222,7 @@ def test_a_prediction_already_solved_is_not_solved_again(rough, monkeypatch):
     original = module.solid_states
     monkeypatch.setattr(module, "solid_states", lambda *given: solved.append(given[0]) or original(*given))
     short = dataclasses.replace(rough.prediction, states=rough.prediction.states[:1])
-    documents(short, rough.sensor, rough.scene, lambda: rough.resins)
+    uncertainties(short, rough.sensor, rough.scene, lambda: rough.resins)
     kinds = [
         (one.protocol.friction == 0.5, one.wall.shear_modulus == rough.sensor.wall.shear_modulus) for one in solved
     ]

@@ -6,7 +6,8 @@ import json
 
 import pytest
 
-from pneutouch.evaluation.document import prediction_document
+from pneutouch.evaluation.result import predicted
+from pneutouch.results.record import plain as data
 from pneutouch.units import ML
 
 NOTE = "the paper's idealisation: connector and tube as drawn hold"
@@ -17,7 +18,7 @@ def test_prediction_states_what_the_drawing_holds(evaluated):
     drawn = (evaluation.assembly.internal_volume + evaluation.assembly.tube_volume) / ML
     # 300 mm of tube with a 2.5 mm bore, and a connector of some hundred cubic millimetres.
     assert drawn == pytest.approx(0.3 * 3.14159 * 1.25**2 + 0.1, abs=0.1)
-    document = prediction_document(evaluation)
+    document = data(predicted(evaluation))
     assert document["dead_volume_mL"] == 0
     assert document["dead_volume_note"] == f"{NOTE} {drawn:.2f} mL"
     assert f"dead volume of 0 mL is {NOTE} {drawn:.2f} mL" in document["assumptions"]
@@ -29,7 +30,7 @@ def test_prediction_states_what_the_drawing_holds(evaluated):
 def test_a_dead_volume_that_can_be_has_no_note(evaluated, changes):
     evaluation = evaluated("paper-dome", *changes, model="atlas")
     assert evaluation.assembly.dead_volume_note == ""
-    assert "dead_volume_note" not in prediction_document(evaluation)
+    assert "dead_volume_note" not in data(predicted(evaluation))
     assert not any(NOTE in line for line in evaluation.prediction.assumptions)
 
 

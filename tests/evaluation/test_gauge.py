@@ -9,10 +9,11 @@ from hypothesis import strategies as st
 
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.evaluation import evaluate
-from pneutouch.evaluation.document import full_document
-from pneutouch.evaluation.gauge import force_at_rise, gauge_document
+from pneutouch.evaluation.gauge import force_at_rise, gauge_record
+from pneutouch.evaluation.result import predicted_in_full
 from pneutouch.mechanics.gauge_reading import gauge_reading
 from pneutouch.parts import assemble
+from pneutouch.results.record import plain as data
 from pneutouch.spec.gauge import Gauge
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 
@@ -46,13 +47,13 @@ def test_an_analog_gauge_is_read_as_often_as_the_papers_recorder_reads():
 def test_naming_the_papers_gauge_changes_no_figure(bare):
     named = evaluate("paper-dome", {"pneumatics.gauge": PAPER}, model="atlas")
     assert named.sensor == bare.sensor
-    assert gauge_document(named) == {**gauge_document(bare), "name": PAPER}
+    assert data(gauge_record(named)) == {**data(gauge_record(bare)), "name": PAPER}
 
 
 def test_the_smallest_force_is_three_deviations_of_a_difference_over_the_sensitivity(bare):
     step_kPa = 20 / 2**16 * 50
     scatter_kPa = math.sqrt(0.015**2 + step_kPa**2 / 12)
-    record = gauge_document(bare)
+    record = data(gauge_record(bare))
     assert record["threshold_kPa"] == pytest.approx(3 * math.sqrt(2) * scatter_kPa, rel=1e-5)
     for one, state in zip(record["states"], bare.prediction.states, strict=True):
         slope_kPa_per_N = state.figures.sensitivity_kPa_per_N
@@ -64,7 +65,7 @@ def test_the_smallest_force_is_three_deviations_of_a_difference_over_the_sensiti
 
 
 def test_without_a_stated_noise_the_smallest_force_is_not_known(narrow):
-    record = gauge_document(narrow)
+    record = data(gauge_record(narrow))
     if gauge("bosch-bmp390").noise_kPa is None:
         assert record["threshold_kPa"] is None and {s["smallest_force_N"] for s in record["states"]} == {None}
         assert record["limited_by"].startswith("not known")
@@ -117,5 +118,5 @@ def test_the_force_at_a_rise_is_exact_for_a_power_law_below_the_first_point(powe
 
 
 def test_the_document_of_a_prediction_holds_the_gauge_that_a_design_names(narrow, bare):
-    assert full_document(narrow)["gauge"] == gauge_document(narrow)
-    assert "gauge" not in full_document(bare)
+    assert data(predicted_in_full(narrow))["gauge"] == data(gauge_record(narrow))
+    assert "gauge" not in data(predicted_in_full(bare))

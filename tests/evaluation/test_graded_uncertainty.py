@@ -14,6 +14,7 @@ from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.mechanics.uncertainty import FIGURES, INPUTS, batch_of
 from pneutouch.mechanics.uncertainty.propagate import derivatives
 from pneutouch.mechanics.uncertainty.source import SENSITIVITY
+from pneutouch.results.record import plain as data
 from pneutouch.spec.grade import Grade
 from pneutouch.units import KPA
 
@@ -84,7 +85,7 @@ def test_an_even_wall_stays_as_it_is_and_needs_no_note(evaluated):
 
 def test_a_graded_prediction_has_the_solids_figures_and_says_whose_uncertainty_they_carry(evaluated):
     evaluation = evaluated("graded-dome")
-    for state, document in zip(evaluation.prediction.states, evaluation.uncertainty, strict=True):
+    for state, document in zip(evaluation.prediction.states, map(data, evaluation.uncertainty), strict=True):
         figure = document["figures"]["sensitivity_kPa_per_N"]
         assert figure["value"] == pytest.approx(state.figures.sensitivity_kPa_per_N, rel=1e-5)
         assert figure["low"] < figure["value"] < figure["high"]

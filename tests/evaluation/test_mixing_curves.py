@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from pneutouch.evaluation.document import curves_document
 from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.evaluation.result import by_mixing_curve
 from pneutouch.evaluation.sheet import sheet_data
 from pneutouch.report.conditions import curves_section
+from pneutouch.results.record import plain as data
 from pneutouch.spec.read import parse_changes
 
 SHALLOW = ["indentation.depth_mm=3", "indentation.steps=6", "pneumatics.driving_pressures_kPa=[0, 12]"]
@@ -70,7 +71,7 @@ def test_check_and_datasheet_set_the_curves_side_by_side(graded):
     for one in graded.curves:
         assert one.by_curve.curve in note.message
         assert f"{one.states[-1].figures.sensitivity_kPa_per_N:.2f} kPa/N" in note.message
-    document = curves_document(graded)
+    document = data(by_mixing_curve(graded.curves))
     assert [entry["place"] for entry in document] == ["softer", "in use", "stiffer"]
     assert document[1]["rated_pressure_kPa"] == pytest.approx(1e3 * graded.rating.pressure, rel=1e-5)
 

@@ -10,12 +10,14 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.calibrated import check_fitted
 from pneutouch.evaluation.contact_object import object_section
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
+from pneutouch.evaluation.result import by_model
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.harmonic.press import OffAxisPress
 from pneutouch.mechanics.models import USUAL, models_for
 from pneutouch.parts import assemble
 from pneutouch.report.conditions import SHEAR as SHEAR_HEAD
 from pneutouch.report.conditions import shear_rows
+from pneutouch.results.record import plain as data
 from pneutouch.workflows.select.base import check_central
 
 BALL = {"contact.object": "ball", "contact.ball_radius_mm": 8.0, "contact.offset_mm": 2.0}
@@ -128,7 +130,7 @@ def test_the_search_and_friction_of_the_flange_refuse_it():
 def test_the_answer_states_its_harmonics_and_the_forces_in_all_directions():
     evaluation = evaluate("paper-dome", {**BALL, **SHORT}, model=USUAL, library=Library.default())
     assert evaluation.prediction.model == evaluation.options.model == "harmonic"
-    (state,) = evaluation.prediction.document()["states"]
+    (state,) = data(by_model(evaluation.prediction))["states"]
     off_axis = state["off_axis"]
     assert state["driving_pressure_kPa"] == 0.0
     assert off_axis["harmonics"] in (6, 8, 12) and 0 < off_axis["last_change_percent"] < 1.0
@@ -136,7 +138,7 @@ def test_the_answer_states_its_harmonics_and_the_forces_in_all_directions():
     # The ball pushes the dome away from its side.
     assert 0.05 < off_axis["sideways_force_N"][-1] / state["curve"]["contact_force_N"][-1] < 0.5
     central = evaluate("paper-dome", {**BALL, **SHORT, "contact.offset_mm": 0.0})
-    (middle,) = central.prediction.document()["states"]
+    (middle,) = data(by_model(central.prediction))["states"]
     assert middle["curve"]["contact_force_N"][-1] > state["curve"]["contact_force_N"][-1]
     assert any("2 mm off the dome's" in line for line in evaluation.prediction.assumptions)
 
@@ -144,7 +146,7 @@ def test_the_answer_states_its_harmonics_and_the_forces_in_all_directions():
 def test_a_central_press_with_friction_by_name_is_the_solids():
     changes = {**SHORT, "contact.friction": 0.6}
     by_name, solid = (
-        evaluate("paper-dome", changes, model=model).prediction.document() for model in ("harmonic", USUAL)
+        data(by_model(evaluate("paper-dome", changes, model=model).prediction)) for model in ("harmonic", USUAL)
     )
     (ours,), (theirs,) = by_name["states"], solid["states"]
     assert (by_name["model"], solid["model"], ours["off_axis"]["harmonics"]) == ("harmonic", "solid", 0)
@@ -156,7 +158,7 @@ def test_a_central_press_with_friction_by_name_is_the_solids():
 @pytest.mark.slow
 def test_a_shear_is_reported_in_the_document_the_text_and_the_sheets_table():
     prediction = evaluate("paper-dome", {**SHEAR, **SHORT}, model=USUAL).prediction
-    document = prediction.document()
+    document = data(by_model(prediction))
     (state,) = document["states"]
     sheared, off_axis = state["off_axis"]["shear"], state["off_axis"]
     assert prediction.model == "harmonic" and any("then 1 mm sideways" in line for line in prediction.assumptions)
@@ -177,7 +179,7 @@ def test_a_shear_is_reported_in_the_document_the_text_and_the_sheets_table():
 @pytest.mark.slow
 def test_friction_holds_a_ball_that_would_slide_off():
     slips, held = (
-        evaluate("paper-dome", {**BALL, **SHORT, "contact.friction": friction}, model=USUAL).prediction.document()
+        data(by_model(evaluate("paper-dome", {**BALL, **SHORT, "contact.friction": friction}, model=USUAL).prediction))
         for friction in (0.0, 0.6)
     )
     assert held["model"] == "harmonic" and any("friction coefficient 0.6" in line for line in held["assumptions"])
@@ -213,7 +215,7 @@ def test_the_section_has_a_bar_where_it_stands():
 @pytest.mark.slow
 def test_a_cylinder_across_the_dome_pushes_straight_down():
     lying = {"contact.object": "cylinder", "contact.cylinder_radius_mm": 12.0}
-    (state,) = evaluate("paper-dome", {**lying, **SHORT}, model=USUAL).prediction.document()["states"]
+    (state,) = data(by_model(evaluate("paper-dome", {**lying, **SHORT}, model=USUAL).prediction))["states"]
     assert np.abs(state["off_axis"]["sideways_force_N"]).max() < 1e-6
     round_, flat = ({"contact.object": "ball", "contact.ball_radius_mm": 12.0}, {})
     ends = [evaluate("paper-dome", {**c, **SHORT}).prediction.states[0].force[-1] for c in (round_, flat)]

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from pneutouch.evaluation import evaluate
-from pneutouch.evaluation.document import prediction_document
-from pneutouch.evaluation.uncertainty import documents
+from pneutouch.evaluation.result import by_model, predicted
+from pneutouch.evaluation.uncertainty import uncertainties
 from pneutouch.mechanics.models import NUMERICAL
 from pneutouch.mechanics.uncertainty import FIGURES, batch_of, budget, gas_text, model_errors
 from pneutouch.output.files import json_bytes
+from pneutouch.results.record import plain as data
 from pneutouch.spec.material import Material
 
 SENSITIVITY = "sensitivity_kPa_per_N"
@@ -47,6 +48,7 @@ def test_widths_are_the_budgets_and_values_the_models(evaluated, library, name, 
                 strict=True,
             )
         )
+        said = data(said)
         assert said["figures"].keys() == values.keys()
         for i, (figure, value) in enumerate(values.items()):
             width = float(found.expanded[i, row])
@@ -60,41 +62,41 @@ def test_widths_are_the_budgets_and_values_the_models(evaluated, library, name, 
 
 def test_the_model_that_solves_more_exactly_has_the_smaller_share(evaluated):
     solid, atlas = (
-        evaluated("paper-dome", model=model).uncertainty[0]["figures"][SENSITIVITY]["shares"]["numerical"]
+        data(evaluated("paper-dome", model=model).uncertainty[0])["figures"][SENSITIVITY]["shares"]["numerical"]
         for model in ("solid", "atlas")
     )
     assert solid / atlas == pytest.approx((NUMERICAL["solid"] / NUMERICAL["atlas"]) ** 2, rel=0.02)
 
 
 def test_a_range_that_ends_at_the_depth_has_no_uncertainty_and_no_rounding_noise(evaluated):
-    figure = evaluated("paper-dome", model="atlas").uncertainty[-1]["figures"]["range_end_mm"]
+    figure = data(evaluated("paper-dome", model="atlas").uncertainty[-1])["figures"]["range_end_mm"]
     assert figure["expanded_uncertainty"] == 0.0
     assert figure["low"] == figure["high"] == figure["value"]
 
 
 def test_document_keeps_its_keys_and_gains_one_a_state(evaluated):
     evaluation = evaluated("paper-dome", model="atlas")
-    before, after = evaluation.prediction.document(), prediction_document(evaluation)
+    before, after = data(by_model(evaluation.prediction)), data(predicted(evaluation))
     kept = {**after, "states": [{k: v for k, v in s.items() if k != "uncertainty"} for s in after["states"]]}
     assert {key: value for key, value in kept.items() if key not in ("rating", "dead_volume_note")} == before
     assert after["rating"]["rated_pressure_kPa"] < after["rating"]["limit_kPa"]
     assert all(state["uncertainty"]["coverage_factor"] == 2 for state in after["states"])
     again = evaluate("paper-dome", model="atlas")
-    assert json_bytes(prediction_document(again)) == json_bytes(after)
+    assert json_bytes(data(predicted(again))) == json_bytes(after)
 
 
 def test_outside_the_atlas_every_state_says_why(evaluated):
     flange = evaluate("paper-dome", {"pneumatics.driving_pressures_kPa": [0, 5]}, clamp="flange")
-    assert [list(said) for said in flange.uncertainty] == [["unknown"], ["unknown"]]
-    assert "flange" in flange.uncertainty[0]["unknown"]
+    assert [list(said) for said in map(data, flange.uncertainty)] == [["unknown"], ["unknown"]]
+    assert "flange" in data(flange.uncertainty[0])["unknown"]
     membrane = evaluated("paper-dome", model="membrane").uncertainty
     assert len(membrane) == 4
-    assert "model atlas" in membrane[0]["unknown"]
+    assert "model atlas" in membrane[0].unknown
 
 
 def test_samples_of_the_same_sources_give_nearly_the_same_interval(evaluated):
     one = evaluated("paper-dome", model="atlas")
-    for said in documents(one.prediction, one.sensor, one.scene, lambda: one.resins, 3000)[::3]:
+    for said in map(data, uncertainties(one.prediction, one.sensor, one.scene, lambda: one.resins, 3000)[::3]):
         own, drawn = said["figures"][SENSITIVITY], said["monte_carlo"]["figures"][SENSITIVITY]
         width = np.log(own["high"] / own["low"])
         assert np.log(drawn["high"] / drawn["low"]) == pytest.approx(width, rel=0.12)

@@ -15,12 +15,13 @@ from pneutouch.catalogue import Library
 from pneutouch.cli.prediction_text import prediction_text
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
-from pneutouch.evaluation.document import full_document, viscous
-from pneutouch.evaluation.relaxation import ageing_data, viscous_data, viscous_runs
+from pneutouch.evaluation.relaxation import ageing_data, viscous, viscous_curves, viscous_runs
+from pneutouch.evaluation.result import predicted_in_full
 from pneutouch.evaluation.sheet import sheet_data
 from pneutouch.mechanics.viscous.prony import ageing_ratio
 from pneutouch.output.files import json_bytes
 from pneutouch.report import curves
+from pneutouch.results.record import plain as data
 from tests.conftest import ROOT
 from tests.mechanics.viscous.tables import PAPER_RESINS, agilus_table, friction_table, resin, wall_table
 
@@ -31,7 +32,7 @@ def agilus(library):
 
 
 def test_every_state_has_figures_of_both_sources(agilus):
-    found = viscous(agilus)
+    found = data(viscous(agilus.viscous_runs))
     assert len(found["sources"]) == 2
     assert [state["driving_pressure_kPa"] for state in found["states"]] == pytest.approx([0, 10, 20])
     assert found["depth_mm"] == 5.0
@@ -50,43 +51,43 @@ def test_every_state_has_figures_of_both_sources(agilus):
 
 def test_the_same_prediction_has_the_same_bytes(agilus, library):
     again = evaluate("agilus-dome", model="atlas", library=library)
-    assert json_bytes(full_document(agilus)) == json_bytes(full_document(again))
+    assert json_bytes(data(predicted_in_full(agilus))) == json_bytes(data(predicted_in_full(again)))
 
 
 @pytest.mark.parametrize("name", PAPER_RESINS)
 def test_for_the_papers_resins_nothing_is_predicted_and_no_other_is_put_in_their_place(name, library):
-    found = viscous(
-        evaluate(
-            "paper-dome",
-            {"membrane.material": name, "pneumatics.driving_pressures_kPa": [0]},
-            model="atlas",
-            library=library,
-        )
+    evaluation = evaluate(
+        "paper-dome",
+        {"membrane.material": name, "pneumatics.driving_pressures_kPa": [0]},
+        model="atlas",
+        library=library,
     )
+    found = data(viscous(evaluation.viscous_runs))
     title = resin(library, name).title
     assert found == {"unknown": f"no relaxation data for {title}; no other resin's are put in their place"}
 
 
 def test_the_membrane_and_a_sensor_outside_the_atlas_say_why(library, agilus):
-    assert "membrane" in viscous(evaluate("agilus-dome", model="membrane", library=library))["unknown"]
+    by_membrane = evaluate("agilus-dome", model="membrane", library=library)
+    assert "membrane" in viscous(by_membrane.viscous_runs).unknown
     odd = replace(agilus, sensor=agilus.sensor.replace(poisson_ratio=0.45))
-    assert "outside the atlas: Poisson" in viscous(odd)["unknown"]
+    assert "outside the atlas: Poisson" in viscous(odd.viscous_runs).unknown
 
 
 def test_the_text_has_one_line(agilus, library):
-    text = prediction_text(full_document(agilus))
+    text = prediction_text(predicted_in_full(agilus))
     assert sum("hysteresis" in line for line in text.splitlines()) == 1
-    last = viscous(agilus)["states"][-1]["by_source"]
+    last = data(viscous(agilus.viscous_runs))["states"][-1]["by_source"]
     lost = [one["relaxation"]["pressure_rise_loss_percent"] for one in last]
     assert f"loses {min(lost):.1f} to {max(lost):.1f} % from 1 s to 600 s" in text
-    plain = prediction_text(full_document(evaluate("paper-dome", model="atlas", library=library)))
+    plain = prediction_text(predicted_in_full(evaluate("paper-dome", model="atlas", library=library)))
     assert "not known: no relaxation data for TangoPlus" in plain
 
 
 def test_the_membrane_model_does_not_pay_for_the_atlas():
     code = (
-        "import sys; from pneutouch.evaluation import evaluate; from pneutouch.evaluation.document import full_document; "
-        "print('unknown' in full_document(evaluate('agilus-dome', model='membrane'))['viscous'], 'scipy' in sys.modules)"
+        "import sys; from pneutouch.evaluation import evaluate; from pneutouch.evaluation.result import predicted_in_full; "
+        "print(predicted_in_full(evaluate('agilus-dome', model='membrane')).viscous.unknown is not None, 'scipy' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["True", "False"]
@@ -104,10 +105,10 @@ def test_an_aged_sensor_is_the_fresh_one_with_the_shifted_modulus(library):
     said = new.pop()
     for word in ("aged one year", "27.6 to 29.5", "1.083", "Gent", "Shore A 80", "skin", "relaxed modulus"):
         assert word in said
-    document = full_document(old)
+    document = data(predicted_in_full(old))
     assert document["aged"]["modulus_ratio"] == pytest.approx(ratio, rel=1e-5)
-    assert "aged" not in full_document(fresh)
-    assert "aged one year: modulus times 1.083" in prediction_text(document)
+    assert "aged" not in data(predicted_in_full(fresh))
+    assert "aged one year: modulus times 1.083" in prediction_text(predicted_in_full(old))
 
 
 def test_ageing_of_a_resin_that_is_not_known_is_refused_with_the_designs_name(library, command):
@@ -128,10 +129,10 @@ def test_the_flag_reaches_the_prediction(command):
 
 
 def test_the_sheets_section_has_the_figures_of_the_prediction(agilus):
-    data = viscous_data(agilus.viscous_runs)
-    section = curves.section(data, "Ageing: not known.")
+    found, drawn = viscous(agilus.viscous_runs), viscous_curves(agilus.viscous_runs)
+    section = curves.section(found, "Ageing: not known.")
     rows = iter(section["rows"])
-    for state in viscous(agilus)["states"]:
+    for state in data(viscous(agilus.viscous_runs))["states"]:
         for one in state["by_source"]:
             row, held = next(rows), one["relaxation"]
             assert float(row[0]) == pytest.approx(state["driving_pressure_kPa"])
@@ -144,17 +145,18 @@ def test_the_sheets_section_has_the_figures_of_the_prediction(agilus):
     assert any("dogbone" in note for note in section["notes"]) and any(
         "1904.11888" in note for note in section["notes"]
     )
-    assert curves.held_chart(data, (86.0, 62.0)) == curves.held_chart(data, (86.0, 62.0))
-    assert curves.loop_chart(data, (86.0, 62.0)).count("<path") > 4
+    assert curves.held_chart(drawn, (86.0, 62.0)) == curves.held_chart(drawn, (86.0, 62.0))
+    assert curves.loop_chart(drawn, (86.0, 62.0)).count("<path") > 4
 
 
 def test_a_run_that_stops_is_told_in_the_section_and_not_drawn(agilus):
     sensor = agilus.sensor.replace(gauge_limit=0.03)
-    data = viscous_data(viscous_runs(agilus.prediction, agilus.scene.membrane_material, sensor))
-    section = curves.section(data, "")
+    runs = viscous_runs(agilus.prediction, agilus.scene.membrane_material, sensor)
+    drawn = viscous_curves(runs)
+    section = curves.section(viscous(runs), "")
     assert any("gauge range" in note for note in section["notes"])
     assert any("–" in row for row in section["rows"])
-    assert "<svg" in curves.held_chart(data, (86.0, 62.0)) and "<svg" in curves.loop_chart(data, (86.0, 62.0))
+    assert "<svg" in curves.held_chart(drawn, (86.0, 62.0)) and "<svg" in curves.loop_chart(drawn, (86.0, 62.0))
 
 
 def test_the_line_on_ageing(library):

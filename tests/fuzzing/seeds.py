@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pneutouch.formats import format_of, versioned
+from pneutouch.results.record import plain as data
 from tests.fuzzing.files import library
 from tests.fuzzing.parts import parts
 from tests.fuzzing.place import ROOT
@@ -212,9 +213,9 @@ def _recipe() -> str:
 
 
 def _prediction() -> bytes:
-    from pneutouch.evaluation.document import prediction_document
+    from pneutouch.evaluation.result import predicted
 
-    return json.dumps(versioned("prediction", prediction_document(_evaluated()))).encode()
+    return json.dumps(versioned("prediction", data(predicted(_evaluated())))).encode()
 
 
 def _threemf() -> bytes:

@@ -9,6 +9,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from pneutouch.errors import BeyondLimitError
+from pneutouch.evaluation.result import by_model
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
@@ -16,6 +17,7 @@ from pneutouch.mechanics.atlas_states import atlas_result, meets_ring, outside_a
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid_states import solid_result
+from pneutouch.results.record import plain as data
 
 SENSOR = Sensor(
     Dome(9.25, 1.5),
@@ -174,15 +176,15 @@ def test_a_thin_wall_meets_the_ring_and_the_solid_is_preferred():
     sensor = ringed(1.0)
     assert outside_atlas(sensor) is None and meets_ring(sensor)
     found, asked = (predict("x", sensor, [0.0], model=model) for model in ("auto", "atlas"))
-    assert found.model == "solid" and "ring that clamps" in found.error_estimate["model_choice"]
-    assert "ring that clamps" in asked.error_estimate["model_choice"]
+    assert found.model == "solid" and "ring that clamps" in found.error_estimate.model_choice
+    assert "ring that clamps" in asked.error_estimate.model_choice
     low, high = (one.states[0].figures.sensitivity_kPa_per_N for one in (found, asked))
     assert 0.02 < high / low - 1 < 0.10  # docs/background/atlas.md states the bound
 
 
 def test_the_document_is_complete():
-    document = predict("x", SENSOR, [0.0, 0.022], model="atlas").document()
-    solid = predict("x", SENSOR, [0.0, 0.022]).document()
+    document = data(by_model(predict("x", SENSOR, [0.0, 0.022], model="atlas")))
+    solid = data(by_model(predict("x", SENSOR, [0.0, 0.022])))
     assert set(document["states"][1]["curve"]) == set(solid["states"][1]["curve"])
     assert set(document["states"][1]) == set(solid["states"][1])
     assert document["model"] == "atlas" and document["limit_point"] is not None

@@ -38,7 +38,7 @@ OUTSIDE = {
 
 
 def said(prediction):
-    return prediction.error_estimate["model_choice"]
+    return prediction.error_estimate.model_choice
 
 
 @pytest.mark.parametrize(("text", "value"), [("2%", 0.02), ("0.02", 0.02), (" 1.6 % ", 0.016), ("100%", 1.0)])
@@ -75,8 +75,8 @@ def test_at_two_percent_the_atlas_answers_and_names_both_parts_of_its_error():
     found = predict("x", PAPER, [0.0, 0.022], model="auto", tolerance=0.02)
     assert found.model == "atlas"
     assert "meets 2.0%" in said(found) and "passed over membrane" in said(found)
-    assert found.error_estimate["sensitivity_tabulation_relative"] == pytest.approx(0.0075)
-    assert found.error_estimate["sensitivity_discretisation_relative"] == pytest.approx(0.011)
+    assert found.error_estimate.sensitivity_tabulation_relative == pytest.approx(0.0075)
+    assert found.error_estimate.sensitivity_discretisation_relative == pytest.approx(0.011)
 
 
 def test_at_one_point_two_percent_the_solid_answers():
@@ -166,7 +166,7 @@ def test_a_press_that_leaves_the_known_states_goes_to_the_solid(monkeypatch):
 def test_auto_is_the_model_it_names():
     auto, atlas = (predict("x", PAPER, [0.012, 0.022], model=m) for m in ("auto", "atlas"))
     assert [s.figures for s in auto.states] == [s.figures for s in atlas.states]
-    assert "model_choice" not in atlas.error_estimate
+    assert atlas.error_estimate.model_choice is None
     assert auto.assumptions == atlas.assumptions
 
 

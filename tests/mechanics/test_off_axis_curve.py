@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from pneutouch.evaluation.result import off_axis
 from pneutouch.mechanics.off_axis_curve import OffAxisCurve, RangeCurve, ShearCurve
+from pneutouch.results.record import plain as data
 
 TRAVEL = np.array([0.0, 0.5, 1.0])
 SHEAR = ShearCurve(
@@ -46,7 +48,7 @@ def test_forces_take_the_factor_of_force_and_rises_that_of_rise() -> None:
 
 
 def test_the_document_has_percent_and_kPa() -> None:
-    document = CURVE.document()
+    document = data(off_axis(CURVE))
     assert (document["harmonics"], document["last_change_percent"]) == (6, pytest.approx(0.4))
     assert document["sideways_force_N"] == [0.0, 0.3] and document["moment_N_mm"] == [0.0, 2.0]
     shear = document["shear"]

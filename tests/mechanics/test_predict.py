@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import InputError
+from pneutouch.evaluation.result import by_model
 from pneutouch.mechanics import predict as predict_with
 from pneutouch.mechanics.limits import limit_point, limits
+from pneutouch.results.record import plain as data
 from tests.mechanics.test_contact import PAPER
 from tests.mechanics.test_inflation import MODULI
 
@@ -89,7 +91,7 @@ def test_unknown_model_or_closure_is_an_input_error(words):
 
 
 def test_document_is_rounded_and_names_units():
-    document = predict("x", PAPER, [0.0, 0.012]).document()
+    document = data(by_model(predict("x", PAPER, [0.0, 0.012])))
     state = document["states"][1]
     assert state["driving_pressure_kPa"] == 12.0
     assert state["curve"]["contact_force_N"][0] == 0.0

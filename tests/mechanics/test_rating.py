@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from pneutouch.evaluation.result import rating_record
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.limits import Limits
 from pneutouch.mechanics.paper_sensor import material_sensor
@@ -100,12 +101,9 @@ def test_pressures_are_judged_at_the_rating_and_at_the_nominal_limit(library):
     limit = found.nominal.nominal
     pressures = [found.pressure, 1.001 * found.pressure, limit, 1.001 * limit]
     assert [found.severity(p) for p in pressures] == [None, "warning", "warning", "error"]
-    document = found.document([0.0, 22 * KPA, 45 * KPA])
-    assert [(f["severity"], f["driving_pressure_kPa"]) for f in document["findings"]] == [
-        ("warning", 22),
-        ("error", 45),
-    ]
-    assert document["rated_pressure_kPa"] == pytest.approx(0.9 * document["limit_low_kPa"], rel=1e-4)
+    record = rating_record(found, [0.0, 22 * KPA, 45 * KPA])
+    assert [(f.severity, f.driving_pressure_kPa) for f in record.findings] == [("warning", 22), ("error", 45)]
+    assert record.rated_pressure_kPa == pytest.approx(0.9 * record.limit_low_kPa, rel=1e-4)
 
 
 def test_many_sensors_are_rated_as_one_is(library):

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import BeyondLimitError, InputError
+from pneutouch.evaluation.result import by_model
 from pneutouch.evaluation.table_s1 import SHIPPED, compute_errors, fingerprint, sensitivity_error
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.solid.indenter import RigidBase
+from pneutouch.results.record import plain as data
 from pneutouch.spec.material import Material
 from pneutouch.spec.values import Quantity
 from tests.mechanics.test_contact import PAPER
@@ -60,16 +62,13 @@ def test_shipped_errors_are_what_the_solid_gives_today(library):
 
 def test_an_error_is_stated_only_near_the_sensor_that_was_measured(library):
     tango = library.load("materials", "TangoPlus")
-    stated = sensitivity_error(tango, PAPER, "solid", "variational")["sensitivity_relative"]
+    stated = sensitivity_error(tango, PAPER, "solid", "variational").relative
     assert stated == pytest.approx(0.08, abs=0.01)
     for far in ({"wall_thickness": 4.0}, {"dead_volume": 4900.0}, {"flange": (2.0, 2.0)}):
         found = sensitivity_error(tango, PAPER.replace(**far), "solid", "variational")
-        assert found["sensitivity_relative"] is None
-        assert "unknown" in found["summary"][0]
-    assert (
-        sensitivity_error(library.load("materials", "Agilus30"), PAPER, "solid", "variational")["sensitivity_relative"]
-        is None
-    )
+        assert found.relative is None
+        assert "unknown" in found.summary
+    assert sensitivity_error(library.load("materials", "Agilus30"), PAPER, "solid", "variational").relative is None
 
 
 def test_a_labs_own_resin_is_computed_not_looked_up(library):
@@ -78,7 +77,7 @@ def test_a_labs_own_resin_is_computed_not_looked_up(library):
         update={"title": "mine", "shear_modulus_MPa": Quantity(value=3.0, source="made up here")}
     )
     found = sensitivity_error(stiffer, PAPER, "solid", "variational")
-    assert found["sensitivity_relative"] > 0.5
+    assert found.relative > 0.5
 
 
 def test_printed_flange_is_a_little_softer_than_the_clamped_base(paper):
@@ -134,7 +133,7 @@ def test_beyond_the_limit_point_names_pressure_and_limit():
 
 
 def test_document_has_stress_stretch_and_the_inflation_curve(paper):
-    document = paper.document()
+    document = data(by_model(paper))
     curve = document["states"][2]["curve"]
     assert len({len(values) for values in curve.values()}) == 1
     assert max(curve["max_von_mises_MPa"]) > 0.1

@@ -17,6 +17,7 @@ from pneutouch.mechanics.uncertainty import batch_of
 from pneutouch.report.certainty import OTHERS, SENSITIVITY, ends, ranked, share_bars, shares
 from pneutouch.report.curves import sensitivities
 from pneutouch.report.tradeoff import tradeoff_chart, tuning_chart
+from pneutouch.results.record import plain as data
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 from pneutouch.workflows.select.charts import tradeoff as selected_tradeoff
@@ -145,7 +146,7 @@ def test_a_design_s_charts_mark_the_design_at_its_own_figures(evaluated, drawn):
         assert np.interp(
             pressure, found.chosen.driving_pressure_kPa, found.chosen.sensitivity_kPa_per_N
         ) == pytest.approx(value, rel=1e-3)
-        own = said["figures"][SENSITIVITY]
+        own = data(said)["figures"][SENSITIVITY]
         assert np.interp(pressure, found.chosen.driving_pressure_kPa, found.low_kPa_per_N) == pytest.approx(
             own["low"], rel=0.01
         )

@@ -13,6 +13,7 @@ import pytest
 from pneutouch.catalogue import load_scene
 from pneutouch.evaluation.anywhere import contact_chart
 from pneutouch.report import curves, prose
+from pneutouch.results.record import plain as data
 
 SECTIONS = [
     "Performance",
@@ -163,11 +164,11 @@ def page(monkeypatch):
 @pytest.mark.slow
 def test_sheet_and_text_warn_of_the_sway(evaluated, page):
     from pneutouch.cli.prediction_text import prediction_text
-    from pneutouch.evaluation.document import full_document
+    from pneutouch.evaluation.result import predicted_in_full
 
     # A wall that passes through its base sways; one that lies down on it does not: docs/background/sway.md.
     evaluation = evaluated("paper-dome", "pneumatics.driving_pressures_kPa=[0]", "contact.base=false")
-    prediction = full_document(evaluation)
+    prediction = data(predicted_in_full(evaluation))
     (event,) = [event for event in prediction["states"][0]["events"] if event["kind"] == "sway"]
     warning = f"sway at {event['indentation_mm']:.2f} mm and 0 kPa: {event['message']}"
     assert f"Warning: {warning}." in page(evaluation)

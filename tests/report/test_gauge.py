@@ -17,7 +17,7 @@ _COLUMN = 12
 def test_an_order_code_can_be_broken_and_reads_the_same(library, name):
     gauge = library.load("gauges", name)
     assert isinstance(gauge, Gauge)
-    reading = SimpleNamespace(title=gauge.title, low_kPa=0.0, limit_kPa=34.474)
+    reading = SimpleNamespace(title=gauge.title, reads_from_kPa=0.0, reads_to_kPa=34.474)
     pressures, unit, note = gauge_range(SimpleNamespace(scene=SimpleNamespace(gauge=gauge), gauge=reading))
     assert (pressures, unit) == ("0 to 34.47", "kPa gauge")
     assert f"({gauge.order_code})" in note.replace("\u200b", "")

@@ -7,9 +7,10 @@ import json
 
 import pytest
 
-from pneutouch.evaluation.document import full_document
+from pneutouch.evaluation.result import predicted_in_full
 from pneutouch.formats import FORMATS, format_of, versioned
 from pneutouch.output.files import json_bytes
+from pneutouch.results.record import plain as data
 from pneutouch.schemas import document_kinds, schema_of
 from tests.schemas.held import PRINTED, WRITTEN, hold, hold_folder, validator
 
@@ -44,7 +45,7 @@ def test_every_written_document_is_held_by_a_command_or_a_file():
     ids=["membrane", "anywhere", "gauge", "graded", "ball"],
 )
 def test_a_prediction_is_of_its_schema(evaluated, design, changes, model):
-    document = as_written(full_document(evaluated(design, *changes, model=model)))
+    document = as_written(data(predicted_in_full(evaluated(design, *changes, model=model))))
     hold("prediction", document)
     for path, value in ((("model",), 3), (("rating", "share"), "much"), (("states",), [{}]), (("surprise",), 1)):
         wrong = copy.deepcopy(document)

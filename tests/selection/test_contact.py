@@ -9,6 +9,7 @@ import pneutouch as pt
 from pneutouch.cli.select_text import selection_text
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.results.record import plain as data
 from pneutouch.selection.contact_factors import ContactFactors, figures_of, places
 from pneutouch.selection.contact_search import ROUNDS
 from pneutouch.spec.read import parse_changes
@@ -41,7 +42,7 @@ def predicted(selection: SelectionRun, folder) -> tuple[float, float, float]:
     states = found.prediction.states
     row = min(range(len(states)), key=lambda k: abs(states[k].driving_pressure - pressure))
     assert states[row].driving_pressure == pytest.approx(pressure, abs=1e-9)
-    stated = found.uncertainty[row]["figures"]["sensitivity_kPa_per_N"]
+    stated = data(found.uncertainty[row])["figures"]["sensitivity_kPa_per_N"]
     figures = states[row].figures
     return figures.sensitivity_kPa_per_N, figures.force_range[1], 2 * stated["standard_uncertainty_relative"]
 

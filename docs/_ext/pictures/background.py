@@ -127,8 +127,8 @@ def shares() -> dict[str, tuple[dict[str, float], float, float]]:
     errors = model_errors(tango, library.all("materials", Material).values())
     printer: Any = library.load("printers", "objet260-connex")
     batch = batch_of(material_sensor(tango), [0.0])
-    figures = document(budget(batch, tango, printer, near_paper=True, errors=errors, numerical=NUMERICAL), 0)["figures"]
-    return {key: (figures[key]["shares"], figures[key]["low"], figures[key]["high"]) for key in SHARED}
+    figures = document(budget(batch, tango, printer, near_paper=True, errors=errors, numerical=NUMERICAL), 0).known
+    return {key: (dict(figures[key].shares), figures[key].low, figures[key].high) for key in SHARED}
 
 
 def uncertainty() -> str:

@@ -20,8 +20,8 @@ from pneutouch.api.results import CheckResult
 from pneutouch.body import Body
 from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
 from pneutouch.errors import InputError, shown
-from pneutouch.evaluation.document import curves_document
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
+from pneutouch.evaluation.result import by_mixing_curve
 from pneutouch.mechanics.models import model_options
 from pneutouch.output.new import write_design
 from pneutouch.parts import Assembly, assemble
@@ -223,7 +223,7 @@ class Design(show.Shown):
         """Check printability and mechanical limits; ``deep`` has pymeshlab inspect the meshes as well."""
         evaluation = self._evaluated
         more = evaluation.deep_findings() if deep else []
-        return CheckResult(self.name, (*evaluation.findings, *more), tuple(curves_document(evaluation)))
+        return CheckResult(self.name, (*evaluation.findings, *more), by_mixing_curve(evaluation.curves))
 
     def build(self, out: str | Path = "outputs") -> Path:
         """Write print files, prediction and datasheet into ``out/<name>/``; returns that folder.

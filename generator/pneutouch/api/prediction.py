@@ -13,7 +13,9 @@ from pneutouch.api import show
 from pneutouch.api.fields import numbers_of
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError, shown
-from pneutouch.evaluation.document import UncertainStateRecord, full_document, prediction_document
+from pneutouch.evaluation.result import predicted, predicted_in_full
+from pneutouch.results.prediction import StateRecord
+from pneutouch.results.record import plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -81,19 +83,20 @@ class PredictedState(show.Shown):
     curve: dict[str, Array]
     uncertainty: dict[str, Any]
 
-    def __init__(self, content: UncertainStateRecord) -> None:
-        self.figures: dict[str, FigureValue] = {}
-        known = content["uncertainty"].get("figures", {})
+    def __init__(self, state: StateRecord) -> None:
+        self.record, self.figures = state, dict[str, FigureValue]()
+        assert state.uncertainty is not None
+        known, content = state.uncertainty.known, plain(state)
         curve = {name: np.array(values) for name, values in content["curve"].items()}
         vars(self).update({**content, **curve, "curve": curve, "limit_pressure": None, "force_at_range_end": None})
-        for key, value in {**{name: entry["value"] for name, entry in known.items()}, **content}.items():
+        for key, value in {**{name: entry.value for name, entry in known.items()}, **content}.items():
             split = _UNIT.match(key)
             if split is None or key == "driving_pressure_kPa" or not isinstance(value, float | None):
                 continue
             name, unit = split[1], split[2].replace("_per_", "/")
             setattr(self, name, None)
             if value is not None:
-                interval = (known[key]["low"], known[key]["high"]) if key in known else None
+                interval = (known[key].low, known[key].high) if key in known else None
                 self.figures[key] = FigureValue(name, value, unit, interval)
                 vars(self)[name] = self.figures[key]
 
@@ -104,7 +107,7 @@ class PredictedState(show.Shown):
         return DataFrame(self.curve)
 
     def _head(self) -> str:
-        return f"State at {self.driving_pressure_kPa:g} kPa"
+        return f"StateRecord at {self.driving_pressure_kPa:g} kPa"
 
     def _rows(self) -> list[Any]:
         return [(figure.name, str(figure)) for figure in self.figures.values()]
@@ -120,7 +123,7 @@ class Prediction(show.Shown):
     @cached_property
     def states(self) -> tuple[PredictedState, ...]:
         """The states in order of driving pressure."""
-        return tuple(PredictedState(state) for state in prediction_document(self.evaluation)["states"])
+        return tuple(PredictedState(state) for state in predicted(self.evaluation).states)
 
     @property
     def rating(self) -> Rating:
@@ -139,7 +142,7 @@ class Prediction(show.Shown):
 
     def to_dict(self) -> dict[str, Any]:
         """The whole prediction, as the command ``predict`` prints it as JSON."""
-        return dict(full_document(self.evaluation))
+        return dict(plain(predicted_in_full(self.evaluation)))
 
     def to_frame(self) -> DataFrame:
         """A row a driving pressure; a column a figure, with ``_low`` and ``_high`` where its interval is known."""

@@ -8,18 +8,20 @@ from typing import Any
 from pneutouch.api import show
 from pneutouch.errors import InputError, shown
 from pneutouch.printability import Finding
+from pneutouch.results.prediction import ByMixingCurve
+from pneutouch.results.record import plain
 
 
 @dataclass(frozen=True, repr=False)
 class CheckResult(show.Shown):
     """The findings of a check; it is ``passed`` where none of them is an error.
 
-    ``curves`` are the figures by every mixing curve of a mix, as data.
+    ``curves`` are the figures by every mixing curve of a mix.
     """
 
     name: str
     findings: tuple[Finding, ...]
-    curves: tuple[dict[str, Any], ...] = ()
+    curves: tuple[ByMixingCurve, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -29,7 +31,7 @@ class CheckResult(show.Shown):
     def to_dict(self) -> dict[str, Any]:
         """The document that the command ``check`` prints as JSON."""
         content = {"design": self.name, "passed": self.passed, "findings": [f.document() for f in self.findings]}
-        return {**content, "mixing_curves": list(self.curves)} if self.curves else content
+        return {**content, "mixing_curves": plain(self.curves)} if self.curves else content
 
     def _head(self) -> str:
         verdict = "passed" if self.passed else "not passed"

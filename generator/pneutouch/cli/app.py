@@ -205,9 +205,10 @@ def predict(
             return
         if leak is not None:
             raise InputError("needs `for_` or `tasks`", key="leak", value=str(leak))
-        from pneutouch.evaluation.document import full_document
         from pneutouch.evaluation.evaluate import evaluate
+        from pneutouch.evaluation.result import predicted_in_full
         from pneutouch.mechanics.models import model_options
+        from pneutouch.results.record import plain
 
         evaluation = evaluate(
             design,
@@ -218,13 +219,13 @@ def predict(
             **model_options(model, tolerance),
         )
         with bar("predicting"):
-            document = full_document(evaluation, monte_carlo)
+            prediction = predicted_in_full(evaluation, monte_carlo)
         if json:
-            print_json(document)
+            print_json(plain(prediction))
         else:
             from pneutouch.cli.prediction_text import prediction_text
 
-            echo(prediction_text(document))
+            echo(prediction_text(prediction))
 
 
 @app.command("list")

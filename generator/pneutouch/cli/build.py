@@ -131,23 +131,25 @@ def check(
             from pneutouch.workflows.specimen.build import check_specimen
 
             refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
-            curves: list[dict[str, Any]] = []
+            curves: tuple[Any, ...] = ()
             with bar("checking the specimen"):
                 findings = check_specimen(design, changes(set_, calibration), deep=deep)
         else:
-            from pneutouch.evaluation.document import curves_document
+            from pneutouch.evaluation.result import by_mixing_curve
 
             evaluation = _evaluated(design, changes(set_, calibration))
             with bar("checking printability and limits"):
                 findings = [*evaluation.findings, *(evaluation.deep_findings() if deep else [])]
-                curves = curves_document(evaluation)
+                curves = by_mixing_curve(evaluation.curves)
                 if voxels:
                     from pneutouch.workflows.build_voxels import plan_voxels
 
                     findings += plan_voxels(evaluation.assembly).findings
         broken = any(finding.severity == "error" for finding in findings)
         if json:
-            by_curve = {"mixing_curves": curves} if curves else {}
+            from pneutouch.results.record import plain
+
+            by_curve = {"mixing_curves": plain(curves)} if curves else {}
             listed = [f.document() for f in findings]
             print_json({"design": design, "passed": not broken, "findings": listed, **by_curve})
         else:

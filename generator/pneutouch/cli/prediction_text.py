@@ -5,8 +5,8 @@ Speed of a sensor's reading, as text for people.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 from pneutouch.cli.terminal import table_text
 from pneutouch.mechanics.events import LOBES, SWAY
@@ -14,183 +14,183 @@ from pneutouch.rounding import tenths_below
 from pneutouch.wording import SIMULATED, counted
 
 if TYPE_CHECKING:
-    from pneutouch.evaluation.document import PredictionRecord, UncertainStateRecord
-    from pneutouch.mechanics.rating import RatingRecord
-    from pneutouch.mechanics.uncertainty.record import SampleRecord, UncertaintyRecord
     from pneutouch.printability import Finding
+    from pneutouch.results.behaviour import CalibratedBy, ContactAnywhere, DynamicRecord, Dynamics, Viscous
+    from pneutouch.results.prediction import LimitPointRecord, PredictionRecord, RatingRecord, StateRecord
+    from pneutouch.results.uncertainty import IntervalRecord
 
 
-def dynamics_lines(document: dict[str, Any]) -> list[str]:
+_SENSITIVITY = "sensitivity_kPa_per_N"
+
+
+def dynamics_lines(dynamics: Dynamics) -> list[str]:
     """Bandwidth and rise time at the highest driving pressure, one line a series of relaxation data."""
-    highest = document["states"][-1]["driving_pressure_kPa"]
-    states = [state for state in document["states"] if state["driving_pressure_kPa"] == highest]
+    highest_kPa = dynamics.states[-1].driving_pressure_kPa
+    states = [state for state in dynamics.states if state.driving_pressure_kPa == highest_kPa]
     lines = []
     for k, state in enumerate(states):
-        data = "" if state["relaxation_source"] is None else f", data {chr(ord('A') + k)}"
-        lines.append(f"at {highest:g} kPa{data}: {_figures(state)}")
-    return [*lines, *([f"note: {document['note']}"] if "note" in document else [])]
+        data = "" if state.relaxation_source is None else f", data {chr(ord('A') + k)}"
+        lines.append(f"at {highest_kPa:g} kPa{data}: {_figures(state)}")
+    return [*lines, *([f"note: {dynamics.note}"] if dynamics.note is not None else [])]
 
 
-def _figures(state: dict[str, Any]) -> str:
+def _figures(state: DynamicRecord) -> str:
     parts = []
-    if state["first_resonance_Hz"] is not None:
-        parts.append(f"first resonance {state['first_resonance_Hz']:.3g} Hz (gain {state['resonance_gain']:.2g})")
-    band, within = state["bandwidth_3_dB_Hz"], state["within_5_percent_Hz"]
-    if band is not None:
-        parts.append(f"gain within 3 dB up to {band:.3g} Hz ({state['bandwidth_limited_by']})")
-    if within is not None:
-        parts.append(f"within 5 % up to {within:.2g} Hz ({state['within_5_percent_limited_by']})")
-    parts.append(f"step of force: delay {state['delay_ms']:.2g} ms, rise {state['rise_time_ms']:.2g} ms")
+    if state.first_resonance_Hz is not None:
+        parts.append(f"first resonance {state.first_resonance_Hz:.3g} Hz (gain {state.resonance_gain:.2g})")
+    if state.bandwidth_3_dB_Hz is not None:
+        parts.append(f"gain within 3 dB up to {state.bandwidth_3_dB_Hz:.3g} Hz ({state.bandwidth_limited_by})")
+    if state.within_5_percent_Hz is not None:
+        parts.append(f"within 5 % up to {state.within_5_percent_Hz:.2g} Hz ({state.within_5_percent_limited_by})")
+    parts.append(f"step of force: delay {state.delay_ms:.2g} ms, rise {state.rise_time_ms:.2g} ms")
     return ", ".join(parts)
 
 
-def prediction_text(document: PredictionRecord) -> str:
+def prediction_text(prediction: PredictionRecord) -> str:
     """The prediction as a table, with limits, events, the interval of the sensitivity and the model's error."""
-    closure = f" ({document['closure']} contact)" if document["closure"] else ""
-    error = document["error_estimate"]
-    sensitivity = error["sensitivity_relative"]
-    far = "unknown" if sensitivity is None else f"up to {sensitivity:.0%}"
-    idealised = f" ({document['dead_volume_note']})" if "dead_volume_note" in document else ""
+    closure = f" ({prediction.closure} contact)" if prediction.closure else ""
+    error = prediction.error_estimate
+    far = "unknown" if error.sensitivity_relative is None else f"up to {error.sensitivity_relative:.0%}"
+    idealised = f" ({prediction.dead_volume_note})" if prediction.dead_volume_note is not None else ""
+    assert prediction.rating is not None and prediction.viscous is not None and prediction.dynamics is not None
     lines = [
-        f"{document['design']}: model {document['model']}{closure}, dead volume {document['dead_volume_mL']:.3f} mL"
+        f"{prediction.design}: model {prediction.model}{closure}, dead volume {prediction.dead_volume_mL:.3f} mL"
         f"{idealised}",
-        *_calibrated(document.get("calibration")),
-        f"{_reach(document['limit_point'])}; the {document['limits']['binding']} binds",
-        *_rating(document["rating"]),
+        *_calibrated(prediction.calibration),
+        f"{_reach(prediction.limit_point)}; the {prediction.limits.binding} binds",
+        *_rating(prediction.rating),
         "",
-        _state_table(document["states"]),
+        _state_table(prediction.states),
         "",
-        *_off_axis(document["states"]),
-        *_sheared(document["states"]),
-        f"error in sensitivity {far}: {error['sensitivity_basis']}",
-        *_uncertainty(document["states"]),
-        *_anywhere(document.get("contact_anywhere")),
-        *_viscous(document["viscous"]),
-        *dynamics_lines(document["dynamics"]),
+        *_off_axis(prediction.states),
+        *_sheared(prediction.states),
+        f"error in sensitivity {far}: {error.sensitivity_basis}",
+        *_uncertainty(prediction.states[-1]),
+        *_anywhere(prediction.contact_anywhere),
+        *_viscous(prediction.viscous),
+        *dynamics_lines(prediction.dynamics),
     ]
-    if aged := document.get("aged"):
-        ratio = f"{aged['modulus_ratio']:.3f}"
-        lines.append(f"aged one year: modulus times {ratio} by its hardness; {aged['assumes']}")
+    if aged := prediction.aged:
+        lines.append(f"aged one year: modulus times {aged.modulus_ratio:.3f} by its hardness; {aged.assumes}")
     return "\n".join(lines)
 
 
-def _anywhere(contact: dict[str, Any] | None) -> list[str]:
+def _anywhere(contact: ContactAnywhere | None) -> list[str]:
     """Errors of a force that is read by the central calibration if place and object are unknown."""
     if contact is None:
         return []
-    if "unknown" in contact:
-        return [f"contact anywhere: not stated, {contact['unknown']}"]
+    if contact.unknown is not None:
+        return [f"contact anywhere: not stated, {contact.unknown}"]
     shares = [
-        f"{state['standard_uncertainty_relative']:.0%} at {state['driving_pressure_kPa']:g} kPa"
-        for state in contact["states"]
+        f"{state.standard_uncertainty_relative:.0%} at {state.driving_pressure_kPa:g} kPa" for state in contact.states
     ]
     return [f"contact anywhere: standard uncertainty of the force read {', '.join(shares)}, counted in the interval"]
 
 
-def _calibrated(calibration: dict[str, Any] | None) -> list[str]:
+def _calibrated(calibration: CalibratedBy | None) -> list[str]:
     """Specimen that the figures stand for, measured or simulated."""
     if calibration is None:
         return []
-    made = f"{SIMULATED}: " if calibration["simulated"] else ""
-    return [f"{made}calibration {calibration['name']}: the figures are those of sensor {calibration['sensor']} alone"]
+    made = f"{SIMULATED}: " if calibration.simulated else ""
+    return [f"{made}calibration {calibration.name}: the figures are those of sensor {calibration.sensor} alone"]
 
 
-def _reach(point: dict[str, float] | None) -> str:
+def _reach(point: LimitPointRecord | None) -> str:
     if point is None:
         return "no limit point"
-    inner, outer = point["apex_height_inner_mm"], point["apex_height_outer_mm"]
-    return f"limit point {point['driving_pressure_kPa']:.2f} kPa at {inner:.2f} mm inside, {outer:.2f} mm outside"
+    inner, outer = point.apex_height_inner_mm, point.apex_height_outer_mm
+    return f"limit point {point.driving_pressure_kPa:.2f} kPa at {inner:.2f} mm inside, {outer:.2f} mm outside"
 
 
 def _rating(rating: RatingRecord) -> list[str]:
     """The rated pressure with its basis, advice that would raise it, and the driving pressures above it."""
-    lines = [f"rated pressure {tenths_below(rating['rated_pressure_kPa']):.1f} kPa: {rating['basis']}"]
-    lines += [] if rating["remedy"] is None else [f"to raise it: {rating['remedy']}"]
-    return lines + [f"{finding['severity']}: {finding['message']}" for finding in rating["findings"]]
+    lines = [f"rated pressure {tenths_below(rating.rated_pressure_kPa):.1f} kPa: {rating.basis}"]
+    lines += [] if rating.remedy is None else [f"to raise it: {rating.remedy}"]
+    return lines + [f"{finding.severity}: {finding.message}" for finding in rating.findings]
 
 
-def _state_table(states: list[UncertainStateRecord]) -> str:
-    sampled = ["sampled"] if any("monte_carlo" in state["uncertainty"] for state in states) else []
+def _state_table(states: Sequence[StateRecord]) -> str:
+    sampled = ["sampled"] if any(_sampled(state) is not None for state in states) else []
     head = ["kPa", "apex in mm", "apex out mm", "S kPa/N", "interval (k = 2)", *sampled]
     head += ["R2", "N/mm", "range N", "range ends at"]
     rows = []
     for state in states:
-        ends = [event["kind"] for event in state["events"] if event["ends_range"]]
-        force, uncertainty = state["force_range_N"], state["uncertainty"]
+        ends = [event.kind for event in state.events if event.ends_range]
+        known = None if state.uncertainty is None else state.uncertainty.known.get(_SENSITIVITY)
         row = [
-            f"{state['driving_pressure_kPa']:g}",
-            f"{state['apex_height_inner_mm']:.3f}",
-            f"{state['apex_height_outer_mm']:.3f}",
-            _optional(state["sensitivity_kPa_per_N"], ".3f"),
-            _interval(uncertainty),
-            *(_interval(uncertainty.get("monte_carlo")) for _ in sampled),
-            _optional(state["r_squared"], ".4f"),
-            _optional(state["stiffness_N_per_mm"], ".3f"),
-            "-" if force is None else f"0-{force[1]:.2f}",
-            f"{ends[0] if ends else 'depth'}, {state['range_end_mm']:.2f} mm",
+            f"{state.driving_pressure_kPa:g}",
+            f"{state.apex_height_inner_mm:.3f}",
+            f"{state.apex_height_outer_mm:.3f}",
+            _optional(state.sensitivity_kPa_per_N, ".3f"),
+            "-" if known is None else f"{known.low:.2f} to {known.high:.2f}",
+            *(_interval(_sampled(state)) for _ in sampled),
+            _optional(state.r_squared, ".4f"),
+            _optional(state.stiffness_N_per_mm, ".3f"),
+            "-" if state.force_range_N is None else f"0-{state.force_range_N[1]:.2f}",
+            f"{ends[0] if ends else 'depth'}, {state.range_end_mm:.2f} mm",
         ]
         rows.append(row)
     return table_text(head, rows)
 
 
-def _off_axis(states: list[UncertainStateRecord]) -> list[str]:
+def _off_axis(states: Sequence[StateRecord]) -> list[str]:
     """Events in which the axisymmetric path is unstable, one line each."""
     return [
-        f"warning: {event['kind']} at {event['indentation_mm']:.2f} mm and {state['driving_pressure_kPa']:g} kPa: "
-        f"{event['message']}"
+        f"warning: {event.kind} at {event.indentation_mm:.2f} mm and {state.driving_pressure_kPa:g} kPa: "
+        f"{event.message}"
         for state in states
-        for event in state["events"]
-        if event["kind"] in (SWAY, LOBES)
+        for event in state.events
+        if event.kind in (SWAY, LOBES)
     ]
 
 
-def _sheared(states: list[UncertainStateRecord]) -> list[str]:
+def _sheared(states: Sequence[StateRecord]) -> list[str]:
     """Figures of an object that moves sideways after pressing, one line a driving pressure."""
     lines = []
     for state in states:
-        sheared = state.get("off_axis", {}).get("shear")
+        sheared = None if state.off_axis is None else state.off_axis.shear
         if sheared is None:
             continue
-        at, peak, slips = (
-            state["driving_pressure_kPa"],
-            sheared["peak_sideways_force_N"],
-            sheared["slips_throughout_mm"],
-        )
+        peak, slips = sheared.peak_sideways_force_N, sheared.slips_throughout_mm
         parts = [] if peak is None else [f"greatest sideways force {peak:.3f} N"]
         parts += [f"slips throughout from {slips:.2f} mm"] if slips is not None else []
-        parts += [f"ended: {sheared['ended']}"] if sheared["ended"] is not None else []
-        lines.append(f"moved sideways at {at:g} kPa: {', '.join(parts)}")
+        parts += [f"ended: {sheared.ended}"] if sheared.ended is not None else []
+        lines.append(f"moved sideways at {state.driving_pressure_kPa:g} kPa: {', '.join(parts)}")
     return lines
 
 
-def _interval(uncertainty: UncertaintyRecord | SampleRecord | None) -> str:
-    """The interval of the sensitivity in a document of uncertainty, or a dash."""
-    figure = None if uncertainty is None else uncertainty.get("figures", {}).get("sensitivity_kPa_per_N")
-    return "-" if figure is None else f"{figure['low']:.2f} to {figure['high']:.2f}"
+def _sampled(state: StateRecord) -> IntervalRecord | None:
+    """The sampled interval of the sensitivity; None if nothing was sampled."""
+    samples = None if state.uncertainty is None else state.uncertainty.monte_carlo
+    return None if samples is None else samples.figures.get(_SENSITIVITY)
 
 
-def _uncertainty(states: list[UncertainStateRecord]) -> list[str]:
-    """Advice on the first thing to measure, at the highest driving pressure; or the reason why nothing is known."""
-    last = states[-1]
-    if "unknown" in last["uncertainty"]:
-        return [f"uncertainty not known: {last['uncertainty']['unknown']}"]
-    return [f"at {last['driving_pressure_kPa']:g} kPa: {last['uncertainty']['summary']}"]
+def _interval(ends: IntervalRecord | None) -> str:
+    return "-" if ends is None else f"{ends.low:.2f} to {ends.high:.2f}"
 
 
-def _viscous(relaxation: dict[str, Any]) -> list[str]:
+def _uncertainty(state: StateRecord) -> list[str]:
+    """Advice on the first thing to measure; or the reason why nothing is known."""
+    assert state.uncertainty is not None
+    if state.uncertainty.unknown is not None:
+        return [f"uncertainty not known: {state.uncertainty.unknown}"]
+    return [f"at {state.driving_pressure_kPa:g} kPa: {state.uncertainty.summary}"]
+
+
+def _viscous(viscous: Viscous) -> list[str]:
     """Relaxation and hysteresis at the highest driving pressure, over the sources; or why nothing is known."""
-    if "unknown" in relaxation:
-        return [f"relaxation and hysteresis not known: {relaxation['unknown']}"]
-    last = relaxation["states"][-1]
-    held = [one["relaxation"].get("pressure_rise_loss_percent") for one in last["by_source"]]
-    quick = [one["hysteresis"][-1] for one in last["by_source"]]
-    wide = [one.get("width_percent") for one in quick]
-    speed = f"{quick[0]['speed_mm_per_s']:g} mm/s" if quick else ""
+    if viscous.unknown is not None:
+        return [f"relaxation and hysteresis not known: {viscous.unknown}"]
+    last = viscous.states[-1]
+    held = [one.relaxation.pressure_rise_loss_percent for one in last.by_source]
+    quick = [one.hysteresis[-1] for one in last.by_source]
+    wide = [getattr(one, "width_percent", None) for one in quick]
+    speed = f"{quick[0].speed_mm_per_s:g} mm/s" if quick else ""
     return [
-        f"held at {relaxation['depth_mm']:.2f} mm and {last['driving_pressure_kPa']:g} kPa the pressure rise loses "
+        f"held at {viscous.depth_mm:.2f} mm and {last.driving_pressure_kPa:g} kPa the pressure rise loses "
         f"{_span(held)} from 1 s to "
         f"600 s; hysteresis at {speed} {_span(wide)} of full scale ("
-        f"{counted(len(relaxation['sources']), 'source')} of relaxation data)"
+        f"{counted(len(viscous.sources), 'source')} of relaxation data)"
     ]
 
 

@@ -20,7 +20,6 @@ from pneutouch.bench.figures import line_figures
 from pneutouch.errors import InputError
 from pneutouch.evaluation.comparison_record import ComparisonRecord, CurvePoints, DifferenceRecord, RowRecord
 from pneutouch.mechanics.response import figures
-from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
 from pneutouch.mechanics.uncertainty.sources.model import MODEL, MODEL_CORRELATION
 from pneutouch.rounding import rounded
 
@@ -41,7 +40,7 @@ class SourceEffect:
     size: float
 
 
-def effects_of(uncertainty: UncertaintyRecord, figure: str) -> tuple[SourceEffect, ...]:
+def effects_of(uncertainty: Mapping[str, Any], figure: str) -> tuple[SourceEffect, ...]:
     """Effects of every source on a figure, from a state's uncertainty document; their squares sum to its variance."""
     entry = uncertainty["figures"][figure]
     total, slopes = entry["standard_uncertainty_relative"], uncertainty["elasticities"][figure]

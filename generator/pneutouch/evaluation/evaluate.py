@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from pneutouch.evaluation.dynamics import SensorBandwidth
     from pneutouch.mechanics.prediction import CurveOutcome
     from pneutouch.mechanics.rating import Rating
-    from pneutouch.results.uncertainty import UncertaintyRecord
     from pneutouch.mechanics.viscous.describe import ViscousRuns
     from pneutouch.printability import Finding
     from pneutouch.printability.estimate import JobEstimate
+    from pneutouch.results.uncertainty import UncertaintyRecord
 
 # The print rules and the uncertainty load where they are used: figures alone need neither.
 
@@ -193,12 +193,7 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
     pressures = [p * KPA for p in scene.design.pneumatics.driving_pressures_kPa]
     try:
         prediction = predict(
-            scene.name,
-            sensor,
-            pressures,
-            model=options.model,
-            closure=options.closure,
-            tolerance=options.tolerance,
+            scene.name, sensor, pressures, model=options.model, closure=options.closure, tolerance=options.tolerance
         )
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None

@@ -8,10 +8,9 @@ import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.mechanics import SensorPrediction, SensorState
-from pneutouch.mechanics.gauge_reading import SIGMAS, gauge_reading
-from pneutouch.mechanics.gauge_reading import GaugeReading as Reading
+from pneutouch.mechanics.gauge_reading import SIGMAS, GaugeReading, gauge_reading
 from pneutouch.mechanics.line.air import REFERENCE_TEMPERATURE
-from pneutouch.results.behaviour import GaugeReading, GaugeState
+from pneutouch.results.behaviour import GaugeFigures, GaugeState
 from pneutouch.rounding import rounded
 from pneutouch.units import KPA
 
@@ -23,7 +22,7 @@ _DIGITS = 6
 CRITERION = f"{SIGMAS:g} standard deviations of the difference of two readings"
 
 
-def reading_of(scene: ResolvedDesign) -> Reading:
+def reading_of(scene: ResolvedDesign) -> GaugeReading:
     """The gauge of a design at its ambient pressure; that of the paper's rig where it names none."""
     return gauge_reading(scene.gauge, scene.design.pneumatics.ambient_pressure_kPa * KPA)
 
@@ -69,11 +68,11 @@ def zero_drift_kPa_per_K(scene: ResolvedDesign, prediction: SensorPrediction, st
     return absolute / REFERENCE_TEMPERATURE * slope / (slope + gas) / KPA
 
 
-def gauge_record(evaluation: Evaluation) -> GaugeReading:
+def gauge_record(evaluation: Evaluation) -> GaugeFigures:
     """The gauge of a design and the smallest force at each driving pressure; ``name`` is None where the paper's is
     assumed."""
     scene, reading, prediction = evaluation.scene, reading_of(evaluation.scene), evaluation.prediction
-    record = GaugeReading(
+    record = GaugeFigures(
         name=scene.design.pneumatics.gauge,
         title=reading.title,
         reference="absolute" if reading.absolute else "gauge",

@@ -29,7 +29,7 @@ from pneutouch.results.prediction import (
     RatingFinding,
     RatingRecord,
     ShearRecord,
-    State,
+    StateRecord,
 )
 from pneutouch.rounding import rounded
 from pneutouch.units import KPA, ML
@@ -107,9 +107,9 @@ def by_model(prediction: SensorPrediction) -> PredictionRecord:
     return rounded(record, _MODEL_DIGITS, _NOTHING)
 
 
-def _state(state: SensorState) -> State:
+def _state(state: SensorState) -> StateRecord:
     f = state.figures
-    return State(
+    return StateRecord(
         driving_pressure_kPa=state.driving_pressure / KPA,
         apex_height_inner_mm=state.apex_inner,
         apex_height_outer_mm=state.apex_outer,
@@ -124,7 +124,7 @@ def _state(state: SensorState) -> State:
         saturation_force_N=f.saturation_force if f else None,
         curve=_curve(state),
         events=tuple(EventRecord(e.kind, e.indentation, e.ends_range, e.message) for e in state.events),
-        off_axis=None if state.beyond_axis is None else _off_axis(state.beyond_axis),
+        off_axis=None if state.beyond_axis is None else off_axis(state.beyond_axis),
     )
 
 
@@ -140,7 +140,8 @@ def _curve(state: SensorState) -> Curve:
     )
 
 
-def _off_axis(curve: OffAxisCurve) -> OffAxisRecord:
+def off_axis(curve: OffAxisCurve) -> OffAxisRecord:
+    """Additions of contact off the axis to a loading curve, in boundary units."""
     return OffAxisRecord(
         harmonics=curve.order,
         last_change_percent=100 * curve.last_change,
@@ -229,8 +230,9 @@ def by_mixing_curve(outcomes: Sequence[CurveOutcome]) -> tuple[ByMixingCurve, ..
 
 def _mix_state(state: SensorState) -> MixState:
     figures = state.figures
-    slope = None if figures is None else figures.sensitivity_kPa_per_N
-    return MixState(state.driving_pressure / KPA, slope, None if figures is None else figures.force_range[1])
+    if figures is None:
+        return MixState(state.driving_pressure / KPA, None, None)
+    return MixState(state.driving_pressure / KPA, figures.sensitivity_kPa_per_N, figures.force_range[1])
 
 
 def _calibrated_by(evaluation: Evaluation) -> CalibratedBy | None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pneutouch.parts import Assembly
     from pneutouch.printability import Finding
     from pneutouch.printability.estimate import JobEstimate
-    from pneutouch.results.behaviour import Dynamics, GaugeReading, Viscous
+    from pneutouch.results.behaviour import Dynamics, GaugeFigures, Viscous
     from pneutouch.results.uncertainty import UncertaintyRecord
     from pneutouch.selection.front import TradeOffFront
     from pneutouch.spec.contact import ContactKind
@@ -116,7 +116,7 @@ class SheetData:
     rating: Rating
     numerical_error: float
     zero_drift_kPa_per_K: float
-    gauge: GaugeReading
+    gauge: GaugeFigures
     resin_curves: dict[str, ResinCurve]
     viscous: Viscous
     ageing: AgeingData | str

@@ -6,7 +6,6 @@ from typing import TypedDict
 
 from pneutouch.errors import InputError
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.spec.values import plain_number
 
 MODELS = ("membrane", "atlas", "solid")

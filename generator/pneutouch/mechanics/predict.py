@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,9 +14,11 @@ from pneutouch.mechanics.membrane_contact import CLOSURES
 from pneutouch.mechanics.models import (
     DEFAULT_TOLERANCE,
     HARMONICS_SETTLED,
+    LIMIT_DISCRETISATION,
     MODEL_CHOICES,
     NUMERICAL,
     OBJECT_DISCRETISATION,
+    SENSITIVITY_DISCRETISATION,
     TABULATION,
     USUAL,
     models_for,
@@ -26,18 +28,19 @@ from pneutouch.mechanics.models import (
 )
 from pneutouch.mechanics.prediction import ModelResult, SensorPrediction
 from pneutouch.mechanics.sensor import IndentationProtocol, ResponseCorrection, Sensor
+from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.units import KPA, ML
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.atlas_states import AnswerLimitation
 
 _DISCRETISATION_SUMMARY = (
-    f"Discretisation: sensitivity within {DISCRETISATION['sensitivity_discretisation_relative']:.1%}, limit pressure "
-    f"within {DISCRETISATION['limit_pressure_relative']:.1%} of a refined mesh."
+    f"Discretisation: sensitivity within {SENSITIVITY_DISCRETISATION:.1%}, limit pressure "
+    f"within {LIMIT_DISCRETISATION:.1%} of a refined mesh."
 )
 _OBJECT_SUMMARY = (
     f"Discretisation: sensitivity within {OBJECT_DISCRETISATION:.0%}, limit pressure within "
-    f"{DISCRETISATION['limit_pressure_relative']:.1%} of a refined mesh (docs/background/contact.md)."
+    f"{LIMIT_DISCRETISATION:.1%} of a refined mesh (docs/background/contact.md)."
 )
 _TABULATION_SUMMARY = (
     f"Tabulation: sensitivity within {TABULATION:.1%} of the solid, that is within {NUMERICAL['atlas']:.1%} "
@@ -102,9 +105,9 @@ def predict(
 ) -> SensorPrediction:
     """Predict a sensor at ascending driving pressures (MPa) with one model; ``closure`` is the membrane's.
 
-    ``auto`` takes the cheapest model whose stated error meets the tolerance (a fraction) and gives the reason.
-    Raises InputError for an unknown model or closure and for a sensor outside the atlas's box, BeyondLimitError beyond the limit point,
-    ComputationError where no equilibrium is found.
+    ``auto`` takes the cheapest model whose stated error meets the tolerance (a fraction) and gives the reason. Raises
+    InputError for an unknown model or closure and for a sensor outside the atlas's box, BeyondLimitError beyond the
+    limit point, ComputationError if no equilibrium is found.
     """
     if model not in (*MODEL_CHOICES, USUAL):
         raise InputError(f"unknown model.{nearest(model, MODEL_CHOICES)}", key="model", value=model)

@@ -7,8 +7,8 @@ from typing import Any
 
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorPrediction
-from pneutouch.mechanics.uncertainty.record import SourceRecord, UncertaintyRecord
 from pneutouch.report.style import ACCENT, BOLD, INK, MUTED, figure, svg
+from pneutouch.results.uncertainty import SourceRecord, UncertaintyRecord
 from pneutouch.units import KPA
 
 SENSITIVITY = "sensitivity_kPa_per_N"
@@ -38,34 +38,34 @@ def ends(prediction: SensorPrediction, documents: tuple[UncertaintyRecord, ...])
     """Uncertainties of the lowest and the highest driving pressure, by label; those of which something is known."""
     pairs = list(zip(prediction.states, documents, strict=True))
     chosen = pairs[:1] + pairs[1:][-1:]
-    return {f"{s.driving_pressure / KPA:g} kPa": d for s, d in chosen if SENSITIVITY in d.get("figures", {})}
+    return {f"{s.driving_pressure / KPA:g} kPa": d for s, d in chosen if SENSITIVITY in d.known}
 
 
 def interval(document: UncertaintyRecord, figure: str = SENSITIVITY) -> str:
     """The k = 2 interval of a figure, such as ``1.57 to 2.38``; empty if unknown."""
-    estimate = document.get("figures", {}).get(figure)
-    return "" if estimate is None else f"{_digits(estimate['low'])} to {_digits(estimate['high'])}"
+    estimate = document.known.get(figure)
+    return "" if estimate is None else f"{_digits(estimate.low)} to {_digits(estimate.high)}"
 
 
 def shares(covered: dict[str, UncertaintyRecord]) -> dict[str, dict[str, float]]:
     """Shares of the variance of the sensitivity by label of the driving pressure."""
-    return {label: document["figures"][SENSITIVITY]["shares"] for label, document in covered.items()}
+    return {label: dict(document.known[SENSITIVITY].shares) for label, document in covered.items()}
 
 
 def uncertainty_section(sheet: SheetData) -> dict[str, Any]:
     """Everything in the section; every leaf is text or a flag."""
     documents = sheet.uncertainty
     covered = ends(sheet.prediction, documents)
-    why = next((document["unknown"] for document in documents if "unknown" in document), None)
-    last = list(covered.values())[-1] if covered else {}
+    why = next((document.unknown for document in documents if document.unknown is not None), None)
+    last = list(covered.values())[-1] if covered else UncertaintyRecord()
     return {
         "known": bool(covered),
         "why": why or "no interval of the sensitivity can be given: the atlas has no state at these driving pressures",
         "summary": _summary(covered),
         "head": ["Figure", "Unit", *(cell for label in covered for cell in (f"at {label}", "k = 2"))],
         "figures": _figures(covered),
-        "sources": [_source(source) for source in last.get("sources", []) if source["standard_uncertainty"] > 0],
-        "notes": [_plain(f"{note}.") for note in last.get("notes", [])],
+        "sources": [_source(source) for source in last.sources or () if source.standard_uncertainty > 0],
+        "notes": [_plain(f"{note}.") for note in last.notes or ()],
         "model": _model_rows(sheet),
     }
 
@@ -74,7 +74,7 @@ def _summary(covered: dict[str, UncertaintyRecord]) -> list[str]:
     """Advice on the first thing to measure, one line for driving pressures with the same result."""
     labels_of: dict[str, list[str]] = {}
     for label, document in covered.items():
-        labels_of.setdefault(document["summary"], []).append(label)
+        labels_of.setdefault(document.summary or "", []).append(label)
     return [f"At {' and '.join(labels)}: {text[0].lower() + text[1:]}" for text, labels in labels_of.items()]
 
 
@@ -90,25 +90,25 @@ def _figures(covered: dict[str, UncertaintyRecord]) -> list[list[str]]:
     for name, (title, unit) in _FIGURES.items():
         cells = []
         for document in covered.values():
-            figure = document["figures"].get(name)
-            cells += ["–", ""] if figure is None else [_digits(figure["value"]), _width(document, name)]
+            figure = document.known.get(name)
+            cells += ["–", ""] if figure is None else [_digits(figure.value), _width(document, name)]
         rows.append([title, unit, *cells])
     return rows
 
 
 def _width(document: UncertaintyRecord, name: str) -> str:
     """The interval; a figure under which no source has an effect is as it was stated."""
-    figure = document["figures"][name]
-    return interval(document, name) if figure["expanded_uncertainty"] > 0 else "as stated"
+    figure = document.known[name]
+    return interval(document, name) if figure.expanded_uncertainty > 0 else "as stated"
 
 
 def _source(source: SourceRecord) -> list[str]:
     """Name of a source, its standard uncertainty, its effect, known or assumed, and its origin."""
-    size = source["standard_uncertainty"]
-    value = f"{size:.2g} mL" if source["unit"] == "mL" else f"{100 * size:.2g} %"
-    figures = [_FIGURES[name][0].lower() for name in source["figures"]]
-    acts_on = _INPUTS.get(source["acts_on"], ", ".join(figures))
-    return [source["name"], value, acts_on, "known" if source["known"] else "assumed", _plain(source["origin"])]
+    size = source.standard_uncertainty
+    value = f"{size:.2g} mL" if source.unit == "mL" else f"{100 * size:.2g} %"
+    figures = [_FIGURES[name][0].lower() for name in source.figures]
+    acts_on = _INPUTS.get(source.acts_on, ", ".join(figures))
+    return [source.name, value, acts_on, "known" if source.known else "assumed", _plain(source.origin)]
 
 
 def _model_rows(sheet: SheetData) -> list[list[str]]:
@@ -118,7 +118,7 @@ def _model_rows(sheet: SheetData) -> list[list[str]]:
     if prediction.model == "membrane":
         exact = f"up to {1 + error:.0f} times off the solid's sensitivity"
     usual = _ONLY_MODEL if prediction.model == "harmonic" else "asked for by name, or the default"
-    why = prediction.error_estimate.get("model_choice", usual)
+    why = prediction.error_estimate.model_choice or usual
     rows = [["Model", prediction.model], ["Numerical error", exact], ["Why this model", why]]
     calibration = sheet.scene.calibration
     if calibration is not None:

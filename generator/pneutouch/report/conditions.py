@@ -76,7 +76,7 @@ def gauge_range(sheet: SheetData) -> list[str]:
             f"; absolute, {gauge.range_kPa.low:g} to {gauge.range_kPa.high:g} kPa: it reads the ambient pressure too, "
             "which must be subtracted"
         )
-    return [f"{reading.low_kPa:.4g} to {reading.limit_kPa:.4g}", "kPa gauge", note]
+    return [f"{reading.reads_from_kPa:.4g} to {reading.reads_to_kPa:.4g}", "kPa gauge", note]
 
 
 def _breakable(code: str) -> str:
@@ -96,22 +96,23 @@ def gauge_volume(sheet: SheetData) -> str:
 
 def detection(sheet: SheetData) -> list[list[str]]:
     """Rows of quantity, value and basis: the smallest force, and the warming that reads the same."""
-    reading, forces = sheet.gauge, sheet.gauge.forces
+    reading, forces = sheet.gauge, sheet.gauge.states
     ends = forces if len(forces) < 2 else (forces[0], forces[-1])
-    at = " and ".join(f"{one.driving_pressure / KPA:g}" for one in ends) + " kPa"
+    at = " and ".join(f"{one.driving_pressure_kPa:g}" for one in ends) + " kPa"
     if reading.threshold_kPa is None:
         return [["Smallest force detected", "not known", f"{reading.limited_by} ({reading.title})"]]
+    warming = [one.warming_that_reads_as_smallest_force_K for one in ends]
     band = "" if reading.rate_Hz is None else f", to {reading.rate_Hz / 2:g} Hz"
     return [
         [
             "Smallest force detected",
-            _both([one.force for one in ends], "N"),
+            _both([one.smallest_force_N for one in ends], "N"),
             f"{reading.criterion}{band}, at {at}; limited by {reading.limited_by} ({reading.title})",
         ],
         [
             "at first contact",
-            _both([one.at_first_contact for one in ends], "N"),
-            f"warming by {_both([one.warming for one in ends], 'K')} reads as much as the row above",
+            _both([one.smallest_force_at_first_contact_N for one in ends], "N"),
+            f"warming by {_both(warming, 'K')} reads as much as the row above",
         ],
     ]
 
@@ -127,30 +128,22 @@ def speed_rows(sheet: SheetData) -> list[list[str]]:
     """Rows of quantity, value and basis at the lowest and the highest driving pressure; empty without the figures."""
     if sheet.speed is None:
         return []
-    states = sheet.speed.states
+    first = {state.driving_pressure_kPa: state for state in reversed(sheet.speed.states)}
+    states = [first[pressure] for pressure in sorted(first)]
     ends = [states[0], states[-1]] if len(states) > 1 else [states[0]]
-    rate_Hz = sheet.speed.rate_Hz
+    rate_Hz = sheet.speed.gauge_rate_Hz
     gauge = "" if rate_Hz is None else f"; the gauge reads {rate_Hz:g} times a second"
-    bands = ", ".join(dict.fromkeys(state.bandwidth_limit or _DASH for state in ends))
-    narrow = ", ".join(dict.fromkeys(state.within_limit or _DASH for state in ends))
-    after = _values([1e3 * state.delay for state in ends], ".2g", "ms")
+    bands = ", ".join(dict.fromkeys(state.bandwidth_limited_by or _DASH for state in ends))
+    narrow = ", ".join(dict.fromkeys(state.within_5_percent_limited_by or _DASH for state in ends))
+    resonances_Hz = _values([state.first_resonance_Hz for state in ends], ".3g", "Hz")
+    bandwidths_Hz = _values([state.bandwidth_3_dB_Hz for state in ends], ".3g", "Hz")
+    after = _values([state.delay_ms for state in ends], ".2g", "ms")
+    rise = _values([state.rise_time_ms for state in ends], ".2g", "ms")
     return [
-        [
-            "First resonance",
-            _values([state.resonance for state in ends], ".3g", "Hz"),
-            "line as drawn, force at first contact",
-        ],
-        [
-            "Bandwidth",
-            _values([state.bandwidth for state in ends], ".3g", "Hz"),
-            f"gain within 3 dB; limit: {bands}{gauge}",
-        ],
-        ["Gain within 5 %", _values([state.within for state in ends], ".2g", "Hz"), f"limit: {narrow}"],
-        [
-            "Rise time",
-            _values([1e3 * state.rise_time for state in ends], ".2g", "ms"),
-            f"10 to 90 %, step of force; half after {after}",
-        ],
+        ["First resonance", resonances_Hz, "line as drawn, force at first contact"],
+        ["Bandwidth", bandwidths_Hz, f"gain within 3 dB; limit: {bands}{gauge}"],
+        ["Gain within 5 %", _values([state.within_5_percent_Hz for state in ends], ".2g", "Hz"), f"limit: {narrow}"],
+        ["Rise time", rise, f"10 to 90 %, step of force; half after {after}"],
     ]
 
 

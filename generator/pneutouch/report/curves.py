@@ -5,13 +5,13 @@ The datasheet's section on relaxation, hysteresis and ageing, with its two plots
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.evaluation.sheet_data import AgeingData, ResinCurve, SheetData, ViscousData, ViscousRow
+from pneutouch.evaluation.sheet_data import AgeingData, ResinCurve, SheetData, ViscousCurves
 from pneutouch.mechanics.prediction import DeformedShape, SensorPrediction, SensorState
 from pneutouch.report.style import (
     ACCENT,
@@ -28,6 +28,7 @@ from pneutouch.report.style import (
     plain_ticks,
     svg,
 )
+from pneutouch.results.behaviour import BySource, Viscous, WholeLoop
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
@@ -262,42 +263,53 @@ _CONTACT_LOST = (
 _COLOURS = (ACCENT, INK, MUTED)
 
 
-def section(viscous: ViscousData | str, ageing: str) -> dict[str, Any]:
+def section(viscous: Viscous, ageing: str) -> dict[str, Any]:
     """The section as text: a table and its notes, or why it is missing; and the line on ageing."""
-    if isinstance(viscous, str):
-        return {"known": False, "why": viscous, "ageing": ageing}
-    depth, highest = f"{viscous.depth:.2f} mm", f"at {viscous.rows[-1].driving_pressure / KPA:g} kPa"
-    quick = list(viscous.rows[-1].hysteresis)[-1]
+    if viscous.depth_mm is None:
+        return {"known": False, "why": viscous.unknown, "ageing": ageing}
+    last = viscous.states[-1]
+    depth, highest = f"{viscous.depth_mm:.2f} mm", f"at {last.driving_pressure_kPa:g} kPa"
+    quick = last.by_source[-1].hysteresis[-1].speed_mm_per_s
     ratio = "force (full) and pressure rise (dashed) over their values at 1 s"
+    rows = [(state.driving_pressure_kPa, j, one) for state in viscous.states for j, one in enumerate(state.by_source)]
     return {
         "known": True,
         "head": list(HEAD),
-        "rows": [_cells(row) for row in viscous.rows],
-        "notes": _notes(viscous),
+        "rows": [_cells(*row) for row in rows],
+        "notes": _notes(viscous, rows),
         "ageing": ageing,
         "held": f"Held at {depth}, {highest}: {ratio}.",
         "loop": f"Pressed to {depth} and let go at {quick:g} mm/s, {highest}: in (full) and out (dashed).",
     }
 
 
-def _cells(row: ViscousRow) -> list[str]:
-    values = [*(row.losses or (None,) * 3), *row.hysteresis.values()]
-    percents = [_DASH if value is None else f"{100 * value:.1f}" for value in values]
-    return [f"{row.driving_pressure / KPA:g}", _letter(row.series), *percents]
+def _cells(pressure_kPa: float, series: int, one: BySource) -> list[str]:
+    held = one.relaxation
+    losses = held.force_loss_percent, held.pressure_rise_loss_percent, held.pressure_rise_loss_percent_per_decade
+    widths = (loop.width_percent if isinstance(loop, WholeLoop) else None for loop in one.hysteresis)
+    percents = [_DASH if value is None else f"{value:.1f}" for value in (*losses, *widths)]
+    return [f"{pressure_kPa:g}", _letter(series), *percents]
 
 
-def _notes(viscous: ViscousData) -> list[str]:
-    slow, quick = viscous.rows[0].hysteresis
-    lost = [travel for row in viscous.rows for travel in row.contact_lost]
-    ended = [
-        f"{row.driving_pressure / KPA:g} kPa, {_letter(row.series)}, {run if run == 'held' else f'{run:g} mm/s'}: {why}"
-        for row in viscous.rows
-        for run, why in row.ended.items()
+def _notes(viscous: Viscous, rows: Sequence[tuple[float, int, BySource]]) -> list[str]:
+    slow, quick = (loop.speed_mm_per_s for loop in rows[0][2].hysteresis)
+    lost = [
+        loop.contact_lost_at_mm
+        for *_, one in rows
+        for loop in one.hysteresis
+        if isinstance(loop, WholeLoop) and loop.contact_lost_at_mm is not None
     ]
+    ended = []
+    for pressure_kPa, series, one in rows:
+        runs = [
+            *((f"{loop.speed_mm_per_s:g} mm/s", loop.ended) for loop in one.hysteresis),
+            ("held", one.relaxation.ended),
+        ]
+        ended += [f"{pressure_kPa:g} kPa, {_letter(series)}, {run}: {why}" for run, why in runs if why]
     return [
-        f"Pressed to {viscous.depth:.2f} mm; held after a press at {viscous.ramp_speed:g} mm/s; losses from 1 s to 600 "
-        f"s over the value at 1 s; loops at {slow:g} (slow) and {quick:g} mm/s (quick), the greatest difference in "
-        "pressure rise at equal force over the full-scale rise.",
+        f"Pressed to {viscous.depth_mm:.2f} mm; held after a press at {viscous.ramp_speed_mm_per_s:g} mm/s; losses "
+        f"from 1 s to 600 s over the value at 1 s; loops at {slow:g} (slow) and {quick:g} mm/s (quick), the "
+        "greatest difference in pressure rise at equal force over the full-scale rise.",
         *(f"{_letter(j)}: {source}." for j, source in enumerate(viscous.sources)),
         f"Model: {'; '.join(viscous.basis)}.",
         *([_CONTACT_LOST.format(min(lost), max(lost))] if lost else []),
@@ -323,7 +335,7 @@ def ageing_line(sheet: SheetData) -> str:
     return f"{line}{known}."
 
 
-def held_chart(viscous: ViscousData, size: tuple[float, float]) -> str:
+def held_chart(viscous: ViscousCurves, size: tuple[float, float]) -> str:
     """Force and pressure rise over time at the highest driving pressure; ``size`` in mm."""
     with figure(*size) as drawn:
         ax = drawn.add_subplot()
@@ -340,7 +352,7 @@ def held_chart(viscous: ViscousData, size: tuple[float, float]) -> str:
         return svg(drawn)
 
 
-def loop_chart(viscous: ViscousData, size: tuple[float, float]) -> str:
+def loop_chart(viscous: ViscousCurves, size: tuple[float, float]) -> str:
     """Pressure rise over force in the quicker loop at the highest driving pressure; ``size`` in mm."""
     with figure(*size) as drawn:
         ax = drawn.add_subplot()

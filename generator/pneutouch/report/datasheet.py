@@ -74,7 +74,7 @@ def _figures(sheet: SheetData) -> dict[str, str]:
         figures |= {f"shape-{k + 1}": text for k, text in enumerate(curves.shapes(prediction))}
     if isinstance(sheet.contact, ContactChart):
         figures |= contact_figures(sheet.contact)
-    if not isinstance(sheet.viscous, str):
-        figures["held"] = curves.held_chart(sheet.viscous, curves.SIZE)
-        figures["loop"] = curves.loop_chart(sheet.viscous, curves.SIZE)
+    if sheet.viscous_curves is not None:
+        figures["held"] = curves.held_chart(sheet.viscous_curves, curves.SIZE)
+        figures["loop"] = curves.loop_chart(sheet.viscous_curves, curves.SIZE)
     return figures | graded_figures(sheet)

@@ -130,7 +130,7 @@ def _captions(sheet: SheetData) -> dict[str, str]:
     if sheet.prediction.states[-1].figures is not None:
         why = "the atlas does not answer for the sensor"
     graded = "the atlas has no graded membranes" if resin.along is not None else ""
-    unknown = (document["unknown"] for document in sheet.uncertainty if "unknown" in document)
+    unknown = (one.unknown for one in sheet.uncertainty if one.unknown is not None)
     why = graded or next(unknown, why if resin.law is None else "the atlas has no fitted laws")
     absent = f"Trade-off and tuning charts are not drawn: {why}."
     chart = sheet.tradeoff
@@ -157,7 +157,7 @@ def _shapes(state: SensorState) -> str:
 def _ratings(sheet: SheetData) -> list[list[str]]:
     """Absolute maximum ratings: quantity, value, unit, basis."""
     basis = f"{sheet.rating.summary} (model {sheet.prediction.model})"
-    gauge = f"{NOT_TESTED}; the pressure gauge ({sheet.gauge.title}) reads to {sheet.gauge.limit_kPa:.4g} kPa"
+    gauge = f"{NOT_TESTED}; the pressure gauge ({sheet.gauge.title}) reads to {sheet.gauge.reads_to_kPa:.4g} kPa"
     return [
         ["Driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa gauge", basis],
         ["Cavity pressure while pressed", DASH, "kPa gauge", gauge],
@@ -226,7 +226,7 @@ def _published(sheet: SheetData, pressure_kPa: float) -> str:
 
 def _model_error(sheet: SheetData) -> list[str]:
     """Sentences on how far the model is off."""
-    return list(sheet.prediction.error_estimate["summary"])
+    return list(sheet.prediction.error_estimate.summary)
 
 
 def _limits(sheet: SheetData) -> list[list[str]]:

@@ -1,4 +1,4 @@
-"""What a sensor does beside its static figures: gauge, relaxation, speed, contact off the centre, ageing."""
+"""Behaviour of a sensor beside its static figures: gauge, relaxation, speed, contact off the centre, ageing."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ class GaugeState:
     """Change of the pressure without contact by temperature."""
     zero_drift_N_per_K: float | None
     """The same, read as a force."""
-    warming_that_reads_as_smallest_force_K: float | None
+    warming_that_reads_as_smallest_force_K: float | None  # noqa: N815
     """Warming whose drift reads as the smallest force."""
 
 
 @dataclass(frozen=True, slots=True)
-class GaugeReading:
+class GaugeFigures:
     """The pressure gauge and the smallest force that it detects."""
 
     name: str | None
@@ -73,7 +73,7 @@ class Hold:
     pressure_rise_loss_percent: float | None = None
     """Fall of the pressure rise at constant travel from from_s to to_s, over its value at from_s."""
     pressure_rise_loss_percent_per_decade: float | None = None
-    """Fall of the pressure rise in a decade of time, by least squares over the logarithm of time, over its value at from_s."""
+    """Fall of the pressure rise in a decade of time, by least squares over log time, over its value at from_s."""
     from_s: float | None = None
     """Start of the time that is looked at, from the end of the ramp."""
     to_s: float | None = None
@@ -110,7 +110,7 @@ class BySource:
 
     relaxation: Hold
     """After the plate has stopped."""
-    hysteresis: tuple[Loop, ...]
+    hysteresis: tuple[WholeLoop | Loop, ...]
     """Loops, one entry a speed."""
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from pneutouch.results.behaviour import Aged, CalibratedBy, ContactAnywhere, Dynamics, GaugeReading, Viscous
+from pneutouch.results.behaviour import Aged, CalibratedBy, ContactAnywhere, Dynamics, GaugeFigures, Viscous
 from pneutouch.results.uncertainty import UncertaintyRecord
 
 
@@ -17,7 +17,7 @@ class SensitivityError:
     relative: float | None
     """Greatest relative error; None if it is unknown."""
     basis: str
-    """What the error was found against."""
+    """Reference that the error was found against."""
     summary: str
     """The same in a sentence."""
     by_pressure: tuple[float | None, ...] = ()
@@ -34,7 +34,7 @@ class ErrorEstimate:
     """Greatest known error of the sensitivity; null: not known."""
     sensitivity_basis: str = ""
     """Basis of the error of the sensitivity."""
-    sensitivity_relative_0kPa_22kPa: tuple[float | None, ...] = ()
+    sensitivity_relative_0kPa_22kPa: tuple[float | None, ...] = ()  # noqa: N815
     """The same without driving pressure and at 22 kPa."""
     sensitivity_discretisation_relative: float | None = None
     """Error of the sensitivity by the mesh."""
@@ -48,7 +48,6 @@ class ErrorEstimate:
     """Why this model was taken."""
     summary: tuple[str, ...] = ()
     """In sentences."""
-
 
     def with_sensitivity(self, error: SensitivityError) -> ErrorEstimate:
         """The same with the known error in sensitivity."""
@@ -138,7 +137,7 @@ class OffAxisRecord:
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class StateRecord:
     """A sensor at one driving pressure; figures are None where no line can be fitted."""
 
     driving_pressure_kPa: float
@@ -226,7 +225,7 @@ class RatingFinding:
     """A driving pressure above the rated pressure."""
 
     severity: Literal["error", "warning"]
-    """How serious it is."""
+    """Severity."""
     driving_pressure_kPa: float
     """Gauge pressure before contact."""
     message: str
@@ -246,7 +245,7 @@ class RatingRecord:
     limit: str
     """Limit that it follows from."""
     limit_kPa: float
-    """That limit."""
+    """Pressure of that limit."""
     limit_low_kPa: float
     """Lower end of the limit's interval."""
     limit_high_kPa: float
@@ -311,14 +310,14 @@ class PredictionRecord:
     """Gas volume behind the cavity."""
     inflation: InflationRecord
     """Inflation before contact, lists of one length."""
-    states: tuple[State, ...]
+    states: tuple[StateRecord, ...]
     """One entry a driving pressure."""
     assumptions: tuple[str, ...]
     """Assumptions, in sentences."""
     rating: RatingRecord | None = None
     """Rated pressure and what it follows from."""
     contact: Mapping[str, Any] | None = None
-    """What presses the sensor, by the keys of [contact]; left out for a frictionless plate."""
+    """Object that presses the sensor, by the keys of [contact]; left out for a frictionless plate."""
     dead_volume_note: str | None = None
     """Note on a stated dead volume that is an idealisation."""
     contact_anywhere: ContactAnywhere | None = None
@@ -326,8 +325,8 @@ class PredictionRecord:
     viscous: Viscous | None = None
     """Relaxation and hysteresis, or why they are unknown."""
     dynamics: Dynamics | None = None
-    """How fast the sensor reads."""
-    gauge: GaugeReading | None = None
+    """Speed of the reading."""
+    gauge: GaugeFigures | None = None
     """Pressure gauge."""
     mixing_curves: tuple[ByMixingCurve, ...] = ()
     """The sensor by every mixing curve of its mix, the softest first."""

@@ -6,6 +6,7 @@ Drawing of a design on the page: the section through its bodies, its dimensions,
 from __future__ import annotations
 
 import base64
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -20,13 +21,14 @@ from pneutouch.body.section import section_outline
 from pneutouch.catalogue import load_scene
 from pneutouch.catalogue.library import elastomers
 from pneutouch.evaluation.charts import curve, resin_curves, tuning
-from pneutouch.evaluation.document import rating_document
 from pneutouch.evaluation.evaluate import PredictionOptions, evaluate_scene, sensor_of
+from pneutouch.evaluation.result import by_model, rating_record
 from pneutouch.evaluation.uncertainty import unknown
 from pneutouch.mechanics import SensorState
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.models import USUAL
 from pneutouch.parts import Assembly, assemble
+from pneutouch.results.record import plain
 from pneutouch.rounding import rounded
 from pneutouch.shape.meridian import Meridian
 from pneutouch.units import KPA
@@ -139,7 +141,9 @@ class Answers:
         resins = partial(elastomers, self._library, scene.printer.is_casting)
         evaluation = evaluate_scene(scene, resins, PredictionOptions("atlas"))
         self._last = question, evaluation
-        prediction = {**evaluation.prediction.document(), "rating": rating_document(evaluation)}
+        pressures = [state.driving_pressure for state in evaluation.prediction.states]
+        rating = rating_record(evaluation.rating, pressures)
+        prediction = plain(replace(by_model(evaluation.prediction), rating=rating))
         drawn = curve(evaluation.sensor, _highest(evaluation), "this design")
         design = None if drawn is None else _line(drawn.driving_pressure_kPa, drawn.sensitivity_kPa_per_N)
         return {**answer, "outside": None, "prediction": prediction, "curves": {"design": rounded(design, _DIGITS)}}

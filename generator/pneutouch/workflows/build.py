@@ -16,8 +16,8 @@ from pneutouch import __version__
 from pneutouch.body import Body
 from pneutouch.catalogue import DesignSource
 from pneutouch.errors import InputError
-from pneutouch.evaluation.document import full_document
 from pneutouch.evaluation.evaluate import Evaluation
+from pneutouch.evaluation.result import predicted_in_full
 from pneutouch.evaluation.sheet import sheet_data
 from pneutouch.export.scene import glb, stl
 from pneutouch.export.step import step_files
@@ -31,6 +31,7 @@ from pneutouch.printability import refuse
 from pneutouch.report.datasheet import datasheet
 from pneutouch.report.pictures import picture, pressed_files, shown
 from pneutouch.report.print_sheet import print_sheet
+from pneutouch.results.record import plain
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION
 from pneutouch.spec.read import Changes
 from pneutouch.units import ML
@@ -59,7 +60,9 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
     refuse(evaluation.findings, scene.where)
     progress("meshes")
     bodies = tuple(body.moved(assembly.print_offset) for body in assembly.bodies)
-    files: dict[str, bytes] = {"prediction.json": json_bytes(versioned("prediction", full_document(evaluation)))}
+    files: dict[str, bytes] = {
+        "prediction.json": json_bytes(versioned("prediction", plain(predicted_in_full(evaluation))))
+    }
     progress("3MF")
     files[f"{scene.name}.3mf"] = threemf(scene.name, bodies, _metadata(evaluation, bodies), _thumbnail(evaluation))
     progress("STL")

@@ -32,8 +32,8 @@ from pneutouch.evaluation.comparison import (
     labelled,
 )
 from pneutouch.evaluation.comparison_record import CURVE_KEYS, ComparisonRecord, CurvePoints
-from pneutouch.evaluation.document import PredictionRecord, UncertainStateRecord, prediction_document
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
+from pneutouch.evaluation.result import predicted
 from pneutouch.export.threemf_read import Package
 from pneutouch.formats import KEY, check_format, format_of, versioned
 from pneutouch.output.files import (
@@ -47,6 +47,7 @@ from pneutouch.output.files import (
 )
 from pneutouch.output.recipe import read_recipe
 from pneutouch.parts import Assembly, assemble
+from pneutouch.results.record import plain
 from pneutouch.spec.read import Changes
 from pneutouch.workflows.compare_measured import (
     PREDICTED_NAMES,
@@ -70,7 +71,7 @@ _REMEDY = "build the design again"
 class PredictedColumn:
     """A prediction as ``predict`` prints it, the scene it is of, and where it comes from."""
 
-    document: PredictionRecord
+    document: Mapping[str, Any]
     scene: ResolvedDesign
     model: str
     clamp: str
@@ -129,7 +130,7 @@ class PredictedColumn:
 def of_design(evaluation: Evaluation, source: str) -> PredictedColumn:
     """The column of a design that was just evaluated."""
     model, clamp = evaluation.prediction.model, evaluation.options.clamp
-    document = prediction_document(evaluation)
+    document = plain(predicted(evaluation))
     return PredictedColumn(document, evaluation.scene, model, clamp, "design", source, evaluation)
 
 
@@ -160,16 +161,16 @@ def of_build(folder: Path) -> PredictedColumn:
     return PredictedColumn(document, recipe.scene, model, clamp, "build", str(folder), notes=notes)
 
 
-def _state(state: UncertainStateRecord, document: PredictionRecord, depths: Depths) -> tuple[ComparedState, str]:
+def _state(state: Mapping[str, Any], document: Mapping[str, Any], depths: Depths) -> tuple[ComparedState, str]:
     known = state["uncertainty"].get("figures", {})
     pressure_kPa = float(state["driving_pressure_kPa"])
-    plain: dict[str, Any] = {
+    stated: dict[str, Any] = {
         "limit_pressure_kPa": document["limits"]["limit_point_kPa"],
         "rated_pressure_kPa": document.get("rating", {}).get("rated_pressure_kPa"),
         "force_at_range_end_N": None if state["force_range_N"] is None else state["force_range_N"][1],
         **{figure.key: state.get(figure.key) for figure in FIGURES if figure.key in state},
     }
-    figures = {key: ComparedFigure(float(value)) for key, value in plain.items() if value is not None}
+    figures = {key: ComparedFigure(float(value)) for key, value in stated.items() if value is not None}
     figures |= {
         key: ComparedFigure(*interval_of(entry), effects_of(state["uncertainty"], key)) for key, entry in known.items()
     }
@@ -201,7 +202,7 @@ _OF_CURVE = (
 """Figures that depend on the range that they are read over."""
 
 
-def _read(state: UncertainStateRecord, depths: Sequence[Sequence[Array]]) -> tuple[dict[str, float], str]:
+def _read(state: Mapping[str, Any], depths: Sequence[Sequence[Array]]) -> tuple[dict[str, float], str]:
     """Figures at the depths of a measurement, and a note on them."""
     indentation, force, rise_kPa = (np.array(state["curve"][key]) for key in CURVE_KEYS)
     read, end = figures_at(indentation, force, rise_kPa, state["range_end_mm"], depths), state["range_end_mm"]

@@ -18,10 +18,12 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.evaluation.gauge import reading_of
 from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
+from pneutouch.evaluation.result import rating_record
 from pneutouch.formats import versioned
 from pneutouch.output.files import check_writable, json_bytes, with_manifest, write_folder
 from pneutouch.parts import assemble
 from pneutouch.report.plan_sheet import plan_sheet
+from pneutouch.results.record import plain
 from pneutouch.spec.campaign import Campaign, CampaignRun, Rig, RunKind
 from pneutouch.spec.read import Changes, assignments, read_toml, validate
 from pneutouch.units import KPA, ML
@@ -300,7 +302,7 @@ def _expected(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests
         "injection": injection(pressed_curves, subject.rating, rig),
         "limit_kPa": pressed_curves.limits.lowest / KPA,
         "limit_by": pressed_curves.limits.binding,
-        "rating": subject.rating.document([curve.driving for curve in pressed_curves.curves]),
+        "rating": plain(rating_record(subject.rating, [curve.driving for curve in pressed_curves.curves])),
         "leak_limit_kPa_per_min": None if least is None else leak_limit(least, steps),
     }
 

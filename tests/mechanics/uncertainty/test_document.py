@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.uncertainty import batch_of, document, gas_text, text
+from pneutouch.results.record import plain as data
 from tests.mechanics.test_contact import PAPER
 from tests.mechanics.uncertainty.designs import budget_for
 
@@ -21,7 +22,7 @@ def _paper(library):
 
 
 def test_the_document_is_plain_and_consistent(paper):
-    content = document(paper, 1, notes=gas_text(batch_of(PAPER, [0.012]))[0])
+    content = data(document(paper, 1, notes=gas_text(batch_of(PAPER, [0.012]))[0]))
     assert json.loads(json.dumps(content, allow_nan=False)) == content
     assert content["coverage_factor"] == 2
     for name, figure in content["figures"].items():
@@ -35,7 +36,7 @@ def test_the_document_is_plain_and_consistent(paper):
 
 
 def test_another_models_value_keeps_the_relative_uncertainty(paper):
-    own, other = document(paper, 0), document(paper, 0, values={SENSITIVITY: 4.0})
+    own, other = data(document(paper, 0)), data(document(paper, 0, values={SENSITIVITY: 4.0}))
     ratio = 4.0 / own["figures"][SENSITIVITY]["value"]
     for key in ("low", "high", "expanded_uncertainty"):
         assert other["figures"][SENSITIVITY][key] == pytest.approx(ratio * own["figures"][SENSITIVITY][key])
@@ -51,7 +52,7 @@ def test_the_page_says_what_the_code_gives(library, root):
     assert [row[0] for row in rows] == ["0", "12", "22"]
     found = budget_for(library, batch_of(PAPER, [0.0, 0.012, 0.022]), "TangoPlus", True)
     for k, row in enumerate(rows):
-        figure = document(found, k)["figures"][SENSITIVITY]
+        figure = data(document(found, k))["figures"][SENSITIVITY]
         said = [float(word) for word in row[1:]]
         shares = [100 * figure["shares"][name] for name in ("ageing", "model")]
         given = [figure["value"], figure["low"], figure["high"], *shares]

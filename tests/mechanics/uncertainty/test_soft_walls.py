@@ -11,6 +11,7 @@ from pneutouch.mechanics.uncertainty import FIGURES, batch_of
 from pneutouch.mechanics.uncertainty.contact_model import pressed_logs
 from pneutouch.mechanics.uncertainty.neighbours import log_figures, moved, softer_walls
 from pneutouch.mechanics.uncertainty.propagate import STEP
+from pneutouch.results.record import plain as data
 from tests.mechanics.test_contact import PAPER
 
 SENSITIVITY, STIFFNESS, FORCE = (
@@ -57,7 +58,7 @@ def test_a_soft_cast_wall_has_an_interval_and_states_where_it_is_from(library):
     made = evaluate(
         "cast-dome", {"membrane.material": "DragonSkin10", "pneumatics.driving_pressures_kPa": [0, 5]}, library=library
     )
-    for state, entry in zip(made.prediction.states, made.uncertainty, strict=True):
+    for state, entry in zip(made.prediction.states, map(data, made.uncertainty), strict=True):
         figure = entry["figures"]["sensitivity_kPa_per_N"]
         assert figure["value"] == pytest.approx(state.figures.sensitivity_kPa_per_N, rel=1e-5)
         assert figure["low"] < figure["value"] < figure["high"]

@@ -10,7 +10,8 @@ import pytest
 
 from pneutouch import __version__
 from pneutouch.errors import ComputationError
-from pneutouch.evaluation.document import prediction_document
+from pneutouch.evaluation.result import predicted
+from pneutouch.results.record import plain
 from pneutouch.workflows.sweep import plan_of_file, sweep, work
 from pneutouch.workflows.sweep.execute import ComputeResources
 from pneutouch.workflows.sweep.variables import state_values
@@ -86,7 +87,7 @@ def test_every_figure_is_that_of_predict(model, resins, walls, evaluated, librar
     }
     for resin, wall in itertools.product(resins, walls):
         words = [f"membrane.material={resin}", f"membrane.wall_thickness_mm={wall}", "pneumatics.dead_volume_mL=0.3"]
-        document = prediction_document(evaluated("paper-dome", *words, model=model))
+        document = plain(predicted(evaluated("paper-dome", *words, model=model)))
         agrees(data.sel(membrane_material=resin, membrane_wall_thickness_mm=wall), document)
 
 
@@ -119,9 +120,9 @@ def test_a_list_has_its_own_pressures_and_values(evaluated, library, tmp_path):
     assert data.membrane_wall_thickness_mm.values.tolist() == [1.5, 1.0]
     assert data.status.values.tolist() == [["ok"] * 4 + [""], ["", "", "ok", "", "refused"]]
     asked = evaluated("paper-dome", "indentation.steps=10", "membrane.material=FLX9940", model="membrane")
-    agrees(data.sel(point=0), prediction_document(asked))
+    agrees(data.sel(point=0), plain(predicted(asked)))
     words = ["indentation.steps=10", "membrane.wall_thickness_mm=1", "pneumatics.driving_pressures_kPa=[12]"]
-    agrees(data.sel(point=1), prediction_document(evaluated("paper-dome", *words, model="membrane")))
+    agrees(data.sel(point=1), plain(predicted(evaluated("paper-dome", *words, model="membrane"))))
     assert np.isnan(data.sensitivity_kPa_per_N.values[data.status.values != "ok"]).all()
 
 
@@ -146,7 +147,7 @@ def test_pressures_beyond_the_limit_are_refused_and_the_others_predicted(model, 
     outcome = sweep(plan, tmp_path / "x.nc", ALONE, library=library)
     point = load(tmp_path / "x.nc").isel(point=0)
     assert outcome.states == {"ok": 1, "refused": 2, "failed": 0}
-    document = prediction_document(evaluated("paper-dome", "pneumatics.driving_pressures_kPa=[5]", model=model))
+    document = plain(predicted(evaluated("paper-dome", "pneumatics.driving_pressures_kPa=[5]", model=model)))
     agrees(point, document)
     limit = document["limits"]["limit_point_kPa"]
     assert point.status.values.tolist() == ["ok", "refused", "refused"]

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -31,7 +31,6 @@ from pneutouch.mechanics.solid_states import press_settings, solid_probe
 from pneutouch.mechanics.viscous.prony import Prony, ageing_ratio, prony_series, relaxed
 from pneutouch.mechanics.viscous.runs import HOLD_TIMES, LoopRun, Memory, RelaxationRun, loop, loop_run, relaxation
 from pneutouch.spec.material import Material
-from pneutouch.units import KPA
 
 _RAMP_STEPS, _LOOP_STEPS = 20, 24
 """Steps of a ramp and of half a loop, half of those on the atlas or more: losses, widths and areas hold to 0.3

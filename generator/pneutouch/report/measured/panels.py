@@ -19,8 +19,8 @@ from pneutouch.bench.figures import RunGroup
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.mechanics.prediction import SensorState
-from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
 from pneutouch.report.style import FAINT, INK, LINES, MARKERS, MUTED, figure, svg
+from pneutouch.results.uncertainty import UncertaintyRecord
 from pneutouch.spec.campaign import Campaign
 
 if TYPE_CHECKING:

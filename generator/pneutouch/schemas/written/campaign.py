@@ -1,6 +1,6 @@
 """Schemas of what campaigns write: the plan, and the figures of the measured runs."""
 
-from pneutouch.mechanics.rating import RatingRecord
+from pneutouch.results.prediction import RatingRecord
 from pneutouch.schemas.models import model_schema
 from pneutouch.schemas.shape import (
     FLAG,
@@ -16,7 +16,7 @@ from pneutouch.schemas.shape import (
     or_null,
     record,
 )
-from pneutouch.schemas.typed import typed
+from pneutouch.schemas.typed import of_record, typed
 from pneutouch.schemas.written.parts import contact
 from pneutouch.spec.campaign import Rig, RunKind
 from pneutouch.workflows.plan import StepRecord
@@ -90,7 +90,7 @@ def _expected() -> Schema:
         "injection": record("Air to inject, and the expected readings.", injection),
         "limit_kPa": NUMBER,
         "limit_by": TEXT,
-        "rating": typed(RatingRecord, {}),
+        "rating": of_record(RatingRecord),
         "leak_limit_kPa_per_min": or_null(NUMBER),
     }
     return record("Expected readings of one resin.", keys)

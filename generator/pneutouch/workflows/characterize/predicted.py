@@ -24,8 +24,8 @@ from pneutouch.evaluation.comparison import figures_at
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.mechanics.prediction import SensorState
-from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
 from pneutouch.report.measured import CampaignReport, GroupComparison, Verdict
+from pneutouch.results.uncertainty import UncertaintyRecord
 from pneutouch.spec.campaign import AS_DESIGNED
 from pneutouch.spec.material import Material
 from pneutouch.spec.read import Changes
@@ -104,10 +104,12 @@ def compared(group: RunGroup, answer: StatePrediction) -> GroupComparison:
     """A group compared with its prediction, which is of a fresh print."""
     state = answer.state
     if state is None or answer.evaluation is None:
-        return GroupComparison(group, group.key.resin, None, {}, {}, answer.why)
+        return GroupComparison(group, group.key.resin, None, UncertaintyRecord(), {}, answer.why)
     label = answer.evaluation.scene.membrane_material.title
     if group.key.age_days > 0:
-        return GroupComparison(group, label, None, {}, {}, "predictions are of fresh prints; see aged predictions")
+        return GroupComparison(
+            group, label, None, UncertaintyRecord(), {}, "predictions are of fresh prints; see aged predictions"
+        )
     uncertainty = answer.evaluation.uncertainty[answer.place]
     predicted = _figures(state, uncertainty, depths_of(group))
     return GroupComparison(group, label, state, uncertainty, predicted, published=_published(answer.evaluation, group))
@@ -132,7 +134,7 @@ def depths_of(group: RunGroup) -> list[list[Array]]:
 def _figures(
     state: SensorState, uncertainty: UncertaintyRecord, depths: list[list[Array]]
 ) -> dict[str, tuple[float, float | None, float | None]]:
-    known = uncertainty.get("figures", {})
+    known = uncertainty.known
     if state.figures is None:
         return {}
     curve = state.indentation, state.force, state.pressure_rise / KPA
@@ -142,8 +144,8 @@ def _figures(
     for key, value in plain.items():
         ends = known.get(names.get(key, ""))
         # The relative uncertainty is that of the whole range.
-        scale = 0.0 if ends is None else value / ends["value"]
-        predictions[key] = (value, None, None) if ends is None else (value, scale * ends["low"], scale * ends["high"])
+        scale = 0.0 if ends is None else value / ends.value
+        predictions[key] = (value, None, None) if ends is None else (value, scale * ends.low, scale * ends.high)
     return predictions
 
 

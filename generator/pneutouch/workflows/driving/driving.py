@@ -69,7 +69,7 @@ def offline_changes(curves: ReachCurves, figure: str, value: float) -> list[Offl
     nearest = curves.states[int(np.nanargmin(np.abs(np.log(values / value))))]
     best = figure_of(nearest, figure)
     _, entry = min(curves.budgets, key=lambda known: abs(known[0] - nearest.driving_pressure))
-    elasticities = entry.get("elasticities", {}).get(BUDGET_KEYS.get(figure, figure), {})
+    elasticities = (entry.elasticities or {}).get(BUDGET_KEYS.get(figure, figure), {})
     changes = []
     for name, (what, unit) in _FIELDS.items():
         slope, before = elasticities.get(name, 0.0), _input(curves, name)

@@ -20,12 +20,12 @@ from pneutouch.bench.coupons import CouponFindings, ReadingSource, leak
 from pneutouch.catalogue import DesignSource, Library
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
-from pneutouch.evaluation.uncertainty import documents
+from pneutouch.evaluation.uncertainty import uncertainties
 from pneutouch.formats import check_format
 from pneutouch.mechanics import SensorPrediction, SensorState, predict
 from pneutouch.mechanics.sealed_gas import SealedGas, conductance_of_cap
-from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
 from pneutouch.parts import Assembly
+from pneutouch.results.uncertainty import UncertaintyRecord
 from pneutouch.spec.coupon import LeakCap, read_results
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.read import Changes
@@ -77,9 +77,9 @@ class ReachCurves:
         """Expanded uncertainty (k = 2) of the logarithm of a figure at every driving pressure (n,); NaN: not known."""
         key = BUDGET_KEYS.get(figure, figure)
         known = [
-            (pressure, 2.0 * entry["figures"][key]["standard_uncertainty_relative"])
+            (pressure, 2.0 * entry.known[key].standard_uncertainty_relative)
             for pressure, entry in self.budgets
-            if key in entry.get("figures", {})
+            if key in entry.known
         ]
         if not known:
             return np.full(len(self.states), np.nan)
@@ -151,7 +151,7 @@ def reach_curves(
     progress(2, 3, "computing the uncertainty")
     chosen = np.unique(np.linspace(0, len(grid) - 1, _BUDGETS).round().astype(int))
     few = replace(prediction, states=tuple(prediction.states[k] for k in chosen))
-    entries = documents(few, evaluation.sensor, evaluation.scene, lambda: evaluation.resins)
+    entries = uncertainties(few, evaluation.sensor, evaluation.scene, lambda: evaluation.resins)
     curves.budgets = [(state.driving_pressure, entry) for state, entry in zip(few.states, entries, strict=True)]
     if 0.0 < evaluation.rating.pressure < top:
         curves.add(evaluation.rating.pressure)

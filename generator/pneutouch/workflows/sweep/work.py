@@ -14,10 +14,11 @@ from pneutouch import __version__
 from pneutouch.catalogue import KINDS, DesignSource, Library, load_scene
 from pneutouch.catalogue.library import CachedLibrary, elastomers
 from pneutouch.errors import BeyondLimitError, InputError, PneutouchError
-from pneutouch.evaluation.document import prediction_document
 from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.evaluation.result import predicted
 from pneutouch.mechanics.models import USUAL
 from pneutouch.output.files import digest, json_bytes
+from pneutouch.results.record import plain
 from pneutouch.spec.contact import LYING
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import declaration, table_of
@@ -279,9 +280,10 @@ def _record(chunk: SweepChunk, point: SweepPoint, library: Library) -> Record:
 
 def _predicted(chunk: SweepChunk, point: SweepPoint, library: Library) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     changes = {**point.settings, PRESSURES: list(point.driving_pressures_kPa)}
-    prediction = prediction_document(
-        evaluate(chunk.design, changes, model=chunk.model, closure=chunk.closure, clamp=chunk.clamp, library=library)
+    evaluation = evaluate(
+        chunk.design, changes, model=chunk.model, closure=chunk.closure, clamp=chunk.clamp, library=library
     )
+    prediction = plain(predicted(evaluation))
     return [state_values(state) for state in prediction["states"]], point_values(prediction)
 
 
