@@ -15,9 +15,9 @@ from pneutouch.catalogue import Library
 from pneutouch.cli.prediction_text import prediction_text
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
-from pneutouch.evaluation.relaxation import ageing_data, viscous, viscous_curves, viscous_runs
+from pneutouch.evaluation.relaxation import viscous, viscous_runs
 from pneutouch.evaluation.result import predicted_in_full
-from pneutouch.evaluation.sheet import sheet_data
+from pneutouch.evaluation.sheet import ageing_data, sheet_data, viscous_curves
 from pneutouch.mechanics.viscous.prony import ageing_ratio
 from pneutouch.output.files import json_bytes
 from pneutouch.report import curves

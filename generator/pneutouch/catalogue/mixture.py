@@ -21,7 +21,7 @@ from pneutouch.spec.material import (
     density_problem,
     elastomer_modulus_problem,
 )
-from pneutouch.spec.mixing import MixingCurve, MixingPoint
+from pneutouch.spec.mixing import FROM_CURVE, MixingCurve, MixingPoint
 from pneutouch.spec.values import Quantity
 
 
@@ -74,9 +74,6 @@ def _end(step: Array, rise: Array) -> float:
         return float(3 * rise[0])
     return slope
 
-
-FROM_CURVE = "mixing curve"
-"""First words of the source of a modulus that a mixing curve gave."""
 
 _STATIONS = 65
 """Places along the arc at which a grade's modulus is stored; straight between them it is within 1e-3 of the curve."""

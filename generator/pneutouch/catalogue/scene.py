@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.catalogue.library import Library
-from pneutouch.catalogue.mixture import mixed_material
 from pneutouch.catalogue.parts import check_cast_ring, mount_of, named_gauge, tube_of
 from pneutouch.catalogue.printers import cannot_run
 from pneutouch.errors import InputError, shown
@@ -177,6 +176,8 @@ def _membrane_material(design: DesignFile, where: str, library: Library) -> Mate
     """The resin that the design names, or the mix that it describes."""
     chosen = design.membrane.material
     if isinstance(chosen, Grade):
+        from pneutouch.catalogue.mixture import mixed_material
+
         return mixed_material(chosen, library, file=where)
     material: Material = library.load("materials", chosen, file=where, key="membrane.material")
     return material

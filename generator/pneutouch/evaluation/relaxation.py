@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneutouch.evaluation.sheet_data import AgeingData, LoadingLoop, RelaxationCurve, ViscousCurves
 from pneutouch.mechanics import Sensor, SensorPrediction
-from pneutouch.mechanics.viscous.prony import ageing_ratio, ageing_unknown, unknown
+from pneutouch.mechanics.viscous.prony import unknown
 from pneutouch.results.behaviour import BySource, Hold, Loop, Viscous, ViscousState, WholeLoop
 from pneutouch.rounding import rounded
 from pneutouch.spec.material import Material
@@ -75,43 +74,3 @@ def _pressed(speed: float, run: LoopRun) -> Loop:
         contact_lost_at_mm=run.contact_lost,
         ended=run.ended,
     )
-
-
-def viscous_curves(runs: ViscousRuns | str) -> ViscousCurves | None:
-    """The curves of a hold and of the quicker loop at the highest driving pressure, one a source."""
-    if isinstance(runs, str):
-        return None
-    quick = list(runs.loops.values())[-1]
-    return ViscousCurves(tuple(map(_curve, runs.held[-1])), tuple(map(_loop, quick[-1])))
-
-
-def _curve(run: RelaxationRun) -> RelaxationCurve | None:
-    late = run.times >= 1.0 - 1e-9
-    if late.sum() < 2:
-        return None
-    force, rise = (100 * values / values[late][0] for values in (run.force, run.rise))
-    return RelaxationCurve(run.times, force, rise)
-
-
-def _loop(run: LoopRun) -> LoadingLoop | None:
-    return None if run.force_out.size < 2 else LoadingLoop(run.force_in, run.rise_in, run.force_out, run.rise_out)
-
-
-def ageing_data(prediction: SensorPrediction, material: Material, sensor: Sensor) -> AgeingData | str:
-    """Modulus after a year and the change of sensitivity at the lowest and highest pressure, or why it is unknown.
-
-    Outside the atlas there is no change of sensitivity.
-    """
-    why = ageing_unknown(material)
-    if why is not None:
-        return why
-    from pneutouch.mechanics.atlas_states import outside_atlas
-    from pneutouch.mechanics.viscous.describe import ageing_shift
-
-    changes: tuple[tuple[float, float], ...] = ()
-    if outside_atlas(sensor) is None:
-        ends = [prediction.states[k].driving_pressure for k in (0, -1)]
-        shift = ageing_shift(sensor, material, ends)[1]
-        if np.isfinite(shift).all():
-            changes = tuple(zip(ends, shift.tolist(), strict=True))
-    return AgeingData(ageing_ratio(material), changes)

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from pneutouch.arrays import Array
-from pneutouch.evaluation.anywhere import contact_anywhere
 from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.evaluation.dynamics import dynamics
 from pneutouch.evaluation.gauge import gauge_record
@@ -40,6 +39,7 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.off_axis_curve import OffAxisCurve, ShearCurve
     from pneutouch.mechanics.prediction import CurveOutcome, SensorPrediction, SensorState
     from pneutouch.mechanics.rating import Rating
+    from pneutouch.results.behaviour import ContactAnywhere
 
 _DIGITS = 6
 """Significant digits: more than the figures have, fewer than differ between processors."""
@@ -59,15 +59,22 @@ def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
             evaluation.prediction, evaluation.sensor, evaluation.scene, lambda: evaluation.resins, samples
         )
     record = by_model(evaluation.prediction)
-    anywhere = evaluation.scene.design.contact.anywhere
+    anywhere = _anywhere(evaluation) if evaluation.scene.design.contact.anywhere else None
     return replace(
         record,
         states=tuple(replace(s, uncertainty=u) for s, u in zip(record.states, uncertainty, strict=True)),
         contact=contact_document(evaluation.scene).get("contact"),
         rating=rating_record(evaluation.rating, [state.driving_pressure for state in evaluation.prediction.states]),
         dead_volume_note=evaluation.assembly.dead_volume_note or None,
-        contact_anywhere=contact_anywhere(evaluation.prediction, evaluation.sensor) if anywhere else None,
+        contact_anywhere=anywhere,
     )
+
+
+def _anywhere(evaluation: Evaluation) -> ContactAnywhere:
+    # Its table of presses loads where a design asks for it.
+    from pneutouch.evaluation.anywhere import contact_anywhere
+
+    return contact_anywhere(evaluation.prediction, evaluation.sensor)
 
 
 def predicted_in_full(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:

@@ -17,14 +17,27 @@ from pneutouch.evaluation.contact_object import object_section
 from pneutouch.evaluation.dynamics import dynamics
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.gauge import gauge_record, zero_drift_kPa_per_K
-from pneutouch.evaluation.relaxation import ageing_data, viscous, viscous_curves
-from pneutouch.evaluation.sheet_data import ComparedMembrane, PressedView, SheetData, SiliconePour
+from pneutouch.evaluation.relaxation import viscous
+from pneutouch.evaluation.sheet_data import (
+    AgeingData,
+    ComparedMembrane,
+    LoadingLoop,
+    PressedView,
+    RelaxationCurve,
+    SheetData,
+    SiliconePour,
+    ViscousCurves,
+)
 from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.evaluation.uncertainty import unknown
 from pneutouch.mechanics import Sensor, SensorPrediction
 from pneutouch.mechanics.models import stated_error
+from pneutouch.mechanics.viscous.describe import ViscousRuns
+from pneutouch.mechanics.viscous.prony import ageing_ratio, ageing_unknown
+from pneutouch.mechanics.viscous.runs import LoopRun, RelaxationRun
 from pneutouch.parts import Assembly
 from pneutouch.parts.mould import silicone_batch
+from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
 
@@ -150,3 +163,43 @@ def _constant(sensor: Sensor, pressures: np.ndarray, label: str) -> ComparedMemb
         except ComputationError:
             continue
     return None
+
+
+def viscous_curves(runs: ViscousRuns | str) -> ViscousCurves | None:
+    """The curves of a hold and of the quicker loop at the highest driving pressure, one a source."""
+    if isinstance(runs, str):
+        return None
+    quick = list(runs.loops.values())[-1]
+    return ViscousCurves(tuple(map(_curve, runs.held[-1])), tuple(map(_loop, quick[-1])))
+
+
+def _curve(run: RelaxationRun) -> RelaxationCurve | None:
+    late = run.times >= 1.0 - 1e-9
+    if late.sum() < 2:
+        return None
+    force, rise = (100 * values / values[late][0] for values in (run.force, run.rise))
+    return RelaxationCurve(run.times, force, rise)
+
+
+def _loop(run: LoopRun) -> LoadingLoop | None:
+    return None if run.force_out.size < 2 else LoadingLoop(run.force_in, run.rise_in, run.force_out, run.rise_out)
+
+
+def ageing_data(prediction: SensorPrediction, material: Material, sensor: Sensor) -> AgeingData | str:
+    """Modulus after a year and the change of sensitivity at the lowest and highest pressure, or why it is unknown.
+
+    Outside the atlas there is no change of sensitivity.
+    """
+    why = ageing_unknown(material)
+    if why is not None:
+        return why
+    from pneutouch.mechanics.atlas_states import outside_atlas
+    from pneutouch.mechanics.viscous.describe import ageing_shift
+
+    changes: tuple[tuple[float, float], ...] = ()
+    if outside_atlas(sensor) is None:
+        ends = [prediction.states[k].driving_pressure for k in (0, -1)]
+        shift = ageing_shift(sensor, material, ends)[1]
+        if np.isfinite(shift).all():
+            changes = tuple(zip(ends, shift.tolist(), strict=True))
+    return AgeingData(ageing_ratio(material), changes)

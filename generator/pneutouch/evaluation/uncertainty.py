@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.evaluation.anywhere import place_unknown
 from pneutouch.evaluation.calibrated import friction_spread
 from pneutouch.evaluation.contact_object import contact_notes
 from pneutouch.evaluation.table_s1 import is_near_paper
@@ -207,6 +206,8 @@ def uncertainties(
     friction = None if estimate.contact is None else estimate.contact.friction
     notes_of_wall += contact_notes(sensor, estimate.contact)
     if scene.design.contact.anywhere:
+        from pneutouch.evaluation.anywhere import place_unknown
+
         uncovered = place_unknown(prediction, sensor, states)
         notes_of_wall += () if uncovered is None else (f"the place of contact is not in the budget: {uncovered}",)
     content = []

@@ -1,8 +1,11 @@
 """A sensor's bodies in one frame, and the gas that lies behind its cavity."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,12 +16,16 @@ from pneutouch.parts.air_path import glue_volume, internal_volume
 from pneutouch.parts.connector import rigid_solids
 from pneutouch.parts.layout import Layout, lay_out
 from pneutouch.parts.membrane import INNER_WALL, membrane_solid
-from pneutouch.parts.mould import MouldAssembly, mould_of
 from pneutouch.parts.mount import SEAT
 from pneutouch.parts.space import check_space
 from pneutouch.spec.part import ClampedFlange, OnePiece
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.units import ML
+
+if TYPE_CHECKING:
+    from pneutouch.parts.mould import MouldAssembly
+
+# A mould loads where a membrane is cast: most are printed.
 
 _MARGIN = 1.0
 """Distance in mm of the print frame's bodies from its coordinate planes: all coordinates are positive."""
@@ -43,7 +50,11 @@ class Assembly:
     @cached_property
     def mould(self) -> MouldAssembly | None:
         """The mould of a cast membrane, None of a printed one. Raises InputError if a detail has no space."""
-        return None if self.scene.mould_printer is None else mould_of(self.scene, self.layout)
+        if self.scene.mould_printer is None:
+            return None
+        from pneutouch.parts.mould import mould_of
+
+        return mould_of(self.scene, self.layout)
 
     def solid(self, name: str) -> Solid:
         """The solid of a name: membrane, connector, ring or plug."""

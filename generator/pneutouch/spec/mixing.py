@@ -9,6 +9,9 @@ from pydantic import Field, model_validator
 from pneutouch.errors import shown
 from pneutouch.spec.fields import Table
 
+FROM_CURVE = "mixing curve"
+"""First words of the source of a modulus that a mixing curve gave."""
+
 
 class MixingPoint(Table):
     """A point of the curve: the modulus of a catalogue material, or one measured.

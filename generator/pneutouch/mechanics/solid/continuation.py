@@ -3,15 +3,16 @@
 Bringing the plate down on one branch, and how the branch ends.
 """
 
+from __future__ import annotations
+
 from copy import copy
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.cavity import Supply
-from pneutouch.mechanics.solid.friction import FrictionState
 from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import (
@@ -23,6 +24,9 @@ from pneutouch.mechanics.solid.newton import (
     minimise,
     stability,
 )
+
+if TYPE_CHECKING:
+    from pneutouch.mechanics.solid.friction import FrictionState
 
 #: Longest plate travel in one solve, in R0: longer steps can land on another branch.
 LONGEST = 0.06

@@ -24,7 +24,6 @@ from pneutouch.mechanics.solid.events import (
     SolidEvent,
     crossing,
 )
-from pneutouch.mechanics.solid.friction_path import FrictionFollower
 from pneutouch.mechanics.solid.indenter import RigidObject
 from pneutouch.mechanics.solid.inflate import FirstTouch, FreeState, first_touch
 from pneutouch.mechanics.solid.model import SolidModel
@@ -166,6 +165,9 @@ def follower_of(solid: SolidModel, free: FreeState, press: PressSettings, touch:
     """The follower of a press with its gas shut in, at first contact."""
     gas = shut_in(solid, free, press)
     if press.friction:
+        # Most presses have none: its thousand lines load where they are used.
+        from pneutouch.mechanics.solid.friction_path import FrictionFollower
+
         return FrictionFollower(solid, gas, touch.body, free.unit.x, press.friction)
     return PathFollower(solid, gas, touch.body, free.unit.x)
 

@@ -15,7 +15,6 @@ from pneutouch.mechanics.uncertainty.sources.model import (
     contact_sources,
     model_sources,
     numerical_sources,
-    place_sources,
 )
 from pneutouch.mechanics.uncertainty.sources.modulus import ageing_sources, modulus_sources
 from pneutouch.spec.calibration import SensorCalibration
@@ -51,6 +50,13 @@ def sources(
         *(ageing_sources(material, size, remaining) if aged else []),
         *model_error,
         *numerical_sources(size, numerical),
-        *(place_sources(batch) if anywhere else []),
+        *(_of_place(batch) if anywhere else []),
     ]
     return [source for source in source_list if source.counts.any()]
+
+
+def _of_place(batch: SensorBatch) -> list[UncertaintySource]:
+    # Its table of presses loads where a design asks for it.
+    from pneutouch.mechanics.uncertainty.sources.place import place_sources
+
+    return place_sources(batch)

@@ -4,8 +4,6 @@ The uncertainty of the print and its surroundings: wall, radius, air behind the 
 
 The uncertainty of the contact: an unknown friction, and the part of another contact that the plate's derivatives
 miss.
-
-The uncertainty of a sensitivity that is used where object and place of contact are not known.
 """
 
 from collections.abc import Iterable, Mapping
@@ -16,15 +14,8 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.errors import InputError, shown
-from pneutouch.mechanics.anywhere.reading import (
-    FARTHEST,
-    SMALLEST_BALL,
-    STEEPEST_TILT,
-    batch_conditions,
-    place_uncertainty,
-)
 from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
-from pneutouch.mechanics.atlas.respond import AtlasResponse, respond
+from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.contact_model import ContactModel
@@ -276,23 +267,3 @@ def _of_wall(contact: ContactModel, walls: Array) -> UncertaintySource:
 
 PLACE = "place of contact"
 """Name of the source of `place_sources`."""
-
-_ORIGIN = (
-    f"assumed (Type B, JCGM 100, 4.3.7): a ball of {SMALLEST_BALL:g} R0 radius or more, its curvature even, its axis "
-    f"even over the disc of {FARTHEST:g} R0; a plate tilted by up to {np.degrees(STEEPEST_TILT):.0f} degrees; root "
-    "mean square of the logarithm of the force read over the true one"
-)
-
-
-def place_sources(batch: SensorBatch) -> list[UncertaintySource]:
-    """The source of n sensors; it counts for those that the table of contact anywhere covers."""
-    standard = place_uncertainties(batch, respond(batch))
-    known = np.isfinite(standard)
-    counts = counting(standard.size, only=(SENSITIVITY,)) & known
-    return [UncertaintySource(PLACE, FIGURE, np.where(known, standard, 0.0), "lognormal", counts, _ORIGIN, False)]
-
-
-def place_uncertainties(batch: SensorBatch, response: AtlasResponse) -> Array:
-    """Relative standard uncertainties (n,) of sensors with their responses; NaN outside the table."""
-    domes = batch_conditions(batch, response.limit_pressure, response.cavity_volume)
-    return place_uncertainty(domes, response.range_end / batch.inner_radius)
