@@ -1,0 +1,136 @@
+"""How heavy the package is: ``python -m tests.budgets`` prints every count beside its bound.
+
+A count may fall and never rise above its bound; the goal is what the project wants to come to.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = ROOT / "generator" / "pneutouch"
+KEY = "sensitivity_kPa_per_N"
+COMPUTING = ("mechanics", "results", "evaluation", "report")
+"""Folders that a sensitivity passes from the solver to the sheet."""
+
+
+class Budget(NamedTuple):
+    """A count, its bound and the goal."""
+
+    name: str
+    count: Callable[[], int]
+    bound: int
+    goal: int
+
+
+def sources(folder: Path) -> list[Path]:
+    return sorted(folder.rglob("*.py"))
+
+
+def lines_of(paths: list[Path]) -> int:
+    return sum(path.read_text(encoding="utf-8").count("\n") for path in paths)
+
+
+def trees(folder: Path) -> Iterator[ast.Module]:
+    return (ast.parse(path.read_text(encoding="utf-8")) for path in sources(folder))
+
+
+def package_lines() -> int:
+    return lines_of(sources(PACKAGE))
+
+
+def package_files() -> int:
+    return len(sources(PACKAGE))
+
+
+def benchmark_lines() -> int:
+    return lines_of(sources(ROOT / "benchmarks"))
+
+
+def dictionaries() -> int:
+    """Functions of the package that return a dictionary of anything."""
+    functions = (node for tree in trees(PACKAGE) for node in ast.walk(tree) if isinstance(node, ast.FunctionDef))
+    return sum(node.returns is not None and ast.unparse(node.returns) == "dict[str, Any]" for node in functions)
+
+
+def files_with_the_key() -> int:
+    return sum(KEY in path.read_text(encoding="utf-8") for path in sources(PACKAGE))
+
+
+def classes_with_a_sensitivity() -> int:
+    """Classes between solver and sheet that have a field of the sensitivity."""
+    classes = (
+        node
+        for name in COMPUTING
+        for tree in trees(PACKAGE / name)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ClassDef)
+    )
+    return sum(
+        any(isinstance(one, ast.AnnAssign) and ast.unparse(one.target) == KEY for one in node.body) for node in classes
+    )
+
+
+def loaded() -> list[Path]:
+    """Files of the package that ``predict paper-dome`` loads."""
+    code = (
+        "import contextlib, io, sys\n"
+        "from pneutouch.cli import command_line\n"
+        "from pneutouch.cli.stop import stop_signals\n"
+        "sys.argv = ['pneutouch', 'predict', 'paper-dome']\n"
+        "with contextlib.redirect_stdout(io.StringIO()), stop_signals() as stop:\n"
+        "    assert command_line(stop) == 0\n"
+        "names = [name for name in sys.modules if name.split('.')[0] == 'pneutouch']\n"
+        "print(*(sys.modules[name].__file__ for name in names), sep='\\n')"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    return [Path(line) for line in done.stdout.splitlines()]
+
+
+def loaded_modules() -> int:
+    return len(loaded())
+
+
+def loaded_lines() -> int:
+    return lines_of(loaded())
+
+
+_WORDING = re.compile(r"""assert .*["'][^"']* [^"']*["'] (not )?in |match=r?["'][^"']* """)
+
+
+def wording_lines() -> int:
+    """Lines of tests that assert a text of several words."""
+    return sum(
+        bool(_WORDING.search(line))
+        for path in sources(ROOT / "tests")
+        for line in path.read_text(encoding="utf-8").splitlines()
+    )
+
+
+BUDGETS = (
+    Budget("lines of the package", package_lines, 82_600, 70_000),
+    Budget("files of the package", package_files, 490, 450),
+    Budget("lines of benchmarks", benchmark_lines, 6_500, 6_500),
+    Budget("functions that return dict[str, Any]", dictionaries, 200, 30),
+    Budget("modules that predict paper-dome loads", loaded_modules, 150, 150),
+    Budget("lines in these", loaded_lines, 22_000, 18_000),
+    Budget("classes that hold a sensitivity, solver to sheet", classes_with_a_sensitivity, 8, 5),
+    Budget(f"files with the key {KEY}", files_with_the_key, 83, 30),
+    Budget("lines of tests that assert wording", wording_lines, 2_000, 600),
+)
+
+
+def main() -> None:
+    sys.stdout.write(f"{'':<50} {'now':>7} {'bound':>7} {'goal':>7}\n")
+    for budget in BUDGETS:
+        sys.stdout.write(f"{budget.name:<50} {budget.count():>7} {budget.bound:>7} {budget.goal:>7}\n")
+
+
+if __name__ == "__main__":
+    main()
