@@ -16,14 +16,15 @@ from benchmarks.strip import AGILUS, Row, Strip, harmonic
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.uncertainty import batch_of
+from pneutouch.results.record import plain
 from pneutouch.texture.scalogram import scalogram
 from pneutouch.texture.scan import scan
 from pneutouch.texture.separate import BarPattern, amplitudes, noise_amplitude, recommend
 from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate, amplitude
 from pneutouch.units import KPA
 from pneutouch.workflows.scan import ScanOptions, run_scan
-from pneutouch.workflows.scan_document import document
 from pneutouch.workflows.scan_separate import separating
+from pneutouch.workflows.scanned import scanned, spectra
 
 CELL, LENGTH, HEIGHT = 0.5, 24.0, 8.0
 DEPTHS, KINDS = (0.0, 1.0, 2.0, 3.0), {3.0: (1.5, 1.0), 6.0: (3.0, 1.5)}
@@ -38,14 +39,14 @@ def measure() -> dict[str, Any]:
     run = run_scan("texture-specimen", "paper-dome", library=LIBRARY)
     radii = [seen.touch.contact_radius for seen in run.seen if seen.touch is not None]
     return {
-        "scan": document(run),
+        "scan": plain(scanned(run)),
         "single": single(radii),
         "both": both(radii),
         "plane": plane(radii),
         "speed": speed(run),
         "sweeps": sweeps(run),
         "advice": advice(run),
-        "separate": separating("texture-specimen", "paper-dome", "3@0,6@2", ScanOptions(), library=LIBRARY),
+        "separate": plain(separating("texture-specimen", "paper-dome", "3@0,6@2", ScanOptions(), library=LIBRARY)),
     }
 
 

@@ -129,11 +129,11 @@ def test_separate_drives_no_dome_above_its_rated_pressure(library):
     """Built as it is printed, each dome at each of its pressures is within what `check` calls rated."""
     said = separating("texture-specimen", "paper-dome", "3@0,6@2", ScanOptions(), library=library)
     highest = 0.0
-    for dome in said["domes"]:
-        sizes = {f"membrane.{key}": dome[key] for key in ("inner_radius_mm", "wall_thickness_mm")}
-        changes = {"membrane.material": dome["resin"], **sizes, "pneumatics.driving_pressures_kPa": [0.0]}
+    for dome in said.domes:
+        sizes = {f"membrane.{key}": getattr(dome, key) for key in ("inner_radius_mm", "wall_thickness_mm")}
+        changes = {"membrane.material": dome.resin, **sizes, "pneumatics.driving_pressures_kPa": [0.0]}
         rating = evaluate("paper-dome", changes, model="atlas", library=library).rating
-        pressures_kPa = [state["driving_pressure_kPa"] for state in dome["states"]]
+        pressures_kPa = [state.driving_pressure_kPa for state in dome.states]
         assert [rating.severity(pressure_kPa * KPA) for pressure_kPa in pressures_kPa] == [None, None]
         highest = max(highest, *(pressure_kPa / rating.pressure_kPa for pressure_kPa in pressures_kPa))
     assert highest > 0.9

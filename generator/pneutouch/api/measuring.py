@@ -16,6 +16,7 @@ from pneutouch.api.design import Design, source_of
 from pneutouch.api.fields import named_by_keyword, number_of, numbers_of, path_of, paths_of, texts_of
 from pneutouch.api.results import Result
 from pneutouch.errors import InputError, shown
+from pneutouch.results.record import plain
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def scan(
     """
     from pneutouch.texture.scan import NOISE
     from pneutouch.workflows.scan import ScanOptions, run_scan
-    from pneutouch.workflows.scan_document import document, write_scan
+    from pneutouch.workflows.scanned import scanned, write_scan
 
     pressures_kPa = numbers_of(driving_pressures_kPa, "driving_pressures_kPa", alone=True)
     noises_kPa = () if noise_kPa is None else numbers_of([noise_kPa], "noise_kPa")
@@ -54,7 +55,7 @@ def scan(
     with named_by_keyword():
         options = ScanOptions(pressures, preload_N, speed_mm_per_s, control, noise, seed, files)
         run = run_scan(str(specimen), source_of(design), options)
-    return Result(f"Scan {run.name}", document(run), partial(write_scan, run))
+    return Result(f"Scan {run.name}", plain(scanned(run)), partial(write_scan, run))
 
 
 def plan(

@@ -5,6 +5,7 @@ A scan as text for people.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -24,6 +25,8 @@ from pneutouch.cli.app import (
 from pneutouch.cli.complete import names
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, table_text
+from pneutouch.results.record import plain
+from pneutouch.results.scan import FavouringState, ScanRecord, SeparationRecord, SimulatedSignal, SoughtPattern
 
 if TYPE_CHECKING:
     from pneutouch.workflows.scan import ScanOptions
@@ -84,15 +87,16 @@ def scan(
             _separate(specimen, design, separate, options, changes(set_, calibration), json=json)
             return
         from pneutouch.workflows.scan import run_scan
-        from pneutouch.workflows.scan_document import document, write_scan
+        from pneutouch.workflows.scanned import scanned, write_scan
 
         with bar("scanning"):
             run = run_scan(specimen, design, options, changes(set_, calibration))
             folder = write_scan(run, out)
+        record = scanned(run)
         if json:
-            print_json({**document(run), "folder": str(folder)})
+            print_json(plain(replace(record, folder=str(folder))))
         else:
-            echo(scan_text(document(run)))
+            echo(scan_text(record))
             echo(f"\n{folder}")
 
 
@@ -120,47 +124,37 @@ def _separate(
     with bar("ranking domes"):
         separation = separating(specimen, design, text, options, changed)
     if json:
-        print_json(separation)
+        print_json(plain(separation))
     else:
         echo(separation_text(separation))
-    if not separation["domes"]:
+    if not separation.domes:
         raise typer.Exit(1)
 
 
-_HEAD = ["state", "patch radius mm", "N/mm", "kPa/mm", "kPa", "model"]
-
-
-def scan_text(document: dict[str, Any]) -> str:
+def scan_text(record: ScanRecord) -> str:
     """States, then the readings of each pattern in each."""
+    simulated = [state for state in record.states if isinstance(state, SimulatedSignal)]
     states = [
         [
-            state["label"],
-            f"{state['contact_radius_mm']:.2f}",
-            f"{state['stiffness_N_per_mm']:.3f}",
-            f"{state['pressure_slope_kPa_per_mm']:.3f}",
-            f"{state['pressure_kPa']:.2f}",
-            state["model"],
+            state.label,
+            f"{state.contact_radius_mm:.2f}",
+            f"{state.stiffness_N_per_mm:.3f}",
+            f"{state.pressure_slope_kPa_per_mm:.3f}",
+            f"{state.pressure_kPa:.2f}",
+            state.model,
         ]
-        for state in document["states"]
-        if "contact_radius_mm" in state
+        for state in simulated
     ]
-    rows = [
-        [state["label"], pattern["name"], *_pattern(pattern)]
-        for state in document["states"]
-        for pattern in state["patterns"]
-    ]
+    contacts = table_text(["state", "patch radius mm", "N/mm", "kPa/mm", "kPa", "model"], states)
+    rows = [[state.label, pattern.name, *_readings(pattern)] for state in record.states for pattern in state.patterns]
     head = ["signal", "pattern", "true Hz", "found Hz", "model Pa", "read Pa", "over noise", "p", ""]
-    first, last = document["path_mm"]
-    notes = [f"note: {state['label']}: {note}" for state in document["states"] for note in state.get("notes", [])]
+    first, last = record.path_mm
+    notes = [f"note: {state.label}: {note}" for state in simulated for note in state.notes]
     return "\n".join(
         [
-            f"{document['specimen']} scanned by {document['design']}: {document['preload_N']:g} N, "
-            f"{document['control']} held, {document['speed_mm_per_s']:g} mm/s from {first:.2f} to {last:.2f} mm",
-            *(
-                ["", table_text(["state", "patch radius mm", "N/mm", "kPa/mm", "kPa", "model"], states)]
-                if states
-                else []
-            ),
+            f"{record.specimen} scanned by {record.design}: {record.preload_N:g} N, "
+            f"{record.control} held, {record.speed_mm_per_s:g} mm/s from {first:.2f} to {last:.2f} mm",
+            *(["", contacts] if states else []),
             "",
             table_text(head, rows),
             *(["", *notes] if notes else []),
@@ -168,44 +162,45 @@ def scan_text(document: dict[str, Any]) -> str:
     )
 
 
-def _pattern(pattern: dict[str, Any]) -> list[str]:
-    model = f"{1e3 * pattern['model_amplitude_kPa']:.3g}" if "model_amplitude_kPa" in pattern else "-"
-    true = f"{pattern['true_frequency_Hz']:.4g}"
-    if "p_value" not in pattern:
+def _readings(pattern: SoughtPattern) -> list[str]:
+    true, model = f"{pattern.true_frequency_Hz:.4g}", _pascals(pattern.model_amplitude_kPa)
+    if pattern.p_value is None:
         return [true, "-", model, "-", "-", "-", "no signal"]
     return [
         true,
-        f"{pattern['detected_frequency_Hz']:.4g}",
+        f"{pattern.detected_frequency_Hz:.4g}",
         model,
-        f"{1e3 * pattern['amplitude_kPa']:.3g}",
-        f"{pattern['detection_figure']:.1f}",
-        f"{pattern['p_value']:.3f}",
-        "detected" if pattern["detected"] else "not detected",
+        _pascals(pattern.amplitude_kPa),
+        f"{pattern.detection_figure:.1f}",
+        f"{pattern.p_value:.3f}",
+        "detected" if pattern.detected else "not detected",
     ]
 
 
-def separation_text(document: dict[str, Any]) -> str:
+def _pascals(pressure_kPa: float | None) -> str:
+    return "-" if pressure_kPa is None else f"{1e3 * pressure_kPa:.3g}"
+
+
+def separation_text(record: SeparationRecord) -> str:
     """Domes that separate two patterns, best first."""
-    one, two = (f"{p['pitch_mm']:g} mm at {p['depth_mm']:g} mm" for p in document["patterns"])
-    if not document["domes"]:
-        return f"none of {document['candidates']} candidates shows both {one} and {two} above the noise"
-    rows = []
-    for dome in document["domes"]:
-        states = [
-            [f"{state['driving_pressure_kPa']:.1f}", "/".join(f"{1e3 * a:.3g}" for a in state["amplitudes_kPa"])]
-            for state in dome["states"]
+    one, two = (f"{pattern.pitch_mm:g} mm at {pattern.depth_mm:g} mm" for pattern in record.patterns)
+    if not record.domes:
+        return f"none of {record.candidates} candidates shows both {one} and {two} above the noise"
+    rows = [
+        [
+            str(dome.rank),
+            dome.resin,
+            f"{dome.inner_radius_mm:.2f}",
+            f"{dome.wall_thickness_mm:.2f}",
+            *(cell for state in dome.states for cell in _favouring(state)),
+            f"{dome.contrast:.3g}",
         ]
-        rows.append(
-            [
-                str(dome["rank"]),
-                dome["resin"],
-                f"{dome['inner_radius_mm']:.2f}",
-                f"{dome['wall_thickness_mm']:.2f}",
-                *states[0],
-                *states[1],
-                f"{dome['contrast']:.3g}",
-            ]
-        )
+        for dome in record.domes
+    ]
     head = ["", "resin", "R0 mm", "t0 mm", "1st: kPa", "Pa", "2nd: kPa", "Pa", "contrast"]
-    first = f"1st pattern {one}, 2nd {two}; {document['candidates']} candidates at {document['preload_N']:g} N"
+    first = f"1st pattern {one}, 2nd {two}; {record.candidates} candidates at {record.preload_N:g} N"
     return "\n".join([first, "", table_text(head, rows)])
+
+
+def _favouring(state: FavouringState) -> list[str]:
+    return [f"{state.driving_pressure_kPa:.1f}", "/".join(map(_pascals, state.amplitudes_kPa))]

@@ -5,10 +5,12 @@ from functools import partial
 from importlib import import_module
 
 from pneutouch.formats import FORMATS, KEY, format_of
+from pneutouch.results.scan import ScanRecord
 from pneutouch.schemas.kind import DocumentKind
 from pneutouch.schemas.shape import Schema
+from pneutouch.schemas.typed import of_record
 
-_DOCUMENTS = {
+_DOCUMENTS: dict[str, tuple[type | str, str, str]] = {
     "prediction": ("prediction.prediction", "A prediction", "`prediction.json` of `build`, `pneutouch predict --json`"),
     "manifest": ("folder.manifest", "A manifest", "`manifest.json` of every output folder"),
     "plan": ("campaign.plan", "A test plan", "`plan.json` of `plan`, `pneutouch plan --json`"),
@@ -23,7 +25,7 @@ _DOCUMENTS = {
     "reader": ("reader.reader", "A reader of force", "`reader.json` of `export-reader`"),
     "fit": ("results.fit", "A fitted material law", "`fit.json` of `fit-material`, `pneutouch fit-material --json`"),
     "response": ("results.response", "A simulated signal", "`response.json` of `respond`, `pneutouch respond --json`"),
-    "scan": ("results.scan", "A scan of a specimen", "`scan.json` of `scan`, `pneutouch scan --json`"),
+    "scan": (ScanRecord, "A scan of a specimen", "`scan.json` of `scan`, `pneutouch scan --json`"),
     "truth": ("results.truth", "Truth of a simulated campaign", "`truth.json` of `simulate`"),
     "specimen-report": ("objects.specimen", "A built texture specimen", "`specimen.json` of `build`"),
     "stack": ("objects.stack", "A voxel stack", "`stack.json` of every stack for voxel printing"),
@@ -35,10 +37,14 @@ _DOCUMENTS = {
 }
 
 
-def _made(name: str, path: str) -> Schema:
-    module, _, function = path.partition(".")
-    make: Callable[[], Schema] = getattr(import_module(f"pneutouch.schemas.written.{module}"), function)
-    schema = make()
+def _made(name: str, source: type | str) -> Schema:
+    """The schema of a document, from its record or by the function that makes it."""
+    if isinstance(source, str):
+        module, _, function = source.partition(".")
+        make: Callable[[], Schema] = getattr(import_module(f"pneutouch.schemas.written.{module}"), function)
+        schema = make()
+    else:
+        schema = of_record(source)
     return _with_format(name, schema) if name in FORMATS else schema
 
 
@@ -55,6 +61,6 @@ def _with_format(name: str, schema: Schema) -> Schema:
 def written_kinds() -> dict[str, DocumentKind]:
     """Every document that is written, by name."""
     return {
-        name: DocumentKind("JSON", title, where, partial(_made, name, path))
-        for name, (path, title, where) in _DOCUMENTS.items()
+        name: DocumentKind("JSON", title, where, partial(_made, name, source))
+        for name, (source, title, where) in _DOCUMENTS.items()
     }

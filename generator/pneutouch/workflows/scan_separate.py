@@ -2,7 +2,6 @@
 
 import re
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -17,7 +16,8 @@ from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import LIMIT_ERROR, rated_pressure
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.propagate import limit_spread
-from pneutouch.rounding import tenths_below
+from pneutouch.results.scan import FavouringState, SeparatingDome, SeparationRecord, TellablePattern
+from pneutouch.rounding import rounded, tenths_below
 from pneutouch.spec.material import Material
 from pneutouch.spec.read import Changes
 from pneutouch.texture.separate import BarPattern, Separation, noise_amplitude, separate
@@ -27,7 +27,7 @@ from pneutouch.workflows.scan import ScanOptions, check_options, load_both, matr
 _RADII, _RATIOS, _PRESSURES = 8, 8, 9
 _SMALLEST, _LARGEST = 4.0, 20.0
 """Inner radii looked at, mm."""
-_SHOWN = 8
+_SHOWN, _DIGITS = 8, 4
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def separating(
     options: ScanOptions,
     changes: Changes | None = None,
     library: Library | None = None,
-) -> dict[str, Any]:
+) -> SeparationRecord:
     """The domes that best distinguish two patterns; the specimen gives matrix and speed, the design the rest."""
     library = library or Library.default()
     check_options(options)
@@ -75,34 +75,31 @@ def separating(
     floor = tuple(noise_amplitude(speed / pattern.pitch, options.noise) for pattern in patterns)
     domes = candidates(scene, sensor, library)
     separation = separate(domes.batch, domes.dome, options.preload, matrix_of(context), patterns, (floor[0], floor[1]))
-    return {
-        "patterns": [
-            {"pitch_mm": p.pitch, "depth_mm": p.depth, "frequency_Hz": speed / p.pitch, "noise_amplitude_kPa": f / KPA}
-            for p, f in zip(patterns, floor, strict=True)
-        ],
-        "candidates": len(domes.batch),
-        "preload_N": options.preload,
-        "domes": [_dome(domes, separation, k) for k in range(min(_SHOWN, len(separation.dome)))],
-    }
+    return SeparationRecord(
+        tuple(
+            TellablePattern(p.pitch, p.depth, speed / p.pitch, f / KPA) for p, f in zip(patterns, floor, strict=True)
+        ),
+        len(domes.batch),
+        options.preload,
+        tuple(_dome(domes, separation, k) for k in range(min(_SHOWN, len(separation.dome)))),
+    )
 
 
-def _dome(domes: DomeCandidates, separation: Separation, k: int) -> dict[str, Any]:
+def _dome(domes: DomeCandidates, separation: Separation, k: int) -> SeparatingDome:
     row = int(np.flatnonzero(domes.dome == separation.dome[k])[0])
-    return {
-        "rank": k + 1,
-        "resin": domes.names[int(domes.resin[row])],
-        "inner_radius_mm": float(round(domes.radius[row], 2)),
-        "wall_thickness_mm": float(round(domes.wall[row], 2)),
-        "contrast": float(f"{separation.contrast[k]:.4g}"),
-        "states": [
-            {
-                "driving_pressure_kPa": float(f"{separation.pressures[k, i] / KPA:.4g}"),
-                "for_pattern": i + 1,
-                "amplitudes_kPa": [float(f"{a / KPA:.4g}") for a in separation.amplitudes[k, i]],
-            }
-            for i in (0, 1)
-        ],
-    }
+    pressures_kPa, amplitudes_kPa = separation.pressures[k] / KPA, separation.amplitudes[k] / KPA
+    states = tuple(
+        FavouringState(float(at), i + 1, tuple(of.tolist()))
+        for i, (at, of) in enumerate(zip(pressures_kPa, amplitudes_kPa, strict=True))
+    )
+    return SeparatingDome(
+        rank=k + 1,
+        resin=domes.names[int(domes.resin[row])],
+        inner_radius_mm=float(round(domes.radius[row], 2)),
+        wall_thickness_mm=float(round(domes.wall[row], 2)),
+        contrast=rounded(float(separation.contrast[k]), _DIGITS),
+        states=rounded(states, _DIGITS),
+    )
 
 
 def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeCandidates:

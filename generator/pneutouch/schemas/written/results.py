@@ -1,13 +1,10 @@
 """Schemas of what single commands find: a fitted law, a simulated signal, a scan, the truth of a simulated campaign."""
 
-from typing import get_args
-
 from pneutouch.bench.simulate.scatter import ParameterRecord
 from pneutouch.schemas.shape import (
     FLAG,
     NUMBER,
     NUMBERS,
-    PAIR,
     TEXT,
     TEXTS,
     WHOLE,
@@ -20,7 +17,6 @@ from pneutouch.schemas.shape import (
     record,
 )
 from pneutouch.schemas.typed import typed
-from pneutouch.texture.scan import Control
 
 _MAYBE = or_null(NUMBER)
 _LIMITS = {"range_end_mm": NUMBER, "range_ends_by": or_null(TEXT)}
@@ -96,75 +92,6 @@ def response() -> Schema:
         "folder": TEXT,
     }
     return record("Readings of the gauge under a force that changes in time.", keys, ["peak_N", "peak_mm", "folder"])
-
-
-def scan() -> Schema:
-    """Schema of ``scan.json`` and of the output of ``pneutouch scan --json``."""
-    numbers = ("pitch_mm", "width_mm", "height_mm", "depth_mm", "from_mm", "to_mm", "frequency_Hz")
-    pattern = {
-        "name": TEXT,
-        **dict.fromkeys(numbers, NUMBER),
-        "depth_mm": described_by("Depth of the upper faces below the scanned surface.", NUMBER),
-        "bending_length_mm": _MAYBE,
-        "noise_amplitude_kPa": NUMBER,
-    }
-    keys = {
-        "specimen": TEXT,
-        "design": TEXT,
-        "control": choice(*get_args(Control)),
-        "preload_N": NUMBER,
-        "speed_mm_per_s": NUMBER,
-        "path_mm": PAIR,
-        "sampling_Hz": NUMBER,
-        "kept_Hz": NUMBER,
-        "noise_kPa": NUMBER,
-        "seed": WHOLE,
-        "range_kPa": NUMBER,
-        "patterns": items(record("A row of bars in the specimen.", pattern)),
-        "states": items(_scanned()),
-        "assumptions": TEXTS,
-        "folder": TEXT,
-    }
-    return record("A texture specimen scanned by a sensor.", keys, ["folder"])
-
-
-def _scanned() -> Schema:
-    touch = (
-        "driving_pressure_kPa",
-        "contact_radius_mm",
-        "indentation_mm",
-        "stiffness_N_per_mm",
-        "pressure_slope_kPa_per_mm",
-        "pressure_kPa",
-        "specimen_compliance_mm_per_N",
-    )
-    simulated = {**dict.fromkeys(touch, NUMBER), "model": TEXT, "clipped": FLAG, "notes": TEXTS}
-    keys = {
-        "label": TEXT,
-        "signal": described_by("File of the signal.", TEXT),
-        "duration_s": described_by("Length of the signal.", NUMBER),
-        **simulated,
-        "patterns": items(_detection()),
-    }
-    return record("A signal.", keys, simulated)
-
-
-def _detection() -> Schema:
-    amplitudes = ("model_amplitude_kPa", "sinking_amplitude_um", "relief_equivalent_um")
-    searched = (
-        "detected_frequency_Hz",
-        "amplitude_kPa",
-        "noise_floor_kPa",
-        "detection_figure",
-        "threshold",
-        "p_value",
-        "level",
-        "frequency_error_relative",
-    )
-    optional = dict.fromkeys((*amplitudes, *searched), NUMBER)
-    optional["level"] = described_by("Greatest p-value of a detection.", NUMBER)
-    keys = {"name": TEXT, "true_frequency_Hz": NUMBER, "detected": FLAG, **optional}
-    return record("A row of bars looked for in a signal.", keys, optional)
 
 
 def truth() -> Schema:

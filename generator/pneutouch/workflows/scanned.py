@@ -1,11 +1,9 @@
-"""A scan as the document that ``scan`` prints and ``scan.json`` keeps, and as its figure.
-
-A scan as a folder: signals, document, figure and manifest.
-"""
+"""A scan as the record that ``scan`` prints, and as a folder: signals, record, figure and manifest."""
 
 import io
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +12,8 @@ import numpy as np
 from pneutouch.formats import versioned
 from pneutouch.output.files import check_writable, json_bytes, with_manifest, write_folder
 from pneutouch.report.scalogram import ScannedState, scalogram_chart
+from pneutouch.results.record import plain
+from pneutouch.results.scan import BarsRecord, ScanRecord, SignalRecord, SimulatedSignal, SoughtPattern
 from pneutouch.rounding import rounded
 from pneutouch.texture.detect import Detection
 from pneutouch.texture.scalogram import scalogram
@@ -40,25 +40,25 @@ ASSUMPTIONS = (
 _DIGITS = 7
 
 
-def document(run: ScanRun) -> dict[str, Any]:
-    """All results of a scan; names carry their units."""
-    content = {
-        "specimen": run.specimen.name,
-        "design": run.design.name,
-        "control": run.options.control,
-        "preload_N": run.options.preload,
-        "speed_mm_per_s": run.path.speed,
-        "path_mm": [run.path.start, run.path.end],
-        "sampling_Hz": RATE,
-        "kept_Hz": 5 * run.kept,
-        "noise_kPa": run.options.noise / KPA,
-        "seed": run.options.seed,
-        "range_kPa": run.sensor.gas.gauge_limit / KPA,
-        "patterns": [_pattern(run, row) for row in run.bars],
-        "states": [_state(run, number, seen) for number, seen in enumerate(run.seen)],
-        "assumptions": list(ASSUMPTIONS),
-    }
-    return rounded(content, _DIGITS)
+def scanned(run: ScanRun) -> ScanRecord:
+    """All results of a scan."""
+    record = ScanRecord(
+        specimen=run.specimen.name,
+        design=run.design.name,
+        control=run.path.control,
+        preload_N=run.options.preload,
+        speed_mm_per_s=run.path.speed,
+        path_mm=(run.path.start, run.path.end),
+        sampling_Hz=RATE,
+        kept_Hz=5 * run.kept,
+        noise_kPa=run.options.noise / KPA,
+        seed=run.options.seed,
+        range_kPa=run.sensor.gas.gauge_limit / KPA,
+        patterns=tuple(_bars(run, row) for row in run.bars),
+        states=tuple(_signal(run, number, seen) for number, seen in enumerate(run.seen)),
+        assumptions=ASSUMPTIONS,
+    )
+    return rounded(record, _DIGITS)
 
 
 def inputs(run: ScanRun) -> dict[str, Any]:
@@ -102,94 +102,94 @@ def _names(run: ScanRun, frequency: float) -> str:
     )
 
 
-def _pattern(run: ScanRun, row: BarRow) -> dict[str, Any]:
+def _bars(run: ScanRun, row: BarRow) -> BarsRecord:
     frequency = run.frequencies[row.name]
     young = run.specimen.inclusion.young_modulus_MPa
-    return {
-        "name": row.name,
-        "pitch_mm": row.pitch,
-        "width_mm": row.width,
-        "height_mm": row.height,
-        "depth_mm": row.depth,
-        "from_mm": float(row.edges.min()),
-        "to_mm": float(row.edges.max()),
-        "frequency_Hz": frequency,
-        "bending_length_mm": None if young is None else row.bending_length(young.nominal, run.matrix.shear_modulus),
-        "noise_amplitude_kPa": noise_amplitude(frequency, run.options.noise) / KPA,
-    }
+    return BarsRecord(
+        name=row.name,
+        pitch_mm=row.pitch,
+        width_mm=row.width,
+        height_mm=row.height,
+        depth_mm=row.depth,
+        from_mm=float(row.edges.min()),
+        to_mm=float(row.edges.max()),
+        frequency_Hz=frequency,
+        bending_length_mm=None if young is None else row.bending_length(young.nominal, run.matrix.shear_modulus),
+        noise_amplitude_kPa=noise_amplitude(frequency, run.options.noise) / KPA,
+    )
 
 
-def _state(run: ScanRun, number: int, seen: AnalysedSignal) -> dict[str, Any]:
-    content: dict[str, Any] = {
-        "label": seen.label,
-        "signal": f"signal-{number + 1}.csv",
-        "duration_s": seen.signal.duration,
-    }
-    at = seen.touch
-    if at is not None and seen.substrate is not None and seen.scan is not None:
-        content |= {
-            "driving_pressure_kPa": at.driving_pressure / KPA,
-            "contact_radius_mm": at.contact_radius,
-            "indentation_mm": at.indentation,
-            "stiffness_N_per_mm": at.stiffness,
-            "pressure_slope_kPa_per_mm": at.pressure_slope / KPA,
-            "pressure_kPa": at.pressure / KPA,
-            "model": at.model,
-            "specimen_compliance_mm_per_N": float(seen.substrate.compliance(4096).mean()),
-            "clipped": bool(abs(seen.signal.pressure).max() >= run.sensor.gas.gauge_limit),
-            "notes": _notes(run.bars, at.contact_radius),
-        }
+def _signal(run: ScanRun, number: int, seen: AnalysedSignal) -> SignalRecord:
     detections: Sequence[Detection | None] = seen.detections or [None] * len(run.bars)
-    content["patterns"] = [_detection(run, seen, row, one) for row, one in zip(run.bars, detections, strict=True)]
-    return content
+    patterns = tuple(_sought(run, seen, row, one) for row, one in zip(run.bars, detections, strict=True))
+    signal = SignalRecord(seen.label, f"signal-{number + 1}.csv", seen.signal.duration, patterns)
+    at = seen.touch
+    if at is None or seen.substrate is None:
+        return signal
+    return SimulatedSignal(
+        label=signal.label,
+        signal=signal.signal,
+        duration_s=signal.duration_s,
+        patterns=patterns,
+        driving_pressure_kPa=at.driving_pressure / KPA,
+        contact_radius_mm=at.contact_radius,
+        indentation_mm=at.indentation,
+        stiffness_N_per_mm=at.stiffness,
+        pressure_slope_kPa_per_mm=at.pressure_slope / KPA,
+        pressure_kPa=at.pressure / KPA,
+        model=at.model,
+        specimen_compliance_mm_per_N=float(seen.substrate.compliance(4096).mean()),
+        clipped=bool(abs(seen.signal.pressure).max() >= run.sensor.gas.gauge_limit),
+        notes=_notes(run.bars, at.contact_radius),
+    )
 
 
-def _detection(run: ScanRun, seen: AnalysedSignal, row: BarRow, detection: Detection | None) -> dict[str, Any]:
+def _sought(run: ScanRun, seen: AnalysedSignal, row: BarRow, detection: Detection | None) -> SoughtPattern:
     """One pattern in one signal. Patterns of one pitch share one detection: a spectrum does not distinguish them."""
-    text: dict[str, Any] = {"name": row.name, "true_frequency_Hz": run.frequencies[row.name]}
+    sought = SoughtPattern(row.name, run.frequencies[row.name], detection is not None and detection.detected)
     if seen.touch is not None and seen.substrate is not None:
         swing = pressure_amplitude(seen.touch, seen.substrate, row, run.path.control)
         relief = abs(seen.substrate.amplitude(row)) * seen.touch.preload
         # Relief goes through the patch alone.
         felt = abs(float(patch_filter(np.asarray(2.0 * math.pi / row.pitch), seen.touch.contact_radius)))
-        text |= {
-            "model_amplitude_kPa": swing / KPA,
-            "sinking_amplitude_um": relief * 1e3,
-            "relief_equivalent_um": 1e3 * relief / felt,
-        }
+        sought = replace(
+            sought,
+            model_amplitude_kPa=swing / KPA,
+            sinking_amplitude_um=relief * 1e3,
+            relief_equivalent_um=1e3 * relief / felt,
+        )
     if detection is None:
-        return text | {"detected": False}
-    return text | {
-        "detected": detection.detected,
-        "detected_frequency_Hz": detection.frequency,
-        "amplitude_kPa": detection.amplitude / KPA,
-        "noise_floor_kPa": detection.floor / KPA,
-        "detection_figure": detection.ratio,
-        "threshold": detection.threshold,
-        "p_value": detection.p_value,
-        "level": detection.level,
-        "frequency_error_relative": detection.frequency / detection.target - 1.0,
-    }
+        return sought
+    return replace(
+        sought,
+        detected_frequency_Hz=detection.frequency,
+        amplitude_kPa=detection.amplitude / KPA,
+        noise_floor_kPa=detection.floor / KPA,
+        detection_figure=detection.ratio,
+        threshold=detection.threshold,
+        p_value=detection.p_value,
+        level=detection.level,
+        frequency_error_relative=detection.frequency / detection.target - 1.0,
+    )
 
 
-def _notes(bars: Sequence[BarRow], radius: float) -> list[str]:
+def _notes(bars: Sequence[BarRow], radius: float) -> tuple[str, ...]:
     """Notes on the patch: its effect on the patterns' pitches."""
     near = sorted({row.pitch for row in bars if row.pitch < 4.0 * radius})
     if not near:
-        return []
+        return ()
     blind = 2.0 * math.pi / FIRST_ZERO * radius
-    return [
+    return (
         f"pitches {', '.join(f'{pitch:g}' for pitch in near)} mm are below twice the patch ({4 * radius:.2f} mm), "
-        "which averages "
-        f"over them; of bars at the surface it feels nothing at a pitch of {blind:.2f} mm"
-    ]
+        f"which averages over them; of bars at the surface it feels nothing at a pitch of {blind:.2f} mm",
+    )
 
 
 def write_scan(run: ScanRun, out: Path) -> Path:
     """Write signals, document, figure and manifest into ``out/<specimen>-<design>-scan/``."""
     folder = out / run.name
     check_writable(folder)
-    files = {"scan.json": json_bytes(versioned("scan", document(run))), "scan.svg": spectra(run).encode()}
+    files = {"scan.json": json_bytes(versioned("scan", plain(scanned(run)))), "scan.svg": spectra(run).encode()}
     for number, seen in enumerate(run.seen):
         files[f"signal-{number + 1}.csv"] = signal_csv(seen, run.bars, run.kept)
     write_folder(folder, with_manifest(files, run.name, inputs(run)))
