@@ -55,7 +55,8 @@ def scan(
     with named_by_keyword():
         options = ScanOptions(pressures, preload_N, speed_mm_per_s, control, noise, seed, files)
         run = run_scan(str(specimen), source_of(design), options)
-    return Result(f"Scan {run.name}", plain(scanned(run)), partial(write_scan, run))
+        record = scanned(run)
+    return Result(f"Scan {run.name}", plain(record), partial(write_scan, run, record))
 
 
 def plan(
@@ -238,7 +239,7 @@ def respond(
     from pneutouch.evaluation.evaluate import evaluate
     from pneutouch.mechanics.models import model_options
     from pneutouch.workflows.respond import Load, run_respond
-    from pneutouch.workflows.respond_document import document, write_respond
+    from pneutouch.workflows.responded import responded, write_respond
 
     sizes = {"step_N": step_N, "step_mm": step_mm, "peak_N": peak_N, "peak_mm": peak_mm}
     given = {key: value for key, size in sizes.items() if (value := number_of(size, key)) is not None}
@@ -251,7 +252,8 @@ def respond(
     with named_by_keyword():
         evaluation = evaluate(source_of(design), **model_options(model, None))
         run = run_respond(evaluation, Load(size, key.endswith("mm"), frequency_Hz, length_s), seed)
-    return Result(f"Response of {evaluation.scene.name}", document(run), partial(write_respond, run))
+        record = responded(run)
+    return Result(f"Response of {evaluation.scene.name}", plain(record), partial(write_respond, run, record))
 
 
 def fit_material(

@@ -5,8 +5,9 @@ A simulated signal as text for people.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -25,6 +26,8 @@ from pneutouch.cli.app import (
 )
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify, report_next, set_words, table_text
+from pneutouch.results.record import plain
+from pneutouch.results.response import ResponseRecord
 
 if TYPE_CHECKING:
     from pneutouch.workflows.respond import Load
@@ -61,20 +64,20 @@ def respond(
         from pneutouch.evaluation.evaluate import evaluate
         from pneutouch.mechanics.models import model_options
         from pneutouch.workflows.respond import run_respond
-        from pneutouch.workflows.respond_document import document, write_respond
+        from pneutouch.workflows.responded import responded, write_respond
 
         with bar("simulating the signal"):
             evaluation = evaluate(design, changes(set_, calibration), **model_options(model, tolerance))
             run = run_respond(evaluation, load, seed)
-            folder = write_respond(run, out)
-        content = document(run)
-        for note in content["notes"]:
+            record = responded(run)
+            folder = write_respond(run, record, out)
+        for note in record.notes:
             notify(f"note: {note}")
         if json:
-            print_json({**content, "folder": str(folder)})
+            print_json(plain(replace(record, folder=str(folder))))
             return
 
-        echo(respond_text(content))
+        echo(respond_text(record))
         echo(f"\n{folder}")
         report_next("build", design, *set_words(set_, calibration))
 
@@ -98,34 +101,28 @@ def _load(step: str | None, sine: str | None, peak: str | None, duration: float 
 _HEAD = ["kPa", "data", "slow kPa", "greatest kPa", "last kPa", "resonance Hz", "gain there", "3 dB Hz", "5 % Hz"]
 
 
-def respond_text(document: dict[str, Any]) -> str:
+def respond_text(record: ResponseRecord) -> str:
     """Readings of the load in every state."""
-    unit = "N" if "peak_N" in document else "mm"
-    sine = document["sine_Hz"]
-    what = "step" if sine is None else f"sine of {sine:g} Hz"
-    sources = list(dict.fromkeys(state["relaxation_source"] for state in document["states"]))
-    rows = [
-        [
-            f"{state['driving_pressure_kPa']:g}",
-            "-" if state["relaxation_source"] is None else chr(ord("A") + sources.index(state["relaxation_source"])),
-            *(
-                _number(state[key])
-                for key in (
-                    "slow_pressure_rise_kPa",
-                    "greatest_reading_kPa",
-                    "last_reading_kPa",
-                    "first_resonance_Hz",
-                    "resonance_gain",
-                    "bandwidth_3_dB_Hz",
-                    "within_5_percent_Hz",
-                )
-            ),
-            *([] if sine is None else [_number(state["gain"]), f"{state['phase_lag_deg']:.1f}"]),
-        ]
-        for state in document["states"]
-    ]
+    sine = record.sine_Hz
+    load = "step" if sine is None else f"sine of {sine:g} Hz"
+    sources = list(dict.fromkeys(state.relaxation_source for state in record.states))
+    rows = []
+    for state in record.states:
+        source = state.relaxation_source
+        numbers = (
+            state.slow_pressure_rise_kPa,
+            state.greatest_reading_kPa,
+            state.last_reading_kPa,
+            state.first_resonance_Hz,
+            state.resonance_gain,
+            state.bandwidth_3_dB_Hz,
+            state.within_5_percent_Hz,
+        )
+        data = "-" if source is None else chr(ord("A") + sources.index(source))
+        ends = [] if sine is None else [_number(state.gain), f"{state.phase_lag_deg:.1f}"]
+        rows.append([f"{state.driving_pressure_kPa:g}", data, *map(_number, numbers), *ends])
     head = _HEAD if sine is None else [*_HEAD, "gain", "lag deg"]
-    title = f"{document['design']}: simulated {what} to {document[f'peak_{unit}']:g} {unit}, model {document['model']}"
+    title = f"{record.design}: simulated {load} to {record.peak}, model {record.model}"
     return "\n".join([title, "", table_text(head, rows)])
 
 

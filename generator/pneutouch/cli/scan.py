@@ -91,8 +91,8 @@ def scan(
 
         with bar("scanning"):
             run = run_scan(specimen, design, options, changes(set_, calibration))
-            folder = write_scan(run, out)
-        record = scanned(run)
+            record = scanned(run)
+            folder = write_scan(run, record, out)
         if json:
             print_json(plain(replace(record, folder=str(folder))))
         else:

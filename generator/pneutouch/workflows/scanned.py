@@ -185,11 +185,11 @@ def _notes(bars: Sequence[BarRow], radius: float) -> tuple[str, ...]:
     )
 
 
-def write_scan(run: ScanRun, out: Path) -> Path:
-    """Write signals, document, figure and manifest into ``out/<specimen>-<design>-scan/``."""
+def write_scan(run: ScanRun, record: ScanRecord, out: Path) -> Path:
+    """Write signals, record, figure and manifest into ``out/<specimen>-<design>-scan/``."""
     folder = out / run.name
     check_writable(folder)
-    files = {"scan.json": json_bytes(versioned("scan", plain(scanned(run)))), "scan.svg": spectra(run).encode()}
+    files = {"scan.json": json_bytes(versioned("scan", plain(record))), "scan.svg": spectra(run).encode()}
     for number, seen in enumerate(run.seen):
         files[f"signal-{number + 1}.csv"] = signal_csv(seen, run.bars, run.kept)
     write_folder(folder, with_manifest(files, run.name, inputs(run)))

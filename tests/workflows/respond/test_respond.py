@@ -12,8 +12,9 @@ from pneutouch.cli.respond import respond_text
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.formats import versioned
+from pneutouch.results.record import plain
 from pneutouch.workflows.respond import Load, frequency_Hz, load_size, run_respond
-from pneutouch.workflows.respond_document import document, write_respond
+from pneutouch.workflows.responded import responded, write_respond
 
 
 @pytest.fixture(scope="module")
@@ -96,8 +97,9 @@ def test_the_samples_are_those_of_the_gauge(library):
 
 def test_the_folder_holds_what_the_document_states(elastic, tmp_path):
     run = run_respond(elastic, Load(1.0))
-    folder = write_respond(run, tmp_path)
-    again = write_respond(run, tmp_path / "again")
+    record = responded(run)
+    folder = write_respond(run, record, tmp_path)
+    again = write_respond(run, record, tmp_path / "again")
     assert {path.name for path in folder.iterdir()} == {
         "response.json",
         "response.svg",
@@ -107,13 +109,13 @@ def test_the_folder_holds_what_the_document_states(elastic, tmp_path):
     for path in folder.iterdir():
         assert path.read_bytes() == (again / path.name).read_bytes()
     stated = json.loads((folder / "response.json").read_text())
-    assert stated == versioned("response", json.loads(json.dumps(document(run)))) and stated["simulated"] is True
+    assert stated == versioned("response", plain(record)) and stated["simulated"] is True
     table = np.genfromtxt(folder / "signal-1.csv", delimiter=",", names=True)
     assert table["gauge_pressure_rise_kPa"].max() == pytest.approx(
         stated["states"][0]["greatest_reading_kPa"], rel=0.02
     )
     assert table["contact_force_N"].max() == 1.0
-    assert "simulated step to 1 N" in respond_text(stated)
+    assert "simulated step to 1 N" in respond_text(record)
 
 
 def test_python_and_the_command_give_the_same(elastic, tmp_path):

@@ -19,7 +19,6 @@ from pneutouch.schemas.shape import (
 from pneutouch.schemas.typed import typed
 
 _MAYBE = or_null(NUMBER)
-_LIMITS = {"range_end_mm": NUMBER, "range_ends_by": or_null(TEXT)}
 
 
 def fit() -> Schema:
@@ -58,40 +57,6 @@ def _law(**more: Schema) -> Schema:
         "misfit_of_points_percent": NUMBER,
     }
     return record("A fitted law.", {**keys, **more})
-
-
-def response() -> Schema:
-    """Schema of ``response.json`` and of the output of ``pneutouch respond --json``."""
-    band = ("first_resonance_Hz", "resonance_gain", "bandwidth_3_dB_Hz", "within_5_percent_Hz")
-    numbers = ("driving_pressure_kPa", "slow_pressure_rise_kPa", "greatest_reading_kPa", "last_reading_kPa")
-    state = {
-        **dict.fromkeys(numbers, NUMBER),
-        "relaxation_source": or_null(TEXT),
-        "file": TEXT,
-        **dict.fromkeys(band, _MAYBE),
-        "within_5_percent_limited_by": or_null(TEXT),
-        "gain": NUMBER,
-        "phase_lag_deg": NUMBER,
-        "samples_file": TEXT,
-    }
-    keys = {
-        "design": TEXT,
-        "model": TEXT,
-        "simulated": FLAG,
-        "signal": described_by("Form of the load in time.", choice("step", "sine")),
-        "sine_Hz": _MAYBE,
-        "peak_N": described_by("Greatest force; or peak_mm.", NUMBER),
-        "peak_mm": described_by("Greatest indentation; or peak_N.", NUMBER),
-        "duration_s": described_by("Length of the signal.", NUMBER),
-        "seed": WHOLE,
-        "gauge": or_null(TEXT),
-        "gauge_rate_Hz": _MAYBE,
-        "notes": TEXTS,
-        "states": items(record("One driving pressure.", state, ["gain", "phase_lag_deg", "samples_file"])),
-        "basis": described_by("Assumptions of the simulation, in sentences.", TEXTS),
-        "folder": TEXT,
-    }
-    return record("Readings of the gauge under a force that changes in time.", keys, ["peak_N", "peak_mm", "folder"])
 
 
 def truth() -> Schema:

@@ -1,22 +1,24 @@
-"""A simulated signal as the document that ``respond`` prints, as files and as a figure."""
+"""A simulated signal as the record that ``respond`` prints, as files and as a figure."""
 
 from __future__ import annotations
 
 import io
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.evaluation.dynamics import BASIS, gauge_rate_Hz
 from pneutouch.formats import versioned
 from pneutouch.mechanics.line.transient import gain_at, highest_frequency
 from pneutouch.output.files import check_writable, json_bytes, with_manifest, write_folder
 from pneutouch.output.recipe import BuildRecipe
 from pneutouch.report.fit_charts import GainCurve, TimeCurves, response_chart
+from pneutouch.results.record import plain
+from pneutouch.results.response import ResponseRecord, StateResponse
 from pneutouch.rounding import rounded
 from pneutouch.units import KPA
-from pneutouch.workflows.respond import BEFORE, RespondRun, StateSignal
+from pneutouch.workflows.respond import BEFORE, Load, RespondRun, StateSignal
 
 _DIGITS = 6
 
@@ -32,26 +34,26 @@ CHAIN = (
 )
 
 
-def document(run: RespondRun) -> dict[str, Any]:
-    """All results; names carry their units."""
-    scene, load = run.evaluation.scene, run.load
-    unit = load.unit
-    content = {
-        "design": scene.name,
-        "model": run.evaluation.prediction.model,
-        "simulated": True,
-        "signal": "step" if load.frequency is None else "sine",
-        "sine_Hz": load.frequency,
-        f"peak_{unit}": run.signals[0].peak,
-        "duration_s": load.seconds,
-        "seed": run.seed,
-        "gauge": scene.design.pneumatics.gauge,
-        "gauge_rate_Hz": gauge_rate_Hz(run.evaluation.scene),
-        "notes": _notes(run),
-        "states": [_state(run, number, signal) for number, signal in enumerate(run.signals)],
-        "basis": [*CHAIN, *BASIS],
-    }
-    return rounded(content, _DIGITS)
+def responded(run: RespondRun) -> ResponseRecord:
+    """All results of a simulated signal."""
+    scene, load, peak = run.evaluation.scene, run.load, run.signals[0].peak
+    record = ResponseRecord(
+        design=scene.name,
+        model=run.evaluation.prediction.model,
+        simulated=True,
+        signal="step" if load.frequency is None else "sine",
+        sine_Hz=load.frequency,
+        duration_s=load.seconds,
+        seed=run.seed,
+        gauge=scene.design.pneumatics.gauge,
+        gauge_rate_Hz=gauge_rate_Hz(scene),
+        notes=tuple(_notes(run)),
+        states=tuple(_state(run.load, number, signal) for number, signal in enumerate(run.signals)),
+        basis=(*CHAIN, *BASIS),
+        peak_N=None if load.travel else peak,
+        peak_mm=peak if load.travel else None,
+    )
+    return rounded(record, _DIGITS)
 
 
 def _notes(run: RespondRun) -> list[str]:
@@ -68,35 +70,33 @@ def _notes(run: RespondRun) -> list[str]:
     return [*notes, *([f"{clipped} samples lie beyond the gauge's range"] if clipped else [])]
 
 
-def _state(run: RespondRun, number: int, signal: StateSignal) -> dict[str, Any]:
-    load, band = run.load, signal.band
-    content: dict[str, Any] = {
-        "driving_pressure_kPa": signal.driving_pressure / KPA,
-        "relaxation_source": signal.source,
-        "file": f"signal-{number + 1}.csv",
-        "slow_pressure_rise_kPa": float(signal.slow.max()) / KPA,
-        "greatest_reading_kPa": float(signal.gauge.max()) / KPA,
-        "last_reading_kPa": float(signal.gauge[-1]) / KPA,
-        "first_resonance_Hz": band.resonance,
-        "resonance_gain": band.resonance_gain,
-        "bandwidth_3_dB_Hz": band.bandwidth,
-        "within_5_percent_Hz": band.within_tolerance,
-        "within_5_percent_limited_by": band.limited_by,
-    }
-    if load.frequency is not None:
-        gain, lag = signal.at_frequency(load.frequency)
-        content |= {"gain": gain, "phase_lag_deg": lag}
-    if signal.samples is not None:
-        content["samples_file"] = f"samples-{number + 1}.csv"
-    return content
+def _state(load: Load, number: int, signal: StateSignal) -> StateResponse:
+    band = signal.band
+    gain, lag = (None, None) if load.frequency is None else signal.at_frequency(load.frequency)
+    return StateResponse(
+        driving_pressure_kPa=signal.driving_pressure / KPA,
+        relaxation_source=signal.source,
+        file=f"signal-{number + 1}.csv",
+        slow_pressure_rise_kPa=float(signal.slow.max()) / KPA,
+        greatest_reading_kPa=float(signal.gauge.max()) / KPA,
+        last_reading_kPa=float(signal.gauge[-1]) / KPA,
+        first_resonance_Hz=band.resonance,
+        resonance_gain=band.resonance_gain,
+        bandwidth_3_dB_Hz=band.bandwidth,
+        within_5_percent_Hz=band.within_tolerance,
+        within_5_percent_limited_by=band.limited_by,
+        gain=gain,
+        phase_lag_deg=lag,
+        samples_file=None if signal.samples is None else f"samples-{number + 1}.csv",
+    )
 
 
-def write_respond(run: RespondRun, out: Path) -> Path:
-    """Write signals, samples, document, figure and manifest into ``out/<design>-response/``; returns that folder."""
+def write_respond(run: RespondRun, record: ResponseRecord, out: Path) -> Path:
+    """Write signals, samples, record, figure and manifest into ``out/<design>-response/``; returns that folder."""
     name = f"{run.evaluation.scene.name}-response"
     folder = out / name
     check_writable(folder)
-    files = {"response.json": json_bytes(versioned("response", document(run))), "response.svg": _chart(run).encode()}
+    files = {"response.json": json_bytes(versioned("response", plain(record))), "response.svg": _chart(run).encode()}
     for number, signal in enumerate(run.signals):
         files[f"signal-{number + 1}.csv"] = _signal_csv(run, signal)
         if signal.samples is not None:
@@ -117,7 +117,7 @@ def _signal_csv(run: RespondRun, signal: StateSignal) -> bytes:
     return _csv({"time_s": signal.time[every], loaded: signal.load[every], **columns})
 
 
-def _csv(columns: dict[str, Any]) -> bytes:
+def _csv(columns: dict[str, Array]) -> bytes:
     text = io.StringIO()
     text.write(",".join(columns) + "\n")
     # Zeros that are rounding have one form.
