@@ -21,8 +21,6 @@ from pneutouch.units import KPA
 
 if TYPE_CHECKING:
     from pneutouch.workflows.calibrate.calibrate import CalibrationOutcome
-    from pneutouch.workflows.fitted_material import FittedMaterial
-
 
 _DATA = "give a campaign's folder, its file or that of one run"
 
@@ -279,8 +277,8 @@ def fit_material(
     """
     from pneutouch.bench.tensile.puck import PuckSize
     from pneutouch.bench.tensile.read import SpecimenSize
-    from pneutouch.workflows.fit_material import document
     from pneutouch.workflows.fit_material import fit_material as run
+    from pneutouch.workflows.fit_material import fit_report, write_material
     from pneutouch.workflows.fitted_material import FitOptions, MaterialFacts
 
     files = paths_of(data, "data", "give the path of a table, or a list of such paths")
@@ -289,10 +287,5 @@ def fit_material(
     facts = MaterialFacts(like, density_g_per_cm3, tuple(shore_a), lab)
     with named_by_keyword():
         fitted = run(FitOptions(files, name, size, puck, stretch_to, slack, facts))
-    return Result(f"Material {name}", document(fitted), partial(_written, fitted))
-
-
-def _written(fitted: FittedMaterial, out: Path) -> Path:
-    from pneutouch.workflows.fit_material import write_material
-
-    return write_material(fitted, out)[0]
+        report = fit_report(fitted)
+    return Result(f"Material {name}", plain(report), partial(write_material, fitted, report))

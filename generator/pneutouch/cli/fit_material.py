@@ -5,8 +5,9 @@ A fitted material as text for people.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,6 +15,8 @@ from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
 from pneutouch.cli.complete import names
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify, report_next, table_text
+from pneutouch.results.fit import MaterialFit
+from pneutouch.results.record import plain
 
 if TYPE_CHECKING:
     from pneutouch.bench.tensile.puck import PuckSize
@@ -63,23 +66,25 @@ def fit_material(
     with reporting():
         from pneutouch.bench.tensile.read import SpecimenSize
         from pneutouch.workflows.fit_material import fit_material as fit
-        from pneutouch.workflows.fit_material import write_material
+        from pneutouch.workflows.fit_material import fit_report, write_material
         from pneutouch.workflows.fitted_material import FitOptions, MaterialFacts
 
         facts = MaterialFacts(like, density, _readings(shore_a), lab)
         size = SpecimenSize(gauge_length, width, thickness)
         options = FitOptions(tuple(data), name, size, _puck(puck, bonded), stretch_to, slack, facts)
         with bar("fitting laws"):
-            folder, content = write_material(fit(options), out)
-        for note in content["notes"]:
+            fitted = fit(options)
+            report = fit_report(fitted)
+            folder = write_material(fitted, report, out)
+        for note in report.notes:
             notify(f"note: {note}")
         if json:
-            print_json({**content, "folder": str(folder)})
+            print_json(plain(replace(report, folder=str(folder))))
             return
 
-        echo(fit_text(content))
-        echo(f"\nwritten: {content['file']}\n{folder}")
-        _report_next(name, content["profile"])
+        echo(fit_text(report))
+        echo(f"\nwritten: {report.file}\n{folder}")
+        _report_next(name, report.profile)
 
 
 def _report_next(name: str, profile: str | None) -> None:
@@ -122,33 +127,32 @@ def _readings(text: str | None) -> tuple[float, ...]:
     return readings
 
 
-def fit_text(document: dict[str, Any]) -> str:
+def fit_text(report: MaterialFit) -> str:
     """The law, the modulus, and how far each law is off."""
-    law = document["law"]
+    law = report.law
     rows = [
         [
-            "->" if fit["label"] == law["label"] else "",
-            fit["label"],
-            f"{fit['misfit_percent']:.1f} %",
+            "->" if fit.label == law.label else "",
+            fit.label,
+            f"{fit.misfit_percent:.1f} %",
             ", ".join(
-                f"{value:.4g} ± {error:.1g}"
-                for value, error in zip(fit["constants"], fit["uncertainties"], strict=True)
+                f"{value:.4g} ± {error:.1g}" for value, error in zip(fit.constants, fit.uncertainties, strict=True)
             ),
-            fit["refused"] or "",
+            fit.refused or "",
         ]
-        for fit in document["fits"]
+        for fit in report.fits
     ]
     head = ["", "law", "misfit", "constants (MPa; Ogden: mu, alpha), k = 2", ""]
     specimens = [
-        f"{one['data']}: {one['points']} points, slack {one['slack_percent']:.2g} %, shear modulus "
-        f"{one['shear_modulus_MPa']:.4g} MPa"
-        for one in document["specimens"]
+        f"{one.data}: {one.points} points, slack {one.slack_percent:.2g} %, shear modulus "
+        f"{one.shear_modulus_MPa:.4g} MPa"
+        for one in report.specimens
     ]
     lines = [
-        f"{document['material']}: {law['label']}, within {law['misfit_percent']:.2g} % up to a stretch of "
-        f"{document['largest_stretch']:.3g}; shear modulus at small strain "
-        f"{document['shear_modulus_small_strain_MPa']:.4g} MPa",
-        f"neo-Hookean over the same stretches: {document['shear_modulus_MPa']:.4g} MPa",
+        f"{report.material}: {law.label}, within {law.misfit_percent:.2g} % up to a stretch of "
+        f"{report.largest_stretch:.3g}; shear modulus at small strain "
+        f"{report.shear_modulus_small_strain_MPa:.4g} MPa",
+        f"neo-Hookean over the same stretches: {report.shear_modulus_MPa:.4g} MPa",
         *specimens,
     ]
     return "\n\n".join(["\n".join(lines), table_text(head, rows)])

@@ -5,6 +5,7 @@ from functools import partial
 from importlib import import_module
 
 from pneutouch.formats import FORMATS, KEY, format_of
+from pneutouch.results.fit import MaterialFit
 from pneutouch.results.response import ResponseRecord
 from pneutouch.results.scan import ScanRecord
 from pneutouch.schemas.kind import DocumentKind
@@ -24,7 +25,7 @@ _DOCUMENTS: dict[str, tuple[type | str, str, str]] = {
     "comparison": ("reports.comparison", "A comparison", "`comparison.json` of `compare`, `pneutouch compare --json`"),
     "calibration-report": ("reports.calibration_report", "A calibration's report", "`pneutouch calibrate --json`"),
     "reader": ("reader.reader", "A reader of force", "`reader.json` of `export-reader`"),
-    "fit": ("results.fit", "A fitted material law", "`fit.json` of `fit-material`, `pneutouch fit-material --json`"),
+    "fit": (MaterialFit, "A fitted material law", "`fit.json` of `fit-material`, `pneutouch fit-material --json`"),
     "response": (ResponseRecord, "A simulated signal", "`response.json` of `respond`, `pneutouch respond --json`"),
     "scan": (ScanRecord, "A scan of a specimen", "`scan.json` of `scan`, `pneutouch scan --json`"),
     "truth": ("results.truth", "Truth of a simulated campaign", "`truth.json` of `simulate`"),

@@ -11,11 +11,10 @@ import tomllib
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from pneutouch.bench.tensile.choose import MISFIT, NEO_HOOKEAN, choose_law
+from pneutouch.bench.tensile.choose import MISFIT, NEO_HOOKEAN, LawChoice, choose_law
 from pneutouch.bench.tensile.fit import LawFit, difference
 from pneutouch.bench.tensile.puck import fit_puck
 from pneutouch.bench.tensile.read import read_tension
@@ -27,6 +26,8 @@ from pneutouch.mechanics.laws import hyperelastic
 from pneutouch.mechanics.paper_sensor import young_modulus
 from pneutouch.output.files import check_writable, digest, json_bytes, replace_files, with_manifest, write_folder
 from pneutouch.report.fit_charts import LawCurve, law_chart
+from pneutouch.results.fit import LawRecord, MaterialFit, PulledSpecimen, TriedLaw
+from pneutouch.results.record import plain
 from pneutouch.rounding import rounded
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.material import Material, density_problem
@@ -41,53 +42,39 @@ _MOST_BYTES = 100_000_000
 _GRID = 200
 
 
-def document(fitted: FittedMaterial) -> dict[str, Any]:
-    """All results; names carry their units."""
+def fit_report(fitted: FittedMaterial) -> MaterialFit:
+    """All results of a fit."""
     choice, law = fitted.choice, fitted.law
     small = hyperelastic(law.form.name, law.constants, 0.49).mu
     fits = (law,) if choice is None else choice.fits
     refused = {} if choice is None else choice.refused
-    content = {
-        "material": fitted.options.name,
-        "file": str(fitted.path),
-        "test": "puck" if choice is None else "tension",
-        "largest_stretch": fitted.largest,
-        "law": _fit(law),
-        "shear_modulus_small_strain_MPa": small,
-        "shear_modulus_MPa": fitted.neo_hookean.constants[0],
-        "shear_modulus_uncertainty_MPa": fitted.neo_hookean.errors[0],
-        "specimens": [] if choice is None else _specimens(fitted),
-        "fits": [{**_fit(fit), "refused": refused.get(k)} for k, fit in enumerate(fits)],
-        "profile": _profile(fitted),
-        "notes": _notes(fitted, small),
-    }
-    return rounded(content, 6)
+    report = MaterialFit(
+        material=fitted.options.name,
+        file=str(fitted.path),
+        test="puck" if choice is None else "tension",
+        largest_stretch=fitted.largest,
+        law=LawRecord(*_figures(law)),
+        shear_modulus_small_strain_MPa=small,
+        shear_modulus_MPa=fitted.neo_hookean.constants[0],
+        shear_modulus_uncertainty_MPa=fitted.neo_hookean.errors[0],
+        specimens=() if choice is None else _specimens(choice),
+        fits=tuple(TriedLaw(*_figures(fit), refused.get(k)) for k, fit in enumerate(fits)),
+        profile=_profile(fitted),
+        notes=tuple(_notes(fitted, small)),
+    )
+    return rounded(report, 6)
 
 
-def _fit(fit: LawFit) -> dict[str, Any]:
-    """A law with its constants: MPa, Ogden's exponents without unit."""
-    return {
-        "name": fit.form.name,
-        "label": fit.form.label,
-        "constants": list(fit.constants),
-        "uncertainties": list(fit.errors),
-        "misfit_percent": 100 * fit.misfit,
-        "misfit_of_points_percent": 100 * fit.worst,
-    }
+def _figures(fit: LawFit) -> tuple[str, str, tuple[float, ...], tuple[float, ...], float, float]:
+    """The fields of a law's record."""
+    return fit.form.name, fit.form.label, fit.constants, fit.errors, 100 * fit.misfit, 100 * fit.worst
 
 
-def _specimens(fitted: FittedMaterial) -> list[dict[str, Any]]:
-    assert fitted.choice is not None
-    curves = zip(fitted.choice.curves, fitted.choice.each, strict=True)
-    return [
-        {
-            "data": curve.file,
-            "points": int(curve.stretch.size),
-            "slack_percent": 100 * curve.slack,
-            "shear_modulus_MPa": modulus,
-        }
-        for curve, modulus in curves
-    ]
+def _specimens(choice: LawChoice) -> tuple[PulledSpecimen, ...]:
+    return tuple(
+        PulledSpecimen(curve.file, int(curve.stretch.size), 100 * curve.slack, modulus)
+        for curve, modulus in zip(choice.curves, choice.each, strict=True)
+    )
 
 
 def _notes(fitted: FittedMaterial, small: float) -> list[str]:
@@ -146,18 +133,6 @@ def _hardness(fitted: FittedMaterial, small: float) -> list[str]:
     return [text if low <= share <= high else f"{text}: an outlier; was this material measured, in these units?"]
 
 
-def files(fitted: FittedMaterial, content: dict[str, Any]) -> dict[str, bytes]:
-    """The files of the output folder: figures, plot, manifest."""
-    inputs = {
-        "data": {path.name: digest(read_bytes(path, _MOST_BYTES, "data")) for path in fitted.options.data},
-        "stretch_to": fitted.options.largest,
-        "slack": fitted.options.slack,
-        "material": fitted.text,
-    }
-    made = {"fit.json": json_bytes(versioned("fit", content)), "fit.svg": _chart(fitted).encode()}
-    return with_manifest(made, f"fit-{fitted.options.name}", inputs)
-
-
 def _chart(fitted: FittedMaterial) -> str:
     stretch = np.linspace(1.0, fitted.largest, _GRID)
     laws = [fitted.law] if fitted.law.form == fitted.neo_hookean.form else [fitted.law, fitted.neo_hookean]
@@ -196,16 +171,21 @@ def fit_material(options: FitOptions, library: Library | None = None) -> FittedM
     return replace(fitted, text=material_file(fitted, library))
 
 
-def write_material(fitted: FittedMaterial, out: Path) -> tuple[Path, dict[str, Any]]:
-    """Write the material file into the user's folder, and plot and figures into ``out/fit-<name>/``; that folder, the
-    document."""
-    content = document(fitted)
+def write_material(fitted: FittedMaterial, report: MaterialFit, out: Path) -> Path:
+    """Write the material file into the user's folder, and plot and figures into ``out/fit-<name>/``; that folder."""
     folder = out / f"fit-{fitted.options.name}"
     check_writable(folder)
-    made = files(fitted, content)
+    inputs = {
+        "data": {path.name: digest(read_bytes(path, _MOST_BYTES, "data")) for path in fitted.options.data},
+        "stretch_to": fitted.options.largest,
+        "slack": fitted.options.slack,
+        "material": fitted.text,
+    }
+    made = {"fit.json": json_bytes(versioned("fit", plain(report))), "fit.svg": _chart(fitted).encode()}
+    files = with_manifest(made, folder.name, inputs)
     replace_files({fitted.path: fitted.text.encode()})
-    write_folder(folder, made)
-    return folder, content
+    write_folder(folder, files)
+    return folder
 
 
 def _check(options: FitOptions) -> None:

@@ -17,9 +17,10 @@ from pneutouch.bench.tensile.puck import PuckFit, PuckSize
 from pneutouch.bench.tensile.read import SpecimenSize
 from pneutouch.catalogue import KINDS, Library
 from pneutouch.errors import InputError
+from pneutouch.spec.material import HyperelasticLaw
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
-from pneutouch.spec.values import file_name
+from pneutouch.spec.values import Quantity, file_name
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,23 +99,16 @@ def material_file(fitted: FittedMaterial, library: Library) -> str:
     """The text of the file, checked as a material. Raises InputError if a file of that name is not of a fit."""
     _check_ours(fitted.path)
     content = _base(fitted, library)
-    content["shear_modulus_MPa"] = _modulus(fitted)
-    content["law"] = _law(fitted)
-    facts = fitted.options.facts
+    measured: dict[str, Quantity | HyperelasticLaw] = {"shear_modulus_MPa": _modulus(fitted), "law": _law(fitted)}
+    facts, given = fitted.options.facts, "as given to pneutouch fit-material"
     if facts.density is not None:
-        content["density_g_per_cm3"] = {
-            "value": facts.density,
-            "source": f"as given to pneutouch fit-material{_by(fitted)}",
-        }
+        measured["density_g_per_cm3"] = Quantity(value=facts.density, source=f"{given}{_by(fitted)}")
     if facts.shore_a:
         readings = np.asarray(facts.shore_a)
-        shore: dict[str, Any] = {"value": rounded(float(readings.mean()))}
-        if readings.size > 1:
-            shore["spread"] = rounded(float(readings.std(ddof=1)))
-        content["shore_a"] = {
-            **shore,
-            "source": f"as given to pneutouch fit-material, {readings.size} readings{_by(fitted)}",
-        }
+        spread = rounded(float(readings.std(ddof=1))) if readings.size > 1 else None
+        source = f"{given}, {readings.size} readings{_by(fitted)}"
+        measured["shore_a"] = Quantity(value=rounded(float(readings.mean())), spread=spread, source=source)
+    content |= {key: table.model_dump(exclude_none=True) for key, table in measured.items()}
     KINDS["materials"].validate(content, str(fitted.path))
     names = ", ".join(file_name(path.name) for path in fitted.options.data)
     head = (
@@ -177,29 +171,30 @@ def _by(fitted: FittedMaterial) -> str:
     return "" if fitted.options.facts.lab is None else f"; {fitted.options.facts.lab}"
 
 
-def _modulus(fitted: FittedMaterial) -> dict[str, Any]:
+def _modulus(fitted: FittedMaterial) -> Quantity:
     neo, value = fitted.neo_hookean, rounded(fitted.neo_hookean.constants[0])
     how = f"neo-Hookean fit to a stretch of {fitted.largest:.3g}, misfit {100 * neo.misfit:.3g} %"
     each = () if fitted.choice is None else fitted.choice.each
-    content: dict[str, Any] = {"value": value}
+    low = high = spread = None
     if len(each) > 1:
-        content |= {"low": rounded(min(*each, value)), "high": rounded(max(*each, value))}
-        content["spread"] = rounded(float(np.std(each, ddof=1)))
+        low, high = rounded(min(*each, value)), rounded(max(*each, value))
+        spread = rounded(float(np.std(each, ddof=1)))
         how += f"; low, high and spread: of {len(each)} specimens"
-    return {**content, "source": f"{_test(fitted)}: {how}{_by(fitted)}"}
+    return Quantity(value=value, low=low, high=high, spread=spread, source=f"{_test(fitted)}: {how}{_by(fitted)}")
 
 
-def _law(fitted: FittedMaterial) -> dict[str, Any]:
-    law, largest = fitted.law, rounded(fitted.largest)
+def _law(fitted: FittedMaterial) -> HyperelasticLaw:
+    law = fitted.law
     slack = "" if fitted.choice is None else f", {_slack(fitted)} of slack taken off"
-    return {
-        "name": law.form.name,
-        "constants": [rounded(constant) for constant in law.constants],
-        "largest_stretch": largest,
-        "misfit_percent": float(f"{100 * law.misfit:.3g}"),
-        "source": f"{_test(fitted)}: {law.form.label}{slack}; misfit: largest relative difference of nominal stress, "
+    # Not checked here: the whole file is, with its path in the message.
+    return HyperelasticLaw.model_construct(
+        name=law.form.name,
+        constants=[rounded(constant) for constant in law.constants],
+        largest_stretch=rounded(fitted.largest),
+        misfit_percent=float(f"{100 * law.misfit:.3g}"),
+        source=f"{_test(fitted)}: {law.form.label}{slack}; misfit: largest relative difference of nominal stress, "
         f"running mean over 0.1 of stretch, from 10 % strain on{_by(fitted)}",
-    }
+    )
 
 
 def _slack(fitted: FittedMaterial) -> str:

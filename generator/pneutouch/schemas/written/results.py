@@ -4,12 +4,10 @@ from pneutouch.bench.simulate.scatter import ParameterRecord
 from pneutouch.schemas.shape import (
     FLAG,
     NUMBER,
-    NUMBERS,
     TEXT,
     TEXTS,
     WHOLE,
     Schema,
-    choice,
     described_by,
     items,
     mapping,
@@ -19,44 +17,6 @@ from pneutouch.schemas.shape import (
 from pneutouch.schemas.typed import typed
 
 _MAYBE = or_null(NUMBER)
-
-
-def fit() -> Schema:
-    """Schema of ``fit.json`` and of the output of ``pneutouch fit-material --json``."""
-    specimen = {
-        "data": TEXT,
-        "points": described_by("Number of points.", WHOLE),
-        "slack_percent": NUMBER,
-        "shear_modulus_MPa": NUMBER,
-    }
-    keys = {
-        "material": described_by("Name of the fitted material.", TEXT),
-        "file": TEXT,
-        "test": choice("tension", "puck"),
-        "largest_stretch": NUMBER,
-        "law": _law(),
-        "shear_modulus_small_strain_MPa": NUMBER,
-        "shear_modulus_MPa": NUMBER,
-        "shear_modulus_uncertainty_MPa": _MAYBE,
-        "specimens": described_by("Measured specimens.", items(record("A measured specimen.", specimen))),
-        "fits": items(_law(refused=or_null(TEXT))),
-        "profile": or_null(TEXT),
-        "notes": TEXTS,
-        "folder": TEXT,
-    }
-    return record("A material law fitted to a lab's own test.", keys, ["folder"])
-
-
-def _law(**more: Schema) -> Schema:
-    keys = {
-        "name": described_by("Name of the law.", TEXT),
-        "label": TEXT,
-        "constants": described_by("Constants of the law: MPa, exponents without unit.", NUMBERS),
-        "uncertainties": items(_MAYBE),
-        "misfit_percent": NUMBER,
-        "misfit_of_points_percent": NUMBER,
-    }
-    return record("A fitted law.", {**keys, **more})
 
 
 def truth() -> Schema:
