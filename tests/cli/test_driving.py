@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 
 import pneutouch as pt
 from pneutouch.cli.driving import schedule_text
+from pneutouch.spec.tasks import parse_task
+from pneutouch.workflows.driving import driving_record, driving_schedule
 
 ZERO = ("--model", "atlas")
 
@@ -23,11 +26,11 @@ def test_for_answers_with_pressure_band_and_next_step(command):
     assert json.loads(again.stdout)["states"][0]["sensitivity_kPa_per_N"] == pytest.approx(2.1, rel=1e-3)
 
 
-def test_only_a_sensor_that_a_fit_covers_is_to_be_calibrated(command):
-    done = command("predict", "paper-dome", "--for", "sensitivity=2.1", *ZERO, "--json")
-    document = json.loads(done.stdout)
-    assert document["is_fitted"] and "calibrate it (pneutouch calibrate)" in schedule_text(document)
-    other = schedule_text({**document, "is_fitted": False})
+def test_only_a_sensor_that_a_fit_covers_is_to_be_calibrated(library):
+    task = parse_task("sensitivity=2.1")
+    record = driving_record(driving_schedule("paper-dome", [task], library=library, model="atlas"))
+    assert record.is_fitted and "calibrate it (pneutouch calibrate)" in schedule_text(record)
+    other = schedule_text(replace(record, is_fitted=False))
     assert "no calibration covers such a sensor" in other and "pneutouch calibrate" not in other
 
 

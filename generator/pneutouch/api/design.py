@@ -211,13 +211,13 @@ class Design(show.Shown):
         ``leak`` is a results file of coupons or what `characterize` wrote. Without ``model`` the cheapest that meets
         ``tolerance`` answers. Raises InputError.
         """
-        from pneutouch.workflows.driving import driving_schedule, read_leak, schedule_document
+        from pneutouch.workflows.driving import driving_record, driving_schedule, read_leak
 
         with named_by_keyword():
             required = tasks_of(tasks)
             measured = None if leak is None else read_leak(Path(leak), self.name)
             options = model_options(model or "auto", tolerance)
-            return DrivingResult(schedule_document(driving_schedule(self.source, required, leak=measured, **options)))
+            return DrivingResult(driving_record(driving_schedule(self.source, required, leak=measured, **options)))
 
     def check(self, *, deep: bool = False) -> CheckResult:
         """Check printability and mechanical limits; ``deep`` has pymeshlab inspect the meshes as well."""

@@ -10,6 +10,8 @@ from typing import Any
 from pneutouch.api import show
 from pneutouch.api.fields import plain
 from pneutouch.errors import InputError, shown
+from pneutouch.results import record
+from pneutouch.results.driving import DrivingRecord
 from pneutouch.spec.read import validate
 from pneutouch.spec.tasks import DrivingTask, TaskFile, read_tasks
 
@@ -35,11 +37,10 @@ def _number(value: Any) -> Any:
 class DrivingResult(show.Shown):
     """The driving pressures for the tasks of a design, in their order; None for a task that no pressure does."""
 
-    def __init__(self, document: dict[str, Any]) -> None:
-        self._document = document
-        solved = [task["solutions"][0] if task["reached"] else None for task in document["tasks"]]
-        self.driving_pressures_kPa = [None if one is None else one["driving_pressure_kPa"] for one in solved]
-        self._bands = [None if one is None else one["band"] for one in solved]
+    def __init__(self, answer: DrivingRecord) -> None:
+        self._record = answer
+        self._solved = [task.solutions[0] if task.reached else None for task in answer.tasks]
+        self.driving_pressures_kPa = [None if one is None else one.driving_pressure_kPa for one in self._solved]
 
     @property
     def reached(self) -> bool:
@@ -57,19 +58,20 @@ class DrivingResult(show.Shown):
 
         It ends at 0 and at the highest pressure computed; see ``open_low`` and ``open_high`` of `to_dict`.
         """
-        band = self._bands[0]
-        return None if band is None else (band["low_kPa"], band["high_kPa"])
+        band = None if self._solved[0] is None else self._solved[0].band
+        return None if band is None else (band.low_kPa, band.high_kPa)
 
     def to_dict(self) -> dict[str, Any]:
         """The document that the command ``predict`` prints as JSON for the same tasks."""
-        return dict(self._document)
+        document: dict[str, Any] = record.plain(self._record)
+        return document
 
     def _head(self) -> str:
-        return f"Driving pressures of {shown(self._document['design'])}, model {self._document['model']}"
+        return f"Driving pressures of {shown(self._record.design)}, model {self._record.model}"
 
     def _rows(self) -> list[Any]:
         rows = []
-        for task, pressure_kPa in zip(self._document["tasks"], self.driving_pressures_kPa, strict=True):
+        for task, pressure_kPa in zip(self._record.tasks, self.driving_pressures_kPa, strict=True):
             reached = "not reached" if pressure_kPa is None else f"{pressure_kPa:.4g} kPa"
-            rows.append((task["task"] or "", f"{task['requirement']}={task['value']:g}", reached))
+            rows.append((task.task or "", f"{task.requirement}={task.value:g}", reached))
         return rows

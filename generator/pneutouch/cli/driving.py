@@ -13,6 +13,17 @@ import typer
 
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, put, report_next, set_words, table_text
+from pneutouch.results.driving import (
+    DrivingRecord,
+    FigureReach,
+    MissedTask,
+    PressureInterval,
+    ReachedTask,
+    TaskGas,
+    TaskRecord,
+    UnknownLeak,
+)
+from pneutouch.results.record import plain
 from pneutouch.rounding import tenths_below
 
 
@@ -33,36 +44,34 @@ def report_driving(
     """
     from pneutouch.output.files import json_bytes
     from pneutouch.spec.tasks import parse_task, read_tasks
-    from pneutouch.workflows.driving import driving_schedule, read_leak, schedule_document
+    from pneutouch.workflows.driving import driving_record, driving_schedule, read_leak
 
     required = [*map(parse_task, given), *(read_tasks(tasks) if tasks is not None else [])]
     measured = None if leak is None else read_leak(leak, Path(design).stem.partition("@")[0])
     with bar("") as progress:
         schedule = driving_schedule(design, required, changes, leak=measured, progress=progress, **options)
-    document = schedule_document(schedule)
+    record = driving_record(schedule)
     if json:
-        put(json_bytes(document).decode())
+        put(json_bytes(plain(record)).decode())
     else:
-        echo(schedule_text(document))
-    _next(design, document, words)
+        echo(schedule_text(record))
+    _next(design, record, words)
     if not schedule.reached:
         raise typer.Exit(1)
 
 
-def _next(design: str, document: dict[str, Any], words: tuple[list[str] | None, str | None]) -> None:
+def _next(design: str, record: DrivingRecord, words: tuple[list[str] | None, str | None]) -> None:
     """Predict at the pressures where all tasks are met; else look for another design for the first that is not."""
-    missed = next((task for task in document["tasks"] if not task["reached"]), None)
+    missed = next((task for task in record.tasks if not task.reached), None)
     if missed is None:
-        answers = [task["solutions"][0] for task in document["tasks"]]
-        listed = ",".join(
-            f"{at_kPa:g}" for at_kPa in sorted({round(one["driving_pressure_kPa"], 2) for one in answers})
-        )
+        answers = {round(task.solutions[0].driving_pressure_kPa, 2) for task in record.tasks}
+        listed = ",".join(f"{at_kPa:g}" for at_kPa in sorted(answers))
         report_next("predict", design, *set_words(*words), "--set", f"pneumatics.driving_pressures_kPa=[{listed}]")
         return
-    value = f"{missed['value']:g}"
+    value = f"{missed.value:g}"
     flags = {"sensitivity_kPa_per_N": ["--sensitivity"], "force_range_N": ["--force-range"]}
-    stiffness = ["--stiffness-least", f"{0.95 * missed['value']:g}", "--stiffness-most", f"{1.05 * missed['value']:g}"]
-    known = flags.get(missed["requirement"])
+    stiffness = ["--stiffness-least", f"{0.95 * missed.value:g}", "--stiffness-most", f"{1.05 * missed.value:g}"]
+    known = flags.get(missed.requirement)
     report_next("select", *(stiffness if known is None else [*known, value]), "--base", design)
 
 
@@ -72,15 +81,14 @@ _NAMES = {"sensitivity_kPa_per_N": "sensitivity", "stiffness_N_per_mm": "stiffne
 _MINUTE, _HOUR = 60.0, 3600.0
 
 
-def schedule_text(document: dict[str, Any]) -> str:
+def schedule_text(record: DrivingRecord) -> str:
     """The answer: the reach of the pressure, a table of the tasks, and remarks on each."""
-    rated, top = document["rated_pressure_kPa"], document["highest_kPa"]
     lines = [
-        f"{document['design']}: model {document['model']}, rated pressure {tenths_below(rated):.1f} kPa, "
-        f"computed to {top:.1f} kPa ({document['limit']})"
+        f"{record.design}: model {record.model}, rated pressure {tenths_below(record.rated_pressure_kPa):.1f} kPa, "
+        f"computed to {record.highest_kPa:.1f} kPa ({record.limit})"
     ]
-    for figure in dict.fromkeys(task["requirement"] for task in document["tasks"]):
-        lines.append(_reach(figure, document["reach"][figure]))
+    for figure in dict.fromkeys(task.requirement for task in record.tasks):
+        lines.append(_reach(figure, record.reach[figure]))
     head = [
         "task",
         "required",
@@ -92,78 +100,81 @@ def schedule_text(document: dict[str, Any]) -> str:
         "1 % is",
         "holds it",
     ]
-    lines += ["", table_text(head, [_row(task) for task in document["tasks"]]), ""]
-    for task in document["tasks"]:
-        lines += _notes(task, document)
-    return "\n".join([*lines, *_legend(document)])
+    lines += ["", table_text(head, [_row(task) for task in record.tasks]), ""]
+    for task in record.tasks:
+        lines += _unreached(task) if isinstance(task, MissedTask) else _notes(task, record)
+    return "\n".join([*lines, *_legend(record)])
 
 
-def _required(task: dict[str, Any]) -> str:
-    return f"{_NAMES[task['requirement']]} {task['value']:g} {_UNITS[task['requirement']]}"
+def _required(task: TaskRecord) -> str:
+    return f"{_NAMES[task.requirement]} {task.value:g} {_UNITS[task.requirement]}"
 
 
-def _reach(figure: str, reach: dict[str, Any] | None) -> str:
+def _titled(task: TaskRecord) -> str:
+    return f"{task.task}: {_required(task)}" if task.task else _required(task)
+
+
+def _reach(figure: str, reach: FigureReach | None) -> str:
     if reach is None:
         return f"{_NAMES[figure]}: not known at any driving pressure"
-    ends = " to ".join(f"{reach[end]:.4g} (at {reach[f'{end}_at_kPa']:.3g} kPa)" for end in ("low", "high"))
     within = ""
-    if "rated_low" in reach:
-        within = f"; up to the rated pressure {reach['rated_low']:.4g} to {reach['rated_high']:.4g}"
-    return f"{_NAMES[figure]} by pressure: {ends} {_UNITS[figure]}{within}"
+    if reach.rated_low is not None:
+        within = f"; up to the rated pressure {reach.rated_low:.4g} to {reach.rated_high:.4g}"
+    return (
+        f"{_NAMES[figure]} by pressure: {reach.low:.4g} (at {reach.low_at_kPa:.3g} kPa) to {reach.high:.4g} "
+        f"(at {reach.high_at_kPa:.3g} kPa) {_UNITS[figure]}{within}"
+    )
 
 
-def _row(task: dict[str, Any]) -> list[str]:
-    first = [task["task"] or "-", _required(task)]
-    if not task["reached"]:
+def _row(task: ReachedTask | MissedTask) -> list[str]:
+    first = [task.task or "-", _required(task)]
+    if isinstance(task, MissedTask):
         return [*first, "not reached", *["-"] * 6]
-    solution, gas = task["solutions"][0], task["gas"]
-    step = "-" if gas["step_kPa"] is None else f"{gas['step_kPa']:.2g} kPa"
+    solution, gas = task.solutions[0], task.gas
     return [
         *first,
-        f"{solution['driving_pressure_kPa']:.2f}",
-        _band(solution["band"]),
-        f"{gas['injected_mL']:.3f}",
-        f"{gas['moved_mL']:+.3f}",
-        f"{gas['by_temperature_kPa_per_K']:.3f}",
-        step,
+        f"{solution.driving_pressure_kPa:.2f}",
+        _band(solution.band),
+        f"{gas.injected_mL:.3f}",
+        f"{gas.moved_mL:+.3f}",
+        f"{gas.by_temperature_kPa_per_K:.3f}",
+        "-" if gas.step_kPa is None else f"{gas.step_kPa:.2g} kPa",
         _time(gas),
     ]
 
 
-def _band(band: dict[str, Any] | None) -> str:
+def _band(band: PressureInterval | None) -> str:
     if band is None:
         return "not known"
-    low = f"{'<= ' if band['open_low'] else ''}{band['low_kPa']:.1f}"
-    return f"{low} to {'>= ' if band['open_high'] else ''}{band['high_kPa']:.1f}"
+    low = f"{'<= ' if band.open_low else ''}{band.low_kPa:.1f}"
+    return f"{low} to {'>= ' if band.open_high else ''}{band.high_kPa:.1f}"
 
 
-def _time(gas: dict[str, Any]) -> str:
-    if gas["hold_s"] is None:
-        return "not known" if gas["loss_kPa_per_min"] is None else "no loss"
-    seconds = gas["hold_s"]
+def _time(gas: TaskGas) -> str:
+    seconds = gas.hold_s
+    if seconds is None:
+        return "not known" if gas.loss_kPa_per_min is None else "no loss"
     if seconds < 2 * _MINUTE:
         return f"{seconds:.0f} s"
     return f"{seconds / _MINUTE:.0f} min" if seconds < 2 * _HOUR else f"{seconds / _HOUR:.1f} h"
 
 
-def _notes(task: dict[str, Any], document: dict[str, Any]) -> list[str]:
-    """Warnings and more solutions of a task, or what to change where it is not reached."""
-    name = f"{task['task']}: " if task["task"] else ""
-    required = f"{name}{_required(task)}"
-    if not task["reached"]:
-        return _unreached(required, task)
-    first, *others = task["solutions"]
+def _notes(task: ReachedTask, record: DrivingRecord) -> list[str]:
+    """Warnings and more solutions of a task."""
+    required = _titled(task)
+    first, *others = task.solutions
     lines = []
-    if first["above_rating"]:
-        at, rated = first["driving_pressure_kPa"], document["rated_pressure_kPa"]
-        lines.append(f"warning: {required}: {at:.2f} kPa is above the rated pressure of {tenths_below(rated):.1f} kPa")
+    if first.above_rating:
+        rated = f"{tenths_below(record.rated_pressure_kPa):.1f} kPa"
+        lines.append(
+            f"warning: {required}: {first.driving_pressure_kPa:.2f} kPa is above the rated pressure of {rated}"
+        )
     if others:
-        at = ", ".join(f"{one['driving_pressure_kPa']:.2f}" for one in others)
-        lines.append(f"{required}: also at {at} kPa; the lowest is taken")
-    band = first["band"]
-    if band is not None and (band["open_low"] or band["open_high"]):
+        also = ", ".join(f"{one.driving_pressure_kPa:.2f}" for one in others)
+        lines.append(f"{required}: also at {also} kPa; the lowest is taken")
+    if first.band is not None and (first.band.open_low or first.band.open_high):
         advice = "calibrate it (pneutouch calibrate), then repeat with --calibration"
-        if not document["is_fitted"]:
+        if not record.is_fitted:
             advice = "measure it (pneutouch characterize): no calibration covers such a sensor"
         lines.append(
             f"{required}: its uncertainty exceeds what pressure can correct: the sensor in hand may not reach it; "
@@ -172,28 +183,27 @@ def _notes(task: dict[str, Any], document: dict[str, Any]) -> list[str]:
     return lines
 
 
-def _unreached(required: str, task: dict[str, Any]) -> list[str]:
-    lines = [f"{required}: no driving pressure gives it"]
-    if task["possible_band"] is not None:
-        lines.append(f"  within the uncertainty the sensor in hand may have it at {_band(task['possible_band'])} kPa")
-    unit = _UNITS[task["requirement"]]
-    for one in task["offline"]:
-        change = f"{one['what']} {one['before']:.4g} to {one['after']:.4g}"
-        lines.append(f"  to change offline: {change}, which gives {one['predicted']:.4g} {unit}")
-    return lines if task["offline"] else [*lines, "  no single dimension within a factor of 2 gives it: see select"]
+def _unreached(task: MissedTask) -> list[str]:
+    """The changes by which a task would be reached."""
+    lines = [f"{_titled(task)}: no driving pressure gives it"]
+    if task.possible_band is not None:
+        lines.append(f"  within the uncertainty the sensor in hand may have it at {_band(task.possible_band)} kPa")
+    for one in task.offline:
+        change = f"{one.what} {one.before:.4g} to {one.after:.4g}"
+        lines.append(f"  to change offline: {change}, which gives {one.predicted:.4g} {_UNITS[task.requirement]}")
+    return lines if task.offline else [*lines, "  no single dimension within a factor of 2 gives it: see select"]
 
 
-def _legend(document: dict[str, Any]) -> list[str]:
+def _legend(record: DrivingRecord) -> list[str]:
     """Meaning of the columns, and the basis of their numbers."""
-    gas = f"dead volume {document['dead_volume_mL']:.3f} mL"
-    leak = document["leak"]
+    leak = record.leak
     lines = [
-        f"inject: air at ambient pressure ({document['ambient_pressure_kPa']:g} kPa) into the vented sensor, {gas}; "
-        "a regulator is set to the driving pressure instead",
-        f"kPa/K: change of the sealed pressure with temperature at {document['temperature_C']:g} C; "
+        f"inject: air at ambient pressure ({record.ambient_pressure_kPa:g} kPa) into the vented sensor, dead volume "
+        f"{record.dead_volume_mL:.3f} mL; a regulator is set to the driving pressure instead",
+        f"kPa/K: change of the sealed pressure with temperature at {record.temperature_C:g} C; "
         "1 %: change of the driving pressure that changes the figure by 1 %",
     ]
-    if "unknown" in leak:
-        return [*lines, f"how long a sealed cavity holds it is not known: {leak['unknown']} with --leak"]
-    rate = f"{leak['rate_kPa_per_min']:.3g} kPa/min at {leak['at_kPa']:.3g} kPa"
-    return [*lines, f"holds it: until the leak ({rate}, {leak['measured']}) has changed the figure by 1 %"]
+    if isinstance(leak, UnknownLeak):
+        return [*lines, f"how long a sealed cavity holds it is not known: {leak.unknown} with --leak"]
+    rate = f"{leak.rate_kPa_per_min:.3g} kPa/min at {leak.at_kPa:.3g} kPa"
+    return [*lines, f"holds it: until the leak ({rate}, {leak.measured}) has changed the figure by 1 %"]

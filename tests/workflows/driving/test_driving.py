@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from pneutouch.evaluation import evaluate
+from pneutouch.results.record import plain
 from pneutouch.spec.tasks import DrivingTask
 from pneutouch.units import KPA
-from pneutouch.workflows.driving import LeakSource, driving_schedule, schedule_document
+from pneutouch.workflows.driving import LeakSource, driving_record, driving_schedule
 from pneutouch.workflows.driving.pressures import band, reach_curves, solutions
 
 LEAK = LeakSource(0.05, 20.0, cap=True, where="a test")
@@ -98,10 +99,10 @@ def test_a_leak_behind_a_cap_is_that_of_the_gas_behind_it(schedule):
 
 
 def test_the_document_has_every_task_and_nothing_that_is_no_number(schedule):
-    document = schedule_document(schedule)
-    assert [task["reached"] for task in document["tasks"]] == [True, True, False, True]
-    assert document["tasks"][0]["task"] == "grasp"
-    reach = document["reach"]["sensitivity_kPa_per_N"]
-    assert reach["low"] < reach["rated_low"] < reach["rated_high"] == reach["high"]
-    assert document["tasks"][1]["gas"]["figure_by_temperature_percent_per_K"] < 0
-    assert "nan" not in repr(document).lower().split() and "inf" not in repr(document)
+    record = driving_record(schedule)
+    assert [task.reached for task in record.tasks] == [True, True, False, True]
+    assert record.tasks[0].task == "grasp"
+    reach = record.reach["sensitivity_kPa_per_N"]
+    assert reach.low < reach.rated_low < reach.rated_high == reach.high
+    assert record.tasks[1].gas.figure_by_temperature_percent_per_K < 0
+    assert "nan" not in repr(plain(record)).lower().split() and "inf" not in repr(plain(record))
