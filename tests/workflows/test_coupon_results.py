@@ -86,7 +86,7 @@ def lab(tmp_path):
 
 
 def test_measured_quantities_replace_the_shipped_ones_with_their_source(lab, tmp_path):
-    document = lab(measured())
+    report = lab(measured())
     mine = Library((tmp_path, ROOT))
     ours, theirs = mine.load("materials", "TangoPlus"), LIBRARY.load("materials", "TangoPlus")
     assert ours.shore_a.value == 30.0
@@ -108,8 +108,8 @@ def test_measured_quantities_replace_the_shipped_ones_with_their_source(lab, tmp
     assert printer.smallest.gap_mm.recommended == 0.5
     assert printer.smallest.wall_rigid_mm == LIBRARY.load("printers", "objet260-connex").smallest.wall_rigid_mm
     assert printer.mode == LIBRARY.load("printers", "objet260-connex").mode
-    assert len(document["written"]) == 3
-    assert {change["key"] for change in document["changes"]} >= {"shear_modulus_MPa", "accuracy_mm", "smallest.hole_mm"}
+    assert len(report.written) == 3
+    assert {change.key for change in report.changes} >= {"shear_modulus_MPa", "accuracy_mm", "smallest.hole_mm"}
 
 
 def test_pucks_weighed_in_milligrams_are_asked_about(lab, tmp_path):
@@ -131,15 +131,15 @@ def test_the_new_profiles_change_clearance_and_modulus(lab, tmp_path):
 
 
 def test_leak_and_dead_volume_are_told(lab):
-    document = lab({**measured(), "gauge": {}})
-    told = {figure["name"]: figure for figure in document["figures"]}
-    assert told["leak, kPa/min"]["value"] == pytest.approx((0.1 + 0.3) / 2 / 10)
+    report = lab({**measured(), "gauge": {}})
+    told = {figure.name: figure for figure in report.figures}
+    assert told["leak, kPa/min"].value == pytest.approx((0.1 + 0.3) / 2 / 10)
     cavity = 0.995 / 0.9982
-    assert told["dead volume, mL"]["value"] == pytest.approx(cavity * 17.75 / (58.9 - 17.75))
-    assert told["dead volume, mL"]["spread"] > 0
-    assert any("dead_volume_mL = 0.43" in note for note in document["notes"])
+    assert told["dead volume, mL"].value == pytest.approx(cavity * 17.75 / (58.9 - 17.75))
+    assert told["dead volume, mL"].spread > 0
+    assert any("dead_volume_mL = 0.43" in note for note in report.notes)
     drawn_mL = assemble(load_scene("paper-dome", None, LIBRARY)).drawn_volume / 1e3
-    assert told["dead volume as drawn, mL"]["value"] == pytest.approx(drawn_mL, rel=1e-3) == pytest.approx(1.5, abs=0.1)
+    assert told["dead volume as drawn, mL"].value == pytest.approx(drawn_mL, rel=1e-3) == pytest.approx(1.5, abs=0.1)
 
 
 def test_entering_again_gives_the_same_bytes_and_keeps_what_was_measured_before(lab, tmp_path):
@@ -158,8 +158,8 @@ def test_entering_again_gives_the_same_bytes_and_keeps_what_was_measured_before(
 def test_the_hardness_farthest_from_the_shipped_one_is_questioned(lab):
     """It may lie below, where it is the smaller number."""
     puck = {"TangoPlus": {"shore_a": [1.0, 30.0]}}
-    document = lab({"lab": "Soft lab", "date": datetime.date(2026, 11, 21), "puck": puck})
-    assert any(note.startswith("TangoPlus: shore_a = 1 is 26.6 points off") for note in document["notes"])
+    report = lab({"lab": "Soft lab", "date": datetime.date(2026, 11, 21), "puck": puck})
+    assert any(note.startswith("TangoPlus: shore_a = 1 is 26.6 points off") for note in report.notes)
 
 
 def test_a_profile_of_the_labs_own_is_never_overwritten(lab, tmp_path):

@@ -6,6 +6,7 @@ import datetime
 import itertools
 import json
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,7 +26,7 @@ WHOLE = CouponOptions(materials=("TangoPlus", "FLX9960"), design="paper-dome")
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    return build_coupons(WHOLE, tmp_path_factory.mktemp("outputs"), LIBRARY)[0]
+    return Path(build_coupons(WHOLE, tmp_path_factory.mktemp("outputs"), LIBRARY).folder)
 
 
 def test_the_folder_holds_what_its_manifest_says(folder):
@@ -39,7 +40,7 @@ def test_the_folder_holds_what_its_manifest_says(folder):
 
 
 def test_the_same_input_gives_the_same_bytes(folder, tmp_path):
-    again = build_coupons(WHOLE, tmp_path, LIBRARY)[0]
+    again = Path(build_coupons(WHOLE, tmp_path, LIBRARY).folder)
     for path in folder.rglob("*"):
         if path.is_file():
             assert (again / path.relative_to(folder)).read_bytes() == path.read_bytes(), path
@@ -47,7 +48,7 @@ def test_the_same_input_gives_the_same_bytes(folder, tmp_path):
 
 def test_readings_in_the_folder_are_not_lost(tmp_path):
     asked = CouponOptions(only=("puck",))
-    path = build_coupons(asked, tmp_path, LIBRARY)[0] / "results.toml"
+    path = Path(build_coupons(asked, tmp_path, LIBRARY).folder) / "results.toml"
     build_coupons(asked, tmp_path, LIBRARY)
     path.write_text(path.read_text().replace("mass_g = []", "mass_g = [1.1, 1.1]"))
     with pytest.raises(InputError, match="has been filled in"):

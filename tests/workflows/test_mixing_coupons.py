@@ -6,6 +6,7 @@ import datetime
 import itertools
 import json
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -29,9 +30,10 @@ BOTH = CouponOptions(profile="j735", mixing=(PAIR,), only=("puck", "dumbbell"))
 
 
 def test_every_fraction_is_printed_of_its_own_mix(tmp_path):
-    folder, document = build_coupons(CouponOptions(mixing=(PAIR,)), tmp_path, LIBRARY)
-    assert [(c["coupon"], c["copies"]) for c in document["coupons"]] == [("puck", 2)] * len(FRACTIONS)
-    assert len({c["piece"] for c in document["coupons"]}) == 8
+    made = build_coupons(CouponOptions(mixing=(PAIR,)), tmp_path, LIBRARY)
+    folder = Path(made.folder)
+    assert [(c.coupon, c.copies) for c in made.coupons] == [("puck", 2)] * len(FRACTIONS)
+    assert len({c.piece for c in made.coupons}) == 8
     manifest = json.loads((folder / "manifest.json").read_text())
     mixes = [item["material"]["mix"] for item in manifest["inputs"]["items"]]
     assert mixes[0] is None
@@ -92,8 +94,8 @@ def mixed(library, fraction):
 
 def test_the_labs_own_curve_comes_before_the_shipped_one(enter, tmp_path):
     moduli = {0.0: 0.2, 0.1: 0.5, 0.2: 1.5, 0.3: 6.0}
-    document = enter([pulled(f, mu) for f, mu in moduli.items()])
-    assert document["written"] == [str(tmp_path / f"printprofiles/mixing/{PAIR}.toml")]
+    report = enter([pulled(f, mu) for f, mu in moduli.items()])
+    assert report.written == (str(tmp_path / f"printprofiles/mixing/{PAIR}.toml"),)
     mine = Library((tmp_path, ROOT))
     law = mixing("TangoPlus", "VeroClear", mine)
     assert not law.curve.is_assumed
@@ -103,7 +105,7 @@ def test_the_labs_own_curve_comes_before_the_shipped_one(enter, tmp_path):
     assert found.low is None
     assert "Soft lab" in found.source
     assert mixed(LIBRARY, 0.2).value != pytest.approx(1.5, rel=0.1)
-    before = {change["key"]: change["before"] for change in document["changes"]}
+    before = {change.key: change.before for change in report.changes}
     assert before["shear_modulus_MPa at 10 %"]["value"] == pytest.approx(mixed(LIBRARY, 0.1).value, rel=1e-3)
 
 
@@ -113,12 +115,12 @@ def test_hardness_gives_ratios_to_the_soft_resin(enter, tmp_path):
     points = [
         read(f, *(shore_a(k * young) + np.array([-0.2, 0.2])).tolist()) for f, k in ((0.0, 1), (0.1, 2), (0.3, 6))
     ]
-    document = enter(points)
+    report = enter(points)
     curve = mixing("TangoPlus", "VeroClear", Library((tmp_path, ROOT)))
     assert curve.modulus == pytest.approx([0.17, 0.34, 1.02], rel=2e-3)
     assert (curve.spread[1:] > 0).all()
     assert "weaker than dumbbells" in curve.curve.points[1].source
-    assert {figure["name"] for figure in document["figures"]} == {"shear modulus, MPa (hardness, by ratio)"}
+    assert {figure.name for figure in report.figures} == {"shear modulus, MPa (hardness, by ratio)"}
 
 
 def test_without_fraction_0_the_catalogues_soft_resin_begins_the_curve(enter, tmp_path):

@@ -6,6 +6,7 @@ import io
 import json
 import re
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -85,7 +86,7 @@ def test_the_record_and_the_sheet_state_what_to_weigh(mould):
 
 def test_coupons_of_a_cast_material_are_open_moulds(tmp_path, library):
     options = CouponOptions(profile="silicone-casting", materials=["DragonSkin20"])
-    folder, _ = build_coupons(options, tmp_path, library)
+    folder = Path(build_coupons(options, tmp_path, library).folder)
     coupons = json.loads((folder / "manifest.json").read_text())["coupons"]
     assert {(each["coupon"], each["printer"], each["material"]) for each in coupons} == {
         ("puck", "abs-filament", "ABS"),

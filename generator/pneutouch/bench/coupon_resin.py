@@ -7,7 +7,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from pneutouch.errors import InputError
 from pneutouch.mechanics.paper_sensor import logarithmic_slope, young_modulus
 from pneutouch.spec.coupon import LEAST_READINGS, Dumbbell, DumbbellSpecimen, MixedCoupons, Puck
 from pneutouch.spec.material import STIFFEST_ELASTOMER_MPA, Material, density_problem
+from pneutouch.spec.mixing import MixingPoint
 from pneutouch.spec.values import Quantity
 
 _SECANT = 0.1
@@ -224,14 +224,14 @@ class MixModulus:
     by: str
     how: str
 
-    def content(self, source: ReadingSource) -> dict[str, Any]:
-        """The point of a mixing curve."""
-        return {
-            "fraction": self.fraction,
-            "shear_modulus_MPa": rounded(self.modulus),
-            "shear_modulus_spread_MPa": rounded(self.spread),
-            "source": source.source(self.how, self.count),
-        }
+    def point(self, source: ReadingSource) -> MixingPoint:
+        """The point of a mixing curve; the curve's file is checked as a whole."""
+        return MixingPoint.model_construct(
+            fraction=self.fraction,
+            shear_modulus_MPa=rounded(self.modulus),
+            shear_modulus_spread_MPa=rounded(self.spread),
+            source=source.source(self.how, self.count),
+        )
 
 
 def stiffness(

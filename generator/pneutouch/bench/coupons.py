@@ -20,6 +20,7 @@ from pneutouch.errors import InputError
 from pneutouch.parts import assemble
 from pneutouch.parts.coupons import COUPONS, CouponContext
 from pneutouch.parts.coupons.volume_plug import WATER, cavity_size, cavity_volume
+from pneutouch.results.coupons import MeasuredFigure
 from pneutouch.spec.coupon import FeatureGauge, GaugeSize, LeakCap, VolumePlug
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import HOLE_UNDERSIZE_MM, FeatureSize, Printer
@@ -37,17 +38,6 @@ class ProfileChange:
     name: str
     keys: tuple[str, ...]
     content: dict[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
-class MeasuredFigure:
-    """A figure for the reader: its subject, its name with unit, value, standard deviation and count."""
-
-    about: str
-    name: str
-    value: float
-    spread: float | None = None
-    count: int | None = None
 
 
 @dataclass

@@ -5,6 +5,7 @@ Measurements of coupons, as text for people.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,6 +15,8 @@ from pneutouch.cli.app import JsonOption, app, print_json, reporting
 from pneutouch.cli.complete import coupon_names, names
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, report_next, table_text
+from pneutouch.results.coupons import CouponReport
+from pneutouch.results.record import plain
 
 if TYPE_CHECKING:
     from pneutouch.workflows.coupons.order import CouponOptions
@@ -80,11 +83,12 @@ def coupons(
 
         order = _options(given)
         with bar("making coupons"):
-            folder, document = build_coupons(order, out or Path("outputs"))
+            made = build_coupons(order, out or Path("outputs"))
         if json:
-            print_json({"folder": str(folder), **document})
+            print_json(plain(made))
         else:
-            echo(str(folder))
+            folder = Path(made.folder)
+            echo(made.folder)
             by_hand = f"print and measure as {folder / SHEET} states, fill in {folder / RESULTS}"
             report_next("coupons", "--results", folder / RESULTS, first=by_hand)
 
@@ -98,11 +102,11 @@ def _enter(path: Path, out: Path | None, given: dict[str, Any], json: bool) -> N
         raise InputError(f"--results {path}: {flags} cannot be given with it: the file holds the measurements")
     from pneutouch.workflows.coupons.results import enter_results
 
-    document = enter_results(path, out)
+    report = enter_results(path, out)
     if json:
-        print_json(document)
+        print_json(plain(report))
     else:
-        echo(results_text(document))
+        echo(results_text(report))
 
 
 def _options(given: dict[str, Any]) -> CouponOptions:
@@ -127,26 +131,18 @@ def _words(given: list[str] | None) -> list[str]:
     return [word.strip() for text in given or [] for word in text.split(",") if word.strip()]
 
 
-def results_text(document: dict[str, Any]) -> str:
+def results_text(report: CouponReport) -> str:
     """The figures, what each profile changes, the files written, and remarks."""
     figures = [
-        [
-            f["about"],
-            f["name"],
-            f"{f['value']:.4g}",
-            "" if f["spread"] is None else f"± {f['spread']:.2g}",
-            _count(f["count"]),
-        ]
-        for f in document["figures"]
+        [f.about, f.name, f"{f.value:.4g}", "" if f.spread is None else f"± {f.spread:.2g}", _count(f.count)]
+        for f in report.figures
     ]
-    changes = [
-        [change["key"], _shown(change["before"]), "->", _shown(change["after"])] for change in document["changes"]
-    ]
+    changes = [[change.key, _shown(change.before), "->", _shown(change.after)] for change in report.changes]
     parts = [
         table_text([], figures),
         table_text([], changes),
-        "\n".join(f"written: {path}" for path in document["written"]),
-        "\n".join(f"note: {note}" for note in document["notes"]),
+        "\n".join(f"written: {path}" for path in report.written),
+        "\n".join(f"note: {note}" for note in report.notes),
     ]
     return "\n\n".join(part for part in parts if part)
 
@@ -155,7 +151,7 @@ def _count(count: int | None) -> str:
     return "" if count is None else f"n = {count}"
 
 
-def _shown(quantity: dict[str, Any] | None) -> str:
+def _shown(quantity: Mapping[str, Any] | None) -> str:
     """The number of a quantity, or the least size of a feature."""
     if quantity is None:
         return "not known"

@@ -9,7 +9,6 @@ Coupons on a printer's tray: side by side in rows, never turned, because a gauge
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -22,6 +21,8 @@ from pneutouch.export.threemf import threemf
 from pneutouch.output.files import check_writable, digest, input_hash, stated_digest, with_manifest, write_folder
 from pneutouch.packing import PackingArea, in_rows
 from pneutouch.parts.coupons import Coupon, Nominal
+from pneutouch.results.coupons import CouponSet, PrintedCoupon
+from pneutouch.results.record import plain
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.workflows.coupons.order import CouponItem, CouponOptions, CouponOrder, order, results_template
@@ -242,8 +243,8 @@ def _drawn(nominal: Nominal) -> str:
 RESULTS, SHEET = "results.toml", "measure.md"
 
 
-def build_coupons(options: CouponOptions, out: Path, library: Library | None = None) -> tuple[Path, dict[str, Any]]:
-    """Write the coupons into ``out/coupons-<printer>/``; the folder and its content, as data.
+def build_coupons(options: CouponOptions, out: Path, library: Library | None = None) -> CouponSet:
+    """Write the coupons into ``out/coupons-<printer>/``.
 
     Raises InputError for what is unknown or does not fit the tray, and where readings in the folder would be lost.
     The same input gives the same bytes.
@@ -253,20 +254,20 @@ def build_coupons(options: CouponOptions, out: Path, library: Library | None = N
     check_writable(folder)
     _check_unfilled(folder)
     trays = {name: lay(name, items) for name, items in ordered.machines().items()}
-    files: dict[str, bytes] = {}
+    follows_from, files = inputs(ordered), dict[str, bytes]()
     for name, pieces in trays.items():
         bodies = tuple(body for piece in pieces for body in piece.copies())
         title = ordered.name if name == ordered.profile else name
-        files[f"{title}.3mf"] = threemf(title, bodies, _metadata(ordered, name, bodies))
+        files[f"{title}.3mf"] = threemf(title, bodies, _metadata(name, len(bodies), input_hash(follows_from)))
         files |= {f"stl/{stl_name(piece, ordered)}": stl(piece.body) for piece in pieces}
     files[SHEET] = sheet(ordered, trays).encode()
     files[RESULTS] = results_template(ordered).encode()
     coupons = _coupons(trays)
-    write_folder(folder, with_manifest(files, ordered.name, inputs(ordered), coupons=coupons))
-    return folder, {"name": ordered.name, "coupons": coupons}
+    write_folder(folder, with_manifest(files, ordered.name, follows_from, coupons=plain(coupons)))
+    return CouponSet(ordered.name, coupons, str(folder))
 
 
-def inputs(ordered: CouponOrder) -> dict[str, Any]:
+def inputs(ordered: CouponOrder) -> Mapping[str, object]:
     """Everything that the coupons depend on, as data."""
     scene = ordered.scene
     return {
@@ -296,29 +297,29 @@ def _check_unfilled(folder: Path) -> None:
         raise InputError(f"{path} has been filled in", key="out", remedy="move it away first, or give another folder")
 
 
-def _metadata(ordered: CouponOrder, name: str, bodies: tuple[Body, ...]) -> dict[str, str]:
+def _metadata(name: str, count: int, hashed: str) -> dict[str, str]:
     return {
         "Title": f"Coupons for {name}",
         "Application": f"pneutouch {__version__}",
-        "Description": f"{len(bodies)} coupons to print and measure; see {SHEET}",
-        "input-hash": input_hash(inputs(ordered)),
+        "Description": f"{count} coupons to print and measure; see {SHEET}",
+        "input-hash": hashed,
     }
 
 
-def _coupons(trays: Mapping[str, tuple[CouponPiece, ...]]) -> list[dict[str, Any]]:
-    return [
-        {
-            "coupon": piece.item.coupon.name,
-            "piece": piece.body.name,
-            "material": piece.solid.material.title,
-            "printer": name,
-            "copies": len(piece.places),
-            "places_mm": [list(place) for place in piece.places],
-            "size_mm": [round(length, 3) for length in piece.size],
-            "exact_volume_mm3": round(piece.solid.volume, 3),
-            "volume_mm3": round(piece.body.volume, 3),
-            "measured_deviation_mm": round(piece.deviation, 6),
-        }
+def _coupons(trays: Mapping[str, tuple[CouponPiece, ...]]) -> tuple[PrintedCoupon, ...]:
+    return tuple(
+        PrintedCoupon(
+            coupon=piece.item.coupon.name,
+            piece=piece.body.name,
+            material=piece.solid.material.title,
+            printer=name,
+            copies=len(piece.places),
+            places_mm=tuple(piece.places),
+            size_mm=tuple(round(length, 3) for length in piece.size),
+            exact_volume_mm3=round(piece.solid.volume, 3),
+            volume_mm3=round(piece.body.volume, 3),
+            measured_deviation_mm=round(piece.deviation, 6),
+        )
         for name, pieces in trays.items()
         for piece in pieces
-    ]
+    )

@@ -10,23 +10,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pneutouch.bench.coupon_resin import MixModulus, dumbbell, puck, stiffness
-from pneutouch.bench.coupons import (
-    MARK,
-    CouponFindings,
-    MeasuredFigure,
-    ProfileChange,
-    ReadingSource,
-    gauges,
-    leak,
-    volume,
-)
+from pneutouch.bench.coupons import MARK, CouponFindings, ProfileChange, ReadingSource, gauges, leak, rounded, volume
 from pneutouch.catalogue import KINDS, Library, load_scene, user_folder
 from pneutouch.catalogue.mixture import mixing
 from pneutouch.errors import InputError
 from pneutouch.output.files import replace_files
+from pneutouch.results.coupons import ChangedQuantity, CouponReport, MeasuredFigure
 from pneutouch.spec.coupon import CouponResults, FeatureGauge, MixedCoupons, read_results
 from pneutouch.spec.material import Material
+from pneutouch.spec.mixing import MixingCurve, MixingPoint
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
@@ -43,7 +38,7 @@ class MeasuredProfile:
 
     path: Path
     text: str
-    changes: list[dict[str, Any]]
+    changes: Sequence[ChangedQuantity]
 
 
 def base_file(kind: str, name: str, library: Library) -> Path:
@@ -64,16 +59,15 @@ def local_profiles(
     profiles = []
     for kind, name in dict.fromkeys((change.kind, change.name) for change in changes):
         path = out / KINDS[kind].folder / f"{name}.toml"
-        earlier = _earlier(path, [change for change in changes if (change.kind, change.name) == (kind, name)])
+        here = [change for change in changes if (change.kind, change.name) == (kind, name)]
+        there = check_ours(path, ", ".join(".".join(change.keys) for change in here))
         content = read_toml(base_file(kind, name, library))
-        _carry(earlier, content)
-        change_list = [_put(content, change, path) for change in changes if (change.kind, change.name) == (kind, name)]
+        if there:
+            _carry(read_toml(path), content)
+        changed = tuple(_put(content, change, path) for change in here)
         KINDS[kind].validate(content, str(path))
-        profiles.append(
-            MeasuredProfile(
-                path, head(source, "the shipped profile with the measured numbers") + toml_text(content), change_list
-            )
-        )
+        text = head(source, "the shipped profile with the measured numbers") + toml_text(content)
+        profiles.append(MeasuredProfile(path, text, changed))
     return profiles
 
 
@@ -93,12 +87,6 @@ def write_profiles(profiles: Sequence[MeasuredProfile]) -> None:
 def _is_ours(path: Path) -> bool:
     with path.open(encoding="utf-8", errors="replace") as file:
         return file.read(len(HEAD)) == HEAD
-
-
-def _earlier(path: Path, changes: Sequence[ProfileChange]) -> dict[str, Any]:
-    """The content of the file that the command wrote before; empty if there is none."""
-    there = check_ours(path, ", ".join(".".join(change.keys) for change in changes))
-    return read_toml(path) if there else {}
 
 
 def check_ours(path: Path, keys: str) -> bool:
@@ -125,15 +113,15 @@ def _carry(earlier: dict[str, Any], content: dict[str, Any]) -> None:
             _carry(value, content[key])
 
 
-def _put(content: dict[str, Any], change: ProfileChange, path: Path) -> dict[str, Any]:
-    """Put a quantity in its place; its old and new values, as data."""
+def _put(content: dict[str, Any], change: ProfileChange, path: Path) -> ChangedQuantity:
+    """Put a quantity in its place; its old and new values."""
     *tables, last = change.keys
     owner = content
     for table in tables:
         owner = owner[table]
     before = owner.get(last)
     owner[last] = change.content
-    return {"file": str(path), "key": ".".join(change.keys), "before": before, "after": change.content}
+    return ChangedQuantity(str(path), ".".join(change.keys), before, change.content)
 
 
 def local_curve(
@@ -163,7 +151,8 @@ def local_curve(
         raise InputError(
             f"{where}.{pair}: readings at fraction = 0 alone make no curve; enter them as {soft_name}'s own"
         )
-    content = _curve(pair, soft_name, stiff_name, known, source)
+    curve = _curve(soft_name, stiff_name, known, source)
+    content = curve.model_dump(exclude_none=True)
     path = out / KINDS["mixing"].folder / f"{pair}.toml"
     check_ours(path, f"points of {', '.join(f'{point.fraction:g}' for point in known)}")
     KINDS["mixing"].validate(content, str(path))
@@ -179,55 +168,44 @@ def local_curve(
     ]
     results.notes.append(
         f"{pair}: elongation at break was not measured; add elongation_at_break_percent to the points, or no "
-        "prediction "
-        "has a break strain of a mixed wall"
+        "prediction has a break strain of a mixed wall"
     )
-    text = head(replace(source, where=file_name(Path(source.where).name)), "the mixing curve as measured") + toml_text(
-        content
-    )
-    return MeasuredProfile(path, text, _changes(path, content, pair, library))
+    first = head(replace(source, where=file_name(Path(source.where).name)), "the mixing curve as measured")
+    return MeasuredProfile(path, first + toml_text(content), _changes(path, curve, pair, library))
 
 
-def _curve(pair: str, soft: str, stiff: str, known: Sequence[MixModulus], source: ReadingSource) -> dict[str, Any]:
-    points = [point.content(source) for point in known]
+def _curve(soft: str, stiff: str, known: Sequence[MixModulus], source: ReadingSource) -> MixingCurve:
+    points = [point.point(source) for point in known]
     if known[0].fraction > 0:
-        points.insert(0, {"fraction": 0.0, "material": soft, "source": "the soft resin as the catalogue has it"})
-    return {
-        "title": f"{soft} with {stiff}, measured",
-        "soft": soft,
-        "stiff": stiff,
-        "assumption": f"{MARK} of known fractions at {len(known)} points, {source.lab}, {source.date.isoformat()}; "
+        said = "the soft resin as the catalogue has it"
+        points.insert(0, MixingPoint.model_construct(fraction=0.0, material=soft, source=said))
+    return MixingCurve.model_construct(
+        title=f"{soft} with {stiff}, measured",
+        soft=soft,
+        stiff=stiff,
+        assumption=f"{MARK} of known fractions at {len(known)} points, {source.lab}, {source.date.isoformat()}; "
         "a monotone curve between them",
-        "points": points,
-    }
+        points=points,
+    )
 
 
-def _changes(path: Path, content: dict[str, Any], pair: str, library: Library) -> list[dict[str, Any]]:
-    """Every point, compared with the curve that was in force before."""
-    before = None
-    if pair in library.paths("mixing"):
-        before = mixing(content["soft"], content["stiff"], library)
+def _changes(path: Path, curve: MixingCurve, pair: str, library: Library) -> tuple[ChangedQuantity, ...]:
+    """Every measured point, compared with the curve that was in force before."""
+    before = mixing(curve.soft, curve.stiff, library) if pair in library.paths("mixing") else None
     rows = []
-    for point in content["points"]:
-        if "shear_modulus_MPa" not in point:
+    for point in curve.points:
+        if point.shear_modulus_MPa is None:
             continue
-        fraction = point["fraction"]
         old = None
-        if before is not None and fraction <= before.fraction[-1]:
-            old = {"value": float(f"{float(before.modulus_at(fraction)):.4g}")}
-        rows.append(
-            {
-                "file": str(path),
-                "key": f"shear_modulus_MPa at {100 * fraction:g} %",
-                "before": old,
-                "after": {"value": point["shear_modulus_MPa"], "source": point["source"]},
-            }
-        )
-    return rows
+        if before is not None and point.fraction <= before.fraction[-1]:
+            old = {"value": rounded(float(before.modulus_at(np.asarray(point.fraction))))}
+        new = {"value": point.shear_modulus_MPa, "source": point.source}
+        rows.append(ChangedQuantity(str(path), f"shear_modulus_MPa at {100 * point.fraction:g} %", old, new))
+    return tuple(rows)
 
 
-def enter_results(path: Path, out: Path | None = None, library: Library | None = None) -> dict[str, Any]:
-    """Read a results file, compute, and write local profiles under ``out``, else in the user's folder; all as data.
+def enter_results(path: Path, out: Path | None = None, library: Library | None = None) -> CouponReport:
+    """Read a results file, compute, and write local profiles under ``out``, else in the user's folder.
 
     Raises InputError for a bad file, for one without readings, and rather than overwrite a profile that is not ours.
     """
@@ -241,7 +219,14 @@ def enter_results(path: Path, out: Path | None = None, library: Library | None =
     source = ReadingSource(file_name(path.name), results.lab, results.date)
     profiles = local_profiles(findings.changes, source, library, out) + [curve for curve in curves if curve is not None]
     write_profiles(profiles)
-    return _document(results, findings, profiles)
+    return CouponReport(
+        lab=results.lab,
+        date=results.date.isoformat(),
+        written=tuple(str(profile.path) for profile in profiles),
+        changes=tuple(change for profile in profiles for change in profile.changes),
+        figures=tuple(findings.figures),
+        notes=tuple(findings.notes),
+    )
 
 
 def evaluate_results(results: CouponResults, where: str, library: Library) -> CouponFindings:
@@ -300,17 +285,3 @@ def _design(name: str, where: str, library: Library) -> str:
     if name not in library.paths("designs"):
         library.load("designs", name, file=where, key="leak-cap or volume-plug")
     return name
-
-
-def _document(results: CouponResults, findings: CouponFindings, profiles: list[MeasuredProfile]) -> dict[str, Any]:
-    return {
-        "lab": results.lab,
-        "date": results.date.isoformat(),
-        "written": [str(profile.path) for profile in profiles],
-        "changes": [change for profile in profiles for change in profile.changes],
-        "figures": [
-            {"about": f.about, "name": f.name, "value": f.value, "spread": f.spread, "count": f.count}
-            for f in findings.figures
-        ],
-        "notes": findings.notes,
-    }
