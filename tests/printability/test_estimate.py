@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
 
 from pneutouch.printability import PrintSubject
@@ -18,12 +16,12 @@ def table():
 def test_a_table_on_a_polyjet_printer():
     (job,) = estimate(PrintSubject((item(table()),)))
     volume = 20 * 20 * 2 + 2 * 4 * 4 * 8
-    assert job.items[0].volume == pytest.approx(volume)
-    assert job.resins == {"VeroClear": pytest.approx(volume / 1e3)}
-    assert job.support == pytest.approx((400 - 32) * 8, rel=0.06)
+    assert job.items[0].volume_mL == pytest.approx(volume / 1e3)
+    assert job.resins_mL == {"VeroClear": pytest.approx(volume / 1e3)}
+    assert job.support_mL == pytest.approx((400 - 32) * 8 / 1e3, rel=0.06)
     assert job.layers == 625
     assert job.swaths == 1
-    assert job.seconds == pytest.approx(
+    assert 60 * job.time_min == pytest.approx(
         625 * printer().mode_for(item(box(1, 1, 1)).body.material).layer_seconds.nominal
     )
 
@@ -33,47 +31,46 @@ def test_lying_down_takes_fewer_layers():
         estimate(PrintSubject((item(box(10, 10, 60), up=up),)))[0] for up in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
     )
     assert (upright.layers, lying.layers) == (3750, 625)
-    assert upright.size == pytest.approx((10, 10, 60))
+    assert upright.size_mm == pytest.approx((10, 10, 60))
 
 
 def test_a_wide_job_takes_more_swaths():
     (job,) = estimate(PrintSubject((item(box(120, 120, 2)),)))
     assert job.swaths == 3
     seconds = printer().mode_for(item(box(1, 1, 1)).body.material).layer_seconds.nominal
-    assert job.seconds == pytest.approx(job.layers * 3 * seconds)
+    assert 60 * job.time_min == pytest.approx(job.layers * 3 * seconds)
 
 
 def test_filament_is_laid_down_by_volume_and_supported_under_overhangs():
     (job,) = estimate(PrintSubject((item(table(), resin="ABS", machine="abs-filament"),)))
-    assert 0 < job.support < (400 - 32) * 8
+    assert 0 < job.support_mL < (400 - 32) * 8 / 1e3
     machine = printer("abs-filament")
     mode = machine.mode[0]
-    volume = job.items[0].volume + job.support
-    assert job.seconds == pytest.approx(
+    volume = 1e3 * (job.items[0].volume_mL + job.support_mL)
+    assert 60 * job.time_min == pytest.approx(
         volume / machine.deposition_mm3_per_s.nominal + job.layers * mode.layer_seconds.nominal
     )
     (flat,) = estimate(PrintSubject((item(box(20, 20, 5), resin="ABS", machine="abs-filament"),)))
-    assert flat.support == 0.0
+    assert flat.support_mL == 0.0
 
 
 def test_a_profile_without_times_gives_no_time_and_says_so():
     plain = item(box(10, 10, 10))
     silent = plain.mode.model_copy(update={"layer_seconds": None})
     (job,) = estimate(PrintSubject((item(box(10, 10, 10)).__class__(plain.body, plain.printer, silent),)))
-    assert job.seconds is None
+    assert job.time_min is None
     assert any("layer_seconds" in note for note in job.assumptions)
 
 
 def test_the_resins_of_a_digital_material_are_added_up():
     (job,) = estimate(PrintSubject((item(box(10, 10, 10), resin="FLX9970"),)))
-    assert job.resins == {"TangoPlus + VeroClear": pytest.approx(1.0)}
+    assert job.resins_mL == {"TangoPlus + VeroClear": pytest.approx(1.0)}
     assert any("no ratios" in note for note in job.assumptions)
 
 
 def test_bodies_of_one_job_are_one_estimate_and_it_is_json():
     pair = (item(box(10, 10, 10), "a", job="tray"), item(box(10, 10, 10, (0, 0, 10)), "b", "FLX9970", job="tray"))
     (job,) = estimate(PrintSubject(pair))
-    document = json.loads(json.dumps(job.document()))
-    assert document["size_mm"] == [10, 10, 20]
-    assert [entry["name"] for entry in document["items"]] == ["a", "b"]
-    assert document["support_mL"] == 0.0
+    assert job.size_mm == (10, 10, 20)
+    assert [entry.name for entry in job.items] == ["a", "b"]
+    assert job.support_mL == 0.0

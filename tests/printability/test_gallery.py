@@ -107,11 +107,10 @@ def test_every_rule_has_an_exhibit():
 @pytest.mark.parametrize("name", [name for name in BAD if name not in ("fine", "coarse", "open mesh", "inside out")])
 def test_a_finding_says_how_far_off_where_and_why(name):
     for finding in findings(name):
-        document = finding.document()
-        assert document["message"]
-        assert len(document["source"]) >= 8
-        assert document["fix"]
+        assert finding.message
+        assert len(finding.source) >= 8
+        assert finding.fix
         if finding.excess is not None:
-            assert document["excess"]["measured"] != document["excess"]["limit"]
+            assert finding.stated.excess.measured != finding.stated.excess.limit
         if finding.rule not in ("envelope", "resins"):
-            assert document["where_mm"] is not None
+            assert finding.where_mm is not None

@@ -67,11 +67,10 @@ def test_a_dome_s_wall_is_measured(wall, severity):
     ]
     assert [finding.severity for finding in found] == ([severity] if severity else [])
     for finding in found:
-        document = finding.document()
-        assert document["excess"]["measured"] == pytest.approx(wall, abs=0.003)
-        assert f"{wall:.2f} mm" in document["message"]
-        assert document["fix"] == "raise membrane.wall_thickness_mm"
-        assert 9.25 < np.linalg.norm(document["where_mm"]) < 12
+        assert finding.excess.measured == pytest.approx(wall, abs=0.003)
+        assert f"{wall:.2f} mm" in finding.message
+        assert finding.fix == "raise membrane.wall_thickness_mm"
+        assert 9.25 < np.linalg.norm(finding.where_mm) < 12
 
 
 def test_findings_come_errors_first_and_repeat():

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.viscous.describe import ViscousRuns
     from pneutouch.printability import Finding
-    from pneutouch.printability.estimate import JobEstimate
+    from pneutouch.results.printing import JobEstimate
     from pneutouch.results.uncertainty import UncertaintyRecord
 
 # The print rules and the uncertainty load where they are used: figures alone need neither.

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.uncertainty import GasNotes
     from pneutouch.parts import Assembly
     from pneutouch.printability import Finding
-    from pneutouch.printability.estimate import JobEstimate
     from pneutouch.results.behaviour import Dynamics, GaugeFigures, Viscous
+    from pneutouch.results.printing import JobEstimate
     from pneutouch.results.uncertainty import UncertaintyRecord
     from pneutouch.selection.front import TradeOffFront
     from pneutouch.spec.contact import ContactKind

@@ -4,79 +4,17 @@ Estimates for planning, from the same cubes that the rules look at; a slicer is 
 """
 
 import math
-from dataclasses import dataclass
-from typing import Any
 
 from pneutouch.printability.measure.cavities import overhangs, supported
 from pneutouch.printability.subject import PrintSubject
 from pneutouch.printability.view import PrintJob, PrintPart, PrintView
+from pneutouch.results.printing import ItemEstimate, JobEstimate
 from pneutouch.units import ML, UM, grams
 
 _SPARSE = 0.15
 """Share of the space under an overhang that filament support fills: usual slicer setting (own, unverified)."""
 
 _PURGE = "waste of purging, wiping and the first layers is left out"
-
-
-@dataclass(frozen=True)
-class ItemEstimate:
-    """One body: exact volume where the solid is known, else the mesh's, mm3; mass in g; resins in mL, those of a
-    digital material without a measured mix together."""
-
-    name: str
-    volume: float
-    mass: float
-    resins: dict[str, float]
-
-    def document(self) -> dict[str, Any]:
-        """The estimate as JSON, units in the names."""
-        return {
-            "name": self.name,
-            "volume_mL": self.volume / ML,
-            "mass_g": self.mass,
-            "resins_mL": dict(sorted(self.resins.items())),
-        }
-
-
-@dataclass(frozen=True)
-class JobEstimate:
-    """One job: size as it stands in mm, support in mm3, time in s; None if the profile does not state enough.
-
-    ``assumptions`` state what each figure is based on. What is cast has no layers.
-    """
-
-    name: str
-    printer: str
-    mode: str
-    items: tuple[ItemEstimate, ...]
-    size: tuple[float, float, float]
-    support: float
-    layers: int | None
-    swaths: int | None
-    seconds: float | None
-    assumptions: tuple[str, ...]
-
-    @property
-    def resins(self) -> dict[str, float]:
-        """Resins of all items, mL."""
-        names = sorted({resin for item in self.items for resin in item.resins})
-        return {name: sum(item.resins.get(name, 0.0) for item in self.items) for name in names}
-
-    def document(self) -> dict[str, Any]:
-        """The estimate as JSON, units in the names."""
-        return {
-            "job": self.name,
-            "printer": self.printer,
-            "mode": self.mode,
-            "items": [item.document() for item in self.items],
-            "size_mm": list(self.size),
-            "resins_mL": self.resins,
-            "support_mL": self.support / ML,
-            "layers": self.layers,
-            "swaths": self.swaths,
-            "time_min": None if self.seconds is None else self.seconds / 60,
-            "assumptions": list(self.assumptions),
-        }
 
 
 def estimate(subject: PrintSubject) -> list[JobEstimate]:
@@ -100,23 +38,46 @@ def _estimate(job: PrintJob) -> JobEstimate:
     notes = [how, _PURGE, *reasons]
     if any(part.item.body.material.is_digital for part in job.parts):
         notes.append("resins of a digital material without a measured mix are added up: vendors publish no ratios")
-    return JobEstimate(
-        job.name, job.printer.title, first.mode.name, items, (x, y, z), support, layers, swaths, seconds, tuple(notes)
-    )
+    return _job(job, items, support, layers, swaths, seconds, notes)
 
 
 def _cast(job: PrintJob) -> JobEstimate:
     """Estimate of a casting: the body alone, and the time of its cure; mould, overflow and loss come on top."""
     first = job.parts[0].item
-    x, y, z = (float(length) for length in job.bounds[1] - job.bounds[0])
     items, seconds = tuple(_item(part) for part in job.parts), None
     notes = ["silicone: the body alone; what stays in sprue, vents and cup comes on top"]
     casting = first.body.material.casting
     if casting is not None:
         seconds = 3600 * casting.cure_h.nominal
         notes.append(f"time: cure at room temperature ({casting.cure_h.source}); printing the mould comes on top")
-    mode = first.mode.name
-    return JobEstimate(job.name, job.printer.title, mode, items, (x, y, z), 0.0, None, None, seconds, tuple(notes))
+    return _job(job, items, 0.0, None, None, seconds, notes)
+
+
+def _job(
+    job: PrintJob,
+    items: tuple[ItemEstimate, ...],
+    support: float,
+    layers: int | None,
+    swaths: int | None,
+    seconds: float | None,
+    notes: list[str],
+) -> JobEstimate:
+    """The estimate of a job, its support in mm3."""
+    x, y, z = (float(length) for length in job.bounds[1] - job.bounds[0])
+    resins = sorted({resin for item in items for resin in item.resins_mL})
+    return JobEstimate(
+        job=job.name,
+        printer=job.printer.title,
+        mode=job.parts[0].item.mode.name,
+        items=items,
+        size_mm=(x, y, z),
+        resins_mL={name: sum(item.resins_mL.get(name, 0.0) for item in items) for name in resins},
+        support_mL=support / ML,
+        layers=layers,
+        swaths=swaths,
+        time_min=None if seconds is None else seconds / 60,
+        assumptions=tuple(notes),
+    )
 
 
 def _item(part: PrintPart) -> ItemEstimate:
@@ -126,8 +87,8 @@ def _item(part: PrintPart) -> ItemEstimate:
     mix = material.mix
     # Without a measured mix only the sum of a digital material's resins is known.
     shares = {" + ".join(material.base_resins): 1.0} if mix is None else mix.fractions
-    resins = {resin: share * volume / ML for resin, share in shares.items()}
-    return ItemEstimate(part.name, volume, grams(volume, material.density_g_per_cm3.nominal), resins)
+    resins = {resin: share * volume / ML for resin, share in sorted(shares.items())}
+    return ItemEstimate(part.name, volume / ML, grams(volume, material.density_g_per_cm3.nominal), resins)
 
 
 def _support(job: PrintJob) -> tuple[float, str]:

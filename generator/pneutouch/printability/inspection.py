@@ -8,7 +8,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.body import Body
 from pneutouch.errors import InputError
-from pneutouch.printability.finding import Excess, Finding, Severity
+from pneutouch.results.printing import Excess, Finding, Severity
 from pneutouch.units import UM
 
 _SOURCE = "measured with pymeshlab (MeshLab's filters), independently of the meshes' maker"
@@ -119,4 +119,4 @@ def _deviation(lab: Any, body: Body, fine: Body, tolerance: float) -> list[Findi
     if worst <= allowed:
         return []
     text = f"{worst / UM:.0f} um from a mesh {_FINER:g} times finer; {tolerance / UM:g} um were required"
-    return [_finding("warning", body, text, f"mesh it within {tolerance:g} mm", Excess(worst, allowed))]
+    return [_finding("warning", body, text, f"mesh it within {tolerance:g} mm", Excess(worst, allowed, "mm"))]

@@ -1,12 +1,14 @@
-"""Run every rule over a subject.
+"""Run every rule over a subject, and refuse a print with errors.
 
 Rules on the mould of a cast membrane: each part on its printer, and the mould's functions: fill, close, let go.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from os import PathLike
+from typing import Any
 
+from pneutouch.errors import RuleBrokenError, joined
 from pneutouch.parts.mould import MouldAssembly
-from pneutouch.printability.finding import Finding
 from pneutouch.printability.rules import (
     build_volume,
     casting,
@@ -21,6 +23,7 @@ from pneutouch.printability.rules import (
 )
 from pneutouch.printability.subject import PrintItem, PrintSubject
 from pneutouch.printability.view import PrintView, SensorContext
+from pneutouch.results.printing import Finding
 
 Rule = Callable[[PrintView], list[Finding]]
 
@@ -98,3 +101,14 @@ def check_mould(mould: MouldAssembly) -> list[Finding]:
     kept = [finding for finding in printed if finding.rule not in _LEFT_TO_RAYS or finding.severity == "error"]
     more = [finding for rule in MOULD_RULES.values() for finding in rule(mould)]
     return sorted([*kept, *more], key=lambda finding: finding.rank)
+
+
+def refuse(findings: Iterable[Finding], file: str | PathLike[str], key: str | None = None, value: Any = None) -> None:
+    """Raise RuleBrokenError with all findings that are errors, where there are any; ``key`` is the key that decides."""
+    broken = [
+        RuleBrokenError(f"{f.rule}: {f.body}: {f.message}", file=file, key=key, value=value, remedy=f.fix)
+        for f in findings
+        if f.severity == "error"
+    ]
+    if broken:
+        raise joined(broken)

@@ -281,25 +281,25 @@ def _takes(sheet: SheetData) -> str:
     """Resin, support, layers and a rough time of each job, with their basis."""
     rows, notes = [], []
     for job in sheet.estimates:
-        resins = ", ".join(f"{name} {volume:.2f} mL" for name, volume in job.resins.items())
+        resins = ", ".join(f"{name} {volume:.2f} mL" for name, volume in job.resins_mL.items())
         layers = "" if job.layers is None else f"{job.layers}"
         swaths = "" if job.swaths is None else f" x {counted(job.swaths, 'swath')}"
         rows.append(
-            f"| {job.name} | {job.mode} | {resins} | {job.support / ML:.2f} mL | {layers}{swaths} | "
-            f"{_time(job.seconds)} |"
+            f"| {job.job} | {job.mode} | {resins} | {job.support_mL:.2f} mL | {layers}{swaths} | "
+            f"{_time(job.time_min)} |"
         )
-        notes += [f"- {job.name}: {note}." for note in job.assumptions]
+        notes += [f"- {job.job}: {note}." for note in job.assumptions]
     glue_mL = sheet.assembly.glue_volume / ML
     glue = f"Glue: about {glue_mL:.2f} mL fills the gaps.\n\n" if glue_mL else ""
     head = "| job | mode | resin | support | layers | time, rough |\n|---|---|---|---|---|---|\n"
     return head + "\n".join(rows) + "\n\n" + glue + "\n".join(dict.fromkeys(notes))
 
 
-def _time(seconds: float | None) -> str:
-    if seconds is None:
+def _time(time_min: float | None) -> str:
+    if time_min is None:
         return "not known"
-    minutes = round(seconds / 60)
-    return f"{minutes} min" if minutes < 100 else f"{seconds / 3600:.1f} h"
+    minutes = round(time_min)
+    return f"{minutes} min" if minutes < 100 else f"{time_min / 60:.1f} h"
 
 
 def _escaped(text: str) -> str:

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.mechanics import Sensor
-from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.view import PrintJob, PrintView
+from pneutouch.results.printing import Excess, Finding
 from pneutouch.units import KPA, UM
 
 
@@ -29,9 +29,9 @@ def _check(job: PrintJob) -> Finding | None:
     if z <= envelope.z and ((x <= envelope.x and y <= envelope.y) or (x <= envelope.y and y <= envelope.x)):
         return None
     excesses = [
-        Excess(z, envelope.z),
-        Excess(max(x, y), max(envelope.x, envelope.y)),
-        Excess(min(x, y), min(envelope.x, envelope.y)),
+        Excess(z, envelope.z, "mm"),
+        Excess(max(x, y), max(envelope.x, envelope.y), "mm"),
+        Excess(min(x, y), min(envelope.x, envelope.y), "mm"),
     ]
     worst = max(excesses, key=lambda excess: excess.measured / excess.limit)
     part = job.parts[0]

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from pneutouch.printability.finding import Excess, Finding, Severity
 from pneutouch.printability.view import PrintPart, PrintView, SensorContext
+from pneutouch.results.printing import Excess, Finding, Severity
 from pneutouch.spec.material import Casting
 
 PREPARED_MIN = 8.0
@@ -57,7 +57,7 @@ def bubbles(view: PrintView) -> list[Finding]:
     fix = part.item.hints.get("bubbles", "degas the mixed silicone under vacuum, and pour in a thin stream")
     source = f"{_STOKES}; {casting.pot_life_min.source}"
     severity: Severity = "warning" if weak else "note"
-    excess = Excess(diameter, _BUBBLE * wall) if weak else None
+    excess = Excess(diameter, _BUBBLE * wall, "mm") if weak else None
     return [Finding("bubbles", severity, part.name, text, fix, source, _pole(context), excess)]
 
 
@@ -76,6 +76,8 @@ def inhibition(view: PrintView) -> list[Finding]:
             "photopolymer inhibits its cure, and the face stays sticky",
             "post-cure, wash and seal the print, and test a drop first; or print it in filament",
             _INHIBITION,
+            None,
+            None,
         )
         for surface in context.wetted
         if surface.process in ("polyjet", "resin")

@@ -6,11 +6,11 @@ Closed hollows: support cannot be removed from them, and they cannot be inspecte
 import numpy as np
 
 from pneutouch.arrays import Flags, Indices
-from pneutouch.printability.finding import Excess, Finding, Severity
 from pneutouch.printability.measure.cavities import NARROW, Pocket, overhangs
 from pneutouch.printability.measure.chords import first_hits
 from pneutouch.printability.subject import Point3
 from pneutouch.printability.view import PrintJob, PrintView
+from pneutouch.results.printing import Excess, Finding, Severity
 
 _VENDOR = "vendor, objet.com Tips and Tricks: a confined hollow is not cleanable; "
 _NECK = _VENDOR + "share of the width that the opening needs: own, unverified"

@@ -1,7 +1,7 @@
 """Driving pressures against the rating of the sensor: limit point, break strain, gauge, and how well they are known."""
 
-from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.view import PrintView, SensorContext
+from pneutouch.results.printing import Excess, Finding
 from pneutouch.units import KPA
 
 _SOURCES = {
@@ -42,6 +42,7 @@ def _pressed(context: SensorContext) -> list[Finding]:
             "take a pneumatics.gauge that reads further, lower pneumatics.driving_pressures_kPa or press less",
             gauge.range_kPa.source,
             (0.0, 0.0, state.apex_outer),
+            None,
         )
     ]
 

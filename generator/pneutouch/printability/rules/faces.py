@@ -9,11 +9,11 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.body import Body
-from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.measure.chords import first_hits
 from pneutouch.printability.rules.feature_sizes import spot
 from pneutouch.printability.subject import Joint
 from pneutouch.printability.view import PrintJob, PrintPart, PrintView
+from pneutouch.results.printing import Excess, Finding
 
 _SOURCE = "vendor: one closed shell per material region, shells must not occupy the same space (multi-colour guideline)"
 _FIX = "report the design: this is a fault"

@@ -13,10 +13,10 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.body import Body
-from pneutouch.printability.finding import Excess, Finding, Severity
 from pneutouch.printability.measure.thin import FeatureKind, ThinPlace
 from pneutouch.printability.subject import Point3
 from pneutouch.printability.view import PrintPart, PrintView
+from pneutouch.results.printing import Excess, Finding, Severity
 from pneutouch.spec.printer import FeatureSize
 
 _ALIKE = 0.02
@@ -88,7 +88,7 @@ def _finding(
     often = f" ({len(places)} places)" if len(places) > 1 else ""
     text = f"{noun} is {wording(size, limit, severity)}{often}"
     hint = part.item.hints.get(rule, fix)
-    return Finding(rule, severity, part.name, text, hint, source, places[0].where, Excess(size, limit))
+    return Finding(rule, severity, part.name, text, hint, source, places[0].where, Excess(size, limit, "mm"))
 
 
 def spot(where: object) -> Point3:

@@ -11,10 +11,10 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.parts.glue import GLUES, glues_for
-from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.measure.chords import first_hits
 from pneutouch.printability.rules.feature_sizes import compare, lower, severity_of, spot, wording
 from pneutouch.printability.view import PrintPart, PrintView
+from pneutouch.results.printing import Excess, Finding
 from pneutouch.units import KPA
 
 _TOUCHING = 1e-3
@@ -59,7 +59,7 @@ def _between(one: PrintPart, other: PrintPart) -> list[Finding]:
     text = f"the gap to the {other.name} is {wording(size, limit, severity)}"
     where = spot(samples.points[rows[first]])
     hint = one.item.hints.get("gaps", _FIX)
-    return [Finding("gaps", severity, one.name, text, hint, feature.source, where, Excess(size, limit))]
+    return [Finding("gaps", severity, one.name, text, hint, feature.source, where, Excess(size, limit, "mm"))]
 
 
 _SEATS = "take connector.seat = clamped-flange-M2, which needs none"
@@ -81,9 +81,9 @@ def check_glue(view: PrintView) -> list[Finding]:
     fix = ", or ".join(part for part in (named, _SEATS) if part)
     if bond is None:
         text = f"{glue.title} does not bond {pair}: the flange comes off"
-        return [Finding("glue", "error", context.membrane, text, fix, glue.source)]
+        return [Finding("glue", "error", context.membrane, text, fix, glue.source, None, None)]
     text = f"{glue.title} on {pair} carries small loads: the flange may peel off under pressure"
-    return [Finding("glue", "warning", context.membrane, text, fix, glue.source)]
+    return [Finding("glue", "warning", context.membrane, text, fix, glue.source, None, None)]
 
 
 _SOURCE = (
@@ -111,7 +111,16 @@ def check_freedom(view: PrintView) -> list[Finding]:
             text = f"the dome meets the {part.name} {worst[1]}: they would overlap by {worst[0]:.2f} mm"
             fix = "lower pneumatics.driving_pressures_kPa or indentation.depth_mm, or take another connector.seat"
             findings.append(
-                Finding("freedom", "warning", view.sensor.membrane, text, fix, _SOURCE, worst[2], Excess(worst[0], 0.0))
+                Finding(
+                    "freedom",
+                    "warning",
+                    view.sensor.membrane,
+                    text,
+                    fix,
+                    _SOURCE,
+                    worst[2],
+                    Excess(worst[0], 0.0, "mm"),
+                )
             )
     return findings
 

@@ -3,9 +3,9 @@
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.rules.feature_sizes import spot
 from pneutouch.printability.view import PrintPart, PrintView
+from pneutouch.results.printing import Excess, Finding
 from pneutouch.units import UM
 
 _SOLID = (
@@ -37,7 +37,7 @@ def _open(part: PrintPart) -> list[Finding]:
     else:
         return []
     fix = part.item.hints.get("mesh", "mend the mesh where it comes from; nothing else is measured on it")
-    return [Finding("mesh", "error", part.name, text, fix, _SOLID)]
+    return [Finding("mesh", "error", part.name, text, fix, _SOLID, None, None)]
 
 
 def _coarse(part: PrintPart) -> list[Finding]:
@@ -55,7 +55,7 @@ def _coarse(part: PrintPart) -> list[Finding]:
     text = f"the mesh is off by {deviation / UM:.0f} um ({how}); the machine's finest step is {step / UM:g} um"
     fix = part.item.hints.get("mesh", f"mesh it within {step:g} mm")
     source = f"{_FINEST}{part.item.printer.step_source}"
-    return [Finding("mesh", "warning", part.name, text, fix, source, spot(where), Excess(deviation, step))]
+    return [Finding("mesh", "warning", part.name, text, fix, source, spot(where), Excess(deviation, step, "mm"))]
 
 
 def _points(part: PrintPart) -> Array:

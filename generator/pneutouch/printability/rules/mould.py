@@ -8,8 +8,8 @@ Release of the cured membrane from its core: the strain that it needs against it
 
 from pneutouch.parts.mould import MouldAssembly
 from pneutouch.parts.mould.filling import SAFETY, SYRINGE_KPA, MouldFilling, filling, release_of
-from pneutouch.printability.finding import Excess, Finding, Severity
 from pneutouch.printability.measure.mould import cavity_match, overlaps, undercuts
+from pneutouch.results.printing import Excess, Finding, Severity
 from pneutouch.units import UM
 
 _MEASURED = "measured on the meshes of the closed mould"
@@ -52,7 +52,9 @@ def _cavity(mould: MouldAssembly) -> list[Finding]:
         return []
     text = f"its cavity is off the membrane by {match.offset / UM:.0f} um on average"
     fix = "report the design"
-    return [Finding("mould fit", "error", "mould", text, fix, _MEASURED, None, Excess(match.offset, mould.tolerance))]
+    return [
+        Finding("mould fit", "error", "mould", text, fix, _MEASURED, None, Excess(match.offset, mould.tolerance, "mm"))
+    ]
 
 
 def _undercuts(mould: MouldAssembly) -> list[Finding]:
@@ -85,7 +87,7 @@ def _wall_error(mould: MouldAssembly) -> list[Finding]:
         f"at most {100 * _MOST_ERROR:g} % is recommended"
     )
     fix = "lower mould.clearance_mm and fit the cones by hand, or raise membrane.wall_thickness_mm"
-    return [Finding("mould fit", "warning", "mould", text, fix, _ERROR, None, Excess(error, _MOST_ERROR * wall))]
+    return [Finding("mould fit", "warning", "mould", text, fix, _ERROR, None, Excess(error, _MOST_ERROR * wall, "mm"))]
 
 
 _SHARE = 0.5
@@ -113,7 +115,7 @@ def check_mould_filling(mould: MouldAssembly) -> list[Finding]:
         return []
     if times is None:
         text = "how long it takes to fill is not known"
-        return [Finding("mould filling", "note", "mould", text, "measure the viscosity", _UNKNOWN)]
+        return [Finding("mould filling", "note", "mould", text, "measure the viscosity", _UNKNOWN, None, None)]
     limit, cavities = _SHARE * 60 * casting.pot_life_min.least, mould.size.shape.cavities
     syringe, findings = cavities * times.syringe_s, []
     if times.pour_s > limit:
@@ -153,7 +155,7 @@ def check_mould_release(mould: MouldAssembly) -> list[Finding]:
     if broken is None:
         text = f"it must stretch by {100 * release.strain:.0f} % to leave its core; how far it may is not known"
         fix = "give elongation_at_break_percent in the material's file"
-        return [Finding("release", "note", "membrane", text, fix, _RELEASE_SOURCE)]
+        return [Finding("release", "note", "membrane", text, fix, _RELEASE_SOURCE, None, None)]
     if needed <= broken.least:
         return []
     text = (

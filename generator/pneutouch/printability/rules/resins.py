@@ -4,8 +4,8 @@ Behaviour of a mix if another mixing curve of its pair is true: its fraction is 
 """
 
 from pneutouch.mechanics.prediction import CurveOutcome
-from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.view import PrintJob, PrintView
+from pneutouch.results.printing import Excess, Finding
 from pneutouch.rounding import tenths_below
 from pneutouch.spec.printer import Mode
 from pneutouch.units import KPA
@@ -77,7 +77,7 @@ def check_mixing_curve(view: PrintView) -> list[Finding]:
     more = f"; {', '.join(beyond)}: stiffer than any resin that it states, perhaps rigid there" if beyond else ""
     fix = "measure the mix on coupons (pneutouch coupons --mixing), or confirm that the design is useful by every curve"
     text = f"the modulus of the mix is assumed: {'; '.join(texts)}{more}"
-    return [Finding("mixing curve", "warning" if beyond else "note", context.membrane, text, fix, _SOURCE)]
+    return [Finding("mixing curve", "warning" if beyond else "note", context.membrane, text, fix, _SOURCE, None, None)]
 
 
 def _outcome(outcome: CurveOutcome) -> str:

@@ -117,6 +117,8 @@ def _unmeasured(drawn: SpecimenBodies) -> list[Finding]:
             f"{len(body.triangles)} triangles: closed, but thin places were not measured",
             "see the struts and sheets in the layer table, which were checked before drawing",
             "own: rays take a minute and more",
+            None,
+            None,
         )
         for body in drawn.bodies
         if len(body.triangles) > _MOST_CHECKED

@@ -1,0 +1,112 @@
+"""Findings of the print rules and estimates of print jobs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Literal, get_args
+
+from pneutouch.results.record import plain
+from pneutouch.rounding import rounded
+
+Severity = Literal["error", "warning", "note"]
+
+
+@dataclass(frozen=True, slots=True)
+class Excess:
+    """How far off: a measured value and the limit that it breaks, both in one unit."""
+
+    measured: float
+    """Measured value."""
+    limit: float
+    """Limit that it breaks."""
+    unit: str
+    """Unit of both; empty for a ratio or a count."""
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """A finding of a print rule."""
+
+    rule: str
+    """Name of the rule."""
+    severity: Severity
+    """How serious it is."""
+    body: str
+    """Name of the body."""
+    message: str
+    """In words."""
+    fix: str
+    """Remedy."""
+    source: str
+    """Source of the limit."""
+    where_mm: tuple[float, float, float] | None
+    """Place in the design frame; null: the whole body."""
+    excess: Excess | None
+    """How far off it is; null: there is no number."""
+
+    @property
+    def rank(self) -> int:
+        """Place of the severity in a list of findings: errors come first."""
+        return get_args(Severity).index(self.severity)
+
+    @property
+    def stated(self) -> Finding:
+        """The finding with its numbers rounded as documents state them."""
+        x, y, z = self.where_mm or (0.0, 0.0, 0.0)
+        where_mm = None if self.where_mm is None else (round(x, 3) + 0.0, round(y, 3) + 0.0, round(z, 3) + 0.0)
+        excess = self.excess
+        if excess is not None:
+            # Counts are whole numbers; a document states them as every other value.
+            excess = rounded(Excess(float(excess.measured), float(excess.limit), excess.unit), 4)
+        return replace(self, where_mm=where_mm, excess=excess)
+
+    def document(self) -> Any:
+        """JSON data of the finding as documents state it."""
+        return plain(self.stated)
+
+
+@dataclass(frozen=True, slots=True)
+class ItemEstimate:
+    """A body of a job; its volume is that of the exact solid where there is one."""
+
+    name: str
+    """Name of the body."""
+    volume_mL: float
+    """Volume."""
+    mass_g: float
+    """Mass."""
+    resins_mL: Mapping[str, float]
+    """Resins by name; those of a digital material without a measured mix together."""
+
+
+@dataclass(frozen=True, slots=True)
+class JobEstimate:
+    """Resin and time of a print job. What is cast has no layers."""
+
+    job: str
+    """Name of the job."""
+    printer: str
+    """Printer."""
+    mode: str
+    """Print mode."""
+    items: tuple[ItemEstimate, ...]
+    """Bodies of the job."""
+    size_mm: tuple[float, float, float]
+    """Size of the job as it stands."""
+    resins_mL: Mapping[str, float]
+    """Resins of all bodies by name."""
+    support_mL: float
+    """Support."""
+    layers: int | None
+    """Number of layers; null: it is cast."""
+    swaths: int | None
+    """Number of swaths of the heads; null: there are none, or their width is not known."""
+    time_min: float | None
+    """Time; null: the printer's profile does not state enough."""
+    assumptions: tuple[str, ...]
+    """Assumptions, in sentences."""
+
+    def document(self) -> Any:
+        """JSON data of the estimate."""
+        return plain(self)
