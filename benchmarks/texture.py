@@ -24,7 +24,7 @@ from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate, amplitud
 from pneutouch.units import KPA
 from pneutouch.workflows.scan import ScanOptions, run_scan
 from pneutouch.workflows.scan_separate import separating
-from pneutouch.workflows.scanned import scanned, spectra
+from pneutouch.workflows.scanned import scanned
 
 CELL, LENGTH, HEIGHT = 0.5, 24.0, 8.0
 DEPTHS, KINDS = (0.0, 1.0, 2.0, 3.0), {3.0: (1.5, 1.0), 6.0: (3.0, 1.5)}

@@ -24,7 +24,7 @@ class GaugeState:
     """Change of the pressure without contact by temperature."""
     zero_drift_N_per_K: float | None
     """The same, read as a force."""
-    warming_that_reads_as_smallest_force_K: float | None  # noqa: N815
+    warming_that_reads_as_smallest_force_K: float | None
     """Warming whose drift reads as the smallest force."""
 
 
