@@ -11,7 +11,6 @@ from typer.testing import CliRunner
 
 from pneutouch.cli import calibrate, simulate
 from pneutouch.cli.app import app
-from pneutouch.cli.calibrate import calibration_text
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.calibrate.fit import observations_of
@@ -66,7 +65,7 @@ def test_the_truth_is_in_the_intervals_and_the_files_predict(campaign, place):
     assert len(said["notes"]) <= 6
     assert "simulated" in said["notes"][0]
     assert said["written"][1:] == ["calibrations/dome-1.toml"] and said["calibration"] == "dome-1"
-    text = calibration_text(said)
+    text = run(*words).stdout
     assert f"shear_modulus_MPa  {found['shear_modulus_MPa']['value']:.4g}" in text
 
     sensor = evaluate("mine@dome-1", model="atlas").sensor
@@ -226,7 +225,7 @@ def test_a_usual_fit_has_no_warning_and_a_poor_one_has(campaign, place, stretche
     assert poor.exit_code == 0, poor.stderr
     (said,) = json.loads(poor.stdout)["warnings"]
     assert said.startswith("the fitted model describes the runs poorly: it is off in force by 1")
-    assert f"\nwarning: {said}\n" in calibration_text(json.loads(poor.stdout))
+    assert f"\nwarning: {said}\n" in run(*words, "--save", "poor").stdout
 
 
 @pytest.mark.parametrize(("factor", "power"), [(0.4, 1.0), (1.0, 0.1)])

@@ -15,7 +15,8 @@ from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics.atlas_states import atlas_result
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.parts import assemble
-from pneutouch.report.measured import CampaignReport, GroupComparison, Verdict
+from pneutouch.report.measured import CampaignReport, GroupComparison
+from pneutouch.results.measured import AgeingChange, InjectionFigure, Verdict
 from pneutouch.spec.campaign import Campaign, CampaignRun
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
@@ -154,7 +155,7 @@ def measured_of(
 def _ageing(resins: tuple[str, ...], pressures: tuple[float, ...]):
     paper = {"TangoPlus": 14.8, "FLX9950": -17.0, "FLX9970": -34.9}
     return tuple(
-        (resin, p, "12 months", -9.1 - k, -15.0, -3.2, paper.get(resin))
+        AgeingChange(resin, p, "12 months", -9.1 - k, -15.0, -3.2, paper.get(resin))
         for k, p in enumerate(pressures)
         for resin in resins
     )
@@ -166,7 +167,7 @@ VERDICTS = (
     Verdict("force range", "at least 40 N", "32.4 N (31.9 to 32.9)", False),
 )
 INJECTIONS = (
-    ("TangoPlus-1", "leak", 0.0213, 0.0031, "kPa/min"),
-    ("TangoPlus-1", "dead volume", 0.512, 0.012, "mL"),
-    ("TangoPlus-2", "cavity volume", 1.31, None, "mL"),
+    InjectionFigure("TangoPlus-1", "leak", 0.0213, 0.0031, "kPa/min"),
+    InjectionFigure("TangoPlus-1", "dead volume", 0.512, 0.012, "mL"),
+    InjectionFigure("TangoPlus-2", "cavity volume", 1.31, None, "mL"),
 )

@@ -12,12 +12,13 @@ import pytest
 
 from pneutouch.bench.figures import FIGURES
 from pneutouch.bench.record import SuspectInterval
-from pneutouch.report.measured import Verdict, tables
+from pneutouch.report.measured import tables
 from pneutouch.report.measured.head import MINUS, between, difference, number, signed, tiles, verdict
 from pneutouch.report.measured.panels import panels_of
 from pneutouch.report.measured.plots import responses
 from pneutouch.report.measured.sheet import measured_datasheet
 from pneutouch.report.measured.tables import MOST, failures, loops, resin_table, specimens
+from pneutouch.results.measured import Verdict
 
 from .campaign import INJECTIONS, RESINS, VERDICTS, measured_of
 
@@ -130,7 +131,7 @@ def test_verdict_is_failed_before_undecided_before_passed(campaign):
         ((passed,), "Target passed"),
         ((), "No target given"),
     ):
-        assert verdict(replace(campaign, verdicts=verdicts))["word"] == word
+        assert verdict(replace(campaign, verdicts=verdicts)).word == word
 
 
 def test_head_counts_specimens_runs_and_resins(said):
@@ -178,8 +179,8 @@ def test_ageing_stands_beside_the_papers(library):
 def test_without_a_prediction_the_sheet_says_why_and_invents_none(library):
     found = measured_of(library, resins=("TangoPlus",), pressures=(0.0,), kinds=("steps",), predicted=False)
     table = resin_table(panels_of(found.comparisons)[0])
-    assert table["why"] == ["No prediction at 0 kPa: beyond the limit point of this resin"]
-    assert all(row[5:] == ["", "", "", ""] for figure in table["figures"] for row in figure["rows"])
+    assert table.why == ["No prediction at 0 kPa: beyond the limit point of this resin"]
+    assert all(row[5:] == ["", "", "", ""] for figure in table.figures for row in figure.rows)
     files = measured_datasheet(found)
     assert "Thin lines join" in files["measured-datasheet.html"].decode()
     assert "predicted, 95 %" not in text_of(files["measured-datasheet.pdf"])
@@ -216,8 +217,9 @@ def test_a_resin_of_any_title_can_be_drawn(least):
 
 
 def test_specimen_rows_are_means_over_runs(campaign):
-    rows, more = specimens(panels_of(campaign.comparisons))
-    assert more == ""
+    listed = specimens(panels_of(campaign.comparisons))
+    assert listed.more == ""
+    rows = listed.rows
     assert len(rows) == 7 * 3 * 2
     beside = campaign.comparisons[0]
     name = beside.group.sensors[0]
@@ -282,5 +284,5 @@ def _only(group, kind):
 
 
 def test_a_failure_does_not_say_its_file_twice(campaign):
-    rows, _ = failures(replace(campaign, failures=(("runs/a.csv", "/home/lab/campaign/runs/a.csv: no such file"),)))
-    assert rows == [["runs/a.csv", "no such file"]]
+    listed = failures(replace(campaign, failures=(("runs/a.csv", "/home/lab/campaign/runs/a.csv: no such file"),)))
+    assert listed.rows == [["runs/a.csv", "no such file"]]

@@ -10,6 +10,7 @@ import pytest
 
 from pneutouch.catalogue.library import HOME
 from pneutouch.errors import InputError
+from pneutouch.results.record import plain
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.studio import measuring
 from tests.bench.rig import small
@@ -41,7 +42,7 @@ def ask(tmp_path):
         folder.mkdir(parents=True)
         job.folders.append(folder)
         content = run({**files, "bases": BASES, "design": PLAIN, **more}, folder, silent)
-        return json.loads(json.dumps(content))
+        return json.loads(json.dumps(plain(content)))
 
     job.folders = []
     return job

@@ -16,6 +16,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
 from pneutouch.output.files import digest, json_bytes
 from pneutouch.parts import assemble
+from pneutouch.results.record import plain
 from pneutouch.spec.campaign import Campaign, CampaignRun
 from pneutouch.units import KPA
 from pneutouch.workflows.calibrate.calibrate import with_further_tests
@@ -58,7 +59,7 @@ def found(observations, scene):
 
 
 def test_the_document_holds_the_truth_and_is_json(found):
-    document = json.loads(json_bytes(found.document))
+    document = json.loads(json_bytes(plain(found.record)))
     estimates = {e["key"]: e for e in document["estimates"]}
     for key, value in (
         ("shear_modulus_MPa", 0.21),
@@ -84,15 +85,15 @@ def test_the_same_data_give_the_same_bytes(found, observations, scene):
     names = ("modulus", "wall", "dead-volume", "offset")
     fitted = calibrate(observations, scene, names, hold_out_kPa=(22.0,), sensor="A1", title="Spring campaign")
     again = with_further_tests(fitted, SOURCE)
-    assert json_bytes(again.document) == json_bytes(found.document)
+    assert plain(again.record) == plain(found.record)
 
 
 def test_no_interval_reaches_below_no_dead_volume(observations, scene):
     """Few runs of a sensor that has next to none: the interval ends at zero."""
     truth = sensor_of(assemble(scene)).replace(break_stretch=None, shear_modulus=0.2, dead_volume=5.0)
     seen = Observations(curves(truth, (0.0, 12.0), 2, np.random.default_rng(5), 0.02))
-    (_, dead) = calibrate(seen, scene, ("modulus", "dead-volume"), priors=False).document["estimates"]
-    assert dead["on_bound"] or dead["interval_95"][0] == 0.0
+    (_, dead) = calibrate(seen, scene, ("modulus", "dead-volume"), priors=False).record.estimates
+    assert dead.on_bound or dead.interval_95[0] == 0.0
 
 
 @pytest.fixture
@@ -108,17 +109,17 @@ def test_the_file_holds_the_fit_and_what_it_was_made_for(found, place):
     kept = place.load("calibrations", "dome-A1")
     assert (kept.source.digest, kept.source.curves, kept.source.injections) == ("ab" * 32, 9, 1)
     assert (kept.design.name, kept.design.material, kept.design.wall_thickness_mm) == ("paper-dome", "TangoPlus", 1.5)
-    assert kept.covered == tuple(estimate["key"] for estimate in found.document["estimates"])
-    for k, estimate in enumerate(found.document["estimates"]):
-        assert kept.value(estimate["key"]) == pytest.approx(estimate["value"], rel=1e-6)
-        low, high = np.array(estimate["interval_95"])
+    assert kept.covered == tuple(estimate.key for estimate in found.record.estimates)
+    for k, estimate in enumerate(found.record.estimates):
+        assert kept.value(estimate.key) == pytest.approx(estimate.value, rel=1e-6)
+        low, high = np.array(estimate.interval_95)
         spread = np.sqrt(kept.covariance[k][k])
-        if estimate["prior"]["relative"]:
+        if estimate.prior.relative:
             assert np.log(high / low) == pytest.approx(2 * 1.96 * spread, rel=1e-6)
         elif low > 0:
             assert high - low == pytest.approx(2 * 1.96 * spread, rel=1e-6)
     scale = np.sqrt(np.diag(kept.covariance))
-    assert np.allclose(kept.covariance / np.outer(scale, scale), found.document["correlation"]["matrix"], atol=1e-6)
+    assert np.allclose(kept.covariance / np.outer(scale, scale), found.record.correlation.matrix, atol=1e-6)
     text = (place.folders[0] / "calibrations/dome-A1.toml").read_text()
     assert not re.search(r"\b20\d\d-", text)
 
@@ -173,8 +174,8 @@ def test_an_estimate_without_interval_is_no_calibration(scene, tmp_path):
     """A wall softer than any of the atlas: the modulus ends on its bound, and nothing is saved."""
     soft = softer(sensor_of(assemble(scene)), 3, 0.002)
     found = calibrate(Observations(soft), scene, ("modulus",), priors=False)
-    assert found.document["estimates"][0]["on_bound"]
-    assert found.document["estimates"][0]["interval_95"] is None
+    assert found.record.estimates[0].on_bound
+    assert found.record.estimates[0].interval_95 is None
     with pytest.raises(InputError, match="has no interval") as refused:
         prepare(found, "soft", tmp_path, SOURCE)
     assert (refused.value.key, refused.value.remedy) == ("fit", "leave out modulus")

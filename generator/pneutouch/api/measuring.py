@@ -151,7 +151,7 @@ def characterize(
         source = None if design is None else source_of(design)
         reading = _reading(columns, file_format)
         outcome = run(path_of(data, "data", _DATA), source, target=target_file, model=model or USUAL, reading=reading)
-    return Result(f"Measured {outcome.name}", outcome.document, partial(write, outcome, evidence=evidence))
+    return Result(f"Measured {outcome.name}", plain(outcome.figures), partial(write, outcome, evidence=evidence))
 
 
 class FittedSensor(Result):
@@ -161,9 +161,9 @@ class FittedSensor(Result):
     """
 
     def __init__(self, outcome: CalibrationOutcome) -> None:
-        super().__init__("Calibration", dict(outcome.document))
+        super().__init__("Calibration", plain(outcome.record))
         self._outcome = outcome
-        self.name: str | None = outcome.document["calibration"]
+        self.name: str | None = outcome.record.calibration
 
     def save(self, name: str | Path | None = None, *, replace: bool = False) -> Path:
         """Write the calibration into the user's folder under a name (None: its own); returns its file.

@@ -4,12 +4,14 @@ The channel and the unit that a column's name gives.
 """
 
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from pneutouch.errors import InputError
+from pneutouch.results.measured import ReadColumn, ReadTables
+from pneutouch.results.record import plain
 from pneutouch.spec.campaign import Column, ColumnMap, FileFormat
 from pneutouch.spec.toml_text import value_text
 from pneutouch.tables.layout import TableFormat, TableLayout
@@ -147,7 +149,7 @@ class MeasuredFile:
     stated: FileFormat
 
     @property
-    def content(self) -> dict[str, dict[str, Any]]:
+    def content(self) -> ReadTables:
         """Layout and columns that were found or given, as the tables [format] and [columns] of a campaign file.
 
         Where the header is need not be stated, because the columns' names state it."""
@@ -155,18 +157,18 @@ class MeasuredFile:
         kept = {key: value for key, value in used.items() if value not in (None, _PLAIN[key])}
         kept |= self.stated.model_dump(exclude_none=True)
         columns = {key: _entry(getattr(self.columns, key)) for key in self.channels}
-        return {"format": kept, "columns": columns} if kept else {"columns": columns}
+        return ReadTables(columns=columns, format=kept or None)
 
 
-def campaign_lines(content: Mapping[str, Any], within: str = "") -> str:
+def campaign_lines(content: ReadTables, within: str = "") -> str:
     """The tables [format] and [columns] of `MeasuredFile.content` as lines of a campaign file.
 
     ``within`` stands before their names: ``runs.`` where they belong to the [[runs]] entry above them.
     """
     return "\n\n".join(
-        "\n".join([f"[{within}{name}]", *(f"{key} = {value_text(value)}" for key, value in content[name].items())])
-        for name in ("format", "columns")
-        if name in content
+        "\n".join([f"[{within}{name}]", *(f"{key} = {value_text(plain(value))}" for key, value in table.items())])
+        for name, table in (("format", content.format), ("columns", content.columns))
+        if table is not None
     )
 
 
@@ -198,15 +200,17 @@ def identify(path: Path, columns: ColumnMap, channels: Sequence[str], written: F
     if open_:
         raise _undecided(path, channels, columns, layout, matched, open_, meanings)
     guessed = tuple(key for key in channels if key not in stated and matched[key] != getattr(columns, key))
-    full = ColumnMap.model_validate({key: _entry(column) for key, column in matched.items()} | _rest(columns, matched))
+    full = ColumnMap.model_validate(
+        plain({key: _entry(column) for key, column in matched.items()} | _rest(columns, matched))
+    )
     return MeasuredFile(path, full, layout, tuple(channels), (*guessed, *layout.guessed), written)
 
 
-def _entry(column: Column) -> dict[str, Any]:
-    return {"name": column.name, "unit": column.unit, **({"sign": -1} if column.sign < 0 else {})}
+def _entry(column: Column) -> ReadColumn:
+    return ReadColumn(column.name, column.unit, -1 if column.sign < 0 else None)
 
 
-def _rest(columns: ColumnMap, matched: dict[str, Column]) -> dict[str, dict[str, Any]]:
+def _rest(columns: ColumnMap, matched: dict[str, Column]) -> dict[str, ReadColumn]:
     """The channels that the file does not need, under names that none of its columns has."""
     names = {column.name for column in matched.values()}
     others = {key: getattr(columns, key) for key in UNITS if key not in matched}
@@ -298,6 +302,6 @@ def _lines(columns: dict[str, Column], remarks: dict[str, str]) -> str:
     """The table [columns] of a campaign file, with remarks on the columns left open."""
     lines = ["[columns]"]
     for key, column in columns.items():
-        entry = value_text({**_entry(column), "unit": column.unit or "?"})
+        entry = value_text(plain(replace(_entry(column), unit=column.unit or "?")))
         lines.append(f"{key} = {entry}" + (f"  # {remarks[key]}" if key in remarks else ""))
     return "\n".join(lines)

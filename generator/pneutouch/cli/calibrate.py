@@ -17,7 +17,7 @@ from pneutouch.spec.campaign import Campaign
 from pneutouch.wording import counted
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.calibrate.record import EstimateRecord, OutcomeRecord, ResponseRecord
+    from pneutouch.results.calibration import EstimateRecord, OutcomeRecord, ResponseRecord
 
 
 @app.command()
@@ -58,6 +58,7 @@ def calibrate(
     """Fit modulus, wall, dead volume and contact offset to a sensor's runs."""
     with reporting():
         from pneutouch.cli.progress import bar
+        from pneutouch.results.record import plain
         from pneutouch.workflows.calibrate.calibrate import CalibrationOptions, run_calibration
 
         held = numbers("--hold-out", ",".join(hold_out or ()))
@@ -66,59 +67,56 @@ def calibrate(
         )
         with bar("reading runs", unit="MB") as progress:
             outcome = run_calibration(options, progress=progress, reading=reading_of(columns, fields))
-        document = outcome.document
-        if document["read_as"]:
-            notify(reading_text(document["read_as"]))
+        record = outcome.record
+        if record.read_as:
+            notify(reading_text(record.read_as))
         if json:
-            print_json(document)
+            print_json(plain(record))
         else:
-            echo(calibration_text(document))
-            plain, name = outcome.design_given, document["calibration"]
-            words = ("compare", plain, f"{plain}@{name}") if name else ("predict", plain)
+            echo(calibration_text(record))
+            uncalibrated, name = outcome.design_given, record.calibration
+            words = ("compare", uncalibrated, f"{uncalibrated}@{name}") if name else ("predict", uncalibrated)
             report_next(*words, *set_words(outcome.assignments))
-        if document["failures"]:
+        if record.failures:
             raise typer.Exit(3)
-        if document["calibration"] is None:
+        if record.calibration is None:
             raise typer.Exit(1)
 
 
-def calibration_text(document: "OutcomeRecord") -> str:
+def calibration_text(record: "OutcomeRecord") -> str:
     """The estimates and the design's values, the goodness of the fit, warnings, notes, and the files written."""
     from pneutouch.workflows.characterize.load import same_failures
 
-    rows = [
-        [e["key"], f"{e['value']:.4g}", _interval(e), f"designed {e['designed']:.4g}"] for e in document["estimates"]
-    ]
-    fit = document["fit"]
+    rows = [[e.key, f"{e.value:.4g}", _interval(e), f"designed {e.designed:.4g}"] for e in record.estimates]
     head = (
-        f"{document['sensor']}, {document['design']}: {counted(document['runs'], 'curve')}, "
-        f"{counted(document['injections'], 'injection')}, {counted(fit['points_used'], 'value')}"
+        f"{record.sensor}, {record.design}: {counted(record.runs, 'curve')}, "
+        f"{counted(record.injections, 'injection')}, {counted(record.fit.points_used, 'value')}"
     )
-    chi = fit["chi_squared_per_degree"]
+    chi = record.fit.chi_squared_per_degree
     parts = [
         head,
         table_text([], rows),
         "" if chi is None else f"chi-squared per degree of freedom: {chi:.2f}",
-        _response(document["response"]),
-        "\n".join(f"warning: {warning}" for warning in document["warnings"]),
-        "\n".join(f"note: {note}" for note in document["notes"]),
-        "\n".join(f"not used: {files}: {why}" for files, why in same_failures(document["failures"])),
-        "\n".join(f"written: {path}" for path in document["written"]),
+        _response(record.response),
+        "\n".join(f"warning: {warning}" for warning in record.warnings),
+        "\n".join(f"note: {note}" for note in record.notes),
+        "\n".join(f"not used: {files}: {why}" for files, why in same_failures(record.failures)),
+        "\n".join(f"written: {path}" for path in record.written),
     ]
     return "\n\n".join(part for part in parts if part)
 
 
-def _response(response: "list[ResponseRecord]") -> str:
+def _response(response: "tuple[ResponseRecord, ...]") -> str:
     if not response:
         return "no curves: the model's error in sensitivity stays that of the resin"
     head = ["kPa", "force times", "pressure rise times", "sensitivity", "error left in it"]
     rows = [
         [
-            f"{row['driving_pressure_kPa']:g}",
-            f"{row['force_factor']:.4f}",
-            f"{row['pressure_factor']:.4f}",
-            f"{row['pressure_factor'] / row['force_factor'] - 1:+.1%}",
-            f"{row['sensitivity_error_relative']:.1%}",
+            f"{row.driving_pressure_kPa:g}",
+            f"{row.force_factor:.4f}",
+            f"{row.pressure_factor:.4f}",
+            f"{row.pressure_factor / row.force_factor - 1:+.1%}",
+            f"{row.sensitivity_error_relative:.1%}",
         ]
         for row in response
     ]
@@ -126,7 +124,7 @@ def _response(response: "list[ResponseRecord]") -> str:
 
 
 def _interval(estimate: "EstimateRecord") -> str:
-    interval = estimate["interval_95"]
+    interval = estimate.interval_95
     if interval is None:
-        return "on its bound, no interval" if estimate["on_bound"] else "no interval"
+        return "on its bound, no interval" if estimate.on_bound else "no interval"
     return f"95 %: {interval[0]:.4g} to {interval[1]:.4g}"

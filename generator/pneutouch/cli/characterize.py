@@ -3,6 +3,8 @@
 A characterization as text.
 """
 
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -18,6 +20,7 @@ from pneutouch.spec.campaign import Campaign
 from pneutouch.wording import SIMULATED
 
 if TYPE_CHECKING:
+    from pneutouch.results.measured import MeasuredCampaign, MeasuredGroup, MeasuredRun
     from pneutouch.workflows.characterize.campaign import CharacterizationResult
 
 
@@ -61,6 +64,7 @@ def characterize(
         from pneutouch.cli.progress import bar
         from pneutouch.errors import InputError, nearest
         from pneutouch.mechanics.models import USUAL
+        from pneutouch.results.record import plain
         from pneutouch.workflows.characterize.campaign import EVIDENCE, write
         from pneutouch.workflows.characterize.campaign import characterize as run
         from pneutouch.workflows.characterize.load import same_failures
@@ -72,9 +76,9 @@ def characterize(
             outcome = run(data, design, given, target=target, model=model or USUAL, progress=progress, reading=reading)
         folder = write(outcome, out, evidence)
         if json:
-            print_json({**outcome.document, "folder": str(folder)})
+            print_json(plain(replace(outcome.figures, folder=str(folder))))
         else:
-            echo(measured_text(outcome.document))
+            echo(measured_text(outcome.figures))
             echo(f"\n{folder}")
         if outcome.read_as:
             notify(reading_text(outcome.read_as))
@@ -111,50 +115,49 @@ def _report_next(
         report_next("compare", outcome.design_given, folder, *set_words([*given, *(set_ or ())]))
 
 
-def measured_text(document: dict[str, Any]) -> str:
+def measured_text(measured: "MeasuredCampaign") -> str:
     """A table a group: measured with its interval, and the prediction; then the warnings."""
-    head = f"{document['title']}: measured on {document['design']}, predicted by {document['model']}"
-    lines = [head + (f"  {SIMULATED}" if document["simulated"] else "")]
-    for group in document["groups"]:
+    head = f"{measured.title}: measured on {measured.design}, predicted by {measured.model}"
+    lines = [head + (f"  {SIMULATED}" if measured.simulated else "")]
+    for group in measured.groups:
         lines += ["", *_group(group)]
-    for entry in document["target"]:
-        word = {True: "met", False: "NOT met", None: "not decided"}[entry["passed"]]
-        lines.append(f"\ntarget {word}: {entry['what']}: required {entry['required']}, measured {entry['measured']}")
-    for change in document["ageing"]:
+    for entry in measured.target:
+        word = {True: "met", False: "NOT met", None: "not decided"}[entry.passed]
+        lines.append(f"\ntarget {word}: {entry.what}: required {entry.required}, measured {entry.measured}")
+    for change in measured.ageing:
         lines.append(
-            f"\nageing: {change['resin']}, {change['driving_pressure_kPa']:g} kPa, {change['age']}: "
-            f"{change['sensitivity_change_percent']:+.1f} %"
+            f"\nageing: {change.resin}, {change.driving_pressure_kPa:g} kPa, {change.age}: "
+            f"{change.sensitivity_change_percent:+.1f} %"
         )
-    for entry in document["injections"]:
-        error = "" if entry["standard_error"] is None else f" ± {entry['standard_error']:.2g}"
-        lines.append(f"\n{entry['sensor']}: {entry['figure']} {entry['value']:.4g}{error} {entry['unit']}")
-    lines += _warnings(document["runs"])
-    lines += [f"\nquestion: {entry['file']}: {entry['question']} The run is used." for entry in document["questions"]]
+    for figure in measured.injections:
+        error = "" if figure.standard_error is None else f" ± {figure.standard_error:.2g}"
+        lines.append(f"\n{figure.sensor}: {figure.figure} {figure.value:.4g}{error} {figure.unit}")
+    lines += _warnings(measured.runs)
+    lines += [f"\nquestion: {entry.file}: {entry.question} The run is used." for entry in measured.questions]
     return "\n".join(lines)
 
 
-def _warnings(runs: list[dict[str, Any]]) -> list[str]:
+def _warnings(runs: "Sequence[MeasuredRun]") -> list[str]:
     """Counts of the parts of the records that were left out, and of those that are noted but used."""
-    every = [warning for run in runs for warning in run["warnings"] if warning["kind"] != "note"]
-    left = sum(not warning["used"] for warning in every)
+    every = [warning for run in runs for warning in run.warnings if warning.kind != "note"]
+    left = sum(not warning.used for warning in every)
     if not every:
         return []
     words = f"{left} doubtful parts of the records left out, {len(every) - left} noted and used"
     return [f"\n{words}; see figures.json and evidence/"]
 
 
-def _group(group: dict[str, Any]) -> list[str]:
+def _group(group: "MeasuredGroup") -> list[str]:
     from pneutouch.bench.figures import BY_KEY
 
-    sensors = ", ".join(group["sensors"])
-    lines = [f"{group['resin']}, {group['age']}, {group['driving_pressure_kPa']:g} kPa: {sensors}"]
-    if group["why_not_predicted"]:
-        lines.append(f"  not predicted: {group['why_not_predicted']}")
-    for key, entry in group["figures"].items():
+    lines = [f"{group.resin}, {group.age}, {group.driving_pressure_kPa:g} kPa: {', '.join(group.sensors)}"]
+    if group.why_not_predicted:
+        lines.append(f"  not predicted: {group.why_not_predicted}")
+    for key, entry in group.figures.items():
         figure = BY_KEY[key]
-        interval = "" if entry["low"] is None else f"{entry['low']:.4g} to {entry['high']:.4g}"
-        line = f"  {figure.name:<48} {entry['value']:>9.4g}  {interval:<22} {figure.unit}"
-        if "predicted" in entry:
-            line += f"  (predicted {entry['predicted']['value']:.4g})"
+        interval = "" if entry.low is None else f"{entry.low:.4g} to {entry.high:.4g}"
+        line = f"  {figure.name:<48} {entry.value:>9.4g}  {interval:<22} {figure.unit}"
+        if entry.predicted is not None:
+            line += f"  (predicted {entry.predicted.value:.4g})"
         lines.append(line.rstrip())
     return lines

@@ -6,9 +6,9 @@ Options of the commands that read measured files, and the text on how they read 
 import inspect
 import types
 import typing
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 from pydantic import BaseModel
@@ -16,6 +16,9 @@ from pydantic import BaseModel
 from pneutouch.cli.complete import names
 from pneutouch.errors import PneutouchError
 from pneutouch.spec.fields import Declaration, declaration, table_of
+
+if TYPE_CHECKING:
+    from pneutouch.results.measured import ReadFiles
 
 
 class FieldOption(NamedTuple):
@@ -142,7 +145,7 @@ def reading_words(columns: Sequence[str] | None, fields: Mapping[str, Any]) -> l
     return words
 
 
-def reading_text(read_as: Sequence[Mapping[str, Any]]) -> str:
+def reading_text(read_as: "Iterable[ReadFiles]") -> str:
     """Lines for a campaign file that keep the columns and formats which were found by looking at the files."""
     from pneutouch.workflows.characterize.load import reading_text as text
 

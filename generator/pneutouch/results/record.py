@@ -10,9 +10,11 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
+
+Extended = TypeVar("Extended")
 
 
 def plain(value: Any) -> Any:
@@ -33,3 +35,8 @@ def left_out(field: dataclasses.Field[Any], held: Any) -> bool:
     if field.default is dataclasses.MISSING:
         return False
     return held is field.default or (isinstance(held, tuple | str) and held == field.default)
+
+
+def extended(kind: type[Extended], base: Any, **more: Any) -> Extended:
+    """A record of a kind that has the fields of ``base``, and ``more``."""
+    return kind(**{f.name: getattr(base, f.name) for f in dataclasses.fields(base)} | more)

@@ -5,7 +5,9 @@ from functools import partial
 from importlib import import_module
 
 from pneutouch.formats import FORMATS, KEY, format_of
+from pneutouch.results.calibration import OutcomeRecord
 from pneutouch.results.fit import MaterialFit
+from pneutouch.results.measured import MeasuredCampaign
 from pneutouch.results.response import ResponseRecord
 from pneutouch.results.scan import ScanRecord
 from pneutouch.schemas.kind import DocumentKind
@@ -17,13 +19,13 @@ _DOCUMENTS: dict[str, tuple[type | str, str, str]] = {
     "manifest": ("folder.manifest", "A manifest", "`manifest.json` of every output folder"),
     "plan": ("campaign.plan", "A test plan", "`plan.json` of `plan`, `pneutouch plan --json`"),
     "figures": (
-        "campaign.figures",
+        MeasuredCampaign,
         "Measured figures",
         "`figures.json` of `characterize`, `pneutouch characterize --json`",
     ),
     "selection": ("selection.selection", "A selection", "`pneutouch select --json`"),
     "comparison": ("reports.comparison", "A comparison", "`comparison.json` of `compare`, `pneutouch compare --json`"),
-    "calibration-report": ("reports.calibration_report", "A calibration's report", "`pneutouch calibrate --json`"),
+    "calibration-report": (OutcomeRecord, "A calibration's report", "`pneutouch calibrate --json`"),
     "reader": ("reader.reader", "A reader of force", "`reader.json` of `export-reader`"),
     "fit": (MaterialFit, "A fitted material law", "`fit.json` of `fit-material`, `pneutouch fit-material --json`"),
     "response": (ResponseRecord, "A simulated signal", "`response.json` of `respond`, `pneutouch respond --json`"),

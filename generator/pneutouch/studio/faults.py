@@ -7,6 +7,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from pneutouch.errors import ComputationError, InputError, PneutouchError
+from pneutouch.results.record import plain
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
 from pneutouch.spec.target import Target
@@ -28,10 +29,10 @@ def fault_status(error: PneutouchError) -> int:
     return BAD_INPUT if isinstance(error, InputError) else FAILED
 
 
-def reported(compute: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+def reported(compute: Callable[[], object]) -> dict[str, Any]:
     """``status`` and ``content`` of a computation; an error is an answer too, without a traceback."""
     try:
-        return {"status": 200, "content": compute()}
+        return {"status": 200, "content": plain(compute())}
     except PneutouchError as error:
         fault = error
     except MemoryError:

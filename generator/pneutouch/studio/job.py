@@ -22,7 +22,8 @@ KINDS: dict[str, str] = {
     "characterize": "measuring:characterize",
     "calibrate": "measuring:calibrate",
 }
-"""Function by kind of job, ``module:name`` below this package: ``run(arguments, folder, report)`` returns the content.
+"""Function by kind of job, ``module:name`` below this package: ``run(arguments, folder, report)`` returns the content,
+a record.
 
 ``arguments`` is the JSON of the page, with ``files`` (name, path) and ``bases``; ``folder`` is for the files it makes;
 ``report(done, total, what)`` states its progress.
@@ -41,12 +42,8 @@ def answered(request: Mapping[str, Any], report: Report) -> dict[str, Any]:
     """Status and content of a job; an error is an answer too."""
     module, _, name = KINDS[request["kind"]].partition(":")
 
-    def run() -> dict[str, Any]:
-        job = getattr(import_module(f"pneutouch.studio.{module}"), name)
-        content: dict[str, Any] = job(request["arguments"], Path(request["folder"]), report)
-        return content
-
-    return reported(run)
+    job = getattr(import_module(f"pneutouch.studio.{module}"), name)
+    return reported(lambda: job(request["arguments"], Path(request["folder"]), report))
 
 
 def work(request: bytes, out: BinaryIO) -> None:

@@ -7,144 +7,219 @@ import os
 import shutil
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+from pneutouch.arrays import Array
 from pneutouch.bench.figures import BY_KEY
 from pneutouch.bench.source import MeasuredFile
 from pneutouch.errors import InputError
-from pneutouch.report.measured import CampaignReport, GroupComparison
-from pneutouch.report.measured.head import overlap, tiles
+from pneutouch.report.measured import GroupComparison
+from pneutouch.report.measured.head import overlap
 from pneutouch.report.measured.panels import some
+from pneutouch.results.measured import DoubtfulPart, RunOfSensor
 from pneutouch.rounding import rounded
 from pneutouch.spec.campaign import CAMPAIGN, CampaignRun
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.units import KPA
 from pneutouch.workflows.characterize import CharacterizationResult
+from pneutouch.workflows.characterize.predicted import doubtful, of_run
 
 _DIGITS = 6
 
-_OF_RUN = ("file", "kind", "sensor", "resin", "driving_pressure_kPa", "run", "age_days")
+
+@dataclass(frozen=True, slots=True)
+class FileColumn:
+    """A column of a run's file; ``found`` if it was found by its header."""
+
+    channel: str
+    name: str
+    unit: str
+    sign: float
+    found: bool
 
 
-def run_document(run: CampaignRun, source: MeasuredFile | None, problem: str | None = None) -> dict[str, Any]:
-    """A run with the columns of its file: channel, name, unit, sign, and whether it was found by its header."""
-    return {
-        **{key: getattr(run, key) for key in _OF_RUN},
-        "columns": [] if source is None else [_column(source, channel) for channel in source.channels],
-        "format": {} if source is None else source.content.get("format", {}),
-        "problem": problem,
-    }
+@dataclass(frozen=True, slots=True)
+class PageRun(RunOfSensor):
+    """A run with the columns and the layout of its file, and its error; of one that was read, questions and doubts."""
+
+    columns: tuple[FileColumn, ...]
+    format: Mapping[str, str | int]
+    problem: str | None
+    questions: tuple[str, ...] | None = None
+    doubtful: tuple[DoubtfulPart, ...] | None = None
 
 
-def _column(source: MeasuredFile, channel: str) -> dict[str, Any]:
+@dataclass(frozen=True, slots=True)
+class FigureEnds:
+    """A figure with the ends of its interval."""
+
+    value: float
+    low: float | None
+    high: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class PageFigure(FigureEnds):
+    """A measured figure with its 95 % interval, the predicted one with its band, and the paper's."""
+
+    key: str
+    name: str
+    unit: str
+    interval_over: str | None
+    specimens: int
+    runs: int
+    predicted: FigureEnds | None = None
+    agrees: bool | None = None
+    published: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class RunCurve:
+    """Points of a steps run."""
+
+    sensor: str
+    run: int
+    indentation_mm: tuple[float, ...]
+    force_N: tuple[float, ...]
+    rise_kPa: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PredictedCurve:
+    """The predicted curve up to the end of its range, with the bands of the sheet's plots: that of the sensitivity
+    about the rise, that of the stiffness about the force."""
+
+    indentation_mm: tuple[float, ...]
+    force_N: tuple[float, ...]
+    rise_kPa: tuple[float, ...]
+    low_rise_kPa: tuple[float, ...] | None = None
+    high_rise_kPa: tuple[float, ...] | None = None
+    low_force_N: tuple[float, ...] | None = None
+    high_force_N: tuple[float, ...] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class GroupCurves:
+    """Curves of a group."""
+
+    runs: tuple[RunCurve, ...]
+    predicted: PredictedCurve | None
+
+
+@dataclass(frozen=True, slots=True)
+class PageGroup:
+    """A group of runs with figures and curves; ``agreeing`` of the ``compared`` figures share a value with the band."""
+
+    title: str
+    sensors: Sequence[str]
+    why_not_predicted: str | None
+    figures: tuple[PageFigure, ...]
+    agreeing: int
+    compared: int
+    curves: GroupCurves
+
+
+def page_run(run: CampaignRun, source: MeasuredFile | None, problem: str | None = None) -> PageRun:
+    """A run with the columns of its file."""
+    if source is None:
+        return PageRun(*of_run(run), (), {}, problem)
+    columns = tuple(_column(source, channel) for channel in source.channels)
+    return PageRun(*of_run(run), columns, source.content.format or {}, problem)
+
+
+def _column(source: MeasuredFile, channel: str) -> FileColumn:
     column = getattr(source.columns, channel)
-    return {
-        "channel": channel,
-        "name": column.name,
-        "unit": column.unit,
-        "sign": column.sign,
-        "found": channel in source.guessed,
-    }
+    return FileColumn(channel, column.name, column.unit, column.sign, channel in source.guessed)
 
 
-def runs_document(outcome: CharacterizationResult) -> list[dict[str, Any]]:
+def page_runs(outcome: CharacterizationResult) -> tuple[PageRun, ...]:
     """Every run of a campaign that was read: its columns, its error, the questions and the doubtful parts."""
     measured = outcome.measured
     failures = dict(measured.failures)
-    questions: dict[str, list[str]] = {}
-    for file, text in measured.questions:
-        questions.setdefault(file, []).append(text)
-    doubtful = {
-        curve.run.file: [
-            {"start_s": round(one.start, 4), "end_s": round(one.end, 4), "why": one.why, "used": one.used}
-            for one in curve.warnings
-            if one.kind != "note"
-        ]
+    doubts = {
+        curve.run.file: tuple(DoubtfulPart(*doubtful(one)) for one in curve.warnings if one.kind != "note")
         for curve in measured.curves
     }
-    return [
-        {
-            **run_document(run, outcome.sources.get(run.file), failures.get(run.file)),
-            "questions": questions.get(run.file, []),
-            "doubtful": doubtful.get(run.file, []),
-        }
+    return tuple(
+        replace(
+            page_run(run, outcome.sources.get(run.file), failures.get(run.file)),
+            questions=tuple(text for file, text in measured.questions if file == run.file),
+            doubtful=doubts.get(run.file, ()),
+        )
         for run in measured.campaign.runs
-    ]
+    )
 
 
-def groups_document(measured: CampaignReport) -> list[dict[str, Any]]:
-    """The groups of runs with figures and curves, in the order of the campaign's document."""
-    return [_group(one) for one in measured.comparisons]
-
-
-def _group(comparison: GroupComparison) -> dict[str, Any]:
+def page_group(comparison: GroupComparison) -> PageGroup:
+    """A group of runs with figures and curves."""
     key, figures = comparison.group.key, _figures(comparison)
-    known = [row["agrees"] for row in figures if row.get("agrees") is not None]
-    return {
-        "title": f"{comparison.label}, {key.age}, {key.driving_pressure_kPa:g} kPa",
-        "sensors": comparison.group.sensors,
-        "why_not_predicted": comparison.why or None,
-        "figures": figures,
-        "agreeing": sum(known),
-        "compared": len(known),
-        "curves": _curves(comparison),
-    }
+    known = [row.agrees for row in figures if row.agrees is not None]
+    return PageGroup(
+        title=f"{comparison.label}, {key.age}, {key.driving_pressure_kPa:g} kPa",
+        sensors=comparison.group.sensors,
+        why_not_predicted=comparison.why or None,
+        figures=figures,
+        agreeing=sum(known),
+        compared=len(known),
+        curves=_curves(comparison),
+    )
 
 
-def _figures(comparison: GroupComparison) -> list[dict[str, Any]]:
-    """Measured with its 95 % interval, predicted with its band, whether the two share a value, and the paper's."""
+def _figures(comparison: GroupComparison) -> tuple[PageFigure, ...]:
     rows = []
     for key, estimate in comparison.group.figures.items():
         figure, bounds = BY_KEY[key], (estimate.value, estimate.low, estimate.high)
-        row: dict[str, Any] = {"key": key, "name": figure.name, "unit": figure.unit}
-        row |= dict(zip(("value", "low", "high"), bounds, strict=True))
-        row |= {"interval_over": estimate.over or None, "specimens": estimate.specimens, "runs": estimate.runs}
         predicted = comparison.predicted.get(key)
-        if predicted is not None:
-            row["predicted"] = dict(zip(("value", "low", "high"), predicted, strict=True))
-            agrees = overlap(bounds, predicted)
-            row["agrees"] = None if agrees is None else bool(agrees)
-        if key in comparison.published:
-            row["published"] = comparison.published[key]
-        rows.append(row)
-    return rows
+        agrees = None if predicted is None else overlap(bounds, predicted)
+        rows.append(
+            PageFigure(
+                *bounds,
+                key,
+                figure.name,
+                figure.unit,
+                estimate.over or None,
+                estimate.specimens,
+                estimate.runs,
+                predicted=None if predicted is None else FigureEnds(*predicted),
+                agrees=None if agrees is None else bool(agrees),
+                published=comparison.published.get(key),
+            )
+        )
+    return tuple(rows)
 
 
-def _curves(comparison: GroupComparison) -> dict[str, Any]:
-    """Points of the steps runs, and the predicted curve up to the end of its range with the bands of the sheet's plots:
-    that of the sensitivity about the rise, that of the stiffness about the force."""
-    runs = [
-        {
-            "sensor": curve.run.sensor,
-            "run": curve.run.run,
-            "indentation_mm": curve.indentation.tolist(),
-            "force_N": curve.force.tolist(),
-            "rise_kPa": (curve.rise / KPA).tolist(),
-        }
+def _curves(comparison: GroupComparison) -> GroupCurves:
+    runs = tuple(
+        RunCurve(curve.run.sensor, curve.run.run, *map(_drawn, (curve.indentation, curve.force, curve.rise / KPA)))
         for curve in some(comparison.group.of_kind("steps"))
-    ]
-    state, predicted = comparison.state, None
-    if state is not None and runs:
-        kept = state.indentation <= state.range_end * (1 + 1e-12)
-        curve = {"indentation_mm": state.indentation, "force_N": state.force, "rise_kPa": state.pressure_rise / KPA}
-        predicted = {key: values[kept].tolist() for key, values in curve.items()}
-        for key, figure in (("rise_kPa", "sensitivity_kPa_per_N"), ("force_N", "stiffness_N_per_mm")):
-            ends = comparison.relative_band(figure)
-            if ends is not None:
-                predicted |= {
-                    f"{end}_{key}": (factor * curve[key][kept]).tolist()
-                    for end, factor in zip(("low", "high"), ends, strict=True)
-                }
-    drawn: dict[str, Any] = rounded({"runs": runs, "predicted": predicted}, _DIGITS)
-    return drawn
+    )
+    return GroupCurves(runs, _predicted(comparison) if runs else None)
 
 
-def head_document(measured: CampaignReport) -> dict[str, Any]:
-    """Title, laboratory, design, model, whether a program made the runs, and the first figures of the sheet."""
-    campaign = measured.campaign.model_dump(include={"title", "lab", "simulated"})
-    return {**campaign, "design": measured.scene.name, "model": measured.model, "tiles": tiles(measured)}
+def _drawn(values: Array) -> tuple[float, ...]:
+    return tuple(rounded(values.tolist(), _DIGITS))
+
+
+def _predicted(comparison: GroupComparison) -> PredictedCurve | None:
+    state = comparison.state
+    if state is None:
+        return None
+    kept = state.indentation <= state.range_end * (1 + 1e-12)
+    force, rise_kPa = state.force[kept], state.pressure_rise[kept] / KPA
+    rises = _band(comparison, "sensitivity_kPa_per_N", rise_kPa)
+    forces = _band(comparison, "stiffness_N_per_mm", force)
+    return PredictedCurve(_drawn(state.indentation[kept]), _drawn(force), _drawn(rise_kPa), *rises, *forces)
+
+
+def _band(
+    comparison: GroupComparison, figure: str, values: Array
+) -> tuple[tuple[float, ...] | None, tuple[float, ...] | None]:
+    """Ends of a curve about which the band of a figure is drawn; None without a band."""
+    ends = comparison.relative_band(figure)
+    return (None, None) if ends is None else (_drawn(ends[0] * values), _drawn(ends[1] * values))
 
 
 UNNAMED = "campaign"

@@ -1,14 +1,10 @@
-"""Jobs on measured runs: their columns recognised, their figures, the model fitted to a sensor.
-
-The commands that repeat the page's work on measured runs.
-"""
+"""Jobs on measured runs: their columns recognised, their figures, the model fitted to a sensor."""
 
 import contextlib
-import shlex
 import shutil
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, get_args
 
@@ -16,94 +12,94 @@ from pneutouch.bench.calibrate import NAMES, USUAL
 from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.evaluation.resins import resin_of
+from pneutouch.report.measured.head import tiles
+from pneutouch.results.calibration import OutcomeRecord
+from pneutouch.results.measured import MeasuredCampaign
 from pneutouch.spec.campaign import CAMPAIGN, Campaign, CampaignRun, RunKind, campaign_of
 from pneutouch.spec.values import finite_numbers
 from pneutouch.studio.job import Report
-from pneutouch.studio.measured import groups_document, head_document, placed, run_document, runs_document, write_runs
+from pneutouch.studio.measured import PageGroup, PageRun, page_group, page_run, page_runs, placed, write_runs
 from pneutouch.studio.question import Question
+from pneutouch.studio.repeating import CommandWords, calibrate_words, characterize_words
 from pneutouch.workflows.calibrate.calibrate import CalibrationOptions, CalibrationOutcome, run_calibration
 from pneutouch.workflows.characterize import Reading, load_curves, parse_columns, read_as, recognise
 from pneutouch.workflows.characterize.campaign import characterize as run_characterize
 from pneutouch.workflows.characterize.campaign import write
 from pneutouch.workflows.characterize.load import reading_text, with_reading
 
-_MARKS = {"\t": "tab", " ": "space"}
-
-Parameters = list[tuple[str, str]]
-"""Names of a command's parameters with their texts; a text is empty if the name alone is enough."""
-
-
-def characterize_words(data: Path, question: Question | None, arguments: Mapping[str, Any]) -> dict[str, str]:
-    """The command, and the steps before it."""
-    parameters: Parameters = []
-    if question is not None:
-        parameters.append(("design", arguments["bases"][question.base]))
-        parameters += [("set", f"{key}={text}") for key, text in question.values.items() if text is not None]
-    return _words("characterize", data, [*parameters, *_reading_words(arguments)], _kept(question))
-
-
-def _kept(question: Question | None) -> str:
-    """Keys that the page leaves out of the design file: no option of a command does."""
-    left = [] if question is None else [key for key, text in question.values.items() if text is None]
-    return f"it keeps {', '.join(left)} of the design file, which the page leaves out" if left else ""
-
-
-def calibrate_words(
-    data: Path, question: Question | None, arguments: Mapping[str, Any], options: CalibrationOptions
-) -> dict[str, str]:
-    """The command, and the steps before it: it takes no changes of a design."""
-    changed = question is not None and any(key != "calibration" for key in question.values)
-    parameters: Parameters = []
-    if question is not None:
-        parameters.append(("design", "DESIGN" if changed else arguments["bases"][question.base]))
-    stated = {
-        "sensor": options.sensor,
-        "fit": None if options.names == USUAL else ",".join(options.names),
-        "hold_out": ",".join(f"{pressure:g}" for pressure in options.hold_out) or None,
-        "no_priors": None if options.priors else "",
-        "save": options.save,
-        "force": "" if options.save is not None and options.replace else None,
-    }
-    parameters += [(name, text) for name, text in stated.items() if text is not None]
-    return _words(
-        "calibrate", data, [*parameters, *_reading_words(arguments)], _saving(question, arguments) if changed else ""
-    )
-
-
-def _saving(question: Question | None, arguments: Mapping[str, Any]) -> str:
-    """Instruction to save a changed design first."""
-    assert question is not None
-    changes = [("from", arguments["bases"][question.base])]
-    changes += [("set", f"{key}={text}") for key, text in question.values.items() if text is not None]
-    return f"before it, with a name for DESIGN: {_command('new', 'DESIGN', changes)}"
-
-
-def _reading_words(arguments: Mapping[str, Any]) -> Parameters:
-    stated = {"columns": (arguments.get("columns") or "").strip(), **(arguments.get("format") or {})}
-    return [(name, _MARKS.get(value, str(value))) for name, value in stated.items() if value not in (None, "")]
-
-
-def _words(command: str, data: Path, parameters: Parameters, before: str) -> dict[str, str]:
-    return {"command": _command(command, str(data), parameters), "before": before}
-
-
-def _command(command: str, given: str, parameters: Parameters) -> str:
-    words = ["pneutouch", command, given]
-    for name, text in parameters:
-        words += [f"--{name.replace('_', '-')}", *([text] if text else [])]
-    return shlex.join(words)
-
-
 _NO_RUNS = (".toml", ".json", ".md", ".html", ".pdf", ".svg", ".png", ".zip", ".3mf", ".step", ".stl", ".glb")
 """Endings of files that lie next to runs and are none."""
 
-KINDS = list(get_args(RunKind))
+KINDS: tuple[str, ...] = get_args(RunKind)
 """Kinds of runs that a campaign may list."""
 
 _SENSOR = "sensor-1"
 """Name of the specimen of runs that came without a campaign file, until the user gives another."""
 
 _CHECK, _READ = "finding columns, files", "reading runs, MB"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecognisedRuns:
+    """The runs of the files that the page was given; ``planned`` if a campaign file lists them.
+
+    ``read_as`` are lines for a campaign file, ``unused`` the files that are no runs.
+    """
+
+    title: str
+    simulated: bool
+    design: str | None
+    assignments: list[str]
+    runs: list[PageRun]
+    planned: bool
+    read_as: str
+    unused: list[str]
+    kinds: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FittedName:
+    """A parameter that can be fitted."""
+
+    name: str
+    usual: bool
+
+
+@dataclass(frozen=True, slots=True)
+class FittableSensor:
+    """A sensor that can be fitted, with the driving pressures of its steps runs, kPa."""
+
+    name: str
+    driving_pressures_kPa: list[float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CharacterizedCampaign(CommandWords):
+    """Figures of a campaign as ``characterize`` prints them, without the folder, and as the page shows them."""
+
+    document: MeasuredCampaign
+    title: str
+    lab: str
+    simulated: bool
+    design: str
+    model: str
+    tiles: list[list[str]]
+    runs: tuple[PageRun, ...]
+    groups: list[PageGroup]
+    read_as: str
+    sheet: str
+    sensors: list[FittableSensor]
+    parameters: list[FittedName]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CalibratedSensor(CommandWords):
+    """A calibration as ``calibrate`` prints it; ``opens`` is the design with a saved one."""
+
+    document: OutcomeRecord
+    chart: str
+    saved: str | None
+    opens: Question | None
 
 
 @dataclass(frozen=True)
@@ -126,7 +122,7 @@ class _Given:
         return [file for file in self.files if not file.lower().endswith(_NO_RUNS)]
 
 
-def recognised(arguments: Mapping[str, Any], folder: Path, report: Report) -> dict[str, Any]:
+def recognised(arguments: Mapping[str, Any], folder: Path, report: Report) -> RecognisedRuns:
     """The runs of the files: as their campaign file lists them, with the columns found; else proposed, each read as a
     steps run at the driving pressure that it shows before contact.
 
@@ -142,7 +138,7 @@ def recognised(arguments: Mapping[str, Any], folder: Path, report: Report) -> di
         return _proposed(given, given.source, report)
 
 
-def _planned(given: _Given, report: Report) -> dict[str, Any]:
+def _planned(given: _Given, report: Report) -> RecognisedRuns:
     campaign, folder = campaign_of(given.data)
     read = with_reading(campaign, given.reading)
     runs, sources = [], {}
@@ -150,19 +146,24 @@ def _planned(given: _Given, report: Report) -> dict[str, Any]:
         report(place, len(read.runs), _CHECK)
         try:
             sources[run.file] = recognise(run, read, folder)
-            runs.append(run_document(run, sources[run.file]))
+            runs.append(page_run(run, sources[run.file]))
         except PneutouchError as error:
-            runs.append(run_document(run, None, str(error)))
+            runs.append(page_run(run, None, str(error)))
     named = {run.file for run in campaign.runs}
-    return {
-        **_answer(campaign, runs),
-        "planned": True,
-        "read_as": reading_text(read_as(sources, len(read.runs))),
-        "unused": [file for file in given.run_files if file not in named],
-    }
+    return RecognisedRuns(
+        title=campaign.title,
+        simulated=campaign.simulated,
+        design=campaign.design,
+        assignments=campaign.assignments,
+        runs=runs,
+        planned=True,
+        read_as=reading_text(read_as(sources, len(read.runs))),
+        unused=[file for file in given.run_files if file not in named],
+        kinds=KINDS,
+    )
 
 
-def _proposed(given: _Given, source: DesignSource, report: Report) -> dict[str, Any]:
+def _proposed(given: _Given, source: DesignSource, report: Report) -> RecognisedRuns:
     scene = load_scene(source, {}, given.library)
     resin = resin_of(scene)
     runs, sources, seen = [], {}, Counter[float]()
@@ -178,25 +179,24 @@ def _proposed(given: _Given, source: DesignSource, report: Report) -> dict[str, 
             problem = str(error).removeprefix(f"{given.data / file}: none of its files can be read\n")
         seen[run.driving_pressure_kPa] += 1
         run = run.model_copy(update={"run": seen[run.driving_pressure_kPa]})
-        runs.append(run_document(run, sources.get(file), problem))
-    campaign = Campaign.model_construct(title="", design=None, assignments=[], simulated=False)
-    return {
-        **_answer(campaign, runs),
-        "planned": False,
-        "read_as": reading_text(read_as(sources, len(given.run_files))),
-        "unused": [file for file in given.files if file not in given.run_files],
-    }
+        runs.append(page_run(run, sources.get(file), problem))
+    return RecognisedRuns(
+        title="",
+        simulated=False,
+        design=None,
+        assignments=[],
+        runs=runs,
+        planned=False,
+        read_as=reading_text(read_as(sources, len(given.run_files))),
+        unused=[file for file in given.files if file not in given.run_files],
+        kinds=KINDS,
+    )
 
 
-def _answer(campaign: Campaign, runs: list[dict[str, Any]]) -> dict[str, Any]:
-    named = {"design": campaign.design, "assignments": campaign.assignments}
-    return {"title": campaign.title, "simulated": campaign.simulated, **named, "kinds": KINDS, "runs": runs}
-
-
-def characterize(arguments: Mapping[str, Any], folder: Path, report: Report) -> dict[str, Any]:
+def characterize(arguments: Mapping[str, Any], folder: Path, report: Report) -> CharacterizedCampaign:
     """Run the command ``characterize`` on the campaign; the measured sheet and its files go into ``folder``.
 
-    ``document`` is what it prints as JSON, without the folder. Raises InputError as it does.
+    Raises InputError as it does.
     """
     with _given(arguments, folder) as given:
         _plan(given, arguments)
@@ -211,37 +211,40 @@ def characterize(arguments: Mapping[str, Any], folder: Path, report: Report) -> 
         written = write(outcome, folder)
         if not given.planned:
             shutil.copyfile(given.data / CAMPAIGN, folder / CAMPAIGN)
-        runs = runs_document(outcome)
-        measured = outcome.measured
+        runs, measured = page_runs(outcome), outcome.measured
         words = _noted(given, characterize_words(given.data, given.question, arguments))
-    return {
-        "document": outcome.document,
-        **head_document(measured),
-        "runs": runs,
-        "groups": groups_document(measured),
-        "read_as": reading_text(outcome.read_as),
-        "sheet": f"{written.name}/measured-datasheet.html",
-        "sensors": _sensors(measured.campaign) if outcome.fitted else [],
-        "parameters": [{"name": name, "usual": name in USUAL} for name in NAMES],
-        **words,
-    }
+    return CharacterizedCampaign(
+        document=outcome.figures,
+        title=measured.campaign.title,
+        lab=measured.campaign.lab,
+        simulated=measured.campaign.simulated,
+        design=measured.scene.name,
+        model=measured.model,
+        tiles=tiles(measured),
+        runs=runs,
+        groups=[page_group(each) for each in measured.comparisons],
+        read_as=reading_text(outcome.read_as),
+        sheet=f"{written.name}/measured-datasheet.html",
+        sensors=_sensors(measured.campaign) if outcome.fitted else [],
+        parameters=[FittedName(name, name in USUAL) for name in NAMES],
+        command=words.command,
+        before=words.before,
+    )
 
 
-def _sensors(campaign: Campaign) -> list[dict[str, Any]]:
-    """Sensors that can be fitted, with the driving pressures of their steps runs, kPa."""
+def _sensors(campaign: Campaign) -> list[FittableSensor]:
     pressures: dict[str, set[float]] = {}
     for run in campaign.runs:
         if run.kind in ("steps", "injection"):
             held = pressures.setdefault(run.sensor, set())
             held |= {run.driving_pressure_kPa} if run.kind == "steps" else set()
-    return [{"name": name, "driving_pressures_kPa": sorted(held)} for name, held in sorted(pressures.items())]
+    return [FittableSensor(name, sorted(held)) for name, held in sorted(pressures.items())]
 
 
-def calibrate(arguments: Mapping[str, Any], folder: Path, report: Report) -> dict[str, Any]:
+def calibrate(arguments: Mapping[str, Any], folder: Path, report: Report) -> CalibratedSensor:
     """Run the command ``calibrate`` on the campaign; its files go into ``folder``.
 
-    Without ``save`` the calibration goes there as well, and nothing into the user's folder. ``document`` is what it
-    prints as JSON, ``opens`` the design with a saved calibration as the page opens it. Raises InputError as it
+    Without ``save`` the calibration goes there as well, and nothing into the user's folder. Raises InputError as it
     does.
     """
     save = _text(arguments, "save")
@@ -262,28 +265,28 @@ def calibrate(arguments: Mapping[str, Any], folder: Path, report: Report) -> dic
         outcome = run_calibration(
             options, given.library, lambda done, total: report(done, total, _READ), reading=given.reading
         )
-        document = outcome.document
         words = _noted(given, calibrate_words(given.data, given.question, arguments, options))
-    paths = [Path(path) for path in document["written"]]
-    there = [path for path in paths if path.is_relative_to(folder)]
-    return {
-        "document": {**document, "written": [str(path.relative_to(folder)) for path in there]},
-        "chart": f"{there[0].relative_to(folder)}/residuals.svg",
-        "saved": str(paths[-1]) if save is not None else None,
-        "opens": None if save is None else _opens(given, outcome, arguments["bases"]),
-        **words,
-    }
+    paths = [Path(path) for path in outcome.record.written]
+    there = tuple(str(path.relative_to(folder)) for path in paths if path.is_relative_to(folder))
+    return CalibratedSensor(
+        document=replace(outcome.record, written=there),
+        chart=f"{there[0]}/residuals.svg",
+        saved=str(paths[-1]) if save is not None else None,
+        opens=None if save is None else _opens(given, outcome, arguments["bases"]),
+        command=words.command,
+        before=words.before,
+    )
 
 
-def _opens(given: _Given, outcome: CalibrationOutcome, bases: Mapping[str, str]) -> dict[str, Any] | None:
-    """Base and values of the calibrated design, where the page can open it."""
-    named = {"calibration": outcome.document["calibration"]}
+def _opens(given: _Given, outcome: CalibrationOutcome, bases: Mapping[str, str]) -> Question | None:
+    """The calibrated design, where the page can open it."""
+    named = {"calibration": outcome.record.calibration}
     if given.question is not None:
-        return {"base": given.question.base, "values": {**given.question.values, **named}}
+        return replace(given.question, values={**given.question.values, **named})
     if outcome.design_given not in bases:
         return None
     values = dict(text.split("=", 1) for text in outcome.assignments)
-    return {"base": outcome.design_given, "values": {**values, **named}}
+    return Question(outcome.design_given, {**values, **named})
 
 
 @contextlib.contextmanager
@@ -319,12 +322,12 @@ def _plan(given: _Given, arguments: Mapping[str, Any]) -> None:
     write_runs(given.data, runs)
 
 
-def _noted(given: _Given, words: dict[str, str]) -> dict[str, str]:
+def _noted(given: _Given, words: CommandWords) -> CommandWords:
     """The words of a command, with where the campaign file is that the runs came without."""
     if given.planned:
         return words
     place = f"{CAMPAIGN}, which the command needs next to the runs, is in the zip of the measured sheet"
-    return {**words, "before": "; ".join(each for each in (words["before"], place) if each)}
+    return replace(words, before="; ".join(each for each in (words.before, place) if each))
 
 
 def _reading(arguments: Mapping[str, Any]) -> dict[str, dict[str, Any]]:

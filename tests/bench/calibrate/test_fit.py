@@ -202,7 +202,7 @@ def test_deviations_of_the_model_are_located(library):
     worst = max(result, key=lambda miss: abs(miss.share))
     assert (worst.driving_pressure_kPa, worst.channel) == (12.0, "force")
     assert worst.share > 0.03
-    assert worst.start > 3.9
+    assert worst.from_mm > 3.9
 
 
 def test_residuals_are_model_less_measured_by_run(library):

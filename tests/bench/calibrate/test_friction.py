@@ -88,13 +88,13 @@ def whole(library):
 def test_the_interval_of_a_fitted_friction_holds_the_truth_and_is_saved(whole):
     scene, seen = whole
     made = calibrate(seen, scene, NAMES, sensor="A1")
-    (friction,) = [one for one in made.document["estimates"] if one["key"] == "friction"]
-    low, high = friction["interval_95"]
+    (friction,) = [one for one in made.record.estimates if one.key == "friction"]
+    low, high = friction.interval_95
     assert low < 0.5 < high and low >= 0.0 and high <= GRIPS
     assert high - low < 1.0
     content = savable(made, SOURCE)
     (kept,) = [one for one in content["parameters"] if one["key"] == "friction"]
-    assert kept["fitted"] and kept["covered"] and kept["value"] == pytest.approx(friction["value"], rel=1e-6)
+    assert kept["fitted"] and kept["covered"] and kept["value"] == pytest.approx(friction.value, rel=1e-6)
 
 
 @pytest.mark.slow

@@ -38,11 +38,11 @@ def test_the_solids_parameters_come_back(library, solid_curves):
 @pytest.mark.parametrize("pressure", [0.0, 12.0, 22.0])
 def test_a_pressure_left_out_is_predicted(library, solid_curves, pressure):
     result = predict_held_out(Observations(solid_curves), DESIGNED, chosen(library, "modulus", "dead-volume"), pressure)
-    assert abs(result.error) < 0.015
-    assert result.force_error < 0.015
-    assert result.rise_error < 0.015
-    assert result.force_worst >= result.force_error
-    assert (result.points, result.left_out) == (26, 0)
+    assert abs(result.sensitivity_error) < 0.015
+    assert result.force_rms_share < 0.015
+    assert result.pressure_rms_share < 0.015
+    assert result.force_greatest_share >= result.force_rms_share
+    assert (result.points, result.points_left_out) == (26, 0)
 
 
 def test_the_greatest_errors_of_force_and_rise_are_those_of_the_points_that_are_off(library, solid_curves):
@@ -55,14 +55,19 @@ def test_the_greatest_errors_of_force_and_rise_are_those_of_the_points_that_are_
     spoilt[first], spoilt[second] = replace(spoilt[first], force=force), replace(spoilt[second], rise=rise)
     names = chosen(library, "modulus", "dead-volume")
     result = predict_held_out(Observations(tuple(spoilt)), DESIGNED, names, 0.0)
-    assert (result.force_worst, result.rise_worst) == (pytest.approx(0.1, abs=0.02), pytest.approx(0.2, abs=0.02))
+    assert (result.force_greatest_share, result.pressure_greatest_share) == (
+        pytest.approx(0.1, abs=0.02),
+        pytest.approx(0.2, abs=0.02),
+    )
 
 
 def test_the_prediction_is_better_than_the_designs(library, solid_curves):
     """The design has the wrong modulus and dead volume; the fit to the other pressures mends it."""
     held = predict_held_out(Observations(solid_curves), DESIGNED, chosen(library, "modulus", "dead-volume"), 22.0)
     stiff = chosen(library, "offset")
-    assert abs(held.error) < 0.3 * abs(predict_held_out(Observations(solid_curves), DESIGNED, stiff, 22.0).error)
+    assert abs(held.sensitivity_error) < 0.3 * abs(
+        predict_held_out(Observations(solid_curves), DESIGNED, stiff, 22.0).sensitivity_error
+    )
 
 
 def test_what_cannot_be_held_out_is_refused(library):

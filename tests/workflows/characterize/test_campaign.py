@@ -62,17 +62,17 @@ def written(frame, folder, name=FIRST):
 
 
 def sensitivities(outcome):
-    return {g["driving_pressure_kPa"]: g["figures"]["sensitivity_kPa_per_N"] for g in outcome.document["groups"]}
+    return {g.driving_pressure_kPa: g.figures["sensitivity_kPa_per_N"] for g in outcome.figures.groups}
 
 
 def test_a_sound_campaign_is_read_whole_and_near_its_prediction(folder, library):
     outcome = run(folder, library)
     assert not outcome.failed and not outcome.measured.questions
     for figure in sensitivities(outcome).values():
-        assert abs(figure["predicted"]["measured_off_percent"]) < 8
-        assert figure["low"] < figure["value"] < figure["high"]
-    leaks = [row for row in outcome.measured.injections if row[1].startswith("leak")]
-    assert len(leaks) == 4 and all(abs(value) < 0.2 for _, _, value, _, _ in leaks)
+        assert abs(figure.predicted.measured_off_percent) < 8
+        assert figure.low < figure.value < figure.high
+    leaks = [row for row in outcome.measured.injections if row.figure.startswith("leak")]
+    assert len(leaks) == 4 and all(abs(leak.value) < 0.2 for leak in leaks)
 
 
 def test_a_shallower_test_is_set_beside_the_prediction_over_its_own_range(folder, library):
@@ -84,8 +84,8 @@ def test_a_shallower_test_is_set_beside_the_prediction_over_its_own_range(folder
         steps = 8 * (4.0 + 5.0) + sum(2 * (0.5 * k + 1.0) / 5.0 for k in range(1, 9))
         written(frame[frame["time_s"] <= steps], folder, name)
     half = sensitivities(run(folder, library))[0.0]
-    assert half["value"] > 1.15 * whole["value"]
-    assert abs(half["predicted"]["measured_off_percent"]) < 8
+    assert half.value > 1.15 * whole.value
+    assert abs(half.predicted.measured_off_percent) < 8
 
 
 def test_what_changes_the_design_is_kept_in_the_campaign(tmp_path, library):
@@ -95,7 +95,7 @@ def test_what_changes_the_design_is_kept_in_the_campaign(tmp_path, library):
     content = tomllib.loads((made / "campaign.toml").read_text())
     assert Campaign.model_validate(content).assignments == ["membrane.wall_thickness_mm=2.2"]
     for figure in sensitivities(run(made, library)).values():
-        assert abs(figure["predicted"]["measured_off_percent"]) < 8
+        assert abs(figure.predicted.measured_off_percent) < 8
 
 
 def test_one_file_that_fails_leaves_the_others(folder, library, command):
@@ -180,9 +180,9 @@ def test_a_wrong_sign_is_seen_where_nothing_is_predicted(folder, library):
 def test_the_ambient_pressure_of_the_flag_is_the_injections_too(folder, library):
     low, high = (
         [
-            row[2]
+            row.value
             for row in run(folder, library, f"pneumatics.ambient_pressure_kPa={p}").measured.injections
-            if "gas" in row[1]
+            if "gas" in row.figure
         ]
         for p in (80.0, 101.325)
     )
@@ -193,8 +193,8 @@ def test_a_single_file_of_any_name_is_a_run_of_its_design(folder, library):
     long = folder / f"{'a-very-long-name-' * 6}.csv"
     shutil.copy(folder / FIRST.replace("-0kPa", "-22kPa"), long)
     outcome = characterize(long, "paper-dome", model="atlas", library=library)
-    (group,) = outcome.document["groups"]
-    assert group["driving_pressure_kPa"] == 22.0 and group["figures"]["sensitivity_kPa_per_N"]["low"] is None
+    (group,) = outcome.figures.groups
+    assert group.driving_pressure_kPa == 22.0 and group.figures["sensitivity_kPa_per_N"].low is None
     with pytest.raises(InputError, match="give `design`"):
         characterize(long, library=library)
 
@@ -208,7 +208,7 @@ def test_aged_runs_are_not_set_beside_a_fresh_prediction(folder, library):
         "fresh": True,
         "12 months": False,
     }
-    published = {row[6] for row in outcome.measured.ageing}
+    published = {row.published_change_one_year_percent for row in outcome.measured.ageing}
     assert published == {14.76}
 
 

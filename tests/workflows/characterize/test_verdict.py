@@ -63,6 +63,7 @@ def test_one_run_decides_nothing():
 @pytest.mark.parametrize(("age", "published"), [(365.0, 14.76), (40.0, None)])
 def test_ageing_is_over_the_aged_as_in_the_paper_and_beside_it_after_a_year_alone(library, age, published):
     groups = summarize([*curves((2.0, 2.02, 1.98)), *curves((1.6, 1.62, 1.58), age=age)])
-    ((resin, pressure, _, change, low, high, paper),) = ageing(groups, library)
-    assert (resin, pressure) == ("TangoPlus", 12.0)
-    assert change == pytest.approx(-25.0, abs=0.2) and low < change < high and paper == published
+    (row,) = ageing(groups, library)
+    change, paper = row.sensitivity_change_percent, row.published_change_one_year_percent
+    assert (row.resin, row.driving_pressure_kPa) == ("TangoPlus", 12.0)
+    assert change == pytest.approx(-25.0, abs=0.2) and row.low < change < row.high and paper == published

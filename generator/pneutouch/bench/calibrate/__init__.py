@@ -1,7 +1,7 @@
 """Calibrate: fit the model to the sensor in hand, and state its uncertainty."""
 
 from pneutouch.bench.calibrate.fit import CalibrationFit, fit
-from pneutouch.bench.calibrate.notes import HeldOutPrediction, predict_held_out
+from pneutouch.bench.calibrate.notes import predict_held_out
 from pneutouch.bench.calibrate.observations import Injection, Observations
 from pneutouch.bench.calibrate.parameters import NAMES, USUAL, CalibrationParameters, parameters
 
@@ -10,7 +10,6 @@ __all__ = [
     "USUAL",
     "CalibrationFit",
     "CalibrationParameters",
-    "HeldOutPrediction",
     "Injection",
     "Observations",
     "fit",

@@ -18,6 +18,7 @@ from pneutouch.bench.calibrate.fit import CalibrationFit
 from pneutouch.bench.calibrate.model import FLOOR, LARGEST
 from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.sensor import ResponseCorrection
+from pneutouch.results.calibration import MissRecord
 from pneutouch.units import KPA
 
 MISSED = 0.005
@@ -58,18 +59,6 @@ class RunResiduals:
         return _rms(self.rise) / self.rise_scale
 
 
-@dataclass(frozen=True, slots=True)
-class SystematicDeviation:
-    """A stretch where the runs at a driving pressure (kPa) all deviate alike: ``channel`` force or pressure, travels
-    mm, the greatest mean residual over full scale with its sign."""
-
-    driving_pressure_kPa: float
-    channel: str
-    start: float
-    end: float
-    share: float
-
-
 def residuals(fit: CalibrationFit) -> tuple[RunResiduals, ...]:
     """Residuals of every run: curves, then injections, in their order."""
     p = fit.points
@@ -88,7 +77,7 @@ def residuals(fit: CalibrationFit) -> tuple[RunResiduals, ...]:
     return tuple(runs)
 
 
-def misses(fit: CalibrationFit) -> list[SystematicDeviation]:
+def misses(fit: CalibrationFit) -> list[MissRecord]:
     """Stretches of travel where the runs at a driving pressure deviate by more than their scatter: the model is not the
     sensor.
 
@@ -129,7 +118,7 @@ def _pooled(groups: list[Array]) -> tuple[float, int]:
 
 def _missed(
     driving_pressure_kPa: float, channel: str, at: Array, rows: Array, spread: float, freedom: int
-) -> list[SystematicDeviation]:
+) -> list[MissRecord]:
     from scipy.stats import t
 
     mean = rows.mean(axis=0)
@@ -143,7 +132,7 @@ def _missed(
         first -= 1
     while last < len(at) - 1 and over[last + 1] and mean[last + 1] * mean[worst] > 0:
         last += 1
-    return [SystematicDeviation(driving_pressure_kPa, channel, float(at[first]), float(at[last]), float(mean[worst]))]
+    return [MissRecord(driving_pressure_kPa, channel, float(at[first]), float(at[last]), float(mean[worst]))]
 
 
 def _rms(values: Array) -> float:

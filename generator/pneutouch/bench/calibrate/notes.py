@@ -6,13 +6,12 @@ Cross-validation: fit without a driving pressure, predict it, compare.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.fit import CalibrationFit, fit
-from pneutouch.bench.calibrate.goodness import ASSUMED_SCATTER, SystematicDeviation, response_gap
+from pneutouch.bench.calibrate.goodness import ASSUMED_SCATTER, response_gap
 from pneutouch.bench.calibrate.identify import UNSEEN, CorrelatedParameters, Identifiability
 from pneutouch.bench.calibrate.intervals import LEAST_RUNS
 from pneutouch.bench.calibrate.observations import Observations, clipped, points_of
@@ -21,6 +20,7 @@ from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, LOGARITHMIC, US
 from pneutouch.errors import InputError
 from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.results.calibration import HeldOutRecord, MissRecord
 from pneutouch.units import KPA, ML
 from pneutouch.wording import counted, listed
 
@@ -59,37 +59,9 @@ def _shift(fit: CalibrationFit, residual: Array) -> Array:
     return np.asarray(shift)
 
 
-@dataclass(frozen=True, slots=True)
-class HeldOutPrediction:
-    """A driving pressure (kPa) as predicted by a fit to the others, mean over its runs.
-
-    Attributes:
-        driving_pressure_kPa: Held out.
-        measured_kPa_per_N, predicted_kPa_per_N: Sensitivity on the same travels, kPa/N.
-        force_error, rise_error: Root mean square error of the curves over full scale.
-        force_worst, rise_worst: Greatest error over full scale.
-        points, left_out: Points compared, and those beyond the model's range.
-    """
-
-    driving_pressure_kPa: float
-    measured_kPa_per_N: float
-    predicted_kPa_per_N: float
-    force_error: float
-    rise_error: float
-    force_worst: float
-    rise_worst: float
-    points: int
-    left_out: int
-
-    @property
-    def error(self) -> float:
-        """Relative error of the predicted sensitivity."""
-        return self.predicted_kPa_per_N / self.measured_kPa_per_N - 1.0
-
-
 def predict_held_out(
     observations: Observations, sensor: Sensor, parameters: CalibrationParameters, driving_pressure_kPa: float
-) -> HeldOutPrediction:
+) -> HeldOutRecord:
     """Leave out a driving pressure (kPa), fit to the rest, predict it by that fit and its correction.
 
     Raises InputError for a pressure that was not measured, where nothing is left to fit, and where the model has too
@@ -131,9 +103,19 @@ def predict_held_out(
     ]
     measured_kPa_per_N, predicted_kPa_per_N, *errors = (float(x) for x in np.mean(rows, axis=0)[:4])
     errors += [float(x) for x in np.max(rows, axis=0)[4:]]
-    sensitivities = measured_kPa_per_N, predicted_kPa_per_N
-    counts = int(use.sum()), int((points.there & ~use).sum())
-    return HeldOutPrediction(driving_pressure_kPa, *sensitivities, errors[0], errors[1], errors[2], errors[3], *counts)
+    force_rms, pressure_rms, force_greatest, pressure_greatest = errors
+    return HeldOutRecord(
+        driving_pressure_kPa=driving_pressure_kPa,
+        sensitivity_measured_kPa_per_N=measured_kPa_per_N,
+        sensitivity_predicted_kPa_per_N=predicted_kPa_per_N,
+        sensitivity_error=predicted_kPa_per_N / measured_kPa_per_N - 1.0,
+        force_rms_share=force_rms,
+        force_greatest_share=force_greatest,
+        pressure_rms_share=pressure_rms,
+        pressure_greatest_share=pressure_greatest,
+        points=int(use.sum()),
+        points_left_out=int((points.there & ~use).sum()),
+    )
 
 
 def _row(travel: Array, force: Array, rise: Array, model_force: Array, model_rise: Array, use: Array) -> list[float]:
@@ -177,8 +159,8 @@ def fit_notes(
     fit: CalibrationFit,
     identified: Identifiability,
     further: Sequence[SuggestedTest],
-    missed: Sequence[SystematicDeviation],
-    held_out: Sequence[HeldOutPrediction],
+    missed: Sequence[MissRecord],
+    held_out: Sequence[HeldOutRecord],
 ) -> list[str]:
     """The notes that belong to the numbers: at most one sentence of a kind."""
     estimates = _left_out(fit), _bounds(fit), _far(fit), _counted(fit) + _basis(fit)
@@ -311,14 +293,14 @@ def _times(gain: float) -> str:
     return f"{gain:.1f} times" if gain < _MANY else f"more than {_MANY:g} times"
 
 
-def _fitness(fit: CalibrationFit, missed: Sequence[SystematicDeviation]) -> list[str]:
+def _fitness(fit: CalibrationFit, missed: Sequence[MissRecord]) -> list[str]:
     """Deviations of the model, one clause a pressure: the greatest."""
     parts = []
     for pressure_kPa in sorted({miss.driving_pressure_kPa for miss in missed}):
         miss = max((m for m in missed if m.driving_pressure_kPa == pressure_kPa), key=lambda m: abs(m.share))
         parts.append(
             f"{pressure_kPa:g} kPa: {miss.channel} {abs(miss.share):.1%} of full scale too "
-            f"{'high' if miss.share > 0 else 'low'} from {miss.start:.2f} to {miss.end:.2f} mm"
+            f"{'high' if miss.share > 0 else 'low'} from {miss.from_mm:.2f} to {miss.to_mm:.2f} mm"
         )
     return [f"the model deviates in all runs alike, {'; '.join(parts)}"] if parts else []
 
@@ -336,11 +318,11 @@ def _shared(fit: CalibrationFit) -> list[str]:
     return parts
 
 
-def _held(one: HeldOutPrediction) -> str:
+def _held(one: HeldOutRecord) -> str:
     return (
-        f"held out {one.driving_pressure_kPa:g} kPa: sensitivity {one.predicted_kPa_per_N:.4g} kPa/N predicted, "
-        f"{one.measured_kPa_per_N:.4g} measured ({one.error:+.1%}); force within {one.force_worst:.1%} and pressure "
-        f"within {one.rise_worst:.1%} of full scale"
+        f"held out {one.driving_pressure_kPa:g} kPa: sensitivity {one.sensitivity_predicted_kPa_per_N:.4g} kPa/N "
+        f"predicted, {one.sensitivity_measured_kPa_per_N:.4g} measured ({one.sensitivity_error:+.1%}); force within "
+        f"{one.force_greatest_share:.1%} and pressure within {one.pressure_greatest_share:.1%} of full scale"
     )
 
 

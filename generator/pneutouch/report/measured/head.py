@@ -6,12 +6,13 @@ Numbers as the sheet prints them, and the relation of two intervals.
 import math
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 from statistics import median
-from typing import Any
 
 from pneutouch import __version__
 from pneutouch.bench.statistics import Estimate
-from pneutouch.report.measured.panels import CampaignReport, GroupComparison, Verdict
+from pneutouch.report.measured.panels import CampaignReport, GroupComparison
+from pneutouch.results.measured import Verdict
 from pneutouch.units import KPA
 from pneutouch.wording import SIMULATED, counted
 
@@ -78,10 +79,37 @@ def word_of(yes: bool | None, words: tuple[str, str, str] = ("yes", "no", DASH))
     return words[2] if yes is None else words[0] if yes else words[1]
 
 
-def cut(rows: Sequence[list[str]], most: int) -> tuple[list[list[str]], str]:
-    """The first rows of a long list, and words on how many more there are."""
+@dataclass(frozen=True, slots=True)
+class ListedRows:
+    """The first rows of a list, and words on how many more there are."""
+
+    rows: list[list[str]]
+    more: str
+
+
+@dataclass(frozen=True, slots=True)
+class FigureRows:
+    """A figure with rows of driving pressure, age, measured, interval, n, predicted, band, difference, overlap."""
+
+    name: str
+    unit: str
+    rows: list[list[str]]
+
+
+@dataclass(frozen=True, slots=True)
+class ResinTable:
+    """The figures of a resin; ``absent`` names those not measured, ``why`` driving pressures without a prediction."""
+
+    title: str
+    figures: list[FigureRows]
+    absent: str
+    why: list[str]
+
+
+def cut(rows: Sequence[list[str]], most: int) -> ListedRows:
+    """The first rows of a long list."""
     left = len(rows) - most
-    return list(rows[:most]), f"and {left} more: see figures.json" if left > 0 else ""
+    return ListedRows(list(rows[:most]), f"and {left} more: see figures.json" if left > 0 else "")
 
 
 def listed(items: Sequence[str]) -> str:
@@ -95,7 +123,7 @@ _WORDS = ("passed", "failed", "not decided")
 Tile = list[str]
 
 
-def head(measured: CampaignReport) -> dict[str, Any]:
+def head(measured: CampaignReport) -> dict[str, str]:
     """Title, who, when, how many, and the mark of simulated data."""
     campaign = measured.campaign
     resins, sensors = {run.resin for run in campaign.runs}, {run.sensor for run in campaign.runs}
@@ -123,13 +151,19 @@ def dates(measured: CampaignReport) -> str:
     return first if first == last else f"{first} to {last}"
 
 
-def verdict(measured: CampaignReport) -> dict[str, Any]:
+@dataclass(frozen=True, slots=True)
+class VerdictText:
+    """The verdict on the target in a word, requirement by requirement, and notes."""
+
+    word: str
+    rows: list[list[str]]
+    notes: str
+
+
+def verdict(measured: CampaignReport) -> VerdictText:
     """Verdict on the target, requirement by requirement, and the number of runs that gave nothing."""
-    return {
-        "word": _whole(measured.verdicts),
-        "rows": [[v.what, v.required, v.measured, word_of(v.passed, _WORDS)] for v in measured.verdicts],
-        "notes": " ".join(_notes(measured)),
-    }
+    rows = [[v.what, v.required, v.measured, word_of(v.passed, _WORDS)] for v in measured.verdicts]
+    return VerdictText(_whole(measured.verdicts), rows, " ".join(_notes(measured)))
 
 
 def _notes(measured: CampaignReport) -> list[str]:

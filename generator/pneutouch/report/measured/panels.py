@@ -20,6 +20,7 @@ from pneutouch.bench.record import MeasuredCurve
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report.style import FAINT, INK, LINES, MARKERS, MUTED, figure, svg
+from pneutouch.results.measured import AgeingChange, InjectionFigure, Verdict
 from pneutouch.results.uncertainty import UncertaintyRecord
 from pneutouch.spec.campaign import Campaign
 
@@ -59,19 +60,6 @@ class GroupComparison:
         return None if not value or low is None or high is None else (low / value, high / value)
 
 
-@dataclass(frozen=True, slots=True)
-class Verdict:
-    """A requirement of the target against its measurement.
-
-    ``passed`` is None if the interval holds values on both sides of the limit: more specimens would decide.
-    """
-
-    what: str
-    required: str
-    measured: str
-    passed: bool | None
-
-
 @dataclass(frozen=True)
 class CampaignReport:
     """A whole campaign.
@@ -85,9 +73,8 @@ class CampaignReport:
         failures: Files that are not used, with the message.
         questions: Data that look wrong and were not changed: file or run, and the question.
         verdicts: Of the target, empty without one.
-        injections: Figures of leak and injection runs: sensor, name, value, standard error, unit.
-        ageing: Change of sensitivity between ages: resin, pressure, age, change in percent with its interval, and what
-            the paper measured of this resin in a year, or None.
+        injections: Figures of leak and injection runs.
+        ageing: Changes of the sensitivity between ages.
         model: Model of the predictions.
         input_hash: Of campaign, design and files.
     """
@@ -100,8 +87,8 @@ class CampaignReport:
     failures: tuple[tuple[str, str], ...]
     questions: tuple[tuple[str, str], ...]
     verdicts: tuple[Verdict, ...]
-    injections: tuple[tuple[str, str, float, float | None, str], ...]
-    ageing: tuple[tuple[str, float, str, float, float | None, float | None, float | None], ...]
+    injections: tuple[InjectionFigure, ...]
+    ageing: tuple[AgeingChange, ...]
     model: str
     input_hash: str
 

@@ -1,11 +1,11 @@
 """The measured datasheet: one HTML page and one PDF from the same content and the same figures."""
 
 from collections.abc import Sequence
-from typing import Any
 
 from pneutouch.report import pages
 from pneutouch.report.measured import head, plots, tables
 from pneutouch.report.measured.panels import MOST_RUNS, CampaignReport, Panel, Plot, panels_of
+from pneutouch.results.record import plain
 
 _RUNS_ONLY = ("steps", "saturation", "loop", "relaxation")
 
@@ -17,36 +17,28 @@ def measured_datasheet(measured: CampaignReport) -> dict[str, bytes]:
     entries = [
         {"name": n, "title": title, "caption": words, "wide": plot.wide} for n, (title, words, plot) in drawn.items()
     ]
-    content = {**_content(measured, panels), "figures": entries}
-    figures = {name: plot.svg for name, (_, _, plot) in drawn.items()}
-    days = [run.date for run in measured.campaign.runs if run.date is not None]
-    return {
-        "measured-datasheet.html": pages.html("measured.html.j2", content, figures).encode(),
-        "measured-datasheet.pdf": pages.pdf("measured.typ", content, figures, max(days, default=None)),
-    }
-
-
-def _content(measured: CampaignReport, panels: Sequence[Panel]) -> dict[str, Any]:
-    """The sections of the sheet; every leaf is text, ready to be printed."""
-    return {
+    content = {
         **head.head(measured),
         "verdict": head.verdict(measured),
         "tiles": head.tiles(measured),
         "resins": [tables.resin_table(panel) for panel in panels],
         "ageing": tables.ageing(measured),
-        "injections": _listed(tables.injections(measured)),
-        "specimens": _listed(tables.specimens(panels)),
-        "failures": _listed(tables.failures(measured)),
-        "questions": _listed(tables.questions(measured)),
-        "warnings": _listed(tables.warning_rows(measured)),
+        "injections": tables.injections(measured),
+        "specimens": tables.specimens(panels),
+        "failures": tables.failures(measured),
+        "questions": tables.questions(measured),
+        "warnings": tables.warning_rows(measured),
         "conditions": head.conditions(measured),
         "definitions": tables.rows(),
         "where": tables.WHERE,
+        "figures": entries,
     }
-
-
-def _listed(listed: tuple[list[list[str]], str]) -> dict[str, Any]:
-    return {"rows": listed[0], "more": listed[1]}
+    figures = {name: plot.svg for name, (_, _, plot) in drawn.items()}
+    days = [run.date for run in measured.campaign.runs if run.date is not None]
+    return {
+        "measured-datasheet.html": pages.html("measured.html.j2", content, figures).encode(),
+        "measured-datasheet.pdf": pages.pdf("measured.typ", plain(content), figures, max(days, default=None)),
+    }
 
 
 DrawnPlots = dict[str, tuple[str, str, Plot]]

@@ -15,7 +15,20 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.bench.figures import FIGURES, FIRST, FigureDefinition
 from pneutouch.bench.record import MeasuredCurve
-from pneutouch.report.measured.head import DASH, Bounds, between, cut, difference, number, overlap, signed, word_of
+from pneutouch.report.measured.head import (
+    DASH,
+    Bounds,
+    FigureRows,
+    ListedRows,
+    ResinTable,
+    between,
+    cut,
+    difference,
+    number,
+    overlap,
+    signed,
+    word_of,
+)
 from pneutouch.report.measured.panels import (
     NARROW,
     TONES,
@@ -29,6 +42,7 @@ from pneutouch.report.measured.panels import (
     some,
 )
 from pneutouch.report.style import INK, LINES, MARKERS, MUTED, figure, plain_ticks, svg
+from pneutouch.results.measured import AgeingChange
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
@@ -48,13 +62,9 @@ _NAMES = [figure.name for figure in FIGURES]
 Row = list[str]
 
 
-def resin_table(panel: Panel) -> dict[str, Any]:
-    """Every figure of a resin over driving pressure and age: measured and predicted.
-
-    A figure has its name, unit and rows of driving pressure, age, measured, interval, n, predicted, band, difference,
-    overlap. ``absent`` names what was not measured, ``why`` driving pressures without a prediction.
-    """
-    groups: list[dict[str, Any]] = []
+def resin_table(panel: Panel) -> ResinTable:
+    """Every figure of a resin over driving pressure and age: measured and predicted."""
+    groups: list[FigureRows] = []
     absent: list[str] = []
     for each in FIGURES:
         compared = [comparison for comparison in panel.comparisons if each.key in comparison.group.figures]
@@ -62,14 +72,14 @@ def resin_table(panel: Panel) -> dict[str, Any]:
             absent.append(f"{each.name}, {each.unit}" if _NAMES.count(each.name) > 1 else each.name)
             continue
         rows = [[*_condition(comparison), *_figure(each, comparison)] for comparison in compared]
-        groups.append({"name": each.name, "unit": each.unit, "rows": rows})
+        groups.append(FigureRows(each.name, each.unit, rows))
     unknown = {b.group.key.driving_pressure_kPa: b.why for b in panel.comparisons if b.why}
-    return {
-        "title": panel.label,
-        "figures": groups,
-        "absent": f"Not measured: {'; '.join(absent)}." if absent else "",
-        "why": [f"No prediction at {pressure:g} kPa: {why}" for pressure, why in sorted(unknown.items())],
-    }
+    return ResinTable(
+        panel.label,
+        groups,
+        f"Not measured: {'; '.join(absent)}." if absent else "",
+        [f"No prediction at {pressure:g} kPa: {why}" for pressure, why in sorted(unknown.items())],
+    )
 
 
 def _condition(comparison: GroupComparison) -> Row:
@@ -93,7 +103,7 @@ def _figure(figure: FigureDefinition, comparison: GroupComparison) -> Row:
     ]
 
 
-def specimens(panels: Sequence[Panel]) -> tuple[list[Row], str]:
+def specimens(panels: Sequence[Panel]) -> ListedRows:
     """Sensitivity and stiffness of each specimen, mean and standard deviation over its runs."""
     rows = []
     for panel in panels:
@@ -125,8 +135,15 @@ def _of_sensor(comparison: GroupComparison, sensor: str) -> Row:
 def ageing(measured: CampaignReport) -> list[Row]:
     """Resin, driving pressure, age, change in percent, interval, the paper's, whose sign is not given."""
     return [
-        [resin, f"{pressure:g}", age, signed(change), _percent(low, high), DASH if paper is None else f"± {paper:.3g}"]
-        for resin, pressure, age, change, low, high, paper in measured.ageing
+        [
+            row.resin,
+            f"{row.driving_pressure_kPa:g}",
+            row.age,
+            signed(row.sensitivity_change_percent),
+            _percent(row.low, row.high),
+            DASH if (paper := row.published_change_one_year_percent) is None else f"± {paper:.3g}",
+        ]
+        for row in measured.ageing
     ]
 
 
@@ -134,16 +151,16 @@ def _percent(low: float | None, high: float | None) -> str:
     return DASH if low is None or high is None else f"{signed(low)} to {signed(high)}"
 
 
-def injections(measured: CampaignReport) -> tuple[list[Row], str]:
+def injections(measured: CampaignReport) -> ListedRows:
     """Sensor, name, value, standard error, unit of leak and injection runs."""
     rows = [
-        [sensor, name, number(value, 4), DASH if error is None else number(error, 2), unit]
-        for sensor, name, value, error, unit in measured.injections
+        [row.sensor, row.figure, number(row.value, 4), number(row.standard_error, 2), row.unit]
+        for row in measured.injections
     ]
     return cut(rows, MOST)
 
 
-def warning_rows(measured: CampaignReport) -> tuple[list[Row], str]:
+def warning_rows(measured: CampaignReport) -> ListedRows:
     """Parts not to be trusted: file, seconds, why, used or not; mere notes are in figures.json."""
     rows = [
         [curve.run.file, f"{warning.start:.2f} to {warning.end:.2f}", warning.why, word_of(warning.used)]
@@ -154,13 +171,13 @@ def warning_rows(measured: CampaignReport) -> tuple[list[Row], str]:
     return cut(rows, MOST)
 
 
-def failures(measured: CampaignReport) -> tuple[list[Row], str]:
+def failures(measured: CampaignReport) -> ListedRows:
     """Files that are not used, and why."""
     # The message begins with the file's path, which is printed next to it.
     return cut([[file, why.split(f"{file}: ", 1)[-1]] for file, why in measured.failures], MOST)
 
 
-def questions(measured: CampaignReport) -> tuple[list[Row], str]:
+def questions(measured: CampaignReport) -> ListedRows:
     """Parts of the data that look wrong and were not changed."""
     return cut([list(pair) for pair in measured.questions], MOST)
 
@@ -342,12 +359,14 @@ def ageings(measured: CampaignReport) -> Plot | None:
         return None
     with figure(NARROW, 22 + 5.2 * len(rows)) as drawn:
         ax = drawn.add_subplot()
-        for k, (_, _, _, change, low, high, paper) in enumerate(rows):
-            if low is not None and high is not None:
-                ax.plot([low, high], [k, k], color=INK, lw=0.9, marker="|", ms=4)
-            ax.plot(change, k, ls="", marker="o", color=INK, ms=3.6, label="measured" if k == 0 else None)
+        for k, row in enumerate(rows):
+            if row.low is not None and row.high is not None:
+                ax.plot([row.low, row.high], [k, k], color=INK, lw=0.9, marker="|", ms=4)
+            label = "measured" if k == 0 else None
+            ax.plot(row.sensitivity_change_percent, k, ls="", marker="o", color=INK, ms=3.6, label=label)
+            paper = row.published_change_one_year_percent
             if paper is not None:
-                first = all(row[6] is None for row in rows[:k])
+                first = all(each.published_change_one_year_percent is None for each in rows[:k])
                 ax.plot(
                     [-paper, paper],
                     [k, k],
@@ -366,5 +385,5 @@ def ageings(measured: CampaignReport) -> Plot | None:
         return Plot(svg(drawn), wide=False)
 
 
-def _short(row: tuple[Any, ...]) -> str:
-    return f"{row[0]}, {row[1]:g} kPa, {row[2]}".replace("$", r"\$")
+def _short(row: AgeingChange) -> str:
+    return f"{row.resin}, {row.driving_pressure_kPa:g} kPa, {row.age}".replace("$", r"\$")

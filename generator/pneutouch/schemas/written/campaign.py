@@ -7,7 +7,6 @@ from pneutouch.schemas.shape import (
     NUMBER,
     NUMBERS,
     TEXT,
-    TEXTS,
     WHOLE,
     Schema,
     described_by,
@@ -120,74 +119,5 @@ def _planned_run() -> Schema:
         "steps": items(typed(StepRecord, {})),
         "expected": _points(),
         "duration_s": NUMBER,
-    }
-    return record("A run.", keys)
-
-
-def figures() -> Schema:
-    """Schema of ``figures.json`` and of the output of ``pneutouch characterize --json``."""
-    injection = {"sensor": TEXT, "figure": TEXT, "value": NUMBER, "standard_error": or_null(NUMBER), "unit": TEXT}
-    change = ("sensitivity_change_percent", "low", "high", "published_change_one_year_percent")
-    ageing = {"resin": TEXT, "driving_pressure_kPa": NUMBER, "age": TEXT, **dict.fromkeys(change, or_null(NUMBER))}
-    verdict = {"what": TEXT, "required": TEXT, "measured": TEXT, "passed": or_null(FLAG)}
-    keys = {
-        "title": TEXT,
-        "lab": TEXT,
-        "simulated": FLAG,
-        "design": TEXT,
-        "input_hash": TEXT,
-        "model": TEXT,
-        "level": NUMBER,
-        "groups": items(_group()),
-        "runs": items(_measured_run()),
-        "injections": items(record("A figure of an injection.", injection)),
-        "ageing": items(record("A change with age.", ageing)),
-        "target": items(record("A requirement.", verdict)),
-        "questions": items(record("Parts of the data to look at.", {"file": TEXT, "question": TEXT})),
-        "failures": items(record("A file that could not be used.", {"file": TEXT, "message": TEXT})),
-        "read_as": items({"type": "object"}),
-        "folder": TEXT,
-    }
-    return record("Figures of a campaign, measured and predicted.", keys, ("read_as", "folder"))
-
-
-def _group() -> Schema:
-    off = ("low", "high", "measured_off_percent")
-    predicted = record("The predicted figure.", {"value": NUMBER, **dict.fromkeys(off, or_null(NUMBER))})
-    figure = {
-        "value": NUMBER,
-        "low": or_null(NUMBER),
-        "high": or_null(NUMBER),
-        "unit": TEXT,
-        "specimens": WHOLE,
-        "runs": described_by("Number of runs.", WHOLE),
-        "interval_over": or_null(TEXT),
-        "predicted": predicted,
-    }
-    keys = {
-        "resin": TEXT,
-        "age": TEXT,
-        "driving_pressure_kPa": NUMBER,
-        "sensors": described_by("Specimens of the group.", TEXTS),
-        "files": described_by("Files of the runs.", TEXTS),
-        "why_not_predicted": or_null(TEXT),
-        "figures": mapping(record("A measured figure.", figure, ("predicted",))),
-    }
-    return record("Runs of one resin, age and driving pressure.", keys)
-
-
-def _measured_run() -> Schema:
-    suspect = {"start_s": NUMBER, "end_s": NUMBER, "why": TEXT, "used": FLAG, "kind": TEXT}
-    keys = {
-        "file": TEXT,
-        "kind": _KIND,
-        "sensor": TEXT,
-        "resin": TEXT,
-        "run": WHOLE,
-        "driving_pressure_kPa": NUMBER,
-        "age_days": NUMBER,
-        "points": described_by("Number of points of the curve.", WHOLE),
-        "figures": mapping(NUMBER),
-        "warnings": items(record("A part of the record that is doubtful.", suspect)),
     }
     return record("A run.", keys)

@@ -1,9 +1,8 @@
-"""Schemas of reports whose typed dictionaries declare them whole: comparisons and calibrations."""
+"""Schema of comparisons."""
 
 from pneutouch.evaluation.comparison_record import ComparisonRecord
 from pneutouch.schemas.shape import TEXT, Schema
 from pneutouch.schemas.typed import typed
-from pneutouch.workflows.calibrate.record import OutcomeRecord
 
 
 def _with_folder(schema: Schema) -> Schema:
@@ -15,8 +14,3 @@ def _with_folder(schema: Schema) -> Schema:
 def comparison() -> Schema:
     """Schema of ``comparison.json`` and of the output of ``pneutouch compare --json``."""
     return _with_folder(typed(ComparisonRecord, {}))
-
-
-def calibration_report() -> Schema:
-    """Schema of the output of ``pneutouch calibrate --json``; ``calibration.json`` holds a part of it."""
-    return typed(OutcomeRecord, {})

@@ -18,6 +18,8 @@ from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.resins import rating_of
 from pneutouch.output.files import check_writable
 from pneutouch.parts import assemble
+from pneutouch.results.calibration import OutcomeRecord
+from pneutouch.results.record import extended
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.campaign import CAMPAIGN
 from pneutouch.spec.design import CALIBRATION
@@ -34,7 +36,6 @@ from pneutouch.workflows.calibrate.files import (
     write_calibration,
 )
 from pneutouch.workflows.calibrate.fit import FITTED_KINDS, Calibration, calibrate, chosen_sensor, observations_of
-from pneutouch.workflows.calibrate.record import OutcomeRecord
 from pneutouch.workflows.characterize import (
     CampaignData,
     Progress,
@@ -91,15 +92,14 @@ class CalibrationOutcome:
     """A calibration that was written.
 
     Attributes:
-        document: The calibration's document with ``calibration`` (its name, or None), ``written``, ``failures`` and
-            ``read_as``.
+        record: The calibration as ``calibrate`` prints it.
         calibration: The calibration itself.
         source: Source of its runs.
         design_given: The design as a command takes it.
         assignments: Changes of the campaign to it.
     """
 
-    document: OutcomeRecord
+    record: OutcomeRecord
     calibration: Calibration
     source: CampaignSource
     design_given: str
@@ -115,7 +115,7 @@ def run_calibration(
     """Read, fit and write.
 
     The places of all files are checked before the fit. A fit that cannot be a calibration is reported: without ``save``
-    the document's ``calibration`` is None and its last note says why. Raises InputError.
+    the record's ``calibration`` is None and its last note says why. Raises InputError.
     """
     library = library or Library.default()
     if options.save is not None:
@@ -152,16 +152,16 @@ def run_calibration(
     )
     calibration = with_further_tests(calibration, source)
     written, unsaved = _write(options, calibration, name, source)
-    failures = [list(failure) for failure in (*loaded.failures, *refused)]
-    document: OutcomeRecord = {
-        **calibration.document,
-        "notes": [*calibration.notes_for_reader, *unsaved],
-        "calibration": None if unsaved else name,
-        "written": [str(path) for path in written],
-        "failures": failures,
-        "read_as": read_as(undisputed(loaded.sources, refused), len(loaded.campaign.runs)),
-    }
-    return CalibrationOutcome(document, calibration, source, _named(design), loaded.campaign.assignments)
+    record = extended(
+        OutcomeRecord,
+        calibration.record,
+        notes=(*calibration.record.notes, *unsaved),
+        calibration=None if unsaved else name,
+        written=tuple(str(path) for path in written),
+        failures=(*loaded.failures, *refused),
+        read_as=read_as(undisputed(loaded.sources, refused), len(loaded.campaign.runs)),
+    )
+    return CalibrationOutcome(record, calibration, source, _named(design), loaded.campaign.assignments)
 
 
 def _check_left(
@@ -220,7 +220,7 @@ def save_calibration(outcome: CalibrationOutcome, name: str | None = None, *, re
     Raises InputError as `prepare` and `save` do.
     """
     calibration = outcome.calibration
-    name = name or outcome.document["calibration"] or default_name(calibration.scene.name, calibration.sensor)
+    name = name or outcome.record.calibration or default_name(calibration.scene.name, calibration.sensor)
     return _saved(calibration, name, user_folder(), outcome.source, replace=replace)
 
 

@@ -6,7 +6,7 @@ The place of a calibration in the user's folder, checked before anything is comp
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,7 @@ from pneutouch.errors import InputError
 from pneutouch.formats import format_of, versioned
 from pneutouch.output.files import check_writable, json_bytes, with_manifest, write_folder
 from pneutouch.report.fit_charts import residual_chart
+from pneutouch.results.record import plain
 from pneutouch.rounding import rounded
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.read import read_toml
@@ -118,11 +119,9 @@ def write_calibration(calibration: Calibration, out: Path, source: CampaignSourc
     """Write calibration.json and residuals.svg into `folder_of`; ``unsaved`` are further notes. Raises InputError."""
     folder = folder_of(calibration.scene.name, calibration.sensor, out)
     check_writable(folder)
-    document = calibration.document
+    record = replace(calibration.record, notes=(*calibration.record.notes, *unsaved))
     files = {
-        "calibration.json": json_bytes(
-            versioned("calibration-report", {**document, "notes": [*document["notes"], *unsaved]})
-        ),
+        "calibration.json": json_bytes(versioned("calibration-report", plain(record))),
         "residuals.svg": residual_chart(calibration.residuals, _CHART).encode(),
     }
     fitted = calibration.fit.parameters
@@ -301,5 +300,5 @@ def _response(gap: ResponseGap, calibration: Calibration) -> dict[str, Any]:
         "force_errors_relative": gap.force_errors.tolist(),
         "errors_freedom": float(gap.freedom),
         "held_out_pressures_kPa": [one.driving_pressure_kPa for one in calibration.held_out],
-        "held_out_sensitivity_errors": [one.error for one in calibration.held_out],
+        "held_out_sensitivity_errors": [one.sensitivity_error for one in calibration.held_out],
     }

@@ -14,7 +14,6 @@ from pneutouch.bench.calibrate import (
     NAMES,
     USUAL,
     CalibrationFit,
-    HeldOutPrediction,
     Injection,
     Observations,
     fit,
@@ -25,7 +24,6 @@ from pneutouch.bench.calibrate.goodness import (
     ModelMisfit,
     ResponseGap,
     RunResiduals,
-    SystematicDeviation,
     misfit,
     misses,
     residuals,
@@ -40,35 +38,21 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.parts import assemble
-from pneutouch.spec.campaign import Campaign, CampaignRun, RunKind
-from pneutouch.units import KPA, ML
-from pneutouch.workflows.calibrate.record import (
+from pneutouch.results.calibration import (
     CalibrationRecord,
     CorrelatedRecord,
     CorrelationRecord,
     EstimateRecord,
-    FitRecord,
     FurtherRecord,
     GoodnessRecord,
     HeldOutRecord,
     MissRecord,
+    PriorRecord,
     ResidualRecord,
     ResponseRecord,
 )
-
-
-def fit_document(fitted: CalibrationFit) -> FitRecord:
-    """Record of the fit: its parameters, its data and its goodness."""
-    seen = fitted.observations
-    return {
-        "runs": len(seen.curves),
-        "injections": len(seen.injections),
-        "driving_pressures_kPa": list(seen.driving_pressures_kPa),
-        "ambient_pressure_kPa": seen.ambient / KPA,
-        "estimates": [_estimate(fitted, place) for place in range(len(fitted.parameters.fitted))],
-        "correlation": _correlation(fitted),
-        "fit": _goodness(fitted),
-    }
+from pneutouch.spec.campaign import Campaign, CampaignRun, RunKind
+from pneutouch.units import KPA, ML
 
 
 def _estimate(fitted: CalibrationFit, place: int) -> EstimateRecord:
@@ -78,124 +62,69 @@ def _estimate(fitted: CalibrationFit, place: int) -> EstimateRecord:
     if np.isfinite(half):
         low = at - half if k not in (DEAD, FRICTION) else max(at - half, 0.0)
         high = at + half if k != FRICTION else min(at + half, float(fitted.parameters.high[k]))
-        interval = [outside_value(k, low), outside_value(k, high)]
-    prior_spread = float(fitted.parameters.prior_spread[k])
-    return {
-        "parameter": NAMES[k],
-        "key": KEYS[k],
-        "unit": UNITS[k],
-        "value": outside_value(k, at),
-        "interval_95": interval,
-        "on_bound": bool(fitted.solution.bound[place]),
-        "designed": outside_value(k, float(fitted.parameters.start[k])),
-        "prior": {
-            "counted": fitted.parameters.priors,
-            "standard_deviation": prior_spread / (ML if k == DEAD else 1.0),
-            "relative": bool(LOGARITHMIC[k]),
-            "source": fitted.parameters.origin[k],
-        },
-    }
+        interval = outside_value(k, low), outside_value(k, high)
+    spread = float(fitted.parameters.prior_spread[k]) / (ML if k == DEAD else 1.0)
+    return EstimateRecord(
+        parameter=NAMES[k],
+        key=KEYS[k],
+        unit=UNITS[k],
+        value=outside_value(k, at),
+        interval_95=interval,
+        on_bound=bool(fitted.solution.bound[place]),
+        designed=outside_value(k, float(fitted.parameters.start[k])),
+        prior=PriorRecord(fitted.parameters.priors, spread, bool(LOGARITHMIC[k]), fitted.parameters.origin[k]),
+    )
 
 
 def _correlation(fitted: CalibrationFit) -> CorrelationRecord:
-    matrix = fitted.covariance.matrix
-    spread = np.sqrt(np.diag(matrix))
-    scaled = matrix / np.outer(spread, spread)
-    return {
-        "parameters": list(fitted.parameters.names),
-        "matrix": [[float(x) if np.isfinite(x) else None for x in row] for row in scaled],
-    }
+    spread = np.sqrt(np.diag(fitted.covariance.matrix))
+    scaled = fitted.covariance.matrix / np.outer(spread, spread)
+    return CorrelationRecord(fitted.parameters.names, tuple(tuple(_number(x) for x in row) for row in scaled))
 
 
 def _goodness(fitted: CalibrationFit) -> GoodnessRecord:
-    force, rise, injection = (float(x) for x in fitted.channel_factor)
-    return {
-        "chi_squared": fitted.chi_squared,
-        "degrees_of_freedom": fitted.freedom,
-        "chi_squared_per_degree": fitted.chi_squared / fitted.freedom if fitted.freedom else None,
-        "points_used": int(fitted.solution.use.sum()),
-        "points_left_out": int(fitted.left_out.sum() + fitted.injections_left_out.sum()),
-        "scatter_over_stated": {"force": force, "pressure": rise, "injection": injection},
-        "model_leaves_out_share_of_reading": dict(
-            zip(("force", "pressure", "injection"), (float(x) for x in fitted.sizes), strict=True)
-        ),
-        "considered": [NAMES[k] for k in fitted.parameters.others],
-        "variance_of_runs_over_points": fitted.run_factor,
-        "interval_from_runs": fitted.covariance.clustered,
-    }
+    channels = ("force", "pressure", "injection")
+    return GoodnessRecord(
+        chi_squared=fitted.chi_squared,
+        degrees_of_freedom=fitted.freedom,
+        chi_squared_per_degree=fitted.chi_squared / fitted.freedom if fitted.freedom else None,
+        points_used=int(fitted.solution.use.sum()),
+        points_left_out=int(fitted.left_out.sum() + fitted.injections_left_out.sum()),
+        scatter_over_stated=dict(zip(channels, map(float, fitted.channel_factor), strict=True)),
+        model_leaves_out_share_of_reading=dict(zip(channels, map(float, fitted.sizes), strict=True)),
+        considered=tuple(NAMES[k] for k in fitted.parameters.others),
+        variance_of_runs_over_points=fitted.run_factor,
+        interval_from_runs=fitted.covariance.clustered,
+    )
 
 
-def response_records(gap: ResponseGap) -> list[ResponseRecord]:
-    """Records of the part of the curves that the fitted model leaves out, by driving pressure."""
+def _response(gap: ResponseGap | None) -> tuple[ResponseRecord, ...]:
+    """The part of the curves that the fitted model leaves out, by driving pressure."""
+    if gap is None:
+        return ()
     correction = gap.correction
-    return [
-        {
-            "driving_pressure_kPa": pressure_kPa,
-            "force_factor": correction.force_factors[k],
-            "pressure_factor": correction.rise_factors[k],
-            "sensitivity_error_relative": float(gap.sensitivity_errors[k]),
-            "force_error_relative": float(gap.force_errors[k]),
-        }
-        for k, pressure_kPa in enumerate(gap.driving_pressures_kPa)
-    ]
+    errors = gap.sensitivity_errors.tolist(), gap.force_errors.tolist()
+    rows = zip(gap.driving_pressures_kPa, correction.force_factors, correction.rise_factors, *errors, strict=True)
+    return tuple(ResponseRecord(*row) for row in rows)
 
 
-def miss_record(miss: SystematicDeviation) -> MissRecord:
-    """A stretch of travel where the fitted model deviates in one direction."""
-    return {
-        "driving_pressure_kPa": miss.driving_pressure_kPa,
-        "channel": miss.channel,
-        "from_mm": miss.start,
-        "to_mm": miss.end,
-        "share": miss.share,
-    }
+def _residual(run: RunResiduals) -> ResidualRecord:
+    return ResidualRecord(run.label, *map(_number, (run.driving_pressure_kPa, run.force_error, run.rise_error)))
 
 
-def residual_record(run: RunResiduals) -> ResidualRecord:
-    """Record of the distance of a run from the fitted model."""
-    return {
-        "run": run.label,
-        "driving_pressure_kPa": _number(run.driving_pressure_kPa),
-        "force_share_of_full_scale": _number(run.force_error),
-        "pressure_share_of_full_scale": _number(run.rise_error),
-    }
+def _correlated(group: CorrelatedParameters) -> CorrelatedRecord:
+    return CorrelatedRecord(
+        tuple(NAMES[k] for k in group.members),
+        group.correlation,
+        tuple(_leaving(k, x) for k, x in zip(group.members, group.alone, strict=True)),
+        tuple(_leaving(k, x) for k, x in zip(group.members, group.given, strict=True)),
+        group.combination,
+    )
 
 
-def correlated_record(group: CorrelatedParameters) -> CorrelatedRecord:
-    """Parameters that the runs determine together better than each."""
-    return {
-        "parameters": [NAMES[k] for k in group.members],
-        "correlation": group.correlation,
-        "standard_deviation_alone": [_leaving(k, x) for k, x in zip(group.members, group.alone, strict=True)],
-        "standard_deviation_others_known": [_leaving(k, x) for k, x in zip(group.members, group.given, strict=True)],
-        "modulus_times_wall_to_the": group.combination,
-    }
-
-
-def further_record(fitted: CalibrationFit, test: SuggestedTest) -> FurtherRecord:
-    """A test that would reduce the uncertainty."""
+def _further(fitted: CalibrationFit, test: SuggestedTest) -> FurtherRecord:
     widths = zip(fitted.parameters.fitted, test.half_width, strict=True)
-    return {
-        "test": test.what,
-        "widest_interval_shrinks": test.gain,
-        "expected_half_widths": {NAMES[k]: _leaving(k, width) for k, width in widths},
-    }
-
-
-def held_out_record(one: HeldOutPrediction) -> HeldOutRecord:
-    """A driving pressure as predicted from the others."""
-    return {
-        "driving_pressure_kPa": one.driving_pressure_kPa,
-        "sensitivity_measured_kPa_per_N": one.measured_kPa_per_N,
-        "sensitivity_predicted_kPa_per_N": one.predicted_kPa_per_N,
-        "sensitivity_error": one.error,
-        "force_rms_share": one.force_error,
-        "force_greatest_share": one.force_worst,
-        "pressure_rms_share": one.rise_error,
-        "pressure_greatest_share": one.rise_worst,
-        "points": one.points,
-        "points_left_out": one.left_out,
-    }
+    return FurtherRecord(test.what, test.gain, {NAMES[k]: _leaving(k, width) for k, width in widths})
 
 
 def _leaving(k: int, deviation: float) -> float | None:
@@ -228,9 +157,9 @@ class Calibration:
     title: str
     fit: CalibrationFit
     residuals: tuple[RunResiduals, ...]
-    misses: list[SystematicDeviation]
+    misses: list[MissRecord]
     identified: Identifiability
-    held_out: tuple[HeldOutPrediction, ...]
+    held_out: tuple[HeldOutRecord, ...]
     notes: tuple[str, ...] = ()
     further: Sequence[SuggestedTest] = ()
 
@@ -259,24 +188,31 @@ class Calibration:
         """Notes for the reader in addition to the numbers."""
         return [*self.notes, *fit_notes(self.fit, self.identified, self.further, self.misses, self.held_out)]
 
-    @property
-    def document(self) -> CalibrationRecord:
-        """The calibration as data."""
-        return {
-            "design": self.scene.name,
-            "sensor": self.sensor,
-            "campaign": self.title,
-            **fit_document(self.fit),
-            "response": [] if self.gap is None else response_records(self.gap),
-            "residuals": [residual_record(run) for run in self.residuals],
-            "misses": [miss_record(miss) for miss in self.misses],
-            "strongly_correlated": [correlated_record(group) for group in self.identified.ambiguities],
-            "unidentified": [NAMES[k] for k in self.identified.unseen],
-            "further_tests": [further_record(self.fit, test) for test in self.further],
-            "held_out": [held_out_record(one) for one in self.held_out],
-            "warnings": self.warnings,
-            "notes": self.notes_for_reader,
-        }
+    @cached_property
+    def record(self) -> CalibrationRecord:
+        """The calibration as it is printed and written."""
+        seen, fitted = self.fit.observations, self.fit.parameters.fitted
+        return CalibrationRecord(
+            design=self.scene.name,
+            sensor=self.sensor,
+            campaign=self.title,
+            runs=len(seen.curves),
+            injections=len(seen.injections),
+            driving_pressures_kPa=seen.driving_pressures_kPa,
+            ambient_pressure_kPa=seen.ambient / KPA,
+            estimates=tuple(_estimate(self.fit, place) for place in range(len(fitted))),
+            correlation=_correlation(self.fit),
+            fit=_goodness(self.fit),
+            response=_response(self.gap),
+            residuals=tuple(_residual(run) for run in self.residuals),
+            misses=tuple(self.misses),
+            strongly_correlated=tuple(_correlated(group) for group in self.identified.ambiguities),
+            unidentified=tuple(NAMES[k] for k in self.identified.unseen),
+            further_tests=tuple(_further(self.fit, test) for test in self.further),
+            held_out=self.held_out,
+            warnings=tuple(self.warnings),
+            notes=tuple(self.notes_for_reader),
+        )
 
 
 def calibrate(

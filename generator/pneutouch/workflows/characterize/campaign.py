@@ -4,8 +4,9 @@ The small tables of a characterization: points, segments, and the results of lea
 """
 
 import hashlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,8 @@ from pneutouch.mechanics.models import USUAL, usual_model
 from pneutouch.output.files import MANIFEST, check_writable, entry, input_hash, json_bytes, manifest, write_folder
 from pneutouch.parts import assemble
 from pneutouch.report.measured import CampaignReport
+from pneutouch.results.measured import InjectionFigure, MeasuredCampaign, ReadFiles
+from pneutouch.results.record import plain
 from pneutouch.spec.campaign import AS_DESIGNED, CAMPAIGN, CampaignRun, campaign_of
 from pneutouch.spec.read import Changes, parse_changes, read_toml, validate
 from pneutouch.spec.target import Target
@@ -31,7 +34,7 @@ from pneutouch.spec.values import file_name
 from pneutouch.tables.csv_table import csv_bytes
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.characterize.load import CampaignData, Progress, Reading, load_curves, read_as, undisputed
-from pneutouch.workflows.characterize.predicted import StatePrediction, ageing, answers, compared, document, verdicts
+from pneutouch.workflows.characterize.predicted import StatePrediction, ageing, answers, compared, figures_of, verdicts
 
 _RUN = ("file", "sensor", "resin", "driving_pressure_kPa", "run", "age_days")
 
@@ -86,18 +89,17 @@ def _of(curve: MeasuredCurve) -> list[Any]:
     return [run.file, run.sensor, run.resin, f"{run.driving_pressure_kPa:g}", run.run, f"{run.age_days:g}"]
 
 
-InjectionRow = tuple[str, str, float, float | None, str]
-
-
-def injections(loaded: CampaignData, scene: ResolvedDesign) -> tuple[tuple[InjectionRow, ...], list[tuple[str, str]]]:
+def injections(
+    loaded: CampaignData, scene: ResolvedDesign
+) -> tuple[tuple[InjectionFigure, ...], list[tuple[str, str]]]:
     """Leak rates, and the dead volume an injection would mean in a rigid line; files that give neither, and why.
 
     An injection into a sensor swells the dome, so that its dead volume is an upper bound; `calibrate`
     takes the dome into account.
     """
     failures = []
-    rows: list[InjectionRow] = [
-        (run.sensor, f"leak, {_when(run)}", 60 * rate / KPA, 60 * error / KPA, "kPa/min")
+    rows = [
+        InjectionFigure(run.sensor, f"leak, {_when(run)}", 60 * rate / KPA, 60 * error / KPA, "kPa/min")
         for run, rate, error in loaded.leaks
     ]
     ambient_kPa = scene.design.pneumatics.ambient_pressure_kPa
@@ -108,7 +110,7 @@ def injections(loaded: CampaignData, scene: ResolvedDesign) -> tuple[tuple[Injec
             failures.append((run.file, f"{loaded.folder / run.file}: {error}"))
             continue
         name = f"gas volume as if rigid, {_when(run)}"
-        rows.append((run.sensor, name, total.value / ML, total.spread / ML, "mL"))
+        rows.append(InjectionFigure(run.sensor, name, total.value / ML, total.spread / ML, "mL"))
     return tuple(rows), failures
 
 
@@ -129,7 +131,7 @@ class CharacterizationResult:
     measured: CampaignReport
     traces: Mapping[str, Trace]
     name: str
-    read_as: Sequence[Mapping[str, Any]] = ()
+    read_as: tuple[ReadFiles, ...] = ()
     design_given: str = ""
     sources: Mapping[str, MeasuredFile] = field(default_factory=dict)
 
@@ -143,10 +145,10 @@ class CharacterizationResult:
             return False
         return True
 
-    @property
-    def document(self) -> dict[str, Any]:
-        """The figures as data, and how files were read whose columns were found by their headers."""
-        return {**document(self.measured), "read_as": list(self.read_as)}
+    @cached_property
+    def figures(self) -> MeasuredCampaign:
+        """The figures, and how files were read whose columns were found by their headers."""
+        return figures_of(self.measured, self.read_as)
 
     @property
     def failed(self) -> bool:
@@ -294,7 +296,7 @@ def write(outcome: CharacterizationResult, out: Path, evidence: str = "doubtful"
     measured = outcome.measured
     files = {
         **measured_datasheet(measured),
-        "figures.json": json_bytes(versioned("figures", outcome.document)),
+        "figures.json": json_bytes(versioned("figures", plain(outcome.figures))),
         "points.csv": points_csv(measured.curves),
         "segments.csv": segments_csv(measured.curves),
     }

@@ -20,6 +20,7 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.catalogue.library import example_remedy
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.evaluation.resins import resin_of
+from pneutouch.results.measured import ReadFiles
 from pneutouch.spec.campaign import Campaign, CampaignRun, ColumnMap, FileFormat, campaign_of
 from pneutouch.spec.files import is_file
 from pneutouch.spec.read import validate
@@ -72,7 +73,9 @@ def with_reading(campaign: Campaign, reading: Reading | None) -> Campaign:
     return campaign.model_copy(update={**_with_stated(campaign.columns, campaign.format, reading), "runs": runs})
 
 
-def _with_stated(columns: ColumnMap, written: FileFormat, reading: Reading, file: str = "") -> dict[str, Any]:
+def _with_stated(
+    columns: ColumnMap, written: FileFormat, reading: Reading, file: str = ""
+) -> dict[str, ColumnMap | FileFormat]:
     """Columns and format with ``reading`` in their place; ``file``: of one run. Raises InputError."""
     stated = {key: getattr(columns, key).model_dump() for key in columns.model_fields_set}
     try:
@@ -84,17 +87,18 @@ def _with_stated(columns: ColumnMap, written: FileFormat, reading: Reading, file
     return {"columns": merged, "format": how}
 
 
-def read_as(sources: Mapping[str, MeasuredFile], runs: int) -> list[dict[str, Any]]:
-    """Layouts that were found by looking at the files: files read alike together, with the tables of a campaign file
-    for them.
-
-    ``whole_campaign``: the tables hold for all of its ``runs``; else they belong to the runs of these files.
-    """
-    alike: dict[str, dict[str, Any]] = {}
+def read_as(sources: Mapping[str, MeasuredFile], runs: int) -> tuple[ReadFiles, ...]:
+    """Layouts that were found by looking at the files of a campaign of ``runs`` runs: files read alike together, with
+    the tables of a campaign file for them."""
+    alike: dict[str, list[str]] = {}
     for file, source in sources.items():
         if source.guessed:
-            alike.setdefault(campaign_lines(source.content), {"files": [], **source.content})["files"].append(file)
-    return [{**entry, "whole_campaign": len(entry["files"]) == runs} for entry in alike.values()]
+            alike.setdefault(campaign_lines(source.content), []).append(file)
+    tables = [(sources[files[0]].content, tuple(files)) for files in alike.values()]
+    return tuple(
+        ReadFiles(columns=each.columns, format=each.format, files=files, whole_campaign=len(files) == runs)
+        for each, files in tables
+    )
 
 
 def undisputed(sources: Mapping[str, MeasuredFile], failures: Sequence[tuple[str, str]]) -> dict[str, MeasuredFile]:
@@ -112,11 +116,11 @@ def same_failures(failures: Iterable[Sequence[str]]) -> list[tuple[str, str]]:
     return [(listed(files, _NAMED), problem) for problem, files in alike.items()]
 
 
-def reading_text(read_as: Sequence[Mapping[str, Any]]) -> str:
+def reading_text(read_as: Iterable[ReadFiles]) -> str:
     """Lines for a campaign file that keep the columns and formats which were found by looking at the files."""
     blocks = []
     for entry in read_as:
-        files, whole = entry["files"], entry["whole_campaign"]
+        files, whole = entry.files, entry.whole_campaign
         named = listed(files, 1 if whole else _NAMED)
         place = "into campaign.toml" if whole else "below the [[runs]] entry of each of these files in campaign.toml"
         lines = campaign_lines(entry, "" if whole else "runs.")

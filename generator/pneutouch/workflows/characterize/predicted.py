@@ -2,20 +2,19 @@
 
 Verdicts on measured figures: against a target, and of one age against another.
 
-Document that ``characterize`` prints: every figure measured and predicted, and everything that is doubtful.
+Figures that ``characterize`` prints: each measured and predicted, and everything that is doubtful.
 """
 
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Any
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.figures import BY_KEY, RunGroup, line_figures
-from pneutouch.bench.record import MeasuredCurve
+from pneutouch.bench.record import MeasuredCurve, SuspectInterval
 from pneutouch.bench.run_checks import ExpectedRun
 from pneutouch.bench.statistics import LEVEL, Estimate
 from pneutouch.catalogue import DesignSource, Library
@@ -24,9 +23,22 @@ from pneutouch.evaluation.comparison import figures_at
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.mechanics.prediction import SensorState
-from pneutouch.report.measured import CampaignReport, GroupComparison, Verdict
+from pneutouch.report.measured import CampaignReport, GroupComparison
+from pneutouch.results.measured import (
+    AgeingChange,
+    CampaignFigure,
+    DataQuestion,
+    FileFailure,
+    MeasuredCampaign,
+    MeasuredGroup,
+    MeasuredRun,
+    PredictedFigure,
+    ReadFiles,
+    RunWarning,
+    Verdict,
+)
 from pneutouch.results.uncertainty import UncertaintyRecord
-from pneutouch.spec.campaign import AS_DESIGNED
+from pneutouch.spec.campaign import AS_DESIGNED, CampaignRun, RunKind
 from pneutouch.spec.material import Material
 from pneutouch.spec.read import Changes
 from pneutouch.spec.target import Target, TargetFigures
@@ -215,14 +227,10 @@ def _passed(estimate: Estimate, low: float, high: float) -> bool | None:
     return False if estimate.high < low or estimate.low > high else None
 
 
-AgeingChange = tuple[str, float, str, float, float | None, float | None, float | None]
-
-
 def ageing(groups: Sequence[RunGroup], library: Library) -> tuple[AgeingChange, ...]:
     """Change of the sensitivity since fresh, in percent of the aged one as in the paper's Supplement E.
 
-    Resin, pressure, age, change with the ends of its 95 % interval, and the paper's change in a year where it measured
-    one.
+    With the ends of its 95 % interval, and the paper's change in a year where it measured one.
     """
     known = [group for group in groups if "sensitivity_kPa_per_N" in group.figures]
     by_sensor: Callable[[RunGroup], tuple[str, float]] = lambda group: (group.key.resin, group.key.driving_pressure_kPa)  # noqa: E731
@@ -234,7 +242,7 @@ def ageing(groups: Sequence[RunGroup], library: Library) -> tuple[AgeingChange, 
                 published = (
                     _published_sensitivity(resin, library) if _YEAR[0] <= group.key.age_days <= _YEAR[1] else None
                 )
-                changes.append((resin, pressure, group.key.age, *_change(fresh, group), published))
+                changes.append(AgeingChange(resin, pressure, group.key.age, *_change(fresh, group), published))
     return tuple(changes)
 
 
@@ -262,71 +270,61 @@ def _change(fresh: RunGroup, aged: RunGroup) -> tuple[float, float | None, float
     return value, value - half, value + half
 
 
-_INJECTION = ("sensor", "figure", "value", "standard_error", "unit")
-_CHANGE = ("sensitivity_change_percent", "low", "high", "published_change_one_year_percent")
-_AGEING = ("resin", "driving_pressure_kPa", "age", *_CHANGE)
-_VERDICT = ("what", "required", "measured", "passed")
-_OF_RUN = ("file", "kind", "sensor", "resin", "run", "driving_pressure_kPa", "age_days")
-
-
-def document(measured: CampaignReport) -> dict[str, Any]:
-    """A campaign as plain data."""
+def figures_of(measured: CampaignReport, read_as: tuple[ReadFiles, ...]) -> MeasuredCampaign:
+    """The figures of a campaign, measured and predicted; ``read_as`` are the layouts that were found."""
     campaign = measured.campaign
-    return {
-        "title": campaign.title,
-        "lab": campaign.lab,
-        "simulated": campaign.simulated,
-        "design": measured.scene.name,
-        "input_hash": measured.input_hash,
-        "model": measured.model,
-        "level": LEVEL,
-        "groups": [_group(comparison) for comparison in measured.comparisons],
-        "runs": [_run(*of) for b in measured.comparisons for of in zip(b.group.curves, b.group.each, strict=True)],
-        "injections": [dict(zip(_INJECTION, row, strict=True)) for row in measured.injections],
-        "ageing": [dict(zip(_AGEING, row, strict=True)) for row in measured.ageing],
-        "target": [{key: getattr(v, key) for key in _VERDICT} for v in measured.verdicts],
-        "questions": [{"file": file, "question": text} for file, text in measured.questions],
-        "failures": [{"file": file, "message": text} for file, text in measured.failures],
-    }
+    return MeasuredCampaign(
+        title=campaign.title,
+        lab=campaign.lab,
+        simulated=campaign.simulated,
+        design=measured.scene.name,
+        input_hash=measured.input_hash,
+        model=measured.model,
+        level=LEVEL,
+        groups=tuple(_group(comparison) for comparison in measured.comparisons),
+        runs=tuple(_run(*of) for b in measured.comparisons for of in zip(b.group.curves, b.group.each, strict=True)),
+        injections=measured.injections,
+        ageing=measured.ageing,
+        target=measured.verdicts,
+        questions=tuple(DataQuestion(*each) for each in measured.questions),
+        failures=tuple(FileFailure(*each) for each in measured.failures),
+        read_as=read_as,
+    )
 
 
-def _group(comparison: GroupComparison) -> dict[str, Any]:
+def _group(comparison: GroupComparison) -> MeasuredGroup:
     group = comparison.group
-    return {
-        "resin": group.key.resin,
-        "age": group.key.age,
-        "driving_pressure_kPa": group.key.driving_pressure_kPa,
-        "sensors": group.sensors,
-        "files": [curve.run.file for curve in group.curves],
-        "why_not_predicted": comparison.why or None,
-        "figures": {key: _figure(key, estimate, comparison) for key, estimate in group.figures.items()},
-    }
+    return MeasuredGroup(
+        group.key.resin,
+        group.key.age,
+        group.key.driving_pressure_kPa,
+        tuple(group.sensors),
+        tuple(curve.run.file for curve in group.curves),
+        comparison.why or None,
+        {key: _figure(key, estimate, comparison) for key, estimate in group.figures.items()},
+    )
 
 
-def _figure(key: str, estimate: Estimate, comparison: GroupComparison) -> dict[str, Any]:
-    figure: dict[str, Any] = {
-        "value": estimate.value,
-        "low": estimate.low,
-        "high": estimate.high,
-        "unit": BY_KEY[key].unit,
-        "specimens": estimate.specimens,
-        "runs": estimate.runs,
-        "interval_over": estimate.over or None,
-    }
+def _figure(key: str, estimate: Estimate, comparison: GroupComparison) -> CampaignFigure:
+    predicted = None
     if key in comparison.predicted:
         value, low, high = comparison.predicted[key]
-        off = 100 * (estimate.value / value - 1) if value else None
-        figure["predicted"] = {"value": value, "low": low, "high": high, "measured_off_percent": off}
-    return figure
+        predicted = PredictedFigure(value, low, high, 100 * (estimate.value / value - 1) if value else None)
+    over, unit = estimate.over or None, BY_KEY[key].unit
+    ends = estimate.value, estimate.low, estimate.high
+    return CampaignFigure(*ends, unit, estimate.specimens, estimate.runs, over, predicted)
 
 
-def _run(curve: MeasuredCurve, values: dict[str, float]) -> dict[str, Any]:
-    return {
-        **{key: getattr(curve.run, key) for key in _OF_RUN},
-        "points": len(curve.force) - 1,
-        "figures": dict(values),
-        "warnings": [
-            {"start_s": round(d.start, 4), "end_s": round(d.end, 4), "why": d.why, "used": d.used, "kind": d.kind}
-            for d in curve.warnings
-        ],
-    }
+def of_run(run: CampaignRun) -> tuple[str, RunKind, str, str, int, float, float]:
+    """The fields of `RunOfSensor`."""
+    return run.file, run.kind, run.sensor, run.resin, run.run, run.driving_pressure_kPa, run.age_days
+
+
+def _run(curve: MeasuredCurve, values: dict[str, float]) -> MeasuredRun:
+    warnings = (RunWarning(*doubtful(each), each.kind) for each in curve.warnings)
+    return MeasuredRun(*of_run(curve.run), len(curve.force) - 1, values, tuple(warnings))
+
+
+def doubtful(part: SuspectInterval) -> tuple[float, float, str, bool]:
+    """The fields of `DoubtfulPart`."""
+    return round(part.start, 4), round(part.end, 4), part.why, part.used

@@ -1,0 +1,238 @@
+"""A calibration: the output of ``calibrate`` and the content of ``calibration.json``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from pneutouch.results.measured import ReadFiles
+
+
+@dataclass(frozen=True, slots=True)
+class PriorRecord:
+    """Prior of a parameter, and whether it counted."""
+
+    counted: bool
+    """True if the prior counted."""
+    standard_deviation: float
+    """Standard deviation."""
+    relative: bool
+    """True if it is relative."""
+    source: str
+    """Source of the prior."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EstimateRecord:
+    """A fitted parameter in the unit that it leaves with; without an interval where the runs give none."""
+
+    parameter: str
+    """The parameter in words."""
+    key: str
+    """Name with unit."""
+    unit: str
+    """Unit of the value."""
+    value: float
+    """Value."""
+    interval_95: tuple[float, float] | None
+    """Ends of the 95 % interval; null: the runs give none."""
+    on_bound: bool
+    """True if the fit ended on a bound."""
+    designed: float
+    """Value of the design."""
+    prior: PriorRecord
+    """Value and standard deviation before the fit."""
+
+
+@dataclass(frozen=True, slots=True)
+class CorrelationRecord:
+    """The correlation matrix of the fitted parameters, None if unknown."""
+
+    parameters: tuple[str, ...]
+    """Parameters in order."""
+    matrix: tuple[tuple[float | None, ...], ...]
+    """Correlation matrix; null: not known."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GoodnessRecord:
+    """Goodness of the fit of the model to the runs."""
+
+    chi_squared: float
+    """Sum of the squared residuals over their variances."""
+    degrees_of_freedom: int
+    """Effective degrees of freedom; null: infinite."""
+    chi_squared_per_degree: float | None
+    """The same over the degrees of freedom."""
+    points_used: int
+    """Points that were used."""
+    points_left_out: int
+    """Points that were left out."""
+    scatter_over_stated: Mapping[str, float]
+    """Scatter of the readings over the stated one, by channel."""
+    model_leaves_out_share_of_reading: Mapping[str, float]
+    """Part of the reading that the model leaves out, by channel."""
+    considered: tuple[str, ...]
+    """Sources that the fit counts."""
+    variance_of_runs_over_points: float
+    """Variance between runs over that between points."""
+    interval_from_runs: bool
+    """True if the intervals follow from the scatter of the runs."""
+
+
+@dataclass(frozen=True, slots=True)
+class ResponseRecord:
+    """The correction of the fitted model at a driving pressure, and its standard uncertainties."""
+
+    driving_pressure_kPa: float
+    """Gauge pressure before contact."""
+    force_factor: float
+    """Measured force over that of the fitted model."""
+    pressure_factor: float
+    """Measured pressure rise over that of the fitted model."""
+    sensitivity_error_relative: float
+    """Standard uncertainty of the corrected sensitivity."""
+    force_error_relative: float
+    """Standard uncertainty of the corrected force."""
+
+
+@dataclass(frozen=True, slots=True)
+class MissRecord:
+    """A stretch of travel, and the greatest mean residual in it over full scale."""
+
+    driving_pressure_kPa: float
+    """Gauge pressure before contact."""
+    channel: str
+    """Channel of the record."""
+    from_mm: float
+    """Start of the stretch of travel."""
+    to_mm: float
+    """End of the stretch of travel."""
+    share: float
+    """Greatest mean residual over full scale."""
+
+
+@dataclass(frozen=True, slots=True)
+class ResidualRecord:
+    """Root mean square residuals of a run over full scale."""
+
+    run: str
+    """Name of the run."""
+    driving_pressure_kPa: float | None
+    """Gauge pressure before contact."""
+    force_share_of_full_scale: float | None
+    """Root mean square residual of the force."""
+    pressure_share_of_full_scale: float | None
+    """Root mean square residual of the pressure rise."""
+
+
+@dataclass(frozen=True, slots=True)
+class CorrelatedRecord:
+    """Strongly correlated parameters: the runs determine them together better than each."""
+
+    parameters: tuple[str, ...]
+    """Parameters in order."""
+    correlation: float
+    """Correlation."""
+    standard_deviation_alone: tuple[float | None, ...]
+    """Standard deviations if each were fitted alone."""
+    standard_deviation_others_known: tuple[float | None, ...]
+    """Standard deviations if the others were known."""
+    modulus_times_wall_to_the: float | None
+    """Power of the wall in the combination that is known well; null: not of modulus and wall."""
+
+
+@dataclass(frozen=True, slots=True)
+class FurtherRecord:
+    """A proposed test, and the 95 % intervals then expected."""
+
+    test: str
+    """The test in words."""
+    widest_interval_shrinks: float
+    """Factor by which the widest interval would shrink."""
+    expected_half_widths: Mapping[str, float | None]
+    """Half widths then expected, by parameter."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeldOutRecord:
+    """A driving pressure that was held out; errors of the curves are shares of full scale."""
+
+    driving_pressure_kPa: float
+    """Gauge pressure before contact."""
+    sensitivity_measured_kPa_per_N: float
+    """Measured sensitivity."""
+    sensitivity_predicted_kPa_per_N: float
+    """Sensitivity predicted without this pressure's runs."""
+    sensitivity_error: float
+    """Predicted over measured, less 1."""
+    force_rms_share: float
+    """Root mean square error of the force over full scale."""
+    force_greatest_share: float
+    """Greatest error of the force over full scale."""
+    pressure_rms_share: float
+    """Root mean square error of the pressure rise over full scale."""
+    pressure_greatest_share: float
+    """Greatest error of the pressure rise over full scale."""
+    points: int
+    """Number of points."""
+    points_left_out: int
+    """Points that were left out."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CalibrationRecord:
+    """A calibration of a sensor: its parameters, its data and its goodness."""
+
+    design: str
+    """Name of the design."""
+    sensor: str
+    """Name of the specimen."""
+    campaign: str
+    """Title of the campaign."""
+    runs: int
+    """Number of runs."""
+    injections: int
+    """Number of injection runs."""
+    driving_pressures_kPa: tuple[float, ...]
+    """Gauge pressures before contact."""
+    ambient_pressure_kPa: float
+    """Absolute pressure around the sensor."""
+    estimates: tuple[EstimateRecord, ...]
+    """Fitted parameters."""
+    correlation: CorrelationRecord
+    """Correlation."""
+    fit: GoodnessRecord
+    """Goodness of the fit."""
+    response: tuple[ResponseRecord, ...]
+    """Corrections by driving pressure."""
+    residuals: tuple[ResidualRecord, ...]
+    """Residuals of each run."""
+    misses: tuple[MissRecord, ...]
+    """Stretches of travel where the model misses."""
+    strongly_correlated: tuple[CorrelatedRecord, ...]
+    """Parameters that the runs cannot separate."""
+    unidentified: tuple[str, ...]
+    """Parameters that the runs do not show."""
+    further_tests: tuple[FurtherRecord, ...]
+    """Tests that would show more."""
+    held_out: tuple[HeldOutRecord, ...]
+    """Driving pressures that were held out."""
+    warnings: tuple[str, ...]
+    """Doubtful parts."""
+    notes: tuple[str, ...]
+    """Notes in words."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OutcomeRecord(CalibrationRecord):
+    """A calibration as ``calibrate`` prints it."""
+
+    calibration: str | None
+    """Name that it was saved by; null: it was not."""
+    written: tuple[str, ...]
+    """Files that were written."""
+    failures: tuple[tuple[str, str], ...]
+    """Files that could not be used."""
+    read_as: tuple[ReadFiles, ...]
+    """Columns and formats that were found by the look of the files."""
