@@ -208,4 +208,4 @@ def test_injected_air_obeys_boyle_with_the_swelling_cavity(pressed):
 def test_every_parameter_has_a_unit_and_a_reason():
     for model in (ScatterModel(), RigModel(), WallMemory()):
         for name, record_ in parameters(model).items():
-            assert record_["unit"] and len(record_["reason"]) > 10, name
+            assert record_.unit and len(record_.reason) > 10, name

@@ -10,7 +10,6 @@ from typer.testing import CliRunner
 
 from pneutouch.cli import plan, simulate
 from pneutouch.cli.app import app
-from pneutouch.cli.plan import plan_text
 from pneutouch.formats import format_of
 
 assert plan and simulate
@@ -35,7 +34,7 @@ def test_plan_prints_its_document_and_warns_on_stderr(tmp_path):
     for warning in said["warnings"]:
         assert f"warning: {warning['rule']}: {warning['message']}" in result.stderr
 
-    text = plan_text(written).splitlines()
+    text = run(*words[:-1]).stdout.split("\n\n" + str(tmp_path))[0].splitlines()
     rows = [re.split(" {2,}", row) for row in text[3 : text.index("", 3)]]
     assert rows.pop() == ["all", "26"]
     assert [row[0] for row in rows] == ["leak", "injection", "steps", "loop", "saturation", "relaxation"]

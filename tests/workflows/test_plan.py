@@ -44,44 +44,42 @@ def found(subject):
 
 
 def test_runs_last_as_long_as_their_protocols_and_the_plan_as_its_runs(plan):
-    runs = plan.document["runs"]
+    runs = plan.record.runs
     for run in runs:
-        assert run["duration_s"] == pytest.approx(sum(step["seconds"] for step in run["steps"]))
-        if run["kind"] in PLATED:
-            assert run["duration_s"] == pytest.approx(protocol(run["kind"], R0).duration, rel=1e-12), run["file"]
-    assert plan.document["total_s"] == pytest.approx(sum(run["duration_s"] for run in runs))
-    assert [run["number"] for run in runs] == list(range(1, len(runs) + 1))
+        assert run.duration_s == pytest.approx(sum(step.seconds for step in run.steps))
+        if run.kind in PLATED:
+            assert run.duration_s == pytest.approx(protocol(run.kind, R0).duration, rel=1e-12), run.file
+    assert plan.record.total_s == pytest.approx(sum(run.duration_s for run in runs))
+    assert [run.number for run in runs] == list(range(1, len(runs) + 1))
 
 
 def test_plan_holds_the_papers_tests(plan):
     """Sections 3-B and 3-C and Supplement D: three runs at each pressure, saturation at 0 and 12, relaxation 600 s."""
-    mine = [run for run in plan.document["runs"] if run["sensor"] == "TangoPlus-1"]
+    mine = [run for run in plan.record.runs if run.sensor == "TangoPlus-1"]
 
     def at(kind: str) -> list[tuple[float, int]]:
-        return [(run["driving_pressure_kPa"], run["run"]) for run in mine if run["kind"] == kind]
+        return [(run.driving_pressure_kPa, run.run) for run in mine if run.kind == kind]
 
     assert at("steps") == [(p, n) for p in (0, 5, 12, 22) for n in (1, 2, 3)]
     assert at("saturation") == [(p, n) for p in (0, 12) for n in (1, 2, 3)]
     assert at("relaxation") == [(0, 1), (22, 1)] and at("leak") == [(22, 1)] and at("injection") == [(0, 1)]
-    assert mine[0]["kind"] == "leak" and mine[-1]["kind"] == "relaxation"
-    assert plan.document["tests"]["relaxation"]["hold_s"] == 600 and plan.document["tests"]["saturation"]["rest_s"] == 2
+    assert mine[0].kind == "leak" and mine[-1].kind == "relaxation"
+    assert plan.record.tests["relaxation"].hold_s == 600 and plan.record.tests["saturation"].rest_s == 2
 
 
 def test_steps_follow_the_plate(plan):
     """The moves of a run lead to the protocol's depths, each from the clearance and back, after a rest with reset."""
     test = protocol("steps", R0)
     steps = steps_of(test, 12.0, Rig())
-    assert [s["value"] for s in steps if s["action"] == "move"] == [v for d in test.depths for v in (d, -1.0)]
-    assert sum(s["action"] == "vent" for s in steps) == len(test.depths)
-    assert {s["value"] for s in steps if s["action"] == "set_pressure"} == {12.0}
+    assert [s.value for s in steps if s.action == "move"] == [v for d in test.depths for v in (d, -1.0)]
+    assert sum(s.action == "vent" for s in steps) == len(test.depths)
+    assert {s.value for s in steps if s.action == "set_pressure"} == {12.0}
     loop = steps_of(protocol("loop", R0), 12.0, Rig())
-    assert sum(s["action"] == "set_pressure" for s in loop) == 1 and not any(
-        s["action"] in ("vent", "hold") for s in loop
-    )
-    times = np.cumsum([0.0] + [s["seconds"] for s in steps])
+    assert sum(s.action == "set_pressure" for s in loop) == 1 and not any(s.action in ("vent", "hold") for s in loop)
+    times = np.cumsum([0.0] + [s.seconds for s in steps])
     travels = [-1.0]
     for step in steps:
-        travels.append(step["value"] if step["action"] in ("move", "hold") else travels[-1])
+        travels.append(step.value if step.action in ("move", "hold") else travels[-1])
     knots, way = test.knots()
     assert np.interp(knots + 1e-9, times, travels)[1:-1] == pytest.approx(way[1:-1], abs=1e-6)
 
@@ -89,9 +87,9 @@ def test_steps_follow_the_plate(plan):
 def test_expected_values_are_the_prediction_and_end_with_it(found):
     curve = found.curves[0]
     said = points(curve, (*curve.indentation[1:-1], curve.reach + 0.2))
-    assert [p["force_N"] for p in said[:-1]] == pytest.approx(curve.force[1:-1], rel=1e-12)
-    assert [p["cavity_pressure_kPa"] for p in said[:-1]] == pytest.approx(curve.rise[1:-1] / KPA, rel=1e-12)
-    assert said[-1]["force_N"] is None and said[-1]["cavity_pressure_kPa"] is None
+    assert [p.force_N for p in said[:-1]] == pytest.approx(curve.force[1:-1], rel=1e-12)
+    assert [p.cavity_pressure_kPa for p in said[:-1]] == pytest.approx(curve.rise[1:-1] / KPA, rel=1e-12)
+    assert said[-1].force_N is None and said[-1].cavity_pressure_kPa is None
 
 
 def test_warnings_appear_exactly_where_a_range_is_passed(found, rating):
@@ -100,8 +98,8 @@ def test_warnings_appear_exactly_where_a_range_is_passed(found, rating):
     rating = replace(rating, pressure=23 * KPA)
     curve, tests = found.curves[1], {"saturation": protocol("saturation", R0)}
     said = points(curve, tests["saturation"].depths)
-    force, pressure = said[-1]["force_N"], said[-1]["cavity_pressure_kPa"]
-    first = said[0]["force_N"]
+    force, pressure = said[-1].force_N, said[-1].cavity_pressure_kPa
+    first = said[0].force_N
 
     def rules(**rig: float) -> list[str]:
         return [w.rule for w in curve_warnings("x", rating, curve, tests, Rig(**rig))]
@@ -112,8 +110,8 @@ def test_warnings_appear_exactly_where_a_range_is_passed(found, rating):
     assert rules(pressure_range_kPa=pressure * 0.9999) == ["pressure range"]
     assert rules(force_resolution_N=first / 3 * 0.9999) == []
     assert rules(force_resolution_N=first / 3 * 1.0001) == ["force resolution"]
-    middle = curve_warnings("x", rating, curve, tests, Rig(force_range_N=said[9]["force_N"] * 0.999))[0]
-    assert middle.depth_mm == said[9]["depth_mm"] and f"stop at {said[8]['depth_mm']:g} mm" in middle.message
+    middle = curve_warnings("x", rating, curve, tests, Rig(force_range_N=said[9].force_N * 0.999))[0]
+    assert middle.depth_mm == said[9].depth_mm and f"stop at {said[8].depth_mm:g} mm" in middle.message
 
 
 def test_warning_of_the_range_end_names_where_and_why(found, rating):
@@ -148,12 +146,12 @@ def test_warning_of_the_travel_counts_the_clearance():
 
 def test_dead_volume_follows_from_the_pressure_expected_of_the_line(found, rating, subject):
     said = injection(found, rating, Rig())
-    dead = 101.325 * said["line_volume_mL"] / said["line_pressure_kPa"]
+    dead = 101.325 * said.line_volume_mL / said.line_pressure_kPa
     assert dead == pytest.approx(subject.sensor.gas.dead_volume / ML, rel=1e-9)
-    assert said["line_pressure_kPa"] <= 80 < 2.5 * said["line_pressure_kPa"]
-    for row in said["sensor"]:
-        assert row["with_more_dead_volume_kPa"] < row["pressure_kPa"] < row["without_dead_volume_kPa"]
-    assert said["sensor"][-1]["volume_mL"] == pytest.approx(said["sensor_volume_mL"])
+    assert said.line_pressure_kPa <= 80 < 2.5 * said.line_pressure_kPa
+    for row in said.sensor:
+        assert row.with_more_dead_volume_kPa < row.pressure_kPa < row.without_dead_volume_kPa
+    assert said.sensor[-1].volume_mL == pytest.approx(said.sensor_volume_mL)
 
 
 def test_leak_limit_takes_a_hundredth_of_the_first_rise():
@@ -176,14 +174,14 @@ def test_campaign_file_reads_back_as_it_was_planned(plan, tmp_path):
 
 def test_sheet_shows_every_run_warning_and_expected_value(plan):
     sheet = plan.sheet
-    for run in plan.document["runs"]:
-        assert sheet.count(f"`{run['file'].removeprefix('runs/')}`") == 1
-    for warning in plan.document["warnings"]:
-        assert warning["message"] in sheet
-    state = plan.document["resins"][0]["states"][0]
-    known = [p for p in state["points"] if p["force_N"] is not None]
-    assert all(f"| {p['force_N']:.2f} | {p['pressure_rise_kPa']:.2f} |" in sheet for p in known)
-    assert len(known) < len(state["points"]) and "| – | – |" in sheet
+    for run in plan.record.runs:
+        assert sheet.count(f"`{run.file.removeprefix('runs/')}`") == 1
+    for warning in plan.record.warnings:
+        assert warning.message in sheet
+    state = plan.record.resins[0].states[0]
+    known = [p for p in state.points if p.force_N is not None]
+    assert all(f"| {p.force_N:.2f} | {p.pressure_rise_kPa:.2f} |" in sheet for p in known)
+    assert len(known) < len(state.points) and "| – | – |" in sheet
     # Every row of a table has as many cells as its head.
     for block in sheet.split("\n\n"):
         rows = [line for line in block.splitlines() if line.startswith("|")]
@@ -201,16 +199,16 @@ def test_what_the_plan_chooses_stays_below_the_rating_and_the_design_s_own_press
     tests = plated_tests(subject, subject.rating.pressure_kPa)
     assert subject.rating.pressure_kPa == 19.7 and tests["saturation"][1] == (0.0, 12.0)
     changes = {"membrane.wall_thickness_mm": 0.8, "pneumatics.driving_pressures_kPa": [0, 20]}
-    thin = make_plan("long-tube", changes, specimens=1, library=library).document
-    (resin,) = thin["resins"]
-    rated = resin["rating"]["rated_pressure_kPa"]
+    thin = make_plan("long-tube", changes, specimens=1, library=library).record
+    (resin,) = thin.resins
+    rated = resin.rating["rated_pressure_kPa"]
     assert 9.0 < rated < 12.0
-    saturation = max(thin["tests"]["saturation"]["driving_pressures_kPa"])
+    saturation = max(thin.tests["saturation"].driving_pressures_kPa)
     assert rated - 0.1 < saturation <= rated
-    assert resin["injection"]["sensor"][-1]["without_dead_volume_kPa"] <= 0.5 * rated
-    own = {run["driving_pressure_kPa"] for run in thin["runs"] if run["kind"] == "steps"}
+    assert resin.injection.sensor[-1].without_dead_volume_kPa <= 0.5 * rated
+    own = {run.driving_pressure_kPa for run in thin.runs if run.kind == "steps"}
     assert own == {0.0, 20.0}
-    assert {w["driving_pressure_kPa"] for w in thin["warnings"] if w["rule"] == "rated pressure"} == {20.0}
+    assert {w.driving_pressure_kPa for w in thin.warnings if w.rule == "rated pressure"} == {20.0}
 
 
 def test_a_driving_pressure_above_the_nominal_limit_is_refused_with_key_and_rating(library):

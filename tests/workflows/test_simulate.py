@@ -223,9 +223,9 @@ def test_a_plan_is_simulated_run_by_run(planned, library, tmp_path):
 def test_the_air_that_a_plan_states_is_pushed(library, tmp_path):
     """As many rows as the plan has pushes, at its volumes, with the pressures that its sheet foretells."""
     plan = make_plan("paper-dome", specimens=1, library=library)
-    expected = plan.document["resins"][0]["injection"]["sensor"]
+    expected = plan.record.resins[0].injection.sensor
     (run,) = [run for run in plan.campaign.runs if run.kind == "injection"]
-    assert run.volumes_mL == pytest.approx([row["volume_mL"] for row in expected])
+    assert run.volumes_mL == pytest.approx([row.volume_mL for row in expected])
     alone = plan.campaign.model_copy(update={"runs": [run]})
     made = simulate(str(write_plan(replace(plan, campaign=alone), tmp_path)), tmp_path, None, QUICK, library)
     (written,) = campaign_of(made)[0].runs
@@ -233,7 +233,7 @@ def test_the_air_that_a_plan_states_is_pushed(library, tmp_path):
     assert written.volumes_mL == run.volumes_mL
     assert rows[:, 0] == pytest.approx(run.volumes_mL)
     # The specimen differs from the design by its scatter.
-    assert rows[:, 1] == pytest.approx([row["pressure_kPa"] for row in expected], rel=0.25)
+    assert rows[:, 1] == pytest.approx([row.pressure_kPa for row in expected], rel=0.25)
 
 
 def test_volumes_are_stated_of_an_injection_alone(planned, library, tmp_path):

@@ -72,7 +72,7 @@ def plan(
             rig=rig_of(file),
             rig_name="" if file is None else file.name,
         )
-    return Result(f"Plan {outcome.name}", outcome.document, partial(write_plan, outcome))
+    return Result(f"Plan {outcome.name}", plain(outcome.record), partial(write_plan, outcome))
 
 
 def simulate(

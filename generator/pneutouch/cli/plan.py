@@ -3,8 +3,9 @@
 A test plan as text for people.
 """
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -24,6 +25,9 @@ from pneutouch.cli.simulate import SPECIMENS, ResinsOption, SpecimensOption, wor
 from pneutouch.cli.terminal import echo, notify, report_next, table_text
 from pneutouch.wording import counted
 
+if TYPE_CHECKING:
+    from pneutouch.results.plan import PlannedCampaign
+
 
 @app.command()
 def plan(
@@ -41,6 +45,7 @@ def plan(
 ) -> None:
     """Plan a measurement campaign: every run and step, what it must read, and where the rig cannot follow."""
     with reporting():
+        from pneutouch.results.record import plain
         from pneutouch.workflows.plan import make_plan, rig_of, write_plan
 
         with bar("planning the runs"):
@@ -53,41 +58,40 @@ def plan(
                 rig_name="" if rig is None else rig.name,
             )
             folder = write_plan(result, out)
-        for warning in result.document["warnings"]:
-            notify(f"warning: {warning['rule']}: {warning['message']}")
+        for warning in result.record.warnings:
+            notify(f"warning: {warning.rule}: {warning.message}")
         if json:
-            print_json({**result.document, "folder": str(folder)})
+            print_json(plain(replace(result.record, folder=str(folder))))
         else:
-            echo(plan_text(result.document))
+            echo(plan_text(result.record))
             echo(f"\n{folder}")
             report_next("simulate", folder)
 
 
-def plan_text(document: dict[str, Any]) -> str:
+def plan_text(plan: "PlannedCampaign") -> str:
     """The tests with their times, and the greatest values expected of each resin at each driving pressure."""
-    tests = _tests(document)
+    tests = _tests(plan)
     rows = []
-    for resin in document["resins"]:
-        for state in resin["states"]:
-            known = [point for point in state["points"] if point["force_N"] is not None]
+    for resin in plan.resins:
+        for state in resin.states:
+            known = [point for point in state.points if point.force_N is not None]
             last = known[-1] if known else None
             rows.append(
                 [
-                    resin["resin"],
-                    f"{state['driving_pressure_kPa']:g}",
+                    resin.resin,
+                    f"{state.driving_pressure_kPa:g}",
                     *(
                         ["-"] * 3
                         if last is None
-                        else [f"{last[key]:.2f}" for key in ("depth_mm", "force_N", "pressure_rise_kPa")]
+                        else [f"{getattr(last, key):.2f}" for key in ("depth_mm", "force_N", "pressure_rise_kPa")]
                     ),
-                    resin["model"],
+                    resin.model,
                 ]
             )
-    runs, sensors = counted(len(document["runs"]), "run"), counted(len(document["sensors"]), "specimen")
+    runs, sensors = counted(len(plan.runs), "run"), counted(len(plan.sensors), "specimen")
     return "\n".join(
         [
-            f"{document['design']}: {runs} on {sensors}, {document['total_s'] / 3600:.1f} h on "
-            f"{document['rig']['name']}",
+            f"{plan.design}: {runs} on {sensors}, {plan.total_s / 3600:.1f} h on {plan.rig['name']}",
             "",
             table_text(["test", "at kPa", "runs at each", "specimens", "runs", "depth mm", "min a run"], tests),
             "",
@@ -96,14 +100,14 @@ def plan_text(document: dict[str, Any]) -> str:
     )
 
 
-def _tests(document: dict[str, Any]) -> list[list[str]]:
+def _tests(plan: "PlannedCampaign") -> list[list[str]]:
     """A row a kind of run, with how often it is run on all specimens, and their sum."""
     rows = []
-    for kind in dict.fromkeys(run["kind"] for run in document["runs"]):
-        runs = [run for run in document["runs"] if run["kind"] == kind]
-        pressures_kPa = sorted({run["driving_pressure_kPa"] for run in runs})
-        sensors = len({run["sensor"] for run in runs})
-        test = document["tests"].get(kind)
+    for kind in dict.fromkeys(run.kind for run in plan.runs):
+        runs = [run for run in plan.runs if run.kind == kind]
+        pressures_kPa = sorted({run.driving_pressure_kPa for run in runs})
+        sensors = len({run.sensor for run in runs})
+        test = plan.tests.get(kind)
         rows.append(
             [
                 kind,
@@ -111,8 +115,8 @@ def _tests(document: dict[str, Any]) -> list[list[str]]:
                 str(len(runs) // (len(pressures_kPa) * sensors)),
                 str(sensors),
                 str(len(runs)),
-                "-" if test is None else f"{max(test['depths_mm']):.2f}",
-                f"{runs[0]['duration_s'] / 60:.1f}",
+                "-" if test is None else f"{max(test.depths_mm):.2f}",
+                f"{runs[0].duration_s / 60:.1f}",
             ]
         )
-    return [*rows, ["all", "", "", "", str(len(document["runs"])), "", ""]]
+    return [*rows, ["all", "", "", "", str(len(plan.runs)), "", ""]]

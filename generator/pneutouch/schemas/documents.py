@@ -10,6 +10,7 @@ from pneutouch.results.fit import MaterialFit
 from pneutouch.results.measured import MeasuredCampaign
 from pneutouch.results.response import ResponseRecord
 from pneutouch.results.scan import ScanRecord
+from pneutouch.results.simulation import CampaignTruth
 from pneutouch.schemas.kind import DocumentKind
 from pneutouch.schemas.shape import Schema
 from pneutouch.schemas.typed import of_record
@@ -30,7 +31,7 @@ _DOCUMENTS: dict[str, tuple[type | str, str, str]] = {
     "fit": (MaterialFit, "A fitted material law", "`fit.json` of `fit-material`, `pneutouch fit-material --json`"),
     "response": (ResponseRecord, "A simulated signal", "`response.json` of `respond`, `pneutouch respond --json`"),
     "scan": (ScanRecord, "A scan of a specimen", "`scan.json` of `scan`, `pneutouch scan --json`"),
-    "truth": ("results.truth", "Truth of a simulated campaign", "`truth.json` of `simulate`"),
+    "truth": (CampaignTruth, "Truth of a simulated campaign", "`truth.json` of `simulate`"),
     "specimen-report": ("objects.specimen", "A built texture specimen", "`specimen.json` of `build`"),
     "stack": ("objects.stack", "A voxel stack", "`stack.json` of every stack for voxel printing"),
     "exported-design": (

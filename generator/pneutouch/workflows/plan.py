@@ -8,7 +8,6 @@ The steps of a planned run: the work of rig and hand, and its duration.
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypedDict
 
 from pneutouch.bench.protocol import CLEARANCE, REPETITIONS, RunProtocol, protocol
 from pneutouch.bench.simulate.curve import PressCurves
@@ -23,6 +22,17 @@ from pneutouch.formats import versioned
 from pneutouch.output.files import check_writable, json_bytes, with_manifest, write_folder
 from pneutouch.parts import assemble
 from pneutouch.report.plan_sheet import plan_sheet
+from pneutouch.results.plan import (
+    ExpectedPoint,
+    PlannedCampaign,
+    PlannedResin,
+    PlannedRun,
+    PlannedSpecimen,
+    PlannedState,
+    PlannedStep,
+    PlannedTest,
+    PlanViolation,
+)
 from pneutouch.results.record import plain
 from pneutouch.spec.campaign import Campaign, CampaignRun, Rig, RunKind
 from pneutouch.spec.read import Changes, assignments, read_toml, validate
@@ -45,56 +55,45 @@ _REST = (("wait", 0.2), ("vent", 0.2), ("set_pressure", 0.2), ("wait", 0.4))
 """A rest with reset, in shares of it: our choice; the last share lets the pressure settle."""
 
 
-class StepRecord(TypedDict):
-    """One step: the action, the value that it sets in ``unit`` (None if it sets none), and its seconds."""
-
-    action: str
-    value: float | None
-    unit: str
-    seconds: float
-
-
-def _step(action: str, value: float | None, unit: str, seconds: float) -> StepRecord:
-    return {"action": action, "value": value, "unit": unit, "seconds": seconds}
-
-
-def steps_of(test: RunProtocol, pressure_kPa: float, rig: Rig) -> list[StepRecord]:
+def steps_of(test: RunProtocol, pressure_kPa: float, rig: Rig) -> list[PlannedStep]:
     """Steps of rig and hand in one run with a plate; travels count from first contact, below zero the plate is
     clear."""
-    steps = [_step("record", rig.rate_Hz, "Hz", 0.0)]
+    steps = [PlannedStep("record", rig.rate_Hz, "Hz", 0.0)]
     for k, depth in enumerate(test.depths):
         if test.reset:
             values = {"wait": (None, ""), "vent": (0.0, "kPa"), "set_pressure": (pressure_kPa, "kPa")}
-            steps += [_step(action, *values[action], share * test.rest) for action, share in _REST]
+            steps += [PlannedStep(action, *values[action], share * test.rest) for action, share in _REST]
         else:
             steps.append(
-                _step("set_pressure", pressure_kPa, "kPa", test.rest) if k == 0 else _step("wait", None, "", test.rest)
+                PlannedStep("set_pressure", pressure_kPa, "kPa", test.rest)
+                if k == 0
+                else PlannedStep("wait", None, "", test.rest)
             )
         seconds = (depth + CLEARANCE) / test.speed
-        steps.append(_step("move", depth, "mm", seconds))
+        steps.append(PlannedStep("move", depth, "mm", seconds))
         if test.hold > 0:
-            steps.append(_step("hold", depth, "mm", test.hold))
-        steps.append(_step("move", -CLEARANCE, "mm", seconds))
+            steps.append(PlannedStep("hold", depth, "mm", test.hold))
+        steps.append(PlannedStep("move", -CLEARANCE, "mm", seconds))
     return steps
 
 
-def leak_steps(pressure_kPa: float, rig: Rig) -> list[StepRecord]:
+def leak_steps(pressure_kPa: float, rig: Rig) -> list[PlannedStep]:
     """Steps of one leak run: the line is filled, closed and left alone."""
     return [
-        _step("set_pressure", pressure_kPa, "kPa", FILL),
-        _step("record", rig.rate_Hz, "Hz", 0.0),
-        _step("wait", None, "", LEAK_SECONDS),
+        PlannedStep("set_pressure", pressure_kPa, "kPa", FILL),
+        PlannedStep("record", rig.rate_Hz, "Hz", 0.0),
+        PlannedStep("wait", None, "", LEAK_SECONDS),
     ]
 
 
-def injection_steps(volume_mL: float) -> list[StepRecord]:
+def injection_steps(volume_mL: float) -> list[PlannedStep]:
     """Steps of one injection run: ``volume_mL`` in five equal parts, each read after it has settled."""
-    steps = [_step("vent", 0.0, "kPa", SETTLE)]
+    steps = [PlannedStep("vent", 0.0, "kPa", SETTLE)]
     for share in (0.2, 0.4, 0.6, 0.8, 1.0):
         steps += [
-            _step("inject", round(share * volume_mL, 9), "mL", PUSH),
-            _step("wait", None, "", SETTLE),
-            _step("record", None, "", 0.0),
+            PlannedStep("inject", round(share * volume_mL, 9), "mL", PUSH),
+            PlannedStep("wait", None, "", SETTLE),
+            PlannedStep("record", None, "", 0.0),
         ]
     return steps
 
@@ -107,17 +106,21 @@ SATURATION = (0.0, 12.0)
 
 @dataclass(frozen=True)
 class CampaignPlan:
-    """A plan as data (`document`), as a campaign file to be filled and as a sheet to be printed."""
+    """A plan, and the campaign file to be filled, with the files that it needs."""
 
-    name: str
-    document: dict[str, Any]
+    record: PlannedCampaign
     campaign: Campaign
     copied: dict[str, bytes]
 
     @property
+    def name(self) -> str:
+        """Name of the folder."""
+        return self.record.name
+
+    @property
     def sheet(self) -> str:
         """Markdown for the laboratory."""
-        return plan_sheet(self.document)
+        return plan_sheet(self.record)
 
 
 def rig_of(file: Path | None) -> Rig:
@@ -167,34 +170,34 @@ def make_plan(
         refuse_above_limits(subject.name, subject.rating, scene)
     tests = plated_tests(subjects[0], min(s.rating.pressure_kPa for s in subjects))
     curves = {s.name: _pressed(s, tests) for s in subjects}
-    listed: list[dict[str, Any]] = []
+    listed: list[PlannedRun] = []
     for subject in subjects:
         for k in range(specimens):
             listed += _runs(subject, f"{subject.name}-{k + 1}", tests, curves[subject.name], rig, len(listed))
-    warnings = [w.document() for s in subjects for w in _warnings(s, curves[s.name], tests, rig)]
+    warnings = [w for s in subjects for w in _warnings(s, curves[s.name], tests, rig)]
     depths = tuple(depth for test, _ in tests.values() for depth in test.depths)
     pneumatics, membrane = scene.design.pneumatics, scene.design.membrane
-    idealised = assemble(scene).dead_volume_note
-    document = {
-        "name": f"{scene.name}-plan",
-        "design": scene.name,
-        "title": scene.design.document.title,
-        "inner_radius_mm": membrane.inner_radius_mm,
-        "wall_thickness_mm": membrane.wall_thickness_mm,
-        "ambient_pressure_kPa": pneumatics.ambient_pressure_kPa,
-        "driving_pressures_kPa": pneumatics.driving_pressures_kPa,
-        "dead_volume_mL": subjects[0].sensor.gas.dead_volume / ML,
-        **(({"dead_volume_note": idealised} if idealised else {}) | contact_document(scene)),
-        "clearance_mm": CLEARANCE,
-        "plate_diameter_mm": scene.design.indentation.plate_diameter_mm,
-        "rig": {**rig.model_dump(mode="json"), "file": rig_name or None},
-        "sensors": [{"sensor": f"{s.name}-{k + 1}", "resin": s.name} for s in subjects for k in range(specimens)],
-        "resins": [_expected(s, curves[s.name], tests, rig) for s in subjects],
-        "tests": {kind: _test(kind, *test) for kind, test in tests.items()},
-        "runs": listed,
-        "total_s": sum(run["duration_s"] for run in listed),
-        "warnings": [w.document() for w in travel_warnings(depths, rig)] + warnings,
-    }
+    record = PlannedCampaign(
+        name=f"{scene.name}-plan",
+        design=scene.name,
+        title=scene.design.document.title,
+        inner_radius_mm=membrane.inner_radius_mm,
+        wall_thickness_mm=membrane.wall_thickness_mm,
+        ambient_pressure_kPa=pneumatics.ambient_pressure_kPa,
+        driving_pressures_kPa=tuple(pneumatics.driving_pressures_kPa),
+        dead_volume_mL=subjects[0].sensor.gas.dead_volume / ML,
+        dead_volume_note=assemble(scene).dead_volume_note or None,
+        contact=contact_document(scene).get("contact"),
+        clearance_mm=CLEARANCE,
+        plate_diameter_mm=scene.design.indentation.plate_diameter_mm,
+        rig={**rig.model_dump(mode="json"), "file": rig_name or None},
+        sensors=tuple(PlannedSpecimen(f"{s.name}-{k + 1}", s.name) for s in subjects for k in range(specimens)),
+        resins=tuple(_expected(s, curves[s.name], tests, rig) for s in subjects),
+        tests={kind: _test(kind, *test) for kind, test in tests.items()},
+        runs=tuple(listed),
+        total_s=sum(run.duration_s for run in listed),
+        warnings=(*travel_warnings(depths, rig), *warnings),
+    )
     campaign = Campaign(
         title=f"Campaign of {scene.design.document.title}"[:120],
         design=named,
@@ -203,28 +206,26 @@ def make_plan(
         rig=rig,
         runs=[_campaign_run(run) for run in listed],
     )
-    return CampaignPlan(str(document["name"]), document, campaign, copied)
+    return CampaignPlan(record, campaign, copied)
 
 
-def _campaign_run(run: Mapping[str, Any]) -> CampaignRun:
+def _campaign_run(run: PlannedRun) -> CampaignRun:
     """A run of the plan in the campaign's file."""
-    keys = ("file", "kind", "sensor", "resin", "driving_pressure_kPa", "run")
-    volumes_mL = [step["value"] for step in run["steps"] if step["action"] == "inject"]
-    return CampaignRun(**{key: run[key] for key in keys}, volumes_mL=volumes_mL or None)
+    volumes_mL = [step.value for step in run.steps if step.action == "inject" and step.value is not None]
+    return CampaignRun(
+        file=run.file,
+        kind=run.kind,
+        sensor=run.sensor,
+        resin=run.resin,
+        driving_pressure_kPa=run.driving_pressure_kPa,
+        run=run.run,
+        volumes_mL=volumes_mL or None,
+    )
 
 
-def _test(kind: str, test: RunProtocol, driving_pressures_kPa: tuple[float, ...]) -> dict[str, Any]:
-    """A kind of run as data."""
-    return {
-        "depths_mm": list(test.depths),
-        "hold_s": test.hold,
-        "rest_s": test.rest,
-        "reset": test.reset,
-        "speed_mm_per_s": test.speed,
-        "duration_s": test.duration,
-        "driving_pressures_kPa": list(driving_pressures_kPa),
-        "runs": _times(kind),
-    }
+def _test(kind: str, test: RunProtocol, driving_pressures_kPa: tuple[float, ...]) -> PlannedTest:
+    times = test.hold, test.rest, test.reset, test.speed, test.duration
+    return PlannedTest(test.depths, *times, driving_pressures_kPa, _times(kind))
 
 
 def write_plan(plan: CampaignPlan, out: Path) -> Path:
@@ -232,13 +233,14 @@ def write_plan(plan: CampaignPlan, out: Path) -> Path:
     folder = out / plan.name
     check_writable(folder)
     note = "# Fill in lab, and date and age_days of every run; measured files go to the path in `file`."
+    document = plain(plan.record)
     files = {
-        "plan.json": json_bytes(versioned("plan", plan.document)),
+        "plan.json": json_bytes(versioned("plan", document)),
         "plan.md": plan.sheet.encode(),
         "campaign.toml": campaign_toml(plan.campaign, note),
         **plan.copied,
     }
-    inputs = {key: plan.document[key] for key in ("design", "rig", "sensors", "tests")}
+    inputs = {key: document[key] for key in ("design", "rig", "sensors", "tests")}
     write_folder(folder, with_manifest(files, plan.name, inputs))
     return folder
 
@@ -272,7 +274,7 @@ def _pressed(subject: SimulatedResin, tests: Tests) -> PressCurves:
     return pressed(subject.name, subject.sensor, [p * KPA for p in pressures_kPa], depth, "auto")
 
 
-def _warnings(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests, rig: Rig) -> Iterator[Any]:
+def _warnings(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests, rig: Rig) -> Iterator[PlanViolation]:
     for curve in pressed_curves.curves:
         here: dict[str, RunProtocol] = {
             k: t for k, (t, at) in tests.items() if any(abs(p * KPA - curve.driving) < 1e-12 for p in at)
@@ -280,44 +282,41 @@ def _warnings(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests
         yield from curve_warnings(subject.name, subject.rating, curve, here, rig)
 
 
-def _expected(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests, rig: Rig) -> dict[str, Any]:
+def _expected(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests, rig: Rig) -> PlannedResin:
     """Readings expected of one resin: at every depth of every kind, after injected air, and the leak it may have."""
     depths = tuple(sorted({depth for test, _ in tests.values() for depth in test.depths}))
-    states = [
-        {
-            "driving_pressure_kPa": curve.driving / KPA,
-            "points": points(curve, depths),
-            "range_end_mm": curve.reach,
-            "range_ends_by": None if curve.ends is None else curve.ends[0],
-        }
+    states = tuple(
+        PlannedState(
+            curve.driving / KPA, points(curve, depths), curve.reach, None if curve.ends is None else curve.ends[0]
+        )
         for curve in pressed_curves.curves
-    ]
+    )
     steps = tests["steps"][0]
-    rises = [points(curve, steps.depths[:1])[0]["pressure_rise_kPa"] for curve in pressed_curves.curves]
-    least = min((rise for rise in rises if rise is not None), default=None)
-    return {
-        "resin": subject.name,
-        "model": pressed_curves.model,
-        "states": states,
-        "injection": injection(pressed_curves, subject.rating, rig),
-        "limit_kPa": pressed_curves.limits.lowest / KPA,
-        "limit_by": pressed_curves.limits.binding,
-        "rating": plain(rating_record(subject.rating, [curve.driving for curve in pressed_curves.curves])),
-        "leak_limit_kPa_per_min": None if least is None else leak_limit(least, steps),
-    }
+    rises_kPa = [points(curve, steps.depths[:1])[0].pressure_rise_kPa for curve in pressed_curves.curves]
+    least_kPa = min((rise_kPa for rise_kPa in rises_kPa if rise_kPa is not None), default=None)
+    return PlannedResin(
+        resin=subject.name,
+        model=pressed_curves.model,
+        states=states,
+        injection=injection(pressed_curves, subject.rating, rig),
+        limit_kPa=pressed_curves.limits.lowest / KPA,
+        limit_by=pressed_curves.limits.binding,
+        rating=rating_record(subject.rating, [curve.driving for curve in pressed_curves.curves]),
+        leak_limit_kPa_per_min=None if least_kPa is None else leak_limit(least_kPa, steps),
+    )
 
 
 def _runs(
     subject: SimulatedResin, sensor: str, tests: Tests, pressed_curves: PressCurves, rig: Rig, before: int
-) -> list[dict[str, Any]]:
+) -> list[PlannedRun]:
     """Every run of one specimen in order: leak and dead volume first, relaxation last: it strains the wall longest."""
     top_kPa = max(subject.scene.design.pneumatics.driving_pressures_kPa)
-    volume_mL = injection(pressed_curves, subject.rating, rig)["sensor_volume_mL"]
-    planned: list[tuple[str, float, int, list[StepRecord], list[Any]]] = [
-        ("leak", top_kPa, 1, leak_steps(top_kPa, rig), [])
+    volume_mL = injection(pressed_curves, subject.rating, rig).sensor_volume_mL
+    planned: list[tuple[RunKind, float, int, list[PlannedStep], tuple[ExpectedPoint, ...]]] = [
+        ("leak", top_kPa, 1, leak_steps(top_kPa, rig), ())
     ]
     if volume_mL is not None:
-        planned.append(("injection", 0.0, 1, injection_steps(volume_mL), []))
+        planned.append(("injection", 0.0, 1, injection_steps(volume_mL), ()))
     curves = {round(curve.driving / KPA, 9): curve for curve in pressed_curves.curves}
     for kind, (test, pressures_kPa) in tests.items():
         for pressure_kPa in pressures_kPa:
@@ -326,17 +325,17 @@ def _runs(
                 (kind, pressure_kPa, n + 1, steps_of(test, pressure_kPa, rig), expected) for n in range(_times(kind))
             ]
     return [
-        {
-            "number": before + place,
-            "kind": kind,
-            "sensor": sensor,
-            "resin": subject.name,
-            "driving_pressure_kPa": pressure_kPa,
-            "run": n,
-            "file": f"runs/{sensor}-{pressure_kPa:g}kPa-{kind}-{n}.csv",
-            "steps": steps,
-            "expected": expected,
-            "duration_s": sum(step["seconds"] for step in steps),
-        }
+        PlannedRun(
+            number=before + place,
+            kind=kind,
+            sensor=sensor,
+            resin=subject.name,
+            driving_pressure_kPa=pressure_kPa,
+            run=n,
+            file=f"runs/{sensor}-{pressure_kPa:g}kPa-{kind}-{n}.csv",
+            steps=tuple(steps),
+            expected=expected,
+            duration_s=sum(step.seconds for step in steps),
+        )
         for place, (kind, pressure_kPa, n, steps, expected) in enumerate(planned, start=1)
     ]

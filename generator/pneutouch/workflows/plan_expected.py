@@ -1,8 +1,6 @@
 """Readings of a planned campaign if the prediction holds, and the places where the rig cannot follow."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -11,6 +9,7 @@ from pneutouch.bench.simulate.curve import PressCurve, PressCurves, line_pressur
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.mechanics.rating import Rating
+from pneutouch.results.plan import ExpectedPoint, InjectedVolume, PlannedInjection, PlanViolation
 from pneutouch.spec.campaign import Rig
 from pneutouch.units import KPA, ML
 
@@ -31,36 +30,16 @@ _LEAK_SHARE = 0.01
 """The leak may take this share of the first step's rise while one indentation lasts: our choice."""
 
 
-@dataclass(frozen=True)
-class PlanViolation:
-    """Part of the plan that exceeds the rig or the sensor."""
-
-    rule: str
-    message: str
-    resin: str = ""
-    driving_pressure_kPa: float | None = None
-    depth_mm: float | None = None
-
-    def document(self) -> dict[str, Any]:
-        """The violation as data."""
-        return dict(vars(self))
-
-
-def points(curve: PressCurve, depths: tuple[float, ...]) -> list[dict[str, float | None]]:
-    """Expected force, pressure rise and cavity pressure at plate travels; null beyond the predicted range."""
+def points(curve: PressCurve, depths: tuple[float, ...]) -> tuple[ExpectedPoint, ...]:
+    """Expected force, pressure rise and cavity pressure at plate travels; None beyond the predicted range."""
     known = [depth for depth in depths if curve.covers(depth)]
     force, rise = curve.at(np.minimum(known, curve.reach)) if known else (np.zeros(0), np.zeros(0))
-    known_points = {d: (float(f), float(r) / KPA) for d, f, r in zip(known, force, rise, strict=True)}
     driving_kPa = curve.driving / KPA
-    return [
-        {
-            "depth_mm": depth,
-            "force_N": known_points[depth][0] if depth in known_points else None,
-            "pressure_rise_kPa": known_points[depth][1] if depth in known_points else None,
-            "cavity_pressure_kPa": driving_kPa + known_points[depth][1] if depth in known_points else None,
-        }
-        for depth in depths
-    ]
+    read: dict[float, tuple[float, float, float]] = {
+        depth: (float(f), float(r) / KPA, driving_kPa + float(r) / KPA)
+        for depth, f, r in zip(known, force, rise, strict=True)
+    }
+    return tuple(ExpectedPoint(depth, *read.get(depth, (None, None, None))) for depth in depths)
 
 
 def curve_warnings(
@@ -73,12 +52,12 @@ def curve_warnings(
     violations = []
 
     def over(rule: str, key: str, limit: float, text: str) -> None:
-        beyond = [p for p in expected if p[key] is not None and p[key] > limit]  # type: ignore[operator]
+        read = [(place, getattr(point, key)) for place, point in enumerate(expected)]
+        beyond = [(place, value) for place, value in read if value is not None and value > limit]
         if beyond:
-            first, last = beyond[0], beyond[-1]
-            before = depths[depths.index(float(first["depth_mm"] or 0.0)) - 1] if first is not expected[0] else None
-            stop = "leave this pressure out" if before is None else f"stop at {before:g} mm"
-            report(rule, first["depth_mm"], text.format(limit=limit, least=first[key], most=last[key], stop=stop))
+            (first, least), (_, most) = beyond[0], beyond[-1]
+            stop = f"stop at {depths[first - 1]:g} mm" if first else "leave this pressure out"
+            report(rule, depths[first], text.format(limit=limit, least=least, most=most, stop=stop))
 
     def report(rule: str, depth: float | None, text: str) -> None:
         kinds = "" if depth is None else f" ({', '.join(k for k, t in tests.items() if max(t.depths) >= depth)})"
@@ -110,7 +89,7 @@ def curve_warnings(
         remedy = rating.remedy_for(curve.driving)
         raised = "" if remedy is None else f"; to raise it, {remedy}"
         report("rated pressure", None, f"{rating.excess(curve.driving)}, {rating.basis}{raised}")
-    first = expected[0]["force_N"]
+    first = expected[0].force_N
     if first is not None and first < RESOLVED * rig.force_resolution_N:
         report(
             "force resolution",
@@ -127,7 +106,7 @@ def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[PlanViolation]:
     if need <= rig.travel_mm:
         return []
     text = f"the deepest step and {CLEARANCE:g} mm clearance need {need:.2f} mm; the stage has {rig.travel_mm:g} mm"
-    return [PlanViolation("travel", text, depth_mm=max(depths))]
+    return [PlanViolation("travel", text, "", None, max(depths))]
 
 
 def refuse_above_limits(resin: str, rating: Rating, scene: ResolvedDesign) -> None:
@@ -143,8 +122,8 @@ def refuse_above_limits(resin: str, rating: Rating, scene: ResolvedDesign) -> No
             )
 
 
-def injection(pressed: PressCurves, rating: Rating, rig: Rig) -> dict[str, Any]:
-    """Pressures after round volumes of room air, into closed line and unpressed sensor; kPa, null where unknown."""
+def injection(pressed: PressCurves, rating: Rating, rig: Rig) -> PlannedInjection:
+    """Pressures after round volumes of room air, into closed line and unpressed sensor; kPa, None where unknown."""
     sensor, ambient = pressed.sensor, pressed.sensor.gas.ambient_pressure
     volumes = np.array(ROUND)
     bare = sensor_pressure(volumes, pressed.inflation, 0.0, ambient)
@@ -152,41 +131,32 @@ def injection(pressed: PressCurves, rating: Rating, rig: Rig) -> dict[str, Any]:
     # The sensor with no dead volume reads most: it decides what may be pushed.
     fits = np.flatnonzero(np.nan_to_num(bare, nan=np.inf) <= ceiling)
     into_sensor = None if not fits.size else float(volumes[fits[-1]])
-    into_line = None
+    line_volume_mL = line_kPa = None
     if sensor.gas.dead_volume > 0:
         line = line_pressure(volumes, sensor.gas.dead_volume, ambient)
         fits = np.flatnonzero(line <= _OF_RANGE * rig.pressure_range_kPa * KPA)
-        into_line = None if not fits.size else float(volumes[fits[-1]])
-    rows = [] if into_sensor is None else _rows(pressed, into_sensor)
-    return {
-        "dead_volume_mL": sensor.gas.dead_volume / ML,
-        "cavity_volume_mL": float(pressed.inflation.volume[0]) / ML,
-        "sensor_volume_mL": None if into_sensor is None else into_sensor / ML,
-        "sensor": rows,
-        "more_dead_volume_mL": MORE / ML,
-        "line_volume_mL": None if into_line is None else into_line / ML,
-        "line_pressure_kPa": None
-        if into_line is None
-        else float(line_pressure(np.array(into_line), sensor.gas.dead_volume, ambient)) / KPA,
-    }
+        if fits.size:
+            line_volume_mL, line_kPa = float(volumes[fits[-1]]) / ML, float(line[fits[-1]]) / KPA
+    return PlannedInjection(
+        dead_volume_mL=sensor.gas.dead_volume / ML,
+        cavity_volume_mL=float(pressed.inflation.volume[0]) / ML,
+        sensor_volume_mL=None if into_sensor is None else into_sensor / ML,
+        sensor=() if into_sensor is None else _rows(pressed, into_sensor),
+        more_dead_volume_mL=MORE / ML,
+        line_volume_mL=line_volume_mL,
+        line_pressure_kPa=line_kPa,
+    )
 
 
-def _rows(pressed: PressCurves, most: float) -> list[dict[str, float]]:
+def _rows(pressed: PressCurves, most: float) -> tuple[InjectedVolume, ...]:
     sensor = pressed.sensor
     volumes = np.linspace(0.2, 1.0, 5) * most
     stated_kPa, bare_kPa, more_kPa = (
         sensor_pressure(volumes, pressed.inflation, dead, sensor.gas.ambient_pressure) / KPA
         for dead in (sensor.gas.dead_volume, 0.0, sensor.gas.dead_volume + MORE)
     )
-    return [
-        {
-            "volume_mL": float(v) / ML,
-            "pressure_kPa": float(p),
-            "without_dead_volume_kPa": float(q),
-            "with_more_dead_volume_kPa": float(r),
-        }
-        for v, p, q, r in zip(volumes, stated_kPa, bare_kPa, more_kPa, strict=True)
-    ]
+    rows = zip(volumes / ML, stated_kPa, bare_kPa, more_kPa, strict=True)
+    return tuple(InjectedVolume(*map(float, row)) for row in rows)
 
 
 def leak_limit(rise: float, test: RunProtocol) -> float:

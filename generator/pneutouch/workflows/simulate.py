@@ -5,7 +5,7 @@ A campaign that was never measured: simulated runs of known sensors in a folder 
 
 import zlib
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,6 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.bench.simulate import (
     ModelDeviation,
-    Population,
     RecordSamples,
     SimulatedSpecimens,
     population,
@@ -34,6 +33,8 @@ from pneutouch.formats import versioned
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.models import USUAL, usual_model
 from pneutouch.output.files import MANIFEST, entry, input_hash, json_bytes, manifest, replacing
+from pneutouch.results.record import plain
+from pneutouch.results.simulation import CampaignTruth, ParameterValue, SimulatedPopulation, SimulatedSpecimen
 from pneutouch.spec.campaign import Campaign, CampaignRun, Rig
 from pneutouch.spec.read import Changes, assignments, validate
 from pneutouch.spec.toml_text import toml_text
@@ -111,6 +112,14 @@ class _Writer:
         self.files[name] = entry(content)
 
 
+@dataclass
+class _Truth:
+    """True values of the specimens that were simulated so far, and notes on their runs."""
+
+    specimens: dict[str, SimulatedSpecimen] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+
 def _write_all(
     named: tuple[str, list[str]],
     subjects: list[SimulatedResin],
@@ -119,17 +128,17 @@ def _write_all(
     progress: Progress,
 ) -> None:
     runs: list[CampaignRun] = []
-    truth: dict[str, Any] = {"specimens": {}, "populations": [], "notes": []}
+    populations: list[SimulatedPopulation] = []
+    truth = _Truth()
     total = sum(len(sensors_of(subject.name, options)) for subject in subjects) * len(options.ages_days)
     for subject in subjects:
         for age in options.ages_days:
-            truth["populations"] += _populations(subject, age, options)
+            populations += _populations(subject, age, options)
             for k, sensor in enumerate(sensors_of(subject.name, options)):
                 for run, content in _specimen(subject, sensor, k, age, options, truth):
                     runs.append(run)
                     writer.put(run.file, content)
-                progress(truth["done"], total)
-    truth.pop("done", None)
+                progress(len(truth.specimens), total)
     scene, model = subjects[0].scene, subjects[0].truth
     campaign = Campaign(
         title=f"Simulated campaign of {scene.name}"[:120],
@@ -142,10 +151,19 @@ def _write_all(
         runs=runs,
     )
     writer.put("campaign.toml", campaign_toml(campaign, MARK))
-    truth |= {"simulated": True, "design": scene.name, "rest_s": model.rest}
-    truth |= {"model": options.model, "seed": options.seed, "rate_Hz": options.rate}
-    truth["parameters"] = {subject.name: _parameters(subject) for subject in subjects}
-    writer.put("truth.json", json_bytes(versioned("truth", truth)))
+    record = CampaignTruth(
+        simulated=True,
+        design=scene.name,
+        model=options.model,
+        seed=options.seed,
+        rate_Hz=options.rate,
+        rest_s=model.rest,
+        parameters={subject.name: _parameters(subject) for subject in subjects},
+        specimens=truth.specimens,
+        populations=tuple(populations),
+        notes=tuple(truth.notes),
+    )
+    writer.put("truth.json", json_bytes(versioned("truth", plain(record))))
 
 
 def _rig(scene: ResolvedDesign, rate_Hz: float) -> Rig:
@@ -169,7 +187,7 @@ def _check_rate(scene: ResolvedDesign, rate_Hz: float) -> None:
         )
 
 
-def _parameters(subject: SimulatedResin) -> dict[str, Any]:
+def _parameters(subject: SimulatedResin) -> dict[str, dict[str, ParameterValue]]:
     deviates = subject.truth.deviation != ModelDeviation()
     parts = ("scatter", "rig", "wall", *(["deviation"] if deviates else []))
     return {part: parameters(getattr(subject.truth, part)) for part in parts}
@@ -197,17 +215,17 @@ def _pressed(subject: SimulatedResin, sensor: Sensor, options: SimulationOptions
     return pressed(who, sensor, driving, _depth(subject, options), options.model)
 
 
-def _populations(subject: SimulatedResin, age: float, options: SimulationOptions) -> Iterator[dict[str, Any]]:
+def _populations(subject: SimulatedResin, age: float, options: SimulationOptions) -> Iterator[SimulatedPopulation]:
     nominal = _pressed(subject, aged(subject.sensor, subject.truth, age), options, subject.name)
     seeds = options.seed, _number(subject.name)
     for k, pressure_kPa in enumerate(driving_pressures_kPa(subject, options)):
-        spread_of: Population = population(nominal, k, subject.truth, options.rate, seeds)
-        about = {key: getattr(spread_of, key) for key in ("figures", "spread", "count", "basis")}
-        yield {"resin": subject.name, "age_days": age, "driving_pressure_kPa": pressure_kPa, **about}
+        known = population(nominal, k, subject.truth, options.rate, seeds)
+        about = known.figures, known.spread, known.count, known.basis
+        yield SimulatedPopulation(subject.name, age, pressure_kPa, *about)
 
 
 def _specimen(
-    subject: SimulatedResin, name: str, k: int, age: float, options: SimulationOptions, truth: dict[str, Any]
+    subject: SimulatedResin, name: str, k: int, age: float, options: SimulationOptions, truth: _Truth
 ) -> Iterator[tuple[CampaignRun, bytes]]:
     """Every run of one specimen, the resin's k-th, at one age, and its true values."""
     rng = np.random.default_rng([options.seed, _number(subject.name), k])
@@ -216,11 +234,11 @@ def _specimen(
     stream = np.random.default_rng([options.seed, _number(subject.name), k, _DEVIATION])
     pressed_curves = subject.truth.deviation.deviated(_pressed(subject, sensor, options, name), stream)
     pressures_kPa = driving_pressures_kPa(subject, options)
-    truth["specimens"][label(name, age, options)] = {
-        "resin": subject.name,
-        "age_days": age,
-        "shear_modulus_MPa": sensor.wall.hyperelastic.mu,
-        "pressures": {
+    truth.specimens[label(name, age, options)] = SimulatedSpecimen(
+        resin=subject.name,
+        age_days=age,
+        shear_modulus_MPa=sensor.wall.hyperelastic.mu,
+        pressures={
             f"{pressure_kPa:g}": {
                 **specimen_figures(curve, subject.truth, sensor.dome.inner_radius, options.rate),
                 "range_end_mm": curve.reach,
@@ -228,11 +246,10 @@ def _specimen(
             }
             for pressure_kPa, curve in zip(pressures_kPa, pressed_curves.curves, strict=True)
         },
-        "wall_thickness_mm": sensor.dome.wall_thickness,
-        "dead_volume_mL": sensor.gas.dead_volume / ML,
-        "model": pressed_curves.model,
-    }
-    truth["done"] = truth.get("done", 0) + 1
+        wall_thickness_mm=sensor.dome.wall_thickness,
+        dead_volume_mL=sensor.gas.dead_volume / ML,
+        model=pressed_curves.model,
+    )
     for run in runs_of(name, subject, age, options):
         place = 0 if run.kind == "injection" else pressures_kPa.index(run.driving_pressure_kPa)
         pressure_kPa, curve = pressures_kPa[place], pressed_curves.curves[place]
@@ -245,11 +262,11 @@ def _specimen(
 
 
 def _note_end(
-    run: CampaignRun, subject: SimulatedResin, reach: float, ends: tuple[str, float] | None, truth: dict[str, Any]
+    run: CampaignRun, subject: SimulatedResin, reach: float, ends: tuple[str, float] | None, truth: _Truth
 ) -> None:
     deepest = max(subject.truth.protocol(run.kind, subject.sensor.dome.inner_radius, np.inf).depths)
     if ends is not None and deepest > reach * (1 + 1e-9):
-        truth["notes"].append(f"{run.label}: stops at {reach:.2f} mm instead of {deepest:.2f} mm, before {ends[0]}")
+        truth.notes.append(f"{run.label}: stops at {reach:.2f} mm instead of {deepest:.2f} mm, before {ends[0]}")
 
 
 def _columns(
@@ -288,7 +305,7 @@ def _number(name: str) -> int:
     return zlib.crc32(name.encode())
 
 
-def _inputs(subjects: list[SimulatedResin], options: SimulationOptions) -> dict[str, Any]:
+def _inputs(subjects: list[SimulatedResin], options: SimulationOptions) -> dict[str, object]:
     first = subjects[0]
     stated = ("specimens", "runs") if options.planned else ()
     chosen = {key: getattr(options, key) for key in _OPTIONS if key not in stated}
@@ -301,6 +318,6 @@ def _inputs(subjects: list[SimulatedResin], options: SimulationOptions) -> dict[
         "resins": {subject.name: subject.scene.membrane_material.model_dump(mode="json") for subject in subjects},
         "options": {key: value for key, value in chosen.items() if value is not None},
         **({"planned": planned} if planned else {}),
-        "parameters": _parameters(first),
+        "parameters": plain(_parameters(first)),
         "rest": first.truth.rest,
     }

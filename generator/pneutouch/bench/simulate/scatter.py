@@ -11,22 +11,15 @@ rise. No Prony data of TangoPlus or its digital materials are published: shares 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import Any, TypedDict
+from typing import Any
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.protocol import RunProtocol
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.results.simulation import ParameterValue
 from pneutouch.units import KPA
-
-
-class ParameterRecord(TypedDict):
-    """A parameter as documents list it."""
-
-    value: float | list[float] | None
-    unit: str
-    reason: str
 
 
 def parameter(default: Any, unit: str, reason: str) -> Any:
@@ -34,13 +27,13 @@ def parameter(default: Any, unit: str, reason: str) -> Any:
     return field(default=default, metadata={"unit": unit, "reason": reason})
 
 
-def parameters(model: Any) -> dict[str, ParameterRecord]:
+def parameters(model: Any) -> dict[str, ParameterValue]:
     """Value, unit and reason of each parameter of a dataclass, by name; an infinite value is null."""
     listed = {}
     for one in fields(model):
         value = getattr(model, one.name)
-        value = list(value) if isinstance(value, tuple) else None if value == float("inf") else value
-        listed[one.name] = ParameterRecord(value=value, unit=one.metadata["unit"], reason=one.metadata["reason"])
+        value = None if value == float("inf") else value
+        listed[one.name] = ParameterValue(value, one.metadata["unit"], one.metadata["reason"])
     return listed
 
 
