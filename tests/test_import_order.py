@@ -59,12 +59,7 @@ def test_imports_run_one_way():
     assert not wrong, "\n".join(wrong)
 
 
-DRAWN_FROM = {
-    "pneutouch.mechanics.prediction",
-    "pneutouch.results",
-    "pneutouch.evaluation.sheet_data",
-    "pneutouch.evaluation.comparison_record",
-}
+DRAWN_FROM = {"pneutouch.mechanics.prediction", "pneutouch.results", "pneutouch.evaluation.sheet_data"}
 """Modules of records, which is all that `report` may import of the layers that compute."""
 
 

@@ -14,7 +14,7 @@ from pneutouch.evaluation.comparison import (
     ComparedSensor,
     ComparedState,
     SourceEffect,
-    comparison_document,
+    comparison,
     effects_of,
     labelled,
     variance_of_ratio,
@@ -126,28 +126,28 @@ def _sensor(name, value, low, high, pressures=(0.0,), source=""):
 def test_a_difference_exceeds_two_combined_standard_uncertainties(value, exceeds):
     """Two intervals of +-20 % (logarithm): their difference is uncertain by sqrt(2) times that, 0.283."""
     ends = [(v, v * math.exp(-0.2), v * math.exp(0.2)) for v in (2.0, value)]
-    document = comparison_document([_sensor("a", *ends[0]), _sensor("b", *ends[1])])
-    (difference,) = document["figures"][0]["differences"]
-    assert difference["exceeds"] is exceeds
-    assert difference["percent"] == pytest.approx(100 * (value / 2 - 1), rel=1e-4)
-    width = math.log((1 + difference["high_percent"] / 100) / (1 + difference["low_percent"] / 100)) / 2
+    document = comparison([_sensor("a", *ends[0]), _sensor("b", *ends[1])])
+    (difference,) = document.figures[0].differences
+    assert difference.exceeds is exceeds
+    assert difference.percent == pytest.approx(100 * (value / 2 - 1), rel=1e-4)
+    width = math.log((1 + difference.high_percent / 100) / (1 + difference.low_percent / 100)) / 2
     assert width == pytest.approx(0.2 * math.sqrt(2), rel=1e-4)
 
 
 def test_without_an_interval_nothing_is_claimed():
-    document = comparison_document([_sensor("a", 2.0, 1.9, 2.1), _sensor("b", 4.0, None, None)])
-    (difference,) = document["figures"][0]["differences"]
-    assert difference["percent"] == pytest.approx(100)
-    assert difference["exceeds"] is None and difference["low_percent"] is None
+    document = comparison([_sensor("a", 2.0, 1.9, 2.1), _sensor("b", 4.0, None, None)])
+    (difference,) = document.figures[0].differences
+    assert difference.percent == pytest.approx(100)
+    assert difference.exceeds is None and difference.low_percent is None
 
 
 def test_pressures_that_not_all_have_are_named_and_none_in_common_is_an_error():
     some = [_sensor("a", 2.0, 1.9, 2.1, (0.0, 5.0)), _sensor("b", 2.0, 1.9, 2.1, (5.0, 9.0))]
-    document = comparison_document(some)
-    assert document["driving_pressures_kPa"] == [5.0]
-    assert "Not compared, because not all have them: 0, 9 kPa." in document["notes"]
+    document = comparison(some)
+    assert document.driving_pressures_kPa == (5.0,)
+    assert "Not compared, because not all have them: 0, 9 kPa." in document.notes
     with pytest.raises(InputError, match=r"a: 0 kPa; b: 9 kPa.*driving_pressures_kPa=\[9\]"):
-        comparison_document([_sensor("a", 2.0, 1.9, 2.1), _sensor("b", 2.0, 1.9, 2.1, (9.0,))])
+        comparison([_sensor("a", 2.0, 1.9, 2.1), _sensor("b", 2.0, 1.9, 2.1, (9.0,))])
 
 
 def test_every_column_has_a_name_of_its_own():

@@ -11,9 +11,10 @@ from pneutouch.api.design import Design, pressures_changed
 from pneutouch.api.fields import keywords, named_by_keyword
 from pneutouch.api.prediction import Prediction
 from pneutouch.errors import InputError
-from pneutouch.evaluation.comparison_record import RowRecord
 from pneutouch.mechanics.models import model_options
 from pneutouch.report import comparison_words
+from pneutouch.results.comparison import RowRecord
+from pneutouch.results.record import plain
 from pneutouch.spec.design import DesignFile
 from pneutouch.workflows.compare import CompareResult, write
 from pneutouch.workflows.compare import compare as run
@@ -30,36 +31,37 @@ class Comparison(show.Shown):
         self._result, self.designs = result, designs
         self.predictions = tuple(Prediction(e) for e in result.evaluations if e is not None)
         names = {field: keyword for keyword, field in keywords(DesignFile).items()}
-        self.inputs = {names.get(key, key): tuple(values) for key, values in result.document["inputs"].items()}
+        self.inputs = {names.get(key, key): values for key, values in result.record.inputs.items()}
 
     @property
     def labels(self) -> tuple[str, ...]:
         """Names of the columns, each another."""
-        return tuple(comparison_words.labels(self._result.document))
+        return tuple(comparison_words.labels(self._result.record))
 
     def to_frame(self) -> DataFrame:
         """A row a figure and driving pressure (None: of the whole sensor); columns ``value``, ``low`` and ``high`` of
         each label, then ``percent``, its ends and ``exceeds`` of each difference from the first."""
         from pandas import DataFrame, MultiIndex
 
-        rows = self._result.document["figures"]
+        rows = self._result.record.figures
         index = MultiIndex.from_tuples(
-            [(row["driving_pressure_kPa"], row["figure"]) for row in rows], names=["driving_pressure_kPa", "figure"]
+            [(row.driving_pressure_kPa, row.figure) for row in rows], names=["driving_pressure_kPa", "figure"]
         )
         columns: dict[tuple[str, str], list[Any]] = {}
         for k, label in enumerate(self.labels):
             for key in ("value", "low", "high"):
-                values = [row["values"][k] for row in rows]
-                columns[label, key] = [None if one is None else one.get(key) for one in values]
+                values = [row.values[k] for row in rows]
+                columns[label, key] = [None if one is None else getattr(one, key) for one in values]
         for k, label in enumerate(self.labels[1:]):
             for key in ("percent", "low_percent", "high_percent", "exceeds"):
-                entries = [row["differences"][k] for row in rows]
-                columns[label, key] = [None if one is None else one.get(key) for one in entries]
+                entries = [row.differences[k] for row in rows]
+                columns[label, key] = [None if one is None else getattr(one, key) for one in entries]
         return DataFrame(columns, index)
 
     def to_dict(self) -> dict[str, Any]:
         """The comparison as the command ``compare`` prints it as JSON."""
-        return dict(self._result.document)
+        document: dict[str, Any] = plain(self._result.record)
+        return document
 
     def write(self, out: str | Path = "outputs") -> Path:
         """Write the comparison as HTML, PDF and JSON into a folder of ``out``; returns that folder."""
@@ -71,17 +73,13 @@ class Comparison(show.Shown):
 
     def _rows(self) -> list[Any]:
         inputs = [(key, *(show.short(value) for value in values)) for key, values in self.inputs.items()]
-        figures = sorted(self._result.document["figures"], key=lambda row: row["figure"] != "sensitivity_kPa_per_N")
+        figures = sorted(self._result.record.figures, key=lambda row: row.figure != "sensitivity_kPa_per_N")
         return [*inputs, *(self._row(row) for row in figures)]
 
     def _row(self, row: RowRecord) -> tuple[str, ...]:
-        at = "" if row["driving_pressure_kPa"] is None else f" {comparison_words.heading(row['driving_pressure_kPa'])}"
+        at = "" if row.driving_pressure_kPa is None else f" {comparison_words.heading(row.driving_pressure_kPa)}"
         values = [f"{value} ({ends})" if ends else value for value, ends in comparison_words.figure_cells(row)]
-        return (
-            f"{row['name']}{at}",
-            *values,
-            *(f"{p}, {word}" for p, _, word in comparison_words.difference_cells(row)),
-        )
+        return (f"{row.name}{at}", *values, *(f"{p}, {word}" for p, _, word in comparison_words.difference_cells(row)))
 
     def _head(self) -> str:
         return f"Comparison of {', '.join(self.labels)}"

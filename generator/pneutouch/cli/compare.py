@@ -1,5 +1,6 @@
 """``pneutouch compare``: designs, builds and measurements side by side."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -44,6 +45,7 @@ def compare(
     with reporting():
         from pneutouch.cli.progress import bar
         from pneutouch.mechanics.models import model_options
+        from pneutouch.results.record import plain
         from pneutouch.workflows.compare import compare as run
         from pneutouch.workflows.compare import write
 
@@ -59,12 +61,12 @@ def compare(
             progress(len(things), len(things), "drawing curves and sections")
             folder = write(result, out)
         if json:
-            print_json({**result.document, "folder": str(folder)})
+            print_json(plain(replace(result.record, folder=str(folder))))
         else:
             from pneutouch.cli.compare_text import comparison_text
 
-            echo(comparison_text(result.document))
+            echo(comparison_text(result.record))
             echo(f"\n{folder}")
-            plain, _, calibration = next((thing for thing in things if "@" in thing), "").partition("@")
-            if calibration and not Path(f"{plain}@{calibration}").exists():
-                report_next("export-reader", plain, *set_words(set_, calibration))
+            uncalibrated, _, calibration = next((thing for thing in things if "@" in thing), "").partition("@")
+            if calibration and not Path(f"{uncalibrated}@{calibration}").exists():
+                report_next("export-reader", uncalibrated, *set_words(set_, calibration))

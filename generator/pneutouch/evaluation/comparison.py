@@ -10,17 +10,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from pneutouch import __version__
 from pneutouch.arrays import Array
 from pneutouch.bench.figures import line_figures
 from pneutouch.errors import InputError
-from pneutouch.evaluation.comparison_record import ComparisonRecord, CurvePoints, DifferenceRecord, RowRecord
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.uncertainty.sources.model import MODEL, MODEL_CORRELATION
+from pneutouch.results.comparison import (
+    ColumnRecord,
+    ComparedCurve,
+    ComparisonRecord,
+    CurvePoints,
+    DifferenceRecord,
+    RowRecord,
+    ValueRecord,
+)
+from pneutouch.results.record import extended
 from pneutouch.rounding import rounded
 
 if TYPE_CHECKING:
@@ -83,6 +93,9 @@ def _coefficient(one: SourceEffect, other: SourceEffect) -> float:
     # would cancel where they do not. Taken as independent they do not cancel at all, which errs on the wide side.
     return MODEL_CORRELATION if one.name == MODEL and one.origin == other.origin else 0.0
 
+
+CURVE_KEYS = tuple(field.name for field in fields(CurvePoints))
+"""Quantities of a curve that is drawn."""
 
 COVERAGE = 2.0
 """k of every interval; a difference that exceeds k combined standard uncertainties is no chance at about 95 %."""
@@ -199,68 +212,66 @@ def _listed(sensor: ComparedSensor) -> str:
     return ", ".join(f"{state.driving_pressure_kPa:g}" for state in sensor.states) + " kPa"
 
 
-def different_inputs(sensors: Sequence[ComparedSensor]) -> dict[str, list[Any]]:
+def different_inputs(sensors: Sequence[ComparedSensor]) -> dict[str, tuple[Any, ...]]:
     """The inputs that differ, a value a sensor; None if unknown."""
     keys = dict.fromkeys(key for sensor in sensors for key in sensor.inputs)
     # What a prediction does not name it has not, but the wall, which a calibration alone names; of a measurement no
     # input is known.
     walls = {"prediction.wall_thickness_mm": "membrane.wall_thickness_mm"}
-    rows = {key: [s.inputs.get(key, s.inputs.get(walls.get(key, ""))) for s in sensors] for key in keys}
+    rows = {key: tuple(s.inputs.get(key, s.inputs.get(walls.get(key, ""))) for s in sensors) for key in keys}
     known = {key: [value for s, value in zip(sensors, row, strict=True) if s.inputs] for key, row in rows.items()}
     return {key: values for key, values in rows.items() if any(value != known[key][0] for value in known[key])}
 
 
-def comparison_document(sensors: Sequence[ComparedSensor]) -> ComparisonRecord:
-    """A comparison as plain data; the other sensors are compared with the first one.
-
-    Raises InputError if there is nothing to compare.
-    """
+def comparison(sensors: Sequence[ComparedSensor]) -> ComparisonRecord:
+    """A comparison of the other sensors with the first one. Raises InputError if there is nothing to compare."""
     pressures_kPa = shared_pressures_kPa(sensors)
     rows = [_row(figure, None, sensors) for figure in FIGURES if not figure.of_state]
     rows += [_row(figure, p, sensors) for p in pressures_kPa for figure in FIGURES if figure.of_state]
     inputs = different_inputs(sensors)
-    content: ComparisonRecord = {
-        "compared": [
-            {
-                "label": s.label,
-                "name": s.name,
-                "kind": s.kind,
-                "source": s.source,
-                "simulated": s.simulated,
-                "driving_pressures_kPa": [state.driving_pressure_kPa for state in s.states],
-            }
+    record = ComparisonRecord(
+        pneutouch=__version__,
+        compared=tuple(
+            ColumnRecord(
+                label=s.label,
+                name=s.name,
+                kind=s.kind,
+                source=s.source,
+                simulated=s.simulated,
+                driving_pressures_kPa=tuple(state.driving_pressure_kPa for state in s.states),
+            )
             for s in sensors
-        ],
-        "inputs": inputs,
-        "driving_pressures_kPa": pressures_kPa,
-        "coverage_factor": COVERAGE,
-        "criterion": CRITERION,
-        "figures": [row for row in rows if sum(value is not None for value in row["values"]) > 1],
-        "notes": _notes(sensors, pressures_kPa, inputs),
-        "curves": [
-            {"label": s.label, "measured": s.kind == "measured", "driving_pressure_kPa": p, **curve}
+        ),
+        inputs=inputs,
+        driving_pressures_kPa=tuple(pressures_kPa),
+        coverage_factor=COVERAGE,
+        criterion=CRITERION,
+        figures=tuple(row for row in rows if sum(value is not None for value in row.values) > 1),
+        notes=tuple(_notes(sensors, pressures_kPa, inputs)),
+        curves=tuple(
+            extended(ComparedCurve, curve, label=s.label, measured=s.kind == "measured", driving_pressure_kPa=p)
             for p in pressures_kPa
             for s in sensors
             for state in [s.state(p)]
             for curve in (() if state is None else state.curves)
-        ],
-    }
-    return rounded(content, _DIGITS, 1e-12)
+        ),
+    )
+    return rounded(record, _DIGITS, 1e-12)
 
 
 def _row(figure: FigureColumn, pressure_kPa: float | None, sensors: Sequence[ComparedSensor]) -> RowRecord:
-    values = [_of(sensor, figure.key, pressure_kPa) for sensor in sensors]
-    return {
-        "figure": figure.key,
-        "name": figure.name,
-        "unit": figure.unit,
-        "driving_pressure_kPa": pressure_kPa,
-        "values": [None if f is None else {"value": f.value, "low": f.low, "high": f.high} for f in values],
-        "differences": [
-            _difference(values[0], other, same_resin=sensors[0].resin is not None and sensors[0].resin == sensor.resin)
-            for other, sensor in zip(values[1:], sensors[1:], strict=True)
-        ],
-    }
+    first, *others = values = [_of(sensor, figure.key, pressure_kPa) for sensor in sensors]
+    same = (sensors[0].resin is not None and sensors[0].resin == sensor.resin for sensor in sensors[1:])
+    return RowRecord(
+        figure=figure.key,
+        name=figure.name,
+        unit=figure.unit,
+        driving_pressure_kPa=pressure_kPa,
+        values=tuple(None if f is None else ValueRecord(f.value, f.low, f.high) for f in values),
+        differences=tuple(
+            _difference(first, other, same_resin=alike) for other, alike in zip(others, same, strict=True)
+        ),
+    )
 
 
 def _of(sensor: ComparedSensor, key: str, pressure_kPa: float | None) -> ComparedFigure | None:
@@ -274,26 +285,18 @@ def _difference(
     """The second figure less the first, with the interval of the difference in percent, and whether it exceeds it."""
     if one is None or other is None:
         return None
-    row: DifferenceRecord = {
-        "difference": other.value - one.value,
-        "percent": None,
-        "low_percent": None,
-        "high_percent": None,
-        "exceeds": None,
-    }
+    difference = other.value - one.value
     if one.value * other.value <= 0:
-        return row
+        return DifferenceRecord(difference, None, None, None, None)
     ratio = math.log(other.value / one.value)
-    row["percent"] = 100 * math.expm1(ratio)
-    first, second = one.variance, other.variance
+    percent, first, second = 100 * math.expm1(ratio), one.variance, other.variance
     if first is None or second is None:
-        return row
+        return DifferenceRecord(difference, percent, None, None, None)
     both = one.effects and other.effects
     total = variance_of_ratio(one.effects, other.effects, same_resin=same_resin) if both else first + second
     width = COVERAGE * math.sqrt(total)
-    row["low_percent"], row["high_percent"] = (100 * math.expm1(ratio + sign * width) for sign in (-1, 1))
-    row["exceeds"] = abs(ratio) > max(width, _EXACT)
-    return row
+    low, high = (100 * math.expm1(ratio + sign * width) for sign in (-1, 1))
+    return DifferenceRecord(difference, percent, low, high, abs(ratio) > max(width, _EXACT))
 
 
 def _notes(sensors: Sequence[ComparedSensor], pressures_kPa: Sequence[float], inputs: Mapping[str, Any]) -> list[str]:

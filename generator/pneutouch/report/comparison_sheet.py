@@ -10,22 +10,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pneutouch.body.section import section_outline
-from pneutouch.evaluation.comparison_record import (
-    ComparedCurve,
-    ComparisonRecord,
-    CurveKey,
-    DifferenceRecord,
-    RowRecord,
-)
 from pneutouch.parts import Assembly
 from pneutouch.report import comparison_words, pages
 from pneutouch.report.comparison_words import labels
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, band, figure, svg
+from pneutouch.results.comparison import ComparedCurve, ComparisonRecord, DifferenceRecord, RowRecord
+from pneutouch.results.record import plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,43 +50,43 @@ def _spots(k: int) -> dict[str, Any]:
     return {"ls": "", "marker": MARKERS[k % len(MARKERS)], "ms": 2.8, "mew": 0.6, "mec": tone, "mfc": "white"}
 
 
-def responses(document: ComparisonRecord) -> dict[str, str]:
+def responses(comparison: ComparisonRecord) -> dict[str, str]:
     """Pressure rise over contact force with the band of the sensitivity, a plot a driving pressure."""
-    axes: tuple[CurveKey, CurveKey] = ("contact_force_N", "pressure_rise_kPa")
+    axes: tuple[str, str] = ("contact_force_N", "pressure_rise_kPa")
     words = "contact force  (N)", "pressure rise  (kPa)"
-    return _curves(document, axes, words, "sensitivity_kPa_per_N")
+    return _curves(comparison, axes, words, "sensitivity_kPa_per_N")
 
 
-def indentations(document: ComparisonRecord) -> dict[str, str]:
+def indentations(comparison: ComparisonRecord) -> dict[str, str]:
     """Contact force over indentation in the same way; the band is that of the stiffness."""
-    axes: tuple[CurveKey, CurveKey] = ("indentation_mm", "contact_force_N")
+    axes: tuple[str, str] = ("indentation_mm", "contact_force_N")
     words = "indentation  (mm)", "contact force  (N)"
-    return _curves(document, axes, words, "stiffness_N_per_mm")
+    return _curves(comparison, axes, words, "stiffness_N_per_mm")
 
 
-def _curves(
-    document: ComparisonRecord, keys: tuple[CurveKey, CurveKey], words: tuple[str, str], band: str
-) -> dict[str, str]:
+def _curves(comparison: ComparisonRecord, keys: tuple[str, str], words: tuple[str, str], band: str) -> dict[str, str]:
     """A plot a driving pressure, by its title; all have the same axes."""
-    names, plots = labels(document)[:MOST], {}
-    ends = [max((max(c[key]) for c in document["curves"] if c["label"] in names), default=0.0) for key in keys]
+    names, plots = labels(comparison)[:MOST], {}
+    ends = [max((max(getattr(c, key)) for c in comparison.curves if c.label in names), default=0.0) for key in keys]
     if not all(ends):
         return {}
-    for pressure_kPa in _spread([float(p) for p in document["driving_pressures_kPa"]]):
+    for pressure_kPa in _spread([float(p) for p in comparison.driving_pressures_kPa]):
         with figure(WIDTH, 56 + 4 * _key_lines(names)) as drawn:
             ax = drawn.subplots()
             for k, name in enumerate(names):
-                _draw(ax, k, _of(document, name, pressure_kPa), keys, _ends(document, band, k, pressure_kPa))
-            ax.set(xlabel=words[0], ylabel=words[1], xlim=(0, 1.04 * ends[0]), ylim=(0, _top(document, band) * ends[1]))
-            _legend(drawn, document, names)
+                _draw(ax, k, _of(comparison, name, pressure_kPa), keys, _ends(comparison, band, k, pressure_kPa))
+            ax.set(
+                xlabel=words[0], ylabel=words[1], xlim=(0, 1.04 * ends[0]), ylim=(0, _top(comparison, band) * ends[1])
+            )
+            _legend(drawn, comparison, names)
             plots[f"{pressure_kPa:g} kPa"] = svg(drawn)
     return plots
 
 
-def _top(document: ComparisonRecord, band: str) -> float:
+def _top(comparison: ComparisonRecord, band: str) -> float:
     """Height of the axis over the greatest value: space for the bands, as far as they do not flatten the curves."""
-    shown = [(k, row["driving_pressure_kPa"]) for row in document["figures"] for k in range(len(row["values"][:MOST]))]
-    ratios = [matching[1] for k, p in shown if (matching := _ends(document, band, k, p)) is not None]
+    shown = [(k, row.driving_pressure_kPa) for row in comparison.figures for k in range(len(row.values[:MOST]))]
+    ratios = [matching[1] for k, p in shown if (matching := _ends(comparison, band, k, p)) is not None]
     return min(1.05 * max(ratios, default=1.0), _TALLEST)
 
 
@@ -101,28 +97,28 @@ def _spread(values: Sequence[float]) -> list[float]:
     return [values[round(k * (len(values) - 1) / (_PANELS - 1))] for k in range(_PANELS)]
 
 
-def _of(document: ComparisonRecord, label: str, pressure_kPa: float) -> list[ComparedCurve]:
-    matching = [c for c in document["curves"] if c["label"] == label and c["driving_pressure_kPa"] == pressure_kPa]
+def _of(comparison: ComparisonRecord, label: str, pressure_kPa: float) -> list[ComparedCurve]:
+    matching = [c for c in comparison.curves if c.label == label and c.driving_pressure_kPa == pressure_kPa]
     return matching[:: math.ceil(len(matching) / _RUNS) or 1]
 
 
-def _ends(document: ComparisonRecord, key: str, k: int, pressure_kPa: float | None) -> tuple[float, float] | None:
+def _ends(comparison: ComparisonRecord, key: str, k: int, pressure_kPa: float | None) -> tuple[float, float] | None:
     """Ends of a figure's interval over its value."""
-    for row in document["figures"]:
-        if row["figure"] == key and row["driving_pressure_kPa"] == pressure_kPa:
-            one = row["values"][k]
-            if one is not None and one["low"] is not None and one["value"] and one["high"] is not None:
-                return one["low"] / one["value"], one["high"] / one["value"]
+    for row in comparison.figures:
+        if row.figure == key and row.driving_pressure_kPa == pressure_kPa:
+            one = row.values[k]
+            if one is not None and one.low is not None and one.value and one.high is not None:
+                return one.low / one.value, one.high / one.value
     return None
 
 
 def _draw(
-    ax: Axes, k: int, curves: Sequence[ComparedCurve], keys: tuple[CurveKey, CurveKey], ends: tuple[float, float] | None
+    ax: Axes, k: int, curves: Sequence[ComparedCurve], keys: tuple[str, str], ends: tuple[float, float] | None
 ) -> None:
     """One predicted curve with its band, or the points of measured runs."""
     for curve in curves:
-        x, y = (np.array(curve[key]) for key in keys)
-        if curve["measured"]:
+        x, y = (np.array(getattr(curve, key)) for key in keys)
+        if curve.measured:
             ax.plot(x, y, zorder=4, **_spots(k))
             continue
         ax.plot(x, y, zorder=3, **_look(k))
@@ -130,10 +126,10 @@ def _draw(
             band(ax, x, ends[0] * y, ends[1] * y, k, _TONES[k % len(_TONES)])
 
 
-def _legend(drawn: Figure, document: ComparisonRecord, names: Sequence[str]) -> None:
+def _legend(drawn: Figure, comparison: ComparisonRecord, names: Sequence[str]) -> None:
     from matplotlib.lines import Line2D
 
-    measured = [one["kind"] == "measured" for one in document["compared"]]
+    measured = [one.kind == "measured" for one in comparison.compared]
     handles = [Line2D([], [], **(_spots(k) if measured[k] else _look(k))) for k in range(len(names))]
     texts = [_cut(name) for name in names]
     drawn.legend(handles, texts, loc="outside upper left", ncols=_key_columns(names), handlelength=2.6)
@@ -149,22 +145,22 @@ def _key_lines(names: Sequence[str]) -> int:
 
 
 def _cut(text: str, most: int = 44) -> str:
-    plain = text.replace("$", r"\$")
-    return plain if len(text) <= most else f"{plain[: most - 1]}…"
+    escaped = text.replace("$", r"\$")
+    return escaped if len(text) <= most else f"{escaped[: most - 1]}…"
 
 
-def differences(document: ComparisonRecord) -> str | None:
+def differences(comparison: ComparisonRecord) -> str | None:
     """Differences from the first sensor in percent with their intervals; filled where they exceed them."""
     rows = [
-        (f"{row['name']}{_at(row)}", span, one["exceeds"], k)
-        for row in document["figures"]
-        for k, one in enumerate(row["differences"][: MOST - 1])
+        (f"{row.name}{_at(row)}", span, one.exceeds, k)
+        for row in comparison.figures
+        for k, one in enumerate(row.differences[: MOST - 1])
         if one is not None and (span := _span(one)) is not None
     ]
     if not rows:
         return None
     names = list(dict.fromkeys(name for name, *_ in rows))
-    others = labels(document)[1:MOST]
+    others = labels(comparison)[1:MOST]
     with figure(WIDTH, 14 + 4.2 * len(names) + 4 * _key_lines(others) * (len(others) > 1)) as drawn:
         ax = drawn.subplots()
         for name, (low, percent, high), exceeds, k in rows:
@@ -186,12 +182,12 @@ def differences(document: ComparisonRecord) -> str | None:
 
 def _span(one: DifferenceRecord) -> tuple[float, float, float] | None:
     """Lower end, value and upper end of a difference in percent; None without an interval or with one of no width."""
-    low, percent, high = one["low_percent"], one["percent"], one["high_percent"]
+    low, percent, high = one.low_percent, one.percent, one.high_percent
     return None if low is None or percent is None or high is None or high <= low else (low, percent, high)
 
 
 def _at(row: RowRecord) -> str:
-    return "" if row["driving_pressure_kPa"] is None else f" at {row['driving_pressure_kPa']:g} kPa"
+    return "" if row.driving_pressure_kPa is None else f" at {row.driving_pressure_kPa:g} kPa"
 
 
 def _key(drawn: Figure, others: Sequence[str]) -> None:
@@ -203,9 +199,9 @@ def _key(drawn: Figure, others: Sequence[str]) -> None:
     drawn.legend(handles, [_cut(name) for name in others], loc="outside upper left", ncols=_key_columns(others))
 
 
-def sections(document: ComparisonRecord, parts: Mapping[str, Assembly]) -> str | None:
+def sections(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> str | None:
     """Outlines of the sections of all sensors on one another, their domes' base planes at one height."""
-    names = [name for name in labels(document)[:MOST] if name in parts]
+    names = [name for name in labels(comparison)[:MOST] if name in parts]
     if not names:
         return None
     from matplotlib.lines import Line2D
@@ -213,13 +209,13 @@ def sections(document: ComparisonRecord, parts: Mapping[str, Assembly]) -> str |
     with figure(WIDTH, 62 + 4 * _key_lines(names)) as drawn:
         ax = drawn.subplots()
         for name in names:
-            look = _look(labels(document).index(name))
+            look = _look(labels(comparison).index(name))
             for solid in parts[name].solids:
                 for loop in section_outline(solid, _TOLERANCE):
                     closed = np.vstack([loop, loop[:1]])
                     ax.plot(closed[:, 0], closed[:, 1], **{**look, "lw": 0.9})
         ax.set(aspect="equal", xlabel="x  (mm)", ylabel="z  (mm)")
-        handles = [Line2D([], [], **_look(labels(document).index(name))) for name in names]
+        handles = [Line2D([], [], **_look(labels(comparison).index(name))) for name in names]
         texts = [_cut(name) for name in names]
         drawn.legend(handles, texts, loc="outside upper left", ncols=_key_columns(names), handlelength=2.6)
         return svg(drawn)
@@ -230,12 +226,28 @@ _KINDS = {"design": "design, predicted", "build": "build, as predicted when it w
 _MANY = f"The first {MOST} are drawn."
 
 
-def comparison_sheet(document: ComparisonRecord, parts: Mapping[str, Assembly]) -> dict[str, bytes]:
+def comparison_sheet(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> dict[str, bytes]:
     """``comparison.html`` and ``comparison.pdf``; ``parts`` are the assemblies by label. Same input, same bytes."""
-    groups = _pictures(document, parts)
+    groups = _pictures(comparison, parts)
     names = {picture: f"figure-{k}" for k, picture in enumerate(p for _, _, drawn in groups for p in drawn.values())}
+    labels = comparison_words.labels(comparison)
     content = {
-        **_content(document),
+        "title": " and ".join([", ".join(labels[:-1]), labels[-1]]),
+        "tool": f"pneutouch {comparison.pneutouch}",
+        "labels": labels,
+        "compared": [[one.label, _KINDS[one.kind], one.source or "–"] for one in comparison.compared],
+        "marks": comparison_words.marks(comparison),
+        "summary": comparison_words.summary(comparison),
+        "inputs": comparison_words.input_rows(comparison),
+        "groups": [
+            {
+                "title": comparison_words.heading(p),
+                "rows": [_row(row) for row in comparison.figures if row.driving_pressure_kPa == p],
+            }
+            for p in comparison_words.pressures(comparison)
+        ],
+        "criterion": comparison.criterion,
+        "notes": comparison.notes,
         "figures": [
             {
                 "title": title,
@@ -249,49 +261,32 @@ def comparison_sheet(document: ComparisonRecord, parts: Mapping[str, Assembly]) 
     pictures = {name: picture for picture, name in names.items()}
     return {
         "comparison.html": pages.html("compare.html.j2", content, pictures).encode(),
-        "comparison.pdf": pages.pdf("compare.typ", content, pictures),
+        "comparison.pdf": pages.pdf("compare.typ", plain(content), pictures),
     }
 
 
-def _content(document: ComparisonRecord) -> dict[str, Any]:
-    """The sections of the sheet; every leaf is text."""
-    labels = comparison_words.labels(document)
-    return {
-        "title": " and ".join([", ".join(labels[:-1]), labels[-1]]),
-        "tool": f"pneutouch {document['pneutouch']}",
-        "labels": labels,
-        "compared": [[one["label"], _KINDS[one["kind"]], one["source"] or "–"] for one in document["compared"]],
-        "marks": comparison_words.marks(document),
-        "summary": comparison_words.summary(document),
-        "inputs": comparison_words.input_rows(document),
-        "groups": [
-            {
-                "title": comparison_words.heading(p),
-                "rows": [_row(row) for row in document["figures"] if row["driving_pressure_kPa"] == p],
-            }
-            for p in comparison_words.pressures(document)
-        ],
-        "criterion": document["criterion"],
-        "notes": list(document["notes"]),
-    }
+@dataclass(frozen=True, slots=True)
+class _FigureCells:
+    """Cells of a row of figures."""
+
+    name: str
+    values: list[tuple[str, str]]
+    differences: list[tuple[str, str, str]]
 
 
-def _row(row: RowRecord) -> dict[str, Any]:
-    return {
-        "name": comparison_words.figure_name(row),
-        "values": [list(pair) for pair in comparison_words.figure_cells(row)],
-        "differences": [list(cells) for cells in comparison_words.difference_cells(row)],
-    }
+def _row(row: RowRecord) -> _FigureCells:
+    cells = comparison_words.figure_cells(row), comparison_words.difference_cells(row)
+    return _FigureCells(comparison_words.figure_name(row), *cells)
 
 
-def _pictures(document: ComparisonRecord, parts: Mapping[str, Assembly]) -> list[tuple[str, str, dict[str, str]]]:
+def _pictures(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> list[tuple[str, str, dict[str, str]]]:
     """Title, caption, and the plots by their own titles."""
-    many = f" {_MANY}" if len(document["compared"]) > MOST else ""
-    apart, cut = differences(document), sections(document, parts)
+    many = f" {_MANY}" if len(comparison.compared) > MOST else ""
+    apart, cut = differences(comparison), sections(comparison, parts)
     return [
         (
             "Differences",
-            f"From {comparison_words.labels(document)[0]}, with their intervals (k = 2). Filled: the difference is "
+            f"From {comparison_words.labels(comparison)[0]}, with their intervals (k = 2). Filled: the difference is "
             f"greater than its uncertainty; open: it does not.{many}",
             {} if apart is None else {"": apart},
         ),
@@ -299,12 +294,12 @@ def _pictures(document: ComparisonRecord, parts: Mapping[str, Assembly]) -> list
             "Response",
             "Pressure rise over contact force up to the range's end, by driving pressure. Lines: predicted, with the "
             f"interval of the sensitivity; markers: measured.{many}",
-            responses(document),
+            responses(comparison),
         ),
         (
             "Force over indentation",
             "By driving pressure. Lines: predicted, with the interval of the stiffness; markers: measured." + many,
-            indentations(document),
+            indentations(comparison),
         ),
         (
             "Sections",

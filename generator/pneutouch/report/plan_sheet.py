@@ -233,9 +233,9 @@ def _expected(plan: PlannedCampaign) -> list[str]:
         head = " | ".join(f"{s.driving_pressure_kPa:g} kPa: force, N | rise, kPa" for s in states)
         lines += [
             f"### {_escaped(resin.resin)} (model {resin.model}; may be driven to "
-            f"{tenths_below(resin.rating['rated_pressure_kPa']):.1f} kPa)",
+            f"{tenths_below(resin.rating.rated_pressure_kPa):.1f} kPa)",
             "",
-            f"{resin.rating['basis']}.",
+            f"{resin.rating.basis}.",
             "",
             f"| depth, mm | {head} |",
             "|---" * (1 + 2 * len(states)) + "|",

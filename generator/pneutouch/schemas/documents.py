@@ -6,6 +6,7 @@ from importlib import import_module
 
 from pneutouch.formats import FORMATS, KEY, format_of
 from pneutouch.results.calibration import OutcomeRecord
+from pneutouch.results.comparison import ComparisonRecord
 from pneutouch.results.fit import MaterialFit
 from pneutouch.results.measured import MeasuredCampaign
 from pneutouch.results.response import ResponseRecord
@@ -25,7 +26,7 @@ _DOCUMENTS: dict[str, tuple[type | str, str, str]] = {
         "`figures.json` of `characterize`, `pneutouch characterize --json`",
     ),
     "selection": ("selection.selection", "A selection", "`pneutouch select --json`"),
-    "comparison": ("reports.comparison", "A comparison", "`comparison.json` of `compare`, `pneutouch compare --json`"),
+    "comparison": (ComparisonRecord, "A comparison", "`comparison.json` of `compare`, `pneutouch compare --json`"),
     "calibration-report": (OutcomeRecord, "A calibration's report", "`pneutouch calibrate --json`"),
     "reader": ("reader.reader", "A reader of force", "`reader.json` of `export-reader`"),
     "fit": (MaterialFit, "A fitted material law", "`fit.json` of `fit-material`, `pneutouch fit-material --json`"),

@@ -26,12 +26,11 @@ from pneutouch.evaluation.comparison import (
     ComparedFigure,
     ComparedSensor,
     ComparedState,
-    comparison_document,
+    comparison,
     effects_of,
     figures_at,
     labelled,
 )
-from pneutouch.evaluation.comparison_record import CURVE_KEYS, ComparisonRecord, CurvePoints
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.evaluation.result import predicted
 from pneutouch.export.threemf_read import Package
@@ -47,6 +46,7 @@ from pneutouch.output.files import (
 )
 from pneutouch.output.recipe import read_recipe
 from pneutouch.parts import Assembly, assemble
+from pneutouch.results.comparison import ComparisonRecord, CurvePoints
 from pneutouch.results.record import plain
 from pneutouch.spec.read import Changes
 from pneutouch.workflows.compare_measured import (
@@ -182,11 +182,11 @@ def _state(state: Mapping[str, Any], document: Mapping[str, Any], depths: Depths
         figures |= {key: _scaled(value, known.get(key), state) for key, value in read.items()}
     curve = state["curve"]
     kept = sum(at <= state["range_end_mm"] * (1 + 1e-9) for at in curve["indentation_mm"])
-    points: CurvePoints = {
-        "indentation_mm": numbers(curve["indentation_mm"][:kept]),
-        "contact_force_N": numbers(curve["contact_force_N"][:kept]),
-        "pressure_rise_kPa": numbers(curve["pressure_rise_kPa"][:kept]),
-    }
+    points = CurvePoints(
+        tuple(numbers(curve["indentation_mm"][:kept])),
+        tuple(numbers(curve["contact_force_N"][:kept])),
+        tuple(numbers(curve["pressure_rise_kPa"][:kept])),
+    )
     return ComparedState(pressure_kPa, figures, (points,)), note
 
 
@@ -204,7 +204,9 @@ _OF_CURVE = (
 
 def _read(state: Mapping[str, Any], depths: Sequence[Sequence[Array]]) -> tuple[dict[str, float], str]:
     """Figures at the depths of a measurement, and a note on them."""
-    indentation, force, rise_kPa = (np.array(state["curve"][key]) for key in CURVE_KEYS)
+    curve = state["curve"]
+    drawn = curve["indentation_mm"], curve["contact_force_N"], curve["pressure_rise_kPa"]
+    indentation, force, rise_kPa = map(np.array, drawn)
     read, end = figures_at(indentation, force, rise_kPa, state["range_end_mm"], depths), state["range_end_mm"]
     if not read:
         return {}, ""
@@ -242,7 +244,7 @@ class CompareResult:
 
     sensors: tuple[ComparedSensor, ...]
     evaluations: tuple[Evaluation | None, ...]
-    document: ComparisonRecord
+    record: ComparisonRecord
 
     @property
     def name(self) -> str:
@@ -255,12 +257,12 @@ class CompareResult:
 
 def _distinct(labels: Sequence[str]) -> list[str]:
     """Labels as parts of a file's name, without the first one's name where another repeats it."""
-    plain = [re.sub(r"[^A-Za-z0-9_.@-]+", "-", label).strip("-.") for label in labels]
-    first = plain[0].partition("@")[0]
-    parts = [plain[0].replace("@", "-")]
-    for label in plain[1:]:
-        words = [word.removeprefix(f"{first}-") for word in label.split("@") if word != first]
-        parts.append("-".join(words) or first)
+    words = [re.sub(r"[^A-Za-z0-9_.@-]+", "-", label).strip("-.") for label in labels]
+    first = words[0].partition("@")[0]
+    parts = [words[0].replace("@", "-")]
+    for label in words[1:]:
+        left = [word.removeprefix(f"{first}-") for word in label.split("@") if word != first]
+        parts.append("-".join(left) or first)
     return parts
 
 
@@ -289,9 +291,7 @@ def compare(
     sensors = [c.sensor() if isinstance(c, MeasuredColumn) else c.sensor(depths) for c in columns]
     sensors = [replace(s, label=label) for s, label in zip(sensors, labelled(sensors), strict=True)]
     evaluations = tuple(None if isinstance(c, MeasuredColumn) else c.evaluation for c in columns)
-    document = comparison_document(sensors)
-    document["pneutouch"] = __version__
-    return CompareResult(tuple(sensors), evaluations, document)
+    return CompareResult(tuple(sensors), evaluations, comparison(sensors))
 
 
 def _check_given(given: Sequence[Compared]) -> None:
@@ -341,11 +341,12 @@ def write(result: CompareResult, out: Path) -> Path:
 
     folder = out / result.name
     check_writable(folder)
+    document = plain(result.record)
     files = {
-        "comparison.json": json_bytes(versioned("comparison", result.document)),
-        **comparison_sheet(result.document, _parts(result)),
+        "comparison.json": json_bytes(versioned("comparison", document)),
+        **comparison_sheet(result.record, _parts(result)),
     }
-    hashed = {"comparison": short_digest(result.document)}
+    hashed = {"comparison": short_digest(document)}
     write_folder(folder, with_manifest(files, result.name, hashed))
     return folder
 

@@ -17,10 +17,10 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
-from pneutouch.evaluation.comparison import ComparedFigure, ComparedSensor, ComparedState
-from pneutouch.evaluation.comparison_record import CURVE_KEYS, CurvePoints
+from pneutouch.evaluation.comparison import CURVE_KEYS, ComparedFigure, ComparedSensor, ComparedState
 from pneutouch.formats import check_format
 from pneutouch.output.files import MANIFEST, digest
+from pneutouch.results.comparison import CurvePoints
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.values import is_finite
 
@@ -166,7 +166,7 @@ def _depths(
         by_specimen: dict[str, list[Array]] = {}
         for file in group["files"]:
             if file in curves:
-                by_specimen.setdefault(sensor_of[file], []).append(np.array(curves[file]["indentation_mm"]))
+                by_specimen.setdefault(sensor_of[file], []).append(np.array(curves[file].indentation_mm))
         if by_specimen:
             depths[float(group["driving_pressure_kPa"])] = list(by_specimen.values())
     return depths
@@ -186,11 +186,10 @@ def _state(group: Mapping[str, Any], curves: Mapping[str, CurvePoints], *, measu
 def _curves(content: Mapping[str, Any], points: bytes) -> dict[str, CurvePoints]:
     """Loading points of the runs in steps, by file."""
     stepped = {run["file"] for run in content["runs"] if run["kind"] == "steps"}
-    curves: dict[str, CurvePoints] = {}
+    columns: dict[str, dict[str, list[float]]] = {}
     for row in csv.DictReader(io.StringIO(points.decode(), newline="")):
         if row["file"] in stepped:
-            empty: CurvePoints = {"indentation_mm": [], "contact_force_N": [], "pressure_rise_kPa": []}
-            curve = curves.setdefault(row["file"], empty)
+            curve = columns.setdefault(row["file"], {key: [] for key in CURVE_KEYS})
             for key in CURVE_KEYS:
                 curve[key] += numbers([float(row[key])])
-    return curves
+    return {file: CurvePoints(*(tuple(curve[key]) for key in CURVE_KEYS)) for file, curve in columns.items()}

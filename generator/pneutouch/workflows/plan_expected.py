@@ -159,7 +159,7 @@ def _rows(pressed: PressCurves, most: float) -> tuple[InjectedVolume, ...]:
     return tuple(InjectedVolume(*map(float, row)) for row in rows)
 
 
-def leak_limit(rise: float, test: RunProtocol) -> float:
-    """Greatest leak, kPa/min: `_LEAK_SHARE` of the first step's expected rise (kPa) while that indentation lasts."""
+def leak_limit(rise_kPa: float, test: RunProtocol) -> float:
+    """Greatest leak, kPa/min: `_LEAK_SHARE` of the first step's expected rise while that indentation lasts."""
     seconds = test.hold + 2 * (test.depths[0] + CLEARANCE) / test.speed
-    return 60.0 * _LEAK_SHARE * rise / seconds
+    return 60.0 * _LEAK_SHARE * rise_kPa / seconds
