@@ -201,7 +201,7 @@ def test_what_the_plan_chooses_stays_below_the_rating_and_the_design_s_own_press
     changes = {"membrane.wall_thickness_mm": 0.8, "pneumatics.driving_pressures_kPa": [0, 20]}
     thin = make_plan("long-tube", changes, specimens=1, library=library).record
     (resin,) = thin.resins
-    rated = resin.rating["rated_pressure_kPa"]
+    rated = resin.rating.rated_pressure_kPa
     assert 9.0 < rated < 12.0
     saturation = max(thin.tests["saturation"].driving_pressures_kPa)
     assert rated - 0.1 < saturation <= rated

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from pneutouch.workflows.scan_document import spectra
+from pneutouch.workflows.scanned import spectra
 from stored_pages import stored
 
 from pneutouch.catalogue import Library

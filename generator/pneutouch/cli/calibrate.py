@@ -17,7 +17,7 @@ from pneutouch.spec.campaign import Campaign
 from pneutouch.wording import counted
 
 if TYPE_CHECKING:
-    from pneutouch.results.calibration import EstimateRecord, OutcomeRecord, ResponseRecord
+    from pneutouch.results.calibration import EstimateRecord, OutcomeRecord, FittedResponse
 
 
 @app.command()
@@ -106,7 +106,7 @@ def calibration_text(record: "OutcomeRecord") -> str:
     return "\n\n".join(part for part in parts if part)
 
 
-def _response(response: "tuple[ResponseRecord, ...]") -> str:
+def _response(response: "tuple[FittedResponse, ...]") -> str:
     if not response:
         return "no curves: the model's error in sensitivity stays that of the resin"
     head = ["kPa", "force times", "pressure rise times", "sensitivity", "error left in it"]

@@ -64,8 +64,8 @@ def _next(design: str, record: DrivingRecord, words: tuple[list[str] | None, str
     """Predict at the pressures where all tasks are met; else look for another design for the first that is not."""
     missed = next((task for task in record.tasks if not task.reached), None)
     if missed is None:
-        answers = {round(task.solutions[0].driving_pressure_kPa, 2) for task in record.tasks}
-        listed = ",".join(f"{at_kPa:g}" for at_kPa in sorted(answers))
+        answers_kPa = {round(task.solutions[0].driving_pressure_kPa, 2) for task in record.tasks}
+        listed = ",".join(f"{at_kPa:g}" for at_kPa in sorted(answers_kPa))
         report_next("predict", design, *set_words(*words), "--set", f"pneumatics.driving_pressures_kPa=[{listed}]")
         return
     value = f"{missed.value:g}"

@@ -64,7 +64,7 @@ def _job(
 ) -> JobEstimate:
     """The estimate of a job, its support in mm3."""
     x, y, z = (float(length) for length in job.bounds[1] - job.bounds[0])
-    resins = sorted({resin for item in items for resin in item.resins_mL})
+    resins = sorted(set[str]().union(*(item.resins_mL for item in items)))
     return JobEstimate(
         job=job.name,
         printer=job.printer.title,

@@ -81,7 +81,7 @@ class GoodnessRecord:
 
 
 @dataclass(frozen=True, slots=True)
-class ResponseRecord:
+class FittedResponse:
     """The correction of the fitted model at a driving pressure, and its standard uncertainties."""
 
     driving_pressure_kPa: float
@@ -204,7 +204,7 @@ class CalibrationRecord:
     """Correlation."""
     fit: GoodnessRecord
     """Goodness of the fit."""
-    response: tuple[ResponseRecord, ...]
+    response: tuple[FittedResponse, ...]
     """Corrections by driving pressure."""
     residuals: tuple[ResidualRecord, ...]
     """Residuals of each run."""

@@ -23,7 +23,7 @@ class MeasuredLeak:
     at_kPa: float
     """Gauge pressure at which it falls so."""
     measured: str
-    """Where it was measured."""
+    """Place of the measurement."""
 
 
 @dataclass(frozen=True, slots=True)

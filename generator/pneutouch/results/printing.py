@@ -14,7 +14,7 @@ Severity = Literal["error", "warning", "note"]
 
 @dataclass(frozen=True, slots=True)
 class Excess:
-    """How far off: a measured value and the limit that it breaks, both in one unit."""
+    """Excess: a measured value and the limit that it breaks, both in one unit."""
 
     measured: float
     """Measured value."""
@@ -31,7 +31,7 @@ class Finding:
     rule: str
     """Name of the rule."""
     severity: Severity
-    """How serious it is."""
+    """Severity."""
     body: str
     """Name of the body."""
     message: str
@@ -43,7 +43,7 @@ class Finding:
     where_mm: tuple[float, float, float] | None
     """Place in the design frame; null: the whole body."""
     excess: Excess | None
-    """How far off it is; null: there is no number."""
+    """Excess over the limit; null: there is no number."""
 
     @property
     def rank(self) -> int:

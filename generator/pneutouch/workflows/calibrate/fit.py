@@ -49,7 +49,7 @@ from pneutouch.results.calibration import (
     MissRecord,
     PriorRecord,
     ResidualRecord,
-    ResponseRecord,
+    FittedResponse,
 )
 from pneutouch.spec.campaign import Campaign, CampaignRun, RunKind
 from pneutouch.units import KPA, ML
@@ -98,14 +98,14 @@ def _goodness(fitted: CalibrationFit) -> GoodnessRecord:
     )
 
 
-def _response(gap: ResponseGap | None) -> tuple[ResponseRecord, ...]:
+def _response(gap: ResponseGap | None) -> tuple[FittedResponse, ...]:
     """The part of the curves that the fitted model leaves out, by driving pressure."""
     if gap is None:
         return ()
     correction = gap.correction
     errors = gap.sensitivity_errors.tolist(), gap.force_errors.tolist()
     rows = zip(gap.driving_pressures_kPa, correction.force_factors, correction.rise_factors, *errors, strict=True)
-    return tuple(ResponseRecord(*row) for row in rows)
+    return tuple(FittedResponse(*row) for row in rows)
 
 
 def _residual(run: RunResiduals) -> ResidualRecord:

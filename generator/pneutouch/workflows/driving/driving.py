@@ -262,7 +262,8 @@ def _reach(curves: ReachCurves, figure: str) -> FigureReach | None:
 def _ends(pressures: Array, values: Array) -> tuple[float, float, float, float]:
     """The least value with its pressure in kPa, and the greatest with its."""
     low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
-    return float(values[low]), float(pressures[low]) / KPA, float(values[high]), float(pressures[high]) / KPA
+    low_at_kPa, high_at_kPa = (float(pressures[k]) / KPA for k in (low, high))
+    return float(values[low]), low_at_kPa, float(values[high]), high_at_kPa
 
 
 def _task(answer: TaskAnswer, rated: float) -> ReachedTask | MissedTask:

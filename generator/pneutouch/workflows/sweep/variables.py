@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 Document = Mapping[str, Any]
-"""A state or a prediction, as `evaluation.document` gives them."""
+"""A state or a prediction, as data of its record."""
 
 
 @dataclass(frozen=True, slots=True)
