@@ -6,12 +6,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from pneutouch.workflows.scanned import spectra
 from stored_pages import stored
 
 from pneutouch.catalogue import Library
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, figure, svg
 from pneutouch.workflows.scan import run_scan
+from pneutouch.workflows.scanned import spectra
 
 ROOT = Path(__file__).resolve().parents[3]
 

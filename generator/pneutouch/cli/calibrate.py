@@ -17,7 +17,7 @@ from pneutouch.spec.campaign import Campaign
 from pneutouch.wording import counted
 
 if TYPE_CHECKING:
-    from pneutouch.results.calibration import EstimateRecord, OutcomeRecord, FittedResponse
+    from pneutouch.results.calibration import EstimateRecord, FittedResponse, OutcomeRecord
 
 
 @app.command()

@@ -43,13 +43,13 @@ from pneutouch.results.calibration import (
     CorrelatedRecord,
     CorrelationRecord,
     EstimateRecord,
+    FittedResponse,
     FurtherRecord,
     GoodnessRecord,
     HeldOutRecord,
     MissRecord,
     PriorRecord,
     ResidualRecord,
-    FittedResponse,
 )
 from pneutouch.spec.campaign import Campaign, CampaignRun, RunKind
 from pneutouch.units import KPA, ML

@@ -262,7 +262,8 @@ def _reach(curves: ReachCurves, figure: str) -> FigureReach | None:
 def _ends(pressures: Array, values: Array) -> tuple[float, float, float, float]:
     """The least value with its pressure in kPa, and the greatest with its."""
     low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
-    low_at_kPa, high_at_kPa = (float(pressures[k]) / KPA for k in (low, high))
+    low_at_kPa = float(pressures[low]) / KPA
+    high_at_kPa = float(pressures[high]) / KPA
     return float(values[low]), low_at_kPa, float(values[high]), high_at_kPa
 
 
