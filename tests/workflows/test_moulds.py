@@ -75,9 +75,9 @@ def test_the_exploded_view_keeps_parts_apart(mould):
 
 def test_the_record_and_the_sheet_state_what_to_weigh(mould):
     record, rows = mould_record(mould), dict(mould_rows(mould))
-    assert sum(record["silicone"]["parts_g"]) == pytest.approx(record["silicone"]["mass_g"], abs=2e-3)
-    assert f"{record['silicone']['mass_g']:.1f} g" in rows["Silicone to mix"]
-    assert record["parts"]["mould-core"] == 2 and "2 x core" in rows["Parts"]
+    assert sum(record.silicone.parts_g) == pytest.approx(record.silicone.mass_g, abs=2e-3)
+    assert f"{record.silicone.mass_g:.1f} g" in rows["Silicone to mix"]
+    assert record.parts["mould-core"] == 2 and "2 x core" in rows["Parts"]
     assert "M3" in rows["Closed by"]
     drawing = mould_section(mould)
     for word in ("cap", "ring", "core", "base", "silicone", "vents", "pour channel"):

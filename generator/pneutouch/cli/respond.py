@@ -27,7 +27,7 @@ from pneutouch.cli.app import (
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify, report_next, set_words, table_text
 from pneutouch.results.record import plain
-from pneutouch.results.response import ResponseRecord
+from pneutouch.results.response import LoadResponse
 
 if TYPE_CHECKING:
     from pneutouch.workflows.respond import Load
@@ -101,7 +101,7 @@ def _load(step: str | None, sine: str | None, peak: str | None, duration: float 
 _HEAD = ["kPa", "data", "slow kPa", "greatest kPa", "last kPa", "resonance Hz", "gain there", "3 dB Hz", "5 % Hz"]
 
 
-def respond_text(record: ResponseRecord) -> str:
+def respond_text(record: LoadResponse) -> str:
     """Readings of the load in every state."""
     sine = record.sine_Hz
     load = "step" if sine is None else f"sine of {sine:g} Hz"

@@ -11,10 +11,11 @@ from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, pr
 from pneutouch.cli.complete import assignment, names
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.errors import InputError
+from pneutouch.results.record import plain
+from pneutouch.results.tray import TrayRecord
 from pneutouch.wording import counted
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.tray.lay import TrayLayout
     from pneutouch.workflows.tray.order import TrayOrder
 
 
@@ -53,20 +54,20 @@ def tray(
     with reporting():
         from pneutouch.output.files import check_writable
         from pneutouch.workflows.tray.lay import lay
-        from pneutouch.workflows.tray.write import document, write_tray
+        from pneutouch.workflows.tray.write import write_tray
 
         order = _order(what, over or [], copies, changes(set_), {"profile": profile, "marks": marks})
         folder = out / order.name
         check_writable(folder)
         layout = lay(order, progress=_report)
-        write_tray(layout, folder, _report)
-        for note in layout.expanded.left_out:
+        record = write_tray(layout, folder, _report)
+        for note in record.left_out:
             notify(f"not on this tray: {note}")
         if json:
-            print_json(document(layout, folder))
+            print_json(plain(record))
         else:
-            echo(_text(layout))
-            echo(str(folder))
+            echo(_text(record))
+            echo(record.folder)
 
 
 def _order(
@@ -87,15 +88,12 @@ def _report(step: str) -> None:
     notify(f"{step} ...")
 
 
-def _text(layout: TrayLayout) -> str:
+def _text(record: TrayRecord) -> str:
     """A line a job: what to load, how full it is."""
-    from pneutouch.workflows.tray.lay import fill
-
-    lines = [f"{layout.printer.title}: {counted(len(layout.parts), 'part')}, {layout.resin_note}"]
-    for job in layout.jobs:
-        shares = fill(job, layout.printer)
-        lines.append(
-            f"{layout.name(job)}: {counted(len(job.parts), 'part')}, {' + '.join(job.resins)}, {job.mode.name}, "
-            f"{job.layers} layers, bounding boxes take {shares['bounding_boxes']:.1%} of the footprint"
-        )
+    lines = [f"{record.printer}: {counted(record.parts, 'part')}, {record.resin_changes}"]
+    lines += [
+        f"{job.name}: {counted(job.parts, 'part')}, {' + '.join(job.resins)}, {job.mode}, "
+        f"{job.layers} layers, bounding boxes take {job.fill['bounding_boxes']:.1%} of the footprint"
+        for job in record.jobs
+    ]
     return "\n".join(lines)

@@ -18,6 +18,8 @@ from typing import Any
 from pneutouch import __version__
 from pneutouch.errors import InputError
 from pneutouch.formats import check_format, versioned
+from pneutouch.results.folder import FileEntry, Manifest
+from pneutouch.results.record import plain
 from pneutouch.spec.files import read_bytes
 from pneutouch.stopping import parent_folders, refuse_stopped, temporary_folder, uninterrupted
 
@@ -258,17 +260,22 @@ def _installed(library: str) -> str | None:
         return None
 
 
-def entry(content: bytes) -> dict[str, Any]:
+def file_entry(content: bytes) -> FileEntry:
     """Entry of a file in a manifest."""
-    return {"sha256": digest(content), "bytes": len(content)}
+    return FileEntry(digest(content), len(content))
+
+
+def entry(content: bytes) -> Any:
+    """JSON data of a file's entry in a manifest."""
+    return plain(file_entry(content))
 
 
 def with_manifest(files: Mapping[str, bytes], name: str, inputs: Mapping[str, Any], **more: Any) -> dict[str, bytes]:
-    """The files of a folder and their manifest. ``more`` are further entries; an ``input_hash`` among them is kept."""
-    listed = {path: entry(content) for path, content in sorted(files.items())}
+    """The files of a folder and their manifest. ``more`` are further fields; an ``input_hash`` among them is kept."""
+    listed = {path: file_entry(content) for path, content in sorted(files.items())}
     return {**files, MANIFEST: manifest(listed, name, inputs=inputs, **{"input_hash": input_hash(inputs), **more})}
 
 
-def manifest(listed: Mapping[str, Mapping[str, Any]], name: str, **more: Any) -> bytes:
-    """The manifest of files whose entries (see `entry`) are given by path."""
-    return json_bytes(versioned("manifest", {"name": name, "versions": versions(), "files": listed, **more}))
+def manifest(listed: Mapping[str, Any], name: str, **more: Any) -> bytes:
+    """The manifest of files whose entries (see `file_entry`) are given by path; ``more`` are further fields."""
+    return json_bytes(versioned("manifest", plain(Manifest(name, versions(), listed, **more))))

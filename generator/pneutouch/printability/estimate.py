@@ -87,8 +87,8 @@ def _item(part: PrintPart) -> ItemEstimate:
     mix = material.mix
     # Without a measured mix only the sum of a digital material's resins is known.
     shares = {" + ".join(material.base_resins): 1.0} if mix is None else mix.fractions
-    resins = {resin: share * volume / ML for resin, share in sorted(shares.items())}
-    return ItemEstimate(part.name, volume / ML, grams(volume, material.density_g_per_cm3.nominal), resins)
+    resins_mL = {name: share * volume / ML for name, share in sorted(shares.items())}
+    return ItemEstimate(part.name, volume / ML, grams(volume, material.density_g_per_cm3.nominal), resins_mL)
 
 
 def _support(job: PrintJob) -> tuple[float, str]:

@@ -23,7 +23,7 @@ class MeasuredLeak:
     at_kPa: float
     """Gauge pressure at which it falls so."""
     measured: str
-    """Place of the measurement."""
+    """Place or file of the measurement."""
 
 
 @dataclass(frozen=True, slots=True)

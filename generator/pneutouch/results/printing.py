@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal, get_args
+from typing import Any, Literal, Self, get_args
 
 from pneutouch.results.record import plain
 from pneutouch.rounding import rounded
@@ -14,7 +14,7 @@ Severity = Literal["error", "warning", "note"]
 
 @dataclass(frozen=True, slots=True)
 class Excess:
-    """Excess: a measured value and the limit that it breaks, both in one unit."""
+    """A measured value and the limit that it breaks, both in one unit."""
 
     measured: float
     """Measured value."""
@@ -51,7 +51,7 @@ class Finding:
         return get_args(Severity).index(self.severity)
 
     @property
-    def stated(self) -> Finding:
+    def stated(self) -> Self:
         """The finding with its numbers rounded as documents state them."""
         x, y, z = self.where_mm or (0.0, 0.0, 0.0)
         where_mm = None if self.where_mm is None else (round(x, 3) + 0.0, round(y, 3) + 0.0, round(z, 3) + 0.0)
@@ -64,6 +64,24 @@ class Finding:
     def document(self) -> Any:
         """JSON data of the finding as documents state it."""
         return plain(self.stated)
+
+
+@dataclass(frozen=True, slots=True)
+class TrayFinding(Finding):
+    """A finding of a print rule on a part of a tray."""
+
+    labels: tuple[str, ...]
+    """Labels of all parts of the same shape."""
+
+    @property
+    def parts(self) -> str:
+        """The labels in short."""
+        return self.labels[0] if len(self.labels) == 1 else f"{self.labels[0]} and {len(self.labels) - 1} more"
+
+    @property
+    def text(self) -> str:
+        """One line: the place, the problem and the remedy."""
+        return f"{self.severity}: {self.parts}: {self.rule}: {self.message}; {self.fix}"
 
 
 @dataclass(frozen=True, slots=True)

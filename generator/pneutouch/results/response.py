@@ -41,7 +41,7 @@ class StateResponse:
 
 
 @dataclass(frozen=True, slots=True)
-class ResponseRecord:
+class LoadResponse:
     """Readings of the gauge under a force that changes in time."""
 
     design: str

@@ -12,13 +12,16 @@ from pneutouch.results.measured import MeasuredCampaign
 from pneutouch.results.response import ResponseRecord
 from pneutouch.results.scan import ScanRecord
 from pneutouch.results.simulation import CampaignTruth
+from pneutouch.results.folder import Manifest
+from pneutouch.results.response import LoadResponse
+from pneutouch.results.specimen import SpecimenRecord
 from pneutouch.schemas.kind import DocumentKind
 from pneutouch.schemas.shape import Schema
 from pneutouch.schemas.typed import of_record
 
 _DOCUMENTS: dict[str, tuple[type | str, str, str]] = {
     "prediction": ("prediction.prediction", "A prediction", "`prediction.json` of `build`, `pneutouch predict --json`"),
-    "manifest": ("folder.manifest", "A manifest", "`manifest.json` of every output folder"),
+    "manifest": (Manifest, "A manifest", "`manifest.json` of every output folder"),
     "plan": ("campaign.plan", "A test plan", "`plan.json` of `plan`, `pneutouch plan --json`"),
     "figures": (
         MeasuredCampaign,
@@ -30,7 +33,7 @@ _DOCUMENTS: dict[str, tuple[type | str, str, str]] = {
     "calibration-report": (OutcomeRecord, "A calibration's report", "`pneutouch calibrate --json`"),
     "reader": ("reader.reader", "A reader of force", "`reader.json` of `export-reader`"),
     "fit": (MaterialFit, "A fitted material law", "`fit.json` of `fit-material`, `pneutouch fit-material --json`"),
-    "response": (ResponseRecord, "A simulated signal", "`response.json` of `respond`, `pneutouch respond --json`"),
+    "response": (LoadResponse, "A simulated signal", "`response.json` of `respond`, `pneutouch respond --json`"),
     "scan": (ScanRecord, "A scan of a specimen", "`scan.json` of `scan`, `pneutouch scan --json`"),
     "truth": (CampaignTruth, "Truth of a simulated campaign", "`truth.json` of `simulate`"),
     "specimen-report": ("objects.specimen", "A built texture specimen", "`specimen.json` of `build`"),

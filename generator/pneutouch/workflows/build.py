@@ -10,7 +10,6 @@ Name of a build if none is given.
 from collections.abc import Callable, Iterable
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Any
 
 from pneutouch import __version__
 from pneutouch.body import Body
@@ -32,6 +31,7 @@ from pneutouch.report.datasheet import datasheet
 from pneutouch.report.pictures import picture, pressed_files, shown
 from pneutouch.report.print_sheet import print_sheet
 from pneutouch.results.record import plain
+from pneutouch.results.folder import BodyMesh
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION
 from pneutouch.spec.read import Changes
 from pneutouch.units import ML
@@ -82,21 +82,25 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
         files |= pressed_files(sheet.pressed, scene.name)
     files["print-sheet.md"] = print_sheet(sheet, left_out).encode()
     progress("files")
-    about = {**_measured(evaluation, bodies), **({"left_out": left_out} if left_out else {})}
-    if assembly.mould is not None:
-        about["mould"] = mould_record(assembly.mould)
-    write_folder(folder, with_manifest(files, scene.name, inputs(evaluation), **about))
+    made = with_manifest(
+        files,
+        scene.name,
+        BuildRecipe.of(evaluation).inputs(),
+        print_frame_offset_mm=tuple(assembly.print_offset.tolist()),
+        mesh=_meshes(evaluation, bodies),
+        findings=tuple(finding.stated for finding in evaluation.findings),
+        estimates=evaluation.estimates,
+        glue_mL=assembly.glue_volume / ML,
+        left_out=left_out or None,
+        mould=None if assembly.mould is None else mould_record(assembly.mould),
+    )
+    write_folder(folder, made)
     return folder
-
-
-def inputs(evaluation: Evaluation) -> dict[str, Any]:
-    """Everything that the result depends on: design, materials, printers and parts, as data."""
-    return BuildRecipe.of(evaluation).inputs()
 
 
 def input_hash(evaluation: Evaluation) -> str:
     """First twelve digits of the SHA-256 of the inputs and the version."""
-    return hash_of(inputs(evaluation))
+    return hash_of(BuildRecipe.of(evaluation).inputs())
 
 
 def _metadata(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, str]:
@@ -122,24 +126,17 @@ def _thumbnail(evaluation: Evaluation) -> bytes:
     return picture(shown(evaluation.assembly, _THUMBNAIL_PIXELS), _THUMBNAIL_PIXELS, _THUMBNAIL_PIXELS)
 
 
-def _measured(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, Any]:
-    """Entries of the manifest on bodies, findings and estimates."""
+def _meshes(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, BodyMesh]:
     assembly = evaluation.assembly
     return {
-        "print_frame_offset_mm": assembly.print_offset.tolist(),
-        "mesh": {
-            body.name: {
-                "tolerance_mm": evaluation.scene.mesh_tolerance,
-                "measured_deviation_mm": round(assembly.deviation(original), 6),
-                "triangles": len(body.triangles),
-                "volume_mm3": round(body.volume, 3),
-                "exact_volume_mm3": round(solid.volume, 3),
-            }
-            for body, original, solid in zip(bodies, assembly.bodies, assembly.solids, strict=True)
-        },
-        "findings": [finding.document() for finding in evaluation.findings],
-        "estimates": [job.document() for job in evaluation.estimates],
-        "glue_mL": assembly.glue_volume / ML,
+        body.name: BodyMesh(
+            triangles=len(body.triangles),
+            volume_mm3=round(body.volume, 3),
+            exact_volume_mm3=round(solid.volume, 3),
+            tolerance_mm=evaluation.scene.mesh_tolerance,
+            measured_deviation_mm=round(assembly.deviation(original), 6),
+        )
+        for body, original, solid in zip(bodies, assembly.bodies, assembly.solids, strict=True)
     }
 
 

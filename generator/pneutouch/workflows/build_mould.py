@@ -1,7 +1,6 @@
 """The files of a mould: STL of each part as it is printed, plates as 3MF, and the closed mould as STEP, GLB and SVG."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from pneutouch.parts.cast_ring import RING
 from pneutouch.parts.mould import MouldAssembly, silicone_batch
 from pneutouch.parts.mould.filling import release_of
 from pneutouch.report.mould import mould_section
+from pneutouch.results.folder import BodyMesh, MouldRecord, SiliconeRecord
 
 FOLDER = "mould"
 """Folder of the mould's files within a design's."""
@@ -42,26 +42,31 @@ def mould_files(mould: MouldAssembly) -> tuple[dict[str, bytes], dict[str, str]]
     return files, {f"{FOLDER}/{file}": why for file, why in left_out.items()}
 
 
-def mould_record(mould: MouldAssembly) -> dict[str, Any]:
-    """Entries of the manifest on the mould."""
-    size, release = mould.size, release_of(mould.membrane, mould.size)
-    return {
-        "cavities": size.shape.cavities,
-        "parts": mould.counts,
-        "scale": round(size.shape.factor, 9),
-        "mesh_tolerance_mm": mould.tolerance,
-        "wall_error_mm": round(size.wall_error, 6),
-        "release_strain_percent": round(100 * release.strain, 3),
-        "silicone": silicone_batch(mould).document(),
-        "mesh": {
-            body.name: {
-                "triangles": len(body.triangles),
-                "volume_mm3": round(body.volume, 3),
-                "exact_volume_mm3": round(solid.volume, 3),
-            }
+def mould_record(mould: MouldAssembly) -> MouldRecord:
+    """The mould as the manifest states it."""
+    size, release, batch = mould.size, release_of(mould.membrane, mould.size), silicone_batch(mould)
+    return MouldRecord(
+        cavities=size.shape.cavities,
+        parts=mould.counts,
+        scale=round(size.shape.factor, 9),
+        mesh_tolerance_mm=mould.tolerance,
+        wall_error_mm=round(size.wall_error, 6),
+        release_strain_percent=round(100 * release.strain, 3),
+        silicone=SiliconeRecord(
+            cavities=batch.cavities,
+            cavity_mL=round(batch.cavity_mL, 4),
+            channels_mL=round(batch.channels_mL, 4),
+            overflow_mL=round(batch.overflow_mL, 4),
+            loss_mL=round(batch.loss_mL, 4),
+            volume_mL=round(batch.volume_mL, 4),
+            mass_g=round(batch.mass_g, 3),
+            parts_g=tuple(round(part, 3) for part in batch.parts_g),
+        ),
+        mesh={
+            body.name: BodyMesh(len(body.triangles), round(body.volume, 3), round(solid.volume, 3))
             for body, solid in zip(mould.bodies, mould.solids, strict=True)
         },
-    }
+    )
 
 
 def exploded(mould: MouldAssembly) -> tuple[Body, ...]:

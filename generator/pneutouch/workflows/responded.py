@@ -15,7 +15,7 @@ from pneutouch.output.files import check_writable, json_bytes, with_manifest, wr
 from pneutouch.output.recipe import BuildRecipe
 from pneutouch.report.fit_charts import GainCurve, TimeCurves, response_chart
 from pneutouch.results.record import plain
-from pneutouch.results.response import ResponseRecord, StateResponse
+from pneutouch.results.response import LoadResponse, StateResponse
 from pneutouch.rounding import rounded
 from pneutouch.units import KPA
 from pneutouch.workflows.respond import BEFORE, Load, RespondRun, StateSignal
@@ -34,10 +34,10 @@ CHAIN = (
 )
 
 
-def responded(run: RespondRun) -> ResponseRecord:
+def responded(run: RespondRun) -> LoadResponse:
     """All results of a simulated signal."""
     scene, load, peak = run.evaluation.scene, run.load, run.signals[0].peak
-    record = ResponseRecord(
+    record = LoadResponse(
         design=scene.name,
         model=run.evaluation.prediction.model,
         simulated=True,
@@ -91,7 +91,7 @@ def _state(load: Load, number: int, signal: StateSignal) -> StateResponse:
     )
 
 
-def write_respond(run: RespondRun, record: ResponseRecord, out: Path) -> Path:
+def write_respond(run: RespondRun, record: LoadResponse, out: Path) -> Path:
     """Write signals, samples, record, figure and manifest into ``out/<design>-response/``; returns that folder."""
     name = f"{run.evaluation.scene.name}-response"
     folder = out / name

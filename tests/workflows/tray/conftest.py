@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from pneutouch.workflows.tray.lay import lay
@@ -17,10 +19,10 @@ def seven(library):
 
 @pytest.fixture(scope="session")
 def folder(seven, tmp_path_factory):
-    return write_tray(seven, tmp_path_factory.mktemp("outputs") / "seven")
+    return Path(write_tray(seven, tmp_path_factory.mktemp("outputs") / "seven").folder)
 
 
 @pytest.fixture(scope="session")
 def seats(library, tmp_path_factory):
     laid = flags(library, ["stiff-dome"], ["connector.seat=glued-flange,one-piece,clamped-flange-M2"], 2)
-    return laid, write_tray(laid, tmp_path_factory.mktemp("outputs") / "seats")
+    return laid, Path(write_tray(laid, tmp_path_factory.mktemp("outputs") / "seats").folder)

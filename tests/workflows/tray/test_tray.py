@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,7 @@ from pneutouch.parts.lettering.mark import read
 from pneutouch.workflows.tray.labels import subject
 from pneutouch.workflows.tray.lay import fill, lay
 from pneutouch.workflows.tray.order import TrayOrder, is_tray_file, order_of_file, order_of_flags
-from pneutouch.workflows.tray.write import document, inputs, write_tray
+from pneutouch.workflows.tray.write import inputs, tray_record, write_tray
 from tests.conftest import ROOT
 from tests.export.threemf_files import read_strictly
 from tests.workflows.tray.laid import RESINS, flags, table
@@ -77,7 +76,7 @@ def test_what_another_printer_prints_is_left_out_and_said(library, tmp_path):
     said = " ".join(laid.expanded.left_out)
     assert "membrane of paper-dome: for the Stratasys Objet260 Connex" in said
     assert "connector of agilus-dome: for the Stratasys J735" in said
-    where = write_tray(laid, tmp_path / "abs")
+    where = Path(write_tray(laid, tmp_path / "abs").folder)
     assert "Not on this tray: membrane of paper-dome" in (where / "labels.md").read_text()
 
 
@@ -91,7 +90,7 @@ def test_resins_that_do_not_fit_at_once_make_more_jobs(library, tmp_path):
     laid = lay(order, small)
     assert [job.resins for job in laid.jobs] == [("Agilus30",), ("VeroClear",), ("TangoPlus",)] or len(laid.jobs) == 3
     assert "3 jobs in this order, 2 resins loaded between" in laid.resin_note
-    where = write_tray(laid, tmp_path / "out")
+    where = Path(write_tray(laid, tmp_path / "out").folder)
     assert {path.name for path in where.glob("*.3mf")} == {f"agilus-dome-tray-{k}.3mf" for k in (1, 2, 3)}
     assert {path.name for path in where.glob("*.svg")} == {"tray-1.svg", "tray-2.svg", "tray-3.svg"}
     assert {row["job"] for row in table(where)} == {"1", "2", "3"}
@@ -111,7 +110,7 @@ def test_the_recipe_says_all_that_the_tray_follows_from(seven):
     assert set(said["values"]) == set("ABCDEFG")
     assert all(name is None or name in said["things"] for scene in said["values"].values() for name in scene.values())
     assert said["things"][said["values"]["B"]["membrane_material"]]["title"] == "FLX9940-DM"
-    assert json.loads(json.dumps(document(seven, Path("x"))))["parts"] == 21
+    assert tray_record(seven, Path("x")).parts == 21
 
 
 def test_a_part_is_a_subject_for_the_print_rules(seats):

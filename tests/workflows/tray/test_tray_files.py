@@ -41,7 +41,7 @@ def test_the_folder_holds_what_is_promised(folder):
 
 
 def test_the_same_tray_gives_the_same_bytes(seven, folder, library, tmp_path):
-    again = write_tray(lay(order_of_file(EXAMPLE), library), tmp_path / "again")
+    again = Path(write_tray(lay(order_of_file(EXAMPLE), library), tmp_path / "again").folder)
     assert content(again) == content(folder)
 
 
@@ -113,7 +113,7 @@ def test_the_3mf_gives_every_part_its_material_and_every_uuid_once(folder):
 
 def test_copies_without_marks_share_their_mesh(library, tmp_path):
     laid = flags(library, ["paper-dome"], ["membrane.material=TangoPlus,FLX9940"], 4, marks="none")
-    where = write_tray(laid, tmp_path / "plain")
+    where = Path(write_tray(laid, tmp_path / "plain").folder)
     model, _ = read_strictly(next(where.glob("*.3mf")))
     assert model.GetMeshObjects().Count() == 2
     assert model.GetBuildItems().Count() == 8

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -257,19 +256,6 @@ class SiliconeBatch:
         """To be weighed of each part, in the order of ``parts_by_mass``."""
         whole = sum(self.parts_by_mass)
         return tuple(self.mass_g * part / whole for part in self.parts_by_mass)
-
-    def document(self) -> dict[str, Any]:
-        """The entry of the manifest."""
-        return {
-            "cavities": self.cavities,
-            "cavity_mL": round(self.cavity_mL, 4),
-            "channels_mL": round(self.channels_mL, 4),
-            "overflow_mL": round(self.overflow_mL, 4),
-            "loss_mL": round(self.loss_mL, 4),
-            "volume_mL": round(self.volume_mL, 4),
-            "mass_g": round(self.mass_g, 3),
-            "parts_g": [round(part, 3) for part in self.parts_g],
-        }
 
 
 def silicone_batch(mould: MouldAssembly) -> SiliconeBatch:

@@ -8,11 +8,9 @@ from pneutouch.schemas.shape import (
     TEXTS,
     WHOLE,
     Schema,
-    choice,
     described_by,
     items,
     mapping,
-    or_null,
     record,
 )
 
@@ -20,36 +18,6 @@ _POINT: Schema = {**NUMBERS, "minItems": 3, "maxItems": 3}
 _DIGEST: Schema = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
 _COLOUR: Schema = {**items({"type": "integer", "minimum": 0, "maximum": 255}), "minItems": 4, "maxItems": 4}
 _SHARE: Schema = {"type": "number", "minimum": 0, "maximum": 1}
-
-
-def specimen() -> Schema:
-    """Schema of ``specimen.json`` of a texture specimen's build."""
-    sides = {"length_mm": NUMBER, "width_mm": NUMBER, "height_mm": NUMBER, "volume_mm3": NUMBER}
-    path = {"speed_mm_per_s": NUMBER, "axis": choice("x"), "surface_z_mm": NUMBER}
-    layer = {
-        "name": TEXT,
-        "kind": described_by("Family of the pattern.", TEXT),
-        "pitches_mm": NUMBERS,
-        "frequencies_Hz": NUMBERS,
-        "depth_mm": described_by("Depth of the upper faces below the scanned surface.", NUMBER),
-        **dict.fromkeys(("bottom_depth_mm", "start_mm", "end_mm"), NUMBER),
-        "width_mm_range": PAIR,
-        "volume_mm3": NUMBER,
-        "exact_volume_mm3": or_null(NUMBER),
-        "pattern": described_by("Numbers of the family, by name.", {"type": "object"}),
-    }
-    keys = {
-        "name": TEXT,
-        "title": TEXT,
-        "block": record("The block, in its own frame: x along the path of the scan.", sides),
-        "materials": described_by("Material of each body.", mapping(TEXT)),
-        "volumes_mm3": mapping(NUMBER),
-        "inclusion_fraction": _SHARE,
-        "block_to_print_frame_mm": _POINT,
-        "scan": record("How it is to be scanned.", path),
-        "layers": items(record("A layer of bars or of another pattern.", layer)),
-    }
-    return record("Content of a texture specimen, with places.", keys)
 
 
 def stack() -> Schema:

@@ -1,6 +1,6 @@
 """Parts that several documents have."""
 
-from pneutouch.schemas.shape import NUMBER, NUMBERS, TEXT, TEXTS, Schema, any_of, choice, or_null, record
+from pneutouch.schemas.shape import NUMBER, NUMBERS, TEXT, TEXTS, Schema, any_of, choice, record
 from pneutouch.spec.contact import SIZES, ContactTable
 
 
@@ -29,22 +29,3 @@ def _help(key: str) -> Schema:
     """The help of the design file's key."""
     field = ContactTable.model_fields.get(key)
     return {} if field is None else {"description": field.description}
-
-
-def finding(*more: str) -> Schema:
-    """A finding of a rule; ``more`` are lists of texts next to it."""
-    excess = record("How far off.", {"measured": NUMBER, "limit": NUMBER, "unit": TEXT})
-    return record(
-        "A finding of a print rule.",
-        {
-            **dict.fromkeys(more, TEXTS),
-            "rule": TEXT,
-            "severity": choice("error", "warning", "note"),
-            "body": TEXT,
-            "message": TEXT,
-            "where_mm": or_null({**NUMBERS, "minItems": 3, "maxItems": 3}),
-            "excess": or_null(excess),
-            "fix": TEXT,
-            "source": TEXT,
-        },
-    )

@@ -22,7 +22,6 @@ from pneutouch.output.files import check_writable, digest, input_hash, stated_di
 from pneutouch.packing import PackingArea, in_rows
 from pneutouch.parts.coupons import Coupon, Nominal
 from pneutouch.results.coupons import CouponSet, PrintedCoupon
-from pneutouch.results.record import plain
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.workflows.coupons.order import CouponItem, CouponOptions, CouponOrder, order, results_template
@@ -263,7 +262,7 @@ def build_coupons(options: CouponOptions, out: Path, library: Library | None = N
     files[SHEET] = sheet(ordered, trays).encode()
     files[RESULTS] = results_template(ordered).encode()
     coupons = _coupons(trays)
-    write_folder(folder, with_manifest(files, ordered.name, follows_from, coupons=plain(coupons)))
+    write_folder(folder, with_manifest(files, ordered.name, follows_from, coupons=coupons))
     return CouponSet(ordered.name, coupons, str(folder))
 
 

@@ -251,20 +251,19 @@ def _reach(curves: ReachCurves, figure: str) -> FigureReach | None:
     pressures, values = curves.pressures, curves.values(figure)
     if np.isnan(values).all():
         return None
-    reach = FigureReach(*_ends(pressures, values))
+    at_kPa = pressures / KPA
+    reach = FigureReach(*_ends(at_kPa, values))
     within = pressures <= curves.evaluation.rating.pressure
     if np.isnan(values[within]).all():
         return reach
-    low, low_at_kPa, high, high_at_kPa = _ends(pressures[within], values[within])
+    low, low_at_kPa, high, high_at_kPa = _ends(at_kPa[within], values[within])
     return replace(reach, rated_low=low, rated_low_at_kPa=low_at_kPa, rated_high=high, rated_high_at_kPa=high_at_kPa)
 
 
-def _ends(pressures: Array, values: Array) -> tuple[float, float, float, float]:
-    """The least value with its pressure in kPa, and the greatest with its."""
+def _ends(at_kPa: Array, values: Array) -> tuple[float, float, float, float]:
+    """The least value with its pressure, and the greatest with its."""
     low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
-    low_at_kPa = float(pressures[low]) / KPA
-    high_at_kPa = float(pressures[high]) / KPA
-    return float(values[low]), low_at_kPa, float(values[high]), high_at_kPa
+    return float(values[low]), float(at_kPa[low]), float(values[high]), float(at_kPa[high])
 
 
 def _task(answer: TaskAnswer, rated: float) -> ReachedTask | MissedTask:

@@ -3,7 +3,7 @@
 The print rules on a specimen. Bodies that fill one another leave no open space, so two subjects are checked.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -23,11 +23,13 @@ from pneutouch.parts.specimen import Box
 from pneutouch.parts.specimen.plate import holes, outline
 from pneutouch.printability import Finding, check, refuse
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
+from pneutouch.results.folder import BodyMesh
+from pneutouch.results.record import plain
 from pneutouch.shape.meridian import Line
 from pneutouch.spec.read import Changes
 from pneutouch.spec.values import plain_name
 from pneutouch.workflows.specimen.draw import ResolvedSpecimen, SpecimenBodies, draw, load_specimen
-from pneutouch.workflows.specimen.sheet import drawing_svg, sheet, truth
+from pneutouch.workflows.specimen.sheet import drawing_svg, sheet, specimen_record
 
 OPEN = frozenset({"holes", "channels", "gaps", "hollows", "cleaning", "emboss", "matte"})
 """Rules on open space: a space that one body leaves open another one fills, so they look at the block as a whole."""
@@ -164,9 +166,22 @@ def build_specimen(
     progress("rules")
     checked = findings(drawn)
     refuse(checked, scene.where)
-    files, left_out = _files(drawn, checked, progress)
+    follows_from = inputs(scene)
+    files, left_out = _files(drawn, checked, input_hash(follows_from), progress)
     progress("files")
-    write_folder(folder, with_manifest(files, scene.name, inputs(scene), **_measured(drawn, checked), **left_out))
+    made = with_manifest(
+        files,
+        scene.name,
+        follows_from,
+        print_frame_offset_mm=tuple(drawn.offset.tolist()),
+        mesh={
+            body.name: BodyMesh(len(body.triangles), round(body.volume, 3), tolerance_mm=scene.tolerance)
+            for body in drawn.bodies
+        },
+        findings=tuple(finding.stated for finding in checked),
+        left_out=left_out or None,
+    )
+    write_folder(folder, made)
     return folder, checked
 
 
@@ -183,7 +198,7 @@ def check_specimen(
     return checked
 
 
-def inputs(scene: ResolvedSpecimen) -> dict[str, Any]:
+def inputs(scene: ResolvedSpecimen) -> Mapping[str, Any]:
     """Everything that the result depends on, as data."""
     return {
         "specimen": scene.specimen.model_dump(mode="json"),
@@ -223,11 +238,10 @@ def _polygon(corners: list[tuple[float, float]]) -> tuple[Line, ...]:
 
 
 def _files(
-    drawn: SpecimenBodies, checked: list[Finding], progress: StepReport
-) -> tuple[dict[str, bytes], dict[str, Any]]:
-    """The files, and the manifest's entry on the parts left out."""
+    drawn: SpecimenBodies, checked: list[Finding], whole: str, progress: StepReport
+) -> tuple[dict[str, bytes], dict[str, str]]:
+    """The files, and those left out with the reasons; ``whole`` is the hash of the inputs."""
     scene, bodies = drawn.scene, drawn.printed
-    whole = input_hash(inputs(scene))
     progress("3MF")
     files = {f"{scene.name}.3mf": threemf(scene.name, bodies, _metadata(drawn, whole))}
     progress("STL")
@@ -245,8 +259,8 @@ def _files(
     progress("drawing")
     files["drawing.svg"] = drawing_svg(drawn)
     files["print-sheet.md"] = sheet(drawn, checked, whole, left_out).encode()
-    files["specimen.json"] = json_bytes(versioned("specimen-report", truth(drawn)))
-    return files, {"left_out": left_out} if left_out else {}
+    files["specimen.json"] = json_bytes(versioned("specimen-report", plain(specimen_record(drawn))))
+    return files, left_out
 
 
 def _metadata(drawn: SpecimenBodies, whole: str) -> dict[str, str]:
@@ -258,21 +272,4 @@ def _metadata(drawn: SpecimenBodies, whole: str) -> dict[str, str]:
         "versions": json_bytes(versions()).decode(),
         "input-hash": whole,
         "mesh-tolerance-mm": f"{scene.tolerance:g}",
-    }
-
-
-def _measured(drawn: SpecimenBodies, checked: list[Finding]) -> dict[str, Any]:
-    """Entries of the manifest on the bodies."""
-    scene = drawn.scene
-    return {
-        "print_frame_offset_mm": drawn.offset.tolist(),
-        "mesh": {
-            body.name: {
-                "tolerance_mm": scene.tolerance,
-                "triangles": len(body.triangles),
-                "volume_mm3": round(body.volume, 3),
-            }
-            for body in drawn.bodies
-        },
-        "findings": [finding.document() for finding in checked],
     }

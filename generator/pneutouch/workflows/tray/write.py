@@ -6,6 +6,7 @@ The tray seen from above: envelope, parts in outline with their labels, axes in 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,8 +22,9 @@ from pneutouch.output.recipe import scene_parts
 from pneutouch.parts.lettering.mark import shape_of
 from pneutouch.printability import refuse
 from pneutouch.report.style import BOLD, INK, MM, MUTED, figure, halo, svg
+from pneutouch.results.tray import TrayJobRecord, TrayRecord
 from pneutouch.wording import counted
-from pneutouch.workflows.tray.labels import TrayFinding, findings, labels_csv, labels_md, rows
+from pneutouch.workflows.tray.labels import findings, labels_csv, labels_md, rows
 from pneutouch.workflows.tray.lay import StepReport, TrayJob, TrayLayout, TrayPart, fill, outline
 
 if TYPE_CHECKING:
@@ -101,17 +103,18 @@ def _part(ax: Axes, part: TrayPart, polygons: list[Any], width: float) -> None:
     ax.text(*middle, f"{resins}\n{names}", ha="center", va="top", fontsize=small, color=INK, linespacing=1.15)
 
 
-def write_tray(layout: TrayLayout, folder: Path, progress: StepReport = lambda step: None) -> Path:
-    """Write everything of a tray into ``folder`` and return it. The same input gives the same bytes.
+def write_tray(layout: TrayLayout, folder: Path, progress: StepReport = lambda step: None) -> TrayRecord:
+    """Write everything of a tray into ``folder``. The same input gives the same bytes.
 
     Raises RuleBrokenError, with nothing written, where a part breaks a print rule.
     """
     check_writable(folder)
     progress("rules")
     checked = findings(layout)
-    refuse((replace(one.finding, body=one.parts) for one in checked), layout.order.where)
+    refuse((replace(one, body=one.parts) for one in checked), layout.order.where)
     files: dict[str, bytes] = {}
-    recipe = json.dumps(inputs(layout), sort_keys=True, allow_nan=False, separators=(",", ":"))
+    follows_from, record = inputs(layout), tray_record(layout, folder)
+    recipe = json.dumps(follows_from, sort_keys=True, allow_nan=False, separators=(",", ":"))
     for job in layout.jobs:
         name = layout.name(job)
         progress("3MF")
@@ -120,30 +123,38 @@ def write_tray(layout: TrayLayout, folder: Path, progress: StepReport = lambda s
         files |= {f"stl/{body.name}.stl": stl(body) for part in job.parts for body in part.on_tray()}
         progress("view")
         files["tray.svg" if len(layout.jobs) == 1 else f"tray-{layout.jobs.index(job) + 1}.svg"] = tray_svg(layout, job)
-    files["labels.csv"], files["labels.md"] = labels_csv(layout), labels_md(layout, checked)
+    files["labels.csv"], files["labels.md"] = labels_csv(record.labels), labels_md(layout, record, checked)
     progress("files")
-    content = inputs(layout)
-    # The version is among the inputs of a tray.
-    short = short_digest(content)
-    write_folder(folder, with_manifest(files, layout.order.name, content, input_hash=short, **_jobs(layout, checked)))
-    return folder
+    about = with_manifest(
+        files,
+        record.tray,
+        follows_from,
+        # The version is among the inputs of a tray.
+        input_hash=short_digest(follows_from),
+        jobs=record.jobs,
+        left_out=record.left_out,
+        resin_changes=record.resin_changes,
+        findings=tuple(one.stated for one in checked),
+    )
+    write_folder(folder, about)
+    return record
 
 
-def document(layout: TrayLayout, folder: Path) -> dict[str, Any]:
-    """Document that ``pneutouch tray --json`` prints."""
-    return {
-        "tray": layout.order.name,
-        "folder": str(folder),
-        "printer": layout.printer.title,
-        "parts": len(layout.parts),
-        "resin_changes": layout.resin_note,
-        "left_out": list(layout.expanded.left_out),
-        "jobs": [_job_document(layout, job) for job in layout.jobs],
-        "labels": rows(layout),
-    }
+def tray_record(layout: TrayLayout, folder: Path) -> TrayRecord:
+    """The tray as ``pneutouch tray`` states it."""
+    return TrayRecord(
+        tray=layout.order.name,
+        folder=str(folder),
+        printer=layout.printer.title,
+        parts=len(layout.parts),
+        resin_changes=layout.resin_note,
+        left_out=layout.expanded.left_out,
+        jobs=tuple(_job(layout, job) for job in layout.jobs),
+        labels=rows(layout),
+    )
 
 
-def inputs(layout: TrayLayout) -> dict[str, Any]:
+def inputs(layout: TrayLayout) -> Mapping[str, Any]:
     """Everything that a tray depends on: the tray file or options, the printer, and each value's scene resolved.
 
     ``values`` state by letter which of ``things`` each scene is made of: they share most of them.
@@ -198,25 +209,15 @@ def _metadata(layout: TrayLayout, job: TrayJob, recipe: str) -> dict[str, str]:
     }
 
 
-def _job_document(layout: TrayLayout, job: TrayJob) -> dict[str, Any]:
-    return {
-        "name": layout.name(job),
-        "mode": job.mode.name,
-        "layer_height_um": job.mode.layer_um,
-        "layers": job.layers,
-        "height_mm": round(job.height, 3),
-        "resins": list(job.resins),
-        "parts": len(job.parts),
-        "mesh_tolerance_mm": layout.printer.finest_step(job.mode),
-        "fill": {key: round(share, 4) for key, share in fill(job, layout.printer).items()},
-    }
-
-
-def _jobs(layout: TrayLayout, checked: tuple[TrayFinding, ...]) -> dict[str, Any]:
-    """Entries of the manifest on jobs and findings."""
-    return {
-        "jobs": [_job_document(layout, job) for job in layout.jobs],
-        "left_out": list(layout.expanded.left_out),
-        "resin_changes": layout.resin_note,
-        "findings": [{"labels": list(one.labels), **one.finding.document()} for one in checked],
-    }
+def _job(layout: TrayLayout, job: TrayJob) -> TrayJobRecord:
+    return TrayJobRecord(
+        name=layout.name(job),
+        mode=job.mode.name,
+        layer_height_um=job.mode.layer_um,
+        layers=job.layers,
+        height_mm=round(job.height, 3),
+        resins=job.resins,
+        parts=len(job.parts),
+        mesh_tolerance_mm=layout.printer.finest_step(job.mode),
+        fill={key: round(share, 4) for key, share in fill(job, layout.printer).items()},
+    )

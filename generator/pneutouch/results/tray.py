@@ -1,0 +1,106 @@
+"""A tray of sensors as it was laid out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class LabelRow:
+    """A body on a tray: a row of the label list. x and y are the middle of its part."""
+
+    label: str
+    """Label of the part."""
+    body: str
+    """Name of the body."""
+    file: str
+    """Path of the file."""
+    design: str
+    """Name of the design."""
+    varied: str
+    """Key that is varied; empty: none."""
+    value: str | float | list[float | int]
+    """Value of that key; empty: none."""
+    copy: int
+    """Number of the copy, from 1."""
+    material: str
+    """Title of its material."""
+    base_resins: str
+    """Base resins of the material."""
+    job: int
+    """Number of the job, from 1."""
+    mode: str
+    """Print mode."""
+    layers: int
+    """Number of layers."""
+    x_mm: float
+    """Place along x."""
+    y_mm: float
+    """Place along y."""
+    turned_deg: int
+    """Turn about z."""
+    size_x_mm: float
+    """Size along x before the turn."""
+    size_y_mm: float
+    """Size along y before the turn."""
+    height_mm: float
+    """Height."""
+    mass_g: float
+    """Mass."""
+    mark: str
+    """Kind of the mark."""
+    mark_face: str
+    """Face that carries the mark."""
+    mark_depth_mm: float
+    """Depth of the mark."""
+    mark_stroke_mm: float
+    """Width of the mark's strokes."""
+    mark_note: str
+    """A note on the mark in words."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrayJobRecord:
+    """A run of the printer."""
+
+    name: str
+    """Name of the job's files."""
+    mode: str
+    """Print mode."""
+    layer_height_um: float
+    """Height of a layer."""
+    layers: int
+    """Number of layers."""
+    height_mm: float
+    """Height."""
+    resins: tuple[str, ...]
+    """Resins that are loaded."""
+    parts: int
+    """Number of parts."""
+    mesh_tolerance_mm: float
+    """Tolerance that the meshes keep."""
+    fill: Mapping[str, float]
+    """Shares of the envelope's footprint: of the parts' bounding boxes, and of their outlines."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrayRecord:
+    """A tray of sensors."""
+
+    tray: str
+    """Name of the tray."""
+    folder: str
+    """Folder that it was written to."""
+    printer: str
+    """Printer."""
+    parts: int
+    """Number of parts."""
+    resin_changes: str
+    """Changes of the resin, in words."""
+    left_out: tuple[str, ...]
+    """Parts left out, and the reasons."""
+    jobs: tuple[TrayJobRecord, ...]
+    """Print jobs of a tray."""
+    labels: tuple[LabelRow, ...]
+    """Bodies in the order of the labels."""
