@@ -3,13 +3,17 @@
 The content of a 3MF or of a voxel stack as text.
 """
 
+from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from pneutouch.cli.app import JsonOption, app, print_json, refuse_flags, reporting
 from pneutouch.cli.terminal import echo, table_text
+from pneutouch.results.record import plain
+from pneutouch.results.stored import ShownPackage, ShownRecipe, ShownStack
 
 
 @app.command()
@@ -25,49 +29,55 @@ def show(
 ) -> None:
     """Show a 3MF: its bodies, its metadata and the recipe it was built from. Of a voxel stack: what lies in it."""
     with reporting():
+        document: object
         if file.is_dir() and file.suffix.lower() != ".3mf":
             from pneutouch.workflows.show import show_stack
 
-            document, text = show_stack(file, out), stack_text
+            stack = show_stack(file, out)
+            held = {"stack": stack.stack, "resins": stack.resins, **stack.held}
+            document, text = held, partial(stack_text, stack)
         else:
             from pneutouch.workflows.show import show as run
 
             refuse_flags(context, {"out": "--out"}, "a 3MF, which has no sections", str(file))
-            document, text = run(file), show_text
+            package = run(file)
+            document, text = package, partial(show_text, package)
         if json:
-            print_json(document)
+            print_json(plain(document))
         else:
-            echo(text(document))
+            echo(text())
 
 
 NO_RECIPE = "no recipe: not built by pneutouch, so it can be shown but not rebuilt"
 
 
-def show_text(document: dict[str, Any]) -> str:
+def show_text(package: ShownPackage) -> str:
     """Bodies, metadata and recipe, one block each; control characters of foreign files are left out."""
-    blocks = [_bodies(document), _table("metadata", document["metadata"]), *_recipe(document["recipe"])]
+    recipe = [NO_RECIPE] if package.recipe is None else _recipe(package.recipe)
+    blocks = [_bodies(package), _table("metadata", package.metadata), *recipe]
     lines = "\n\n".join(block for block in blocks if block).split("\n")
     return "\n".join("".join(letter for letter in line if letter.isprintable()) for line in lines)
 
 
-def stack_text(document: dict[str, Any]) -> str:
+def stack_text(stack: ShownStack) -> str:
     """A voxel stack: its raster, its resins as counted, its bodies as the manifest has them."""
-    wide, tall = document["pixels"]
-    x, y, z = document["size_mm"]
+    held = stack.held
+    wide, tall = held["pixels"]
+    x, y, z = held["size_mm"]
     about = (
-        f"{document['stack']}: {document['layers']} slices of {wide} x {tall} pixels, {x:.2f} x {y:.2f} x {z:.2f} mm; "
-        f"{document['dpi'][0]} x {document['dpi'][1]} dpi, {document['layer_um']:g} um layers"
+        f"{stack.stack}: {held['layers']} slices of {wide} x {tall} pixels, {x:.2f} x {y:.2f} x {z:.2f} mm; "
+        f"{held['dpi'][0]} x {held['dpi'][1]} dpi, {held['layer_um']:g} um layers"
     )
-    machine = f"for the {document['printer']} in the mode {document['mode']}" if "printer" in document else ""
+    machine = f"for the {held['printer']} in the mode {held['mode']}" if "printer" in held else ""
     resins = [
         [
-            resin,
-            ", ".join(map(str, entry["rgba"])),
-            str(entry["voxels"]),
-            f"{entry['volume_mm3']:.2f}",
-            f"{entry['share_of_the_print']:.3%}",
+            name,
+            ", ".join(map(str, resin.rgba)),
+            str(resin.voxels),
+            f"{resin.volume_mm3:.2f}",
+            f"{resin.share_of_the_print:.3%}",
         ]
-        for resin, entry in document["resins"].items()
+        for name, resin in stack.resins.items()
     ]
     bodies = [
         [
@@ -78,7 +88,7 @@ def stack_text(document: dict[str, Any]) -> str:
             body.get("stiff_resin", "-"),
             *(f"{body[key]:.3%}" if key in body else "-" for key in ("fraction_requested", "fraction_realised")),
         ]
-        for name, body in document["bodies"].items()
+        for name, body in held["bodies"].items()
     ]
     return "\n".join(
         [
@@ -89,40 +99,38 @@ def stack_text(document: dict[str, Any]) -> str:
             "",
             table_text(["body", "voxels", "volume mm3", "off exact", "dithered in", "designed", "realised"], bodies),
             "",
-            *(f"assumed: {line}" for line in document.get("assumptions", [])),
+            *(f"assumed: {line}" for line in held.get("assumptions", [])),
         ]
     )
 
 
-def _bodies(document: dict[str, Any]) -> str:
+def _bodies(package: ShownPackage) -> str:
     head = ["body", "material", "colour", "size mm", "volume mm3", "triangles"]
     rows = [
         [
-            body["name"] or "-",
-            body["material"] or "-",
-            body["colour"] or "-",
-            " x ".join(f"{length:.2f}" for length in body["size_mm"]),
-            f"{body['volume_mm3']:.1f}",
-            str(body["triangles"]),
+            body.name or "-",
+            body.material or "-",
+            body.colour or "-",
+            " x ".join(f"{length:.2f}" for length in body.size_mm),
+            f"{body.volume_mm3:.1f}",
+            str(body.triangles),
         ]
-        for body in document["bodies"]
+        for body in package.bodies
     ]
     mixes = [
-        f"{body['name']} is mixed from " + ", ".join(f"{ratio:.1%} {resin}" for resin, ratio in body["mix"].items())
-        for body in document["bodies"]
-        if body["mix"]
+        f"{body.name} is mixed from " + ", ".join(f"{ratio:.1%} {resin}" for resin, ratio in body.mix.items())
+        for body in package.bodies
+        if body.mix
     ]
     count = len(rows)
-    bodies, thumbnail = "body" if count == 1 else "bodies", "with" if document["thumbnail"] else "no"
-    about = f"{document['file']}: {count} {bodies}, {thumbnail} thumbnail"
-    warned = [f"warning: {text}" for text in document["warnings"]]
+    bodies, thumbnail = "body" if count == 1 else "bodies", "with" if package.thumbnail else "no"
+    about = f"{package.file}: {count} {bodies}, {thumbnail} thumbnail"
+    warned = [f"warning: {text}" for text in package.warnings]
     return "\n".join([about, *warned, "", table_text(head, _flat(rows)), *mixes])
 
 
-def _recipe(recipe: dict[str, Any] | None) -> list[str]:
-    if recipe is None:
-        return [NO_RECIPE]
-    inputs = recipe["inputs"]
+def _recipe(recipe: ShownRecipe) -> list[str]:
+    inputs = recipe.inputs
     design = {key: value for key, value in inputs["design"].items() if not isinstance(value, dict)} | {
         f"{table}.{key}": value
         for table, content in inputs["design"].items()
@@ -131,20 +139,19 @@ def _recipe(recipe: dict[str, Any] | None) -> list[str]:
     }
     design = {key: value for key, value in design.items() if value is not None}
     settings = {key: inputs[key] for key in ("model", "closure", "clamp", "tolerance") if inputs[key] is not None}
-    other = recipe["other_versions"]
-    libraries = [f"{name} {version}" for name, version in recipe["versions"].items() if name != "pneutouch"]
+    libraries = [f"{name} {version}" for name, version in recipe.versions.items() if name != "pneutouch"]
     made = {
-        "made by": f"pneutouch {recipe['version']}",
+        "made by": f"pneutouch {recipe.version}",
         "made with": ", ".join(libraries) or "-",
-        "input hash": recipe["input_hash"],
-        **({"other versions": ", ".join(other)} if other else {}),
+        "input hash": recipe.input_hash,
+        **({"other versions": ", ".join(recipe.other_versions)} if recipe.other_versions else {}),
         **settings,
         "compared resins": ", ".join(inputs["compared_resins"]),
     }
-    return [_table(f"recipe of {recipe['name']}", made), _table("design", design)]
+    return [_table(f"recipe of {recipe.name}", made), _table("design", design)]
 
 
-def _table(title: str, content: dict[str, Any]) -> str:
+def _table(title: str, content: Mapping[str, object]) -> str:
     rows = [
         [key, ", ".join(f"{x}" for x in value) if isinstance(value, list) else str(value)]
         for key, value in content.items()

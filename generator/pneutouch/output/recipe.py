@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import datetime
 import json
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, fields, replace
 from functools import partial
 from typing import Any, NoReturn
@@ -18,7 +18,7 @@ from pneutouch.catalogue.library import Resins
 from pneutouch.errors import InputError, nearest, shown
 from pneutouch.evaluation.evaluate import CLAMPS, Evaluation, PredictionOptions, evaluate_scene
 from pneutouch.export.threemf_read import Package
-from pneutouch.formats import KEY, check_format, format_of
+from pneutouch.formats import check_format, versioned
 from pneutouch.mechanics.membrane_contact import CLOSURES
 from pneutouch.mechanics.models import MODEL_CHOICES
 from pneutouch.output.files import input_hash, versions
@@ -47,7 +47,7 @@ class BuildRecipe:
         """The recipe that an evaluation followed."""
         return BuildRecipe(evaluation.scene, evaluation.resins, evaluation.options)
 
-    def inputs(self) -> dict[str, Any]:
+    def inputs(self) -> Mapping[str, Any]:
         """Everything that the result depends on, as data; settings that the model does not use are null."""
         options = self.options
         return {
@@ -59,13 +59,10 @@ class BuildRecipe:
             "compared_resins": {name: _data(material) for name, material in self.resins.items()},
         }
 
-    def document(self) -> dict[str, Any]:
-        """The recipe as data."""
-        return {KEY: format_of("recipe"), "name": self.scene.name, "version": self.version, "inputs": self.inputs()}
-
     def text(self) -> str:
         """The recipe as JSON on one line, ASCII alone: no reader of XML can change it."""
-        return json.dumps(self.document(), sort_keys=True, allow_nan=False, separators=(",", ":"))
+        content = {"name": self.scene.name, "version": self.version, "inputs": self.inputs()}
+        return json.dumps(versioned("recipe", content), sort_keys=True, allow_nan=False, separators=(",", ":"))
 
 
 def evaluate_recipe(recipe: BuildRecipe) -> Evaluation:
@@ -89,13 +86,13 @@ OPTIONAL = ("calibration", "gauge", "mould_printer", "mould_material")
 """Fields of a scene that a recipe leaves out where they are None."""
 
 
-def scene_parts(scene: ResolvedDesign) -> dict[str, Any]:
+def scene_parts(scene: ResolvedDesign) -> dict[str, Table | None]:
     """Parts of a scene, by field; without the optional parts that it does not have."""
     parts = {key: getattr(scene, key) for key in scene_kinds()}
     return {key: part for key, part in parts.items() if part is not None or key not in OPTIONAL}
 
 
-def _data(model: Any) -> Any:
+def _data(model: Table | None) -> Any:
     return None if model is None else model.model_dump(mode="json")
 
 
@@ -235,7 +232,7 @@ def _check_steps(scene: ResolvedDesign, where: str) -> None:
         )
 
 
-def stored_versions(package: Package) -> dict[str, Any]:
+def stored_versions(package: Package) -> Mapping[str, object]:
     """The versions that a 3MF states, nothing where that is damaged: no build depends on it."""
     try:
         stored = json.loads(package.metadata.get("versions", "{}"))

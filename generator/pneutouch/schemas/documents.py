@@ -15,6 +15,7 @@ from pneutouch.results.simulation import CampaignTruth
 from pneutouch.results.folder import Manifest
 from pneutouch.results.response import LoadResponse
 from pneutouch.results.specimen import SpecimenRecord
+from pneutouch.results.stack import StackRecord
 from pneutouch.schemas.kind import DocumentKind
 from pneutouch.schemas.shape import Schema
 from pneutouch.schemas.typed import of_record

@@ -13,11 +13,13 @@ from pneutouch.errors import InputError, nearest
 from pneutouch.export.voxels.png import encode, table
 from pneutouch.export.voxels.raster import BACKGROUND, VoxelBody, VoxelJob, blend, raster
 from pneutouch.export.voxels.slices import VoxelSlicer
-from pneutouch.export.voxels.stack import MANIFEST, manifest, shortfalls, slice_name
+from pneutouch.export.voxels.stack import MANIFEST, shortfalls, slice_name, stack_record
+from pneutouch.formats import versioned
 from pneutouch.output.files import check_writable, digest, exchange, json_bytes
 from pneutouch.parts import Assembly
 from pneutouch.printability import Finding, refuse
 from pneutouch.printability.rules.voxels import check_stack
+from pneutouch.results.record import plain
 from pneutouch.spec.printer import Mode
 from pneutouch.stopping import parent_folders, temporary_folder, uninterrupted
 
@@ -123,7 +125,8 @@ def write_stack(
                 (fresh / slice_name(prefix, number)).write_bytes(content)
                 hashes.append(digest(content))
                 progress(number + 1, len(job.raster.z))
-            (fresh / MANIFEST).write_bytes(json_bytes(manifest(job, slicer, hashes, about, prefix)))
+            record = plain(stack_record(job, slicer, hashes, about, prefix))
+            (fresh / MANIFEST).write_bytes(json_bytes(versioned("stack", record)))
             with uninterrupted():
                 fresh.chmod(0o755)
                 if folder.exists():

@@ -11,6 +11,7 @@ Content of a folder of a simulator's model, in ten lines.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -137,7 +138,7 @@ class SimulatorResult:
     name: str
     document: dict[str, Any]
     files: dict[str, bytes]
-    inputs: dict[str, Any]
+    inputs: Mapping[str, Any]
 
 
 def make_simulator(evaluation: Evaluation, kind: str) -> SimulatorResult:

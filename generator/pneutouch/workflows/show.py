@@ -6,7 +6,6 @@ Content of a voxel stack, as data and as a picture.
 """
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -15,61 +14,70 @@ from pneutouch.export.threemf import TRAY_RECIPE
 from pneutouch.export.threemf_read import RECIPE, Package, StoredBody, read_threemf
 from pneutouch.export.voxels.png import encode
 from pneutouch.export.voxels.stack import VoxelStack, read_stack
+from pneutouch.formats import format_of
 from pneutouch.output.files import replace_file
 from pneutouch.output.recipe import other_versions, read_recipe, stored_versions
+from pneutouch.results.stored import PrintedResin, ShownBody, ShownPackage, ShownRecipe, ShownStack
 
 _SHOWN_APART = (RECIPE, TRAY_RECIPE, "versions")
 """Entries that are shown apart, or are too long to be read."""
+
+_RASTER = ("pixels", "layers", "dpi", "pixel_um", "layer_um", "size_mm")
+_HELD = ("name", "printer", "mode", "prefix", *_RASTER, "bodies", "dither", "assumptions", "input_hash", "sha256")
+"""Keys of a stack's manifest that are shown as they are."""
 
 _DIGITS = 6
 """Decimals of lengths in mm and volumes in mm3: those that the 3MF is written with."""
 
 
-def show(path: Path) -> dict[str, Any]:
+def show(path: Path) -> ShownPackage:
     """The content of a 3MF: bodies, metadata and the recipe, None if the file is not one of ours.
 
     Raises InputError for a file that is unsafe, not valid, or whose recipe is damaged.
     """
     package = read_threemf(path)
-    return {
-        "file": str(path),
-        "bodies": [_body(body) for body in package.bodies],
-        "thumbnail": package.thumbnail,
-        "warnings": list(package.warnings),
-        "metadata": {key: value for key, value in package.metadata.items() if key not in _SHOWN_APART},
-        "recipe": None if package.recipe is None else _recipe(package),
-    }
+    return ShownPackage(
+        file=str(path),
+        bodies=tuple(map(_body, package.bodies)),
+        thumbnail=package.thumbnail,
+        warnings=package.warnings,
+        metadata={key: value for key, value in package.metadata.items() if key not in _SHOWN_APART},
+        recipe=None if package.recipe is None else _recipe(package),
+    )
 
 
-def _body(body: StoredBody) -> dict[str, Any]:
-    return {
-        "name": body.name,
-        "material": body.material,
-        "colour": body.colour,
-        "mix": body.mix,
-        "size_mm": [round(float(length), _DIGITS) for length in body.size],
-        "volume_mm3": round(body.volume, _DIGITS),
-        "vertices": len(body.vertices),
-        "triangles": len(body.triangles),
-    }
+def _body(body: StoredBody) -> ShownBody:
+    return ShownBody(
+        name=body.name,
+        material=body.material,
+        colour=body.colour,
+        mix=body.mix,
+        size_mm=tuple(round(float(length), _DIGITS) for length in body.size),
+        volume_mm3=round(body.volume, _DIGITS),
+        vertices=len(body.vertices),
+        triangles=len(body.triangles),
+    )
 
 
-def _recipe(package: Package) -> dict[str, Any]:
+def _recipe(package: Package) -> ShownRecipe:
     """The recipe with the versions and the input hash that are stored with it; nothing is computed from it."""
     recipe = read_recipe(package)
-    return {
-        **recipe.document(),
-        "input_hash": package.metadata["input-hash"],
-        "versions": stored_versions(package),
-        "other_versions": other_versions(package, recipe),
-    }
+    return ShownRecipe(
+        format=format_of("recipe"),
+        name=recipe.scene.name,
+        version=recipe.version,
+        inputs=recipe.inputs(),
+        input_hash=package.metadata["input-hash"],
+        versions=stored_versions(package),
+        other_versions=tuple(other_versions(package, recipe)),
+    )
 
 
 _BACKGROUND = np.uint32(0xFFFFFFFF)
 """White in the picture, where the stack has black."""
 
 
-def show_stack(folder: Path, picture: Path | None = None) -> dict[str, Any]:
+def show_stack(folder: Path, picture: Path | None = None) -> ShownStack:
     """The content of a stack, its rules checked, voxels counted in the slices; ``picture`` takes a PNG of two sections.
 
     Raises InputError for a stack that breaks a rule and for a picture that cannot be written.
@@ -77,27 +85,18 @@ def show_stack(folder: Path, picture: Path | None = None) -> dict[str, Any]:
     stack = read_stack(folder)
     if picture is not None:
         draw(stack, picture)
-    return document(stack)
-
-
-def document(stack: VoxelStack) -> dict[str, Any]:
-    """Sizes, counts, volumes and fractions; those of the slices, not of the manifest."""
-    held, filled = stack.manifest, max(1, sum(stack.counts.values()))
-    raster = ("pixels", "layers", "dpi", "pixel_um", "layer_um", "size_mm")
-    keys = ("name", "printer", "mode", "prefix", *raster, "bodies", "dither", "assumptions", "input_hash", "sha256")
-    return {
-        "stack": str(stack.folder),
-        **{key: held[key] for key in keys if key in held},
-        "resins": {
-            resin: {
-                "rgba": held["resins"][resin]["rgba"],
-                "voxels": count,
-                "volume_mm3": round(count * stack.voxel, 6),
-                "share_of_the_print": round(count / filled, 9),
-            }
-            for resin, count in stack.counts.items()
-        },
+    filled = max(1, sum(stack.counts.values()))
+    resins = {
+        resin: PrintedResin(
+            rgba=tuple(stack.manifest["resins"][resin]["rgba"]),
+            voxels=count,
+            volume_mm3=round(count * stack.voxel, 6),
+            share_of_the_print=round(count / filled, 9),
+        )
+        for resin, count in stack.counts.items()
     }
+    held = {key: stack.manifest[key] for key in _HELD if key in stack.manifest}
+    return ShownStack(str(stack.folder), resins, held)
 
 
 def draw(stack: VoxelStack, path: Path) -> None:

@@ -9,7 +9,7 @@ import math
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +18,11 @@ import numpy as np
 from pneutouch.arrays import Labels, Pixels
 from pneutouch.errors import InputError
 from pneutouch.export.voxels.png import decode, table
-from pneutouch.export.voxels.raster import BACKGROUND, Raster, VoxelBody, VoxelJob
+from pneutouch.export.voxels.raster import BACKGROUND, VoxelBody, VoxelJob
 from pneutouch.export.voxels.skin import reach_for
 from pneutouch.export.voxels.slices import CUBE, FULL, VoxelCounts, VoxelSlicer
-from pneutouch.formats import KEY, check_format, format_of
+from pneutouch.formats import check_format
+from pneutouch.results.stack import BodyVoxels, DitherRecord, ResinVoxels, StackRecord
 from pneutouch.spec.files import read_bytes
 from pneutouch.units import UM
 
@@ -46,44 +47,33 @@ def whole_hash(hashes: Sequence[str]) -> str:
     return hashlib.sha256("".join(f"{one}\n" for one in hashes).encode()).hexdigest()
 
 
-def manifest(
+def stack_record(
     job: VoxelJob, slicer: VoxelSlicer, hashes: Sequence[str], about: Mapping[str, Any], prefix: str
-) -> dict[str, Any]:
-    """The manifest of a stack that has been sliced; ``about`` goes in as it is: design, printer, mode, input hash."""
-    voxel = job.raster.voxel
-    return {
+) -> StackRecord:
+    """The manifest of a stack that has been sliced; ``about`` are the fields on its source: design, printer, mode."""
+    raster, voxel = job.raster, job.raster.voxel
+    x, y, z = (round(step / UM, 6) for step in raster.pitch)
+    return StackRecord(
         **about,
-        KEY: format_of("stack"),
-        "prefix": prefix,
-        **raster_entry(job.raster),
-        "background_rgba": list(BACKGROUND),
-        "resins": {
-            resin: {"rgba": list(colour), "voxels": count, "volume_mm3": round(count * voxel, 6)}
+        prefix=prefix,
+        dpi=raster.dpi,
+        pixel_um=(x, y),
+        layer_um=z,
+        pixels=(len(raster.x), len(raster.y)),
+        layers=len(raster.z),
+        size_mm=tuple(round(length, 6) for length in raster.size),
+        first_voxel_mm=tuple(round(float(axis[0]), 6) for axis in (raster.x, raster.y, raster.z)),
+        background_rgba=tuple(BACKGROUND),
+        resins={
+            resin: ResinVoxels(tuple(colour), slicer.counts[resin], round(slicer.counts[resin] * voxel, 6))
             for resin, colour in job.colours.items()
-            for count in [slicer.counts[resin]]
         },
-        "bodies": {
-            body.solid.name: _body(body, slicer.tallies[body.solid.name], job.raster.pitch) for body in job.bodies
-        },
-        "dither": {"method": METHOD, "seed": job.seed, "cube_mm": CUBE, "least_share_of_a_cube": FULL},
-        "assumptions": _assumptions(job),
-        "sha256": whole_hash(hashes),
-        "slices": list(hashes),
-    }
-
-
-def raster_entry(raster: Raster) -> dict[str, Any]:
-    """The raster's entries."""
-    x, y, z = (step / UM for step in raster.pitch)
-    return {
-        "dpi": list(raster.dpi),
-        "pixel_um": [round(x, 6), round(y, 6)],
-        "layer_um": round(z, 6),
-        "pixels": [len(raster.x), len(raster.y)],
-        "layers": len(raster.z),
-        "size_mm": [round(length, 6) for length in raster.size],
-        "first_voxel_mm": [round(float(axis[0]), 6) for axis in (raster.x, raster.y, raster.z)],
-    }
+        bodies={body.solid.name: _body(body, slicer.tallies[body.solid.name], raster.pitch) for body in job.bodies},
+        dither=DitherRecord(METHOD, job.seed, CUBE, FULL),
+        assumptions=_assumptions(job),
+        sha256=whole_hash(hashes),
+        slices=tuple(hashes),
+    )
 
 
 def shortfalls(job: VoxelJob, slicer: VoxelSlicer) -> list[str]:
@@ -100,40 +90,39 @@ def shortfalls(job: VoxelJob, slicer: VoxelSlicer) -> list[str]:
     return lines
 
 
-def _body(body: VoxelBody, tally: VoxelCounts, pitch: tuple[float, float, float]) -> dict[str, Any]:
-    exact = body.solid.volume
-    entry: dict[str, Any] = {
-        "material": body.solid.material.label,
-        "resins": list(body.blend.resins),
-        "voxels": tally.voxels,
-        "volume_mm3": round(tally.voxels * math.prod(pitch), 6),
-        "exact_volume_mm3": round(exact, 6),
-    }
+def _body(body: VoxelBody, tally: VoxelCounts, pitch: tuple[float, float, float]) -> BodyVoxels:
+    entry = BodyVoxels(
+        material=body.solid.material.label,
+        resins=tuple(body.blend.resins),
+        voxels=tally.voxels,
+        volume_mm3=round(tally.voxels * math.prod(pitch), 6),
+        exact_volume_mm3=round(body.solid.volume, 6),
+    )
     if body.blend.share is None or not tally.voxels:
         return entry
-    return {
-        **entry,
-        "made_up_within_mm": round(reach_for(body.blend.most, pitch), 6),
-        "stiff_resin": body.blend.resins[1],
-        "skin_voxels": tally.skin,
-        "fraction_requested": round(tally.requested / tally.voxels, 9),
-        "fraction_given": round(tally.given / tally.voxels, 9),
-        "fraction_realised": round(tally.realised / tally.voxels, 9),
-        "worst_cube": round(tally.worst, 9),
-        "cubes": tally.cubes,
-    }
+    return replace(
+        entry,
+        made_up_within_mm=round(reach_for(body.blend.most, pitch), 6),
+        stiff_resin=body.blend.resins[1],
+        skin_voxels=tally.skin,
+        fraction_requested=round(tally.requested / tally.voxels, 9),
+        fraction_given=round(tally.given / tally.voxels, 9),
+        fraction_realised=round(tally.realised / tally.voxels, 9),
+        worst_cube=round(tally.worst, 9),
+        cubes=tally.cubes,
+    )
 
 
-def _assumptions(job: VoxelJob) -> list[str]:
+def _assumptions(job: VoxelJob) -> tuple[str, ...]:
     lines = [f"{body.solid.name}: {body.blend.assumed}" for body in job.bodies if body.blend.assumed]
-    return [
+    return (
         *lines,
         "row 0 of a slice is at the greatest y, seen from above; slice 0 lies on the tray: our choice, the vendor "
         "states neither",
         "colours stand for resins by this file alone; the operator maps them in the utility",
         "a voxel is of the body that its centre lies in",
         "a voxel of a mixed body with a neighbour outside it stays the soft resin",
-    ]
+    )
 
 
 _MOST_BYTES = 100_000_000

@@ -1,0 +1,93 @@
+"""Content of a 3MF or of a voxel stack as the program states it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True)
+class ShownBody:
+    """A body of a 3MF."""
+
+    name: str
+    """Name of the body."""
+    material: str | None
+    """Name of its material; null: it has none."""
+    colour: str | None
+    """Colour; null: it has none."""
+    mix: Mapping[str, float]
+    """Shares of the resins that it is mixed from; empty: it is not mixed."""
+    size_mm: tuple[float, ...]
+    """Lengths along x, y and z."""
+    volume_mm3: float
+    """Volume of the mesh."""
+    vertices: int
+    """Number of vertices."""
+    triangles: int
+    """Number of triangles."""
+
+
+@dataclass(frozen=True, slots=True)
+class ShownRecipe:
+    """A recipe, with the versions and the input hash that are stored with it."""
+
+    format: str
+    """Format of the recipe."""
+    name: str
+    """Name of the design."""
+    version: str
+    """Version of the program that built it."""
+    inputs: Mapping[str, Any]
+    """Everything that the build follows from, as data."""
+    input_hash: str
+    """Digest of the inputs and the version."""
+    versions: Mapping[str, Any]
+    """Versions of the program and of the libraries that the bytes depend on."""
+    other_versions: tuple[str, ...]
+    """Programs that are of another version here, in words."""
+
+
+@dataclass(frozen=True, slots=True)
+class ShownPackage:
+    """Content of a 3MF."""
+
+    file: str
+    """Path of the file."""
+    bodies: tuple[ShownBody, ...]
+    """Bodies."""
+    thumbnail: bool
+    """True if it has a picture."""
+    warnings: tuple[str, ...]
+    """Doubtful parts."""
+    metadata: Mapping[str, str]
+    """Metadata by name."""
+    recipe: ShownRecipe | None
+    """Recipe that it was built from; null: it has none."""
+
+
+@dataclass(frozen=True, slots=True)
+class PrintedResin:
+    """A resin of a stack, counted in the slices."""
+
+    rgba: tuple[int, ...]
+    """Colour of the resin in the slices."""
+    voxels: int
+    """Number of voxels."""
+    volume_mm3: float
+    """Volume of its voxels."""
+    share_of_the_print: float
+    """Share of the voxels that are of a resin."""
+
+
+@dataclass(frozen=True, slots=True)
+class ShownStack:
+    """Content of a voxel stack: its resins as counted, and what its manifest states of the rest."""
+
+    stack: str
+    """Folder of the stack."""
+    resins: Mapping[str, PrintedResin]
+    """Resins by name."""
+    held: Mapping[str, Any]
+    """Entries of the manifest, as they stand in the file."""
