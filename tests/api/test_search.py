@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 import xarray
 
 import pneutouch as pt
 from pneutouch.api.search import unmet_lines
+from pneutouch.results.selection import FoundGrade, GradedRecord, SearchCost
 
 
 def test_a_selection_is_the_command_lines_and_its_designs_meet_the_target(printed):
@@ -158,11 +161,40 @@ def test_a_selection_without_a_design_shows_what_to_drop():
 
 
 def test_a_grade_that_misses_shows_by_how_much_and_why():
-    best = {"reason": None, "share_used": {"sensitivity": 1.25, "force range": 0.4}}
-    document = {"nearest_constant_mix": "x", "rejected": None, "design": best}
-    assert unmet_lines(document) == ["nearest grade: beyond what is allowed: sensitivity by 25 %"]
-    assert unmet_lines({**document, "rejected": "it does not fit"}) == ["rejected: it does not fit"]
-    unsolved = {**document, "design": {**best, "reason": "no figures"}}
+    used = {"sensitivity": 1.25, "force range": 0.4}
+    best = FoundGrade(
+        driving_pressures_kPa=(),
+        sensitivity_kPa_per_N=(),
+        difference_percent=None,
+        force_range_end_N=(),
+        range_ends_with=(),
+        rated_pressure_kPa=None,
+        above_rated_pressure=False,
+        meets=False,
+        reason=None,
+        material={},
+        inner_radius_mm=9.25,
+        wall_thickness_mm=1.5,
+        dead_volume_mL=0.0,
+        share_used=used,
+        passes_check=None,
+        set=(),
+    )
+    record = GradedRecord(
+        target={},
+        base="x",
+        met=False,
+        design=best,
+        rejected=None,
+        constant=(),
+        nearest_constant_mix="x",
+        cost=SearchCost(0, 0),
+        model="solid",
+        left_out={},
+    )
+    assert unmet_lines(record) == ["nearest grade: beyond what is allowed: sensitivity by 25 %"]
+    assert unmet_lines(replace(record, rejected="it does not fit")) == ["rejected: it does not fit"]
+    unsolved = replace(record, design=replace(best, reason="no figures"))
     assert unmet_lines(unsolved) == ["nearest grade: no figures"]
 
 

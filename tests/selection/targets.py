@@ -6,7 +6,9 @@ import json
 from functools import cache
 from typing import Any
 
+from pneutouch.results.record import plain
 from pneutouch.spec.target import Given, Setting, Target, TargetFigures, Weights
+from pneutouch.workflows.select.document import selected
 from pneutouch.workflows.select.select import SelectionRun, select
 
 FINGERTIP = {"sensitivity_kPa_per_N": 1.9, "driving_pressure_kPa": 12.0, "force_range_N": 15.0, "max_diameter_mm": 25.0}
@@ -31,3 +33,8 @@ def answer(wanted: dict[str, Any], **tables: dict[str, Any]) -> SelectionRun:
 def _answer(text: str) -> SelectionRun:
     wanted, tables = json.loads(text)
     return select(target(wanted, **tables), "test")
+
+
+def document(run: SelectionRun) -> dict[str, Any]:
+    """A selection as ``select`` prints it."""
+    return plain(selected(run))

@@ -14,9 +14,9 @@ from pneutouch.selection.contact_factors import ContactFactors, figures_of, plac
 from pneutouch.selection.contact_search import ROUNDS
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.select.charts import tradeoff
-from pneutouch.workflows.select.document import document, write_choice
+from pneutouch.workflows.select.document import write_choice
 from pneutouch.workflows.select.select import SelectionRun, select
-from tests.selection.targets import answer, target
+from tests.selection.targets import answer, document, target
 
 GRIP = "contact.friction=inf"
 BALL = ["contact.object=ball", "contact.ball_radius_mm=10"]

@@ -11,9 +11,8 @@ from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics import predict
 from pneutouch.spec.read import parse_changes
 from pneutouch.units import KPA
-from pneutouch.workflows.select.document import document
 from pneutouch.workflows.select.select import SelectionRun, select
-from tests.selection.targets import FINGERTIP, answer, target
+from tests.selection.targets import FINGERTIP, answer, document, target
 
 
 @pytest.fixture(scope="module")

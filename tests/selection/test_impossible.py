@@ -9,8 +9,7 @@ import pytest
 from pneutouch.cli.select_text import selection_text
 from pneutouch.errors import InputError
 from pneutouch.selection.choose import missed_percent
-from pneutouch.workflows.select.document import document
-from tests.selection.targets import FINGERTIP, answer
+from tests.selection.targets import FINGERTIP, answer, document
 
 KEYS = {"sensitivity": "sensitivity_kPa_per_N", "force range": "force_range_N", "outer diameter": "max_diameter_mm"}
 

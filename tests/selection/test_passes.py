@@ -14,10 +14,9 @@ from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.select import select as workflow
 from pneutouch.workflows.select.checks import Judgement, judge, source_of
-from pneutouch.workflows.select.document import document
 from tests.conftest import ROOT
 from tests.selection.passes import LIBRARY, tally
-from tests.selection.targets import FINGERTIP, answer
+from tests.selection.targets import FINGERTIP, answer, document
 
 TARGETS = 24
 """Random targets of the slow run; `python -m tests.selection.passes 500` tries 500."""

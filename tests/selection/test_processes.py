@@ -10,8 +10,8 @@ from pneutouch.catalogue import load_scene
 from pneutouch.errors import InputError
 from pneutouch.spec.read import validate
 from pneutouch.spec.target import Target
-from pneutouch.workflows.select.document import document
 from pneutouch.workflows.select.processes import select, select_processes
+from tests.selection.targets import document
 
 DOME = {"inner_radius_mm": 9.25, "wall_thickness_mm": 1.5}
 TARGET = {"sensitivity_kPa_per_N": 1.9}

@@ -14,9 +14,9 @@ from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.selection.candidates import evaluated, margins, rated
 from pneutouch.units import KPA
 from pneutouch.workflows.select.checks import source_of
-from pneutouch.workflows.select.document import document, would_need
+from pneutouch.workflows.select.document import would_need
 from tests.mechanics.uncertainty.designs import materials
-from tests.selection.targets import FINGERTIP, answer
+from tests.selection.targets import FINGERTIP, answer, document
 
 
 @pytest.mark.parametrize("resin", ["TangoPlus", "FLX9970", "FLX9985", "FLX9995"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pneutouch.results.record import plain
 from pneutouch.studio.question import Question
 from pneutouch.studio.search import search
 from pneutouch.studio.server import bases_of
@@ -17,7 +18,7 @@ FIELDS = {
 
 def asked(values, base="paper-dome", report=lambda done, total, what: None):
     bases, _ = bases_of(None)
-    return search({"base": base, "values": values, "files": [], "bases": bases}, None, report)
+    return plain(search({"base": base, "values": values, "files": [], "bases": bases}, None, report))
 
 
 def opened(state, library):

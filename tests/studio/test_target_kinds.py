@@ -8,6 +8,7 @@ import shlex
 import pytest
 
 from pneutouch.catalogue import DesignSource
+from pneutouch.results.record import plain
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import validate
 from pneutouch.studio.question import Question
@@ -74,7 +75,7 @@ def test_a_grade_is_one_card_with_the_table_of_the_command(tmp_path, command, li
     }
     arguments = {"base": "paper-dome", "values": values, "files": [], "bases": bases}
     steps = []
-    content = search(arguments, None, lambda done, total, what: steps.append((done, total)))
+    content = plain(search(arguments, None, lambda done, total, what: steps.append((done, total))))
     assert steps == [(done, 6) for done in range(1, 7)]
     words = shlex.split("select --graded --sensitivity 1.9 --tolerance 25% --same-at 0,22 --same-within 9% --wall 1.2")
     said = command(*words, "--base", str(path), "--json")

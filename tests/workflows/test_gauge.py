@@ -72,14 +72,14 @@ def test_any_gauge_and_a_grade_contradict_each_other():
 def test_any_gauge_takes_the_finest_that_covers_the_range():
     run = select(target("any", sensitivity_kPa_per_N=1.2, driving_pressure_kPa=60.0), "select")
     chosen = next(trial for trial in run.gauges if trial.chosen)
-    assert {trial.name for trial in run.gauges} == set(Library.default().paths("gauges"))
-    assert run.base.design.pneumatics.gauge == chosen.name
+    assert {trial.gauge for trial in run.gauges} == set(Library.default().paths("gauges"))
+    assert run.base.design.pneumatics.gauge == chosen.gauge
     best = run.answer.designs[0]
     assert best.ends_with != "gauge range"
-    assert f"pneumatics.gauge={chosen.name}" in run.assignments(best)
+    assert f"pneumatics.gauge={chosen.gauge}" in run.assignments(best)
     # Gauges that detect less came first and are out for their range.
     finer = run.gauges[: run.gauges.index(chosen)]
     assert finer and all("it reads to" in trial.why for trial in finer)
-    read = gauge_reading(gauge(chosen.name), AMBIENT)
+    read = gauge_reading(gauge(chosen.gauge), AMBIENT)
     slope = float(best.pool.response.lines.sensitivity_kPa_per_N[0]) * KPA
     assert chosen.smallest_force_N == pytest.approx(read.threshold / slope)

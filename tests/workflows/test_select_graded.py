@@ -18,7 +18,7 @@ from pneutouch.selection.graded import cost
 from pneutouch.spec.target import Target
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.select.graded import select_graded
-from pneutouch.workflows.select.graded_document import graded_document
+from pneutouch.workflows.select.graded_document import graded
 from tests.conftest import ROOT
 
 FLAT = [
@@ -245,9 +245,9 @@ def test_a_grade_that_meets_the_target_is_judged_as_check_does(short, monkeypatc
         monkeypatch.setattr(f"pneutouch.workflows.select.graded.{name}", lambda *_, answer=answer: answer)
     plate = {"assignments": [f"indentation.plate_diameter_mm={plate_mm}"]}
     setting = short.target.setting.model_copy(update=plate)
-    judged = graded_document(select_graded(short.target.model_copy(update={"setting": setting}), "test"))
-    assert judged["met"] and judged["design"]["passes_check"] is passes
-    assert judged["rejected"] is None if said is None else said in judged["rejected"]
+    judged = graded(select_graded(short.target.model_copy(update={"setting": setting}), "test"))
+    assert judged.met and judged.design.passes_check is passes
+    assert judged.rejected is None if said is None else said in judged.rejected
 
 
 def test_a_rejected_grade_is_shown_and_neither_saved_nor_returned(short, monkeypatch, tmp_path):

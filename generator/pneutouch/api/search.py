@@ -1,6 +1,6 @@
 """Many designs: those that meet a target, and all those of a grid.
 
-Reasons why a selection found no design, in short lines made from its document.
+Reasons why a selection found no design, in short lines.
 
 A design that is given as an object in place of its name.
 """
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,15 +20,17 @@ from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
 from pneutouch.catalogue.library import read_given
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.output.new import new_changed
+from pneutouch.results.record import plain
+from pneutouch.results.selection import FoundDesign, GradedRecord, ProcessesRecord, SelectionRecord
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, validate
 from pneutouch.spec.target import Target
 from pneutouch.stopping import temporary_folder
 from pneutouch.wording import counted
 from pneutouch.workflows.select.checks import assigned
-from pneutouch.workflows.select.document import document
+from pneutouch.workflows.select.document import selected
 from pneutouch.workflows.select.graded import select_graded
-from pneutouch.workflows.select.graded_document import graded_document
+from pneutouch.workflows.select.graded_document import graded as graded_record
 from pneutouch.workflows.select.processes import select as run_select
 from pneutouch.workflows.select.processes import select_processes
 
@@ -37,44 +40,48 @@ if TYPE_CHECKING:
     from pneutouch.parts import Assembly
 
 
-def unmet_lines(document: dict[str, Any]) -> list[str]:
+SelectedRecord = SelectionRecord | GradedRecord | ProcessesRecord
+"""Output of ``select``, by the kind of its target."""
+
+
+def unmet_lines(record: SelectedRecord) -> list[str]:
     """The nearest design and its misses, the requirements whose removal admits one, and the designs that a check
     rejects."""
-    if "processes" in document:
-        by_process = document["processes"].items()
+    if isinstance(record, ProcessesRecord):
+        by_process = record.processes.items()
         return [
-            *(f"{process}: {line}" for process, one in by_process if not one["met"] for line in unmet_lines(one)),
-            *(f"{process}: {why}" for process, why in document["left_out"].items()),
+            *(f"{process}: {line}" for process, one in by_process if not one.met for line in unmet_lines(one)),
+            *(f"{process}: {why}" for process, why in record.left_out.items()),
         ]
-    if "nearest_constant_mix" in document:
-        return _of_grade(document)
-    lines = [f"rejected: {_size(each['design'])}: {each['reason']}" for each in document["rejected"]]
-    nearest = document["nearest"]
+    if isinstance(record, GradedRecord):
+        return _of_grade(record)
+    lines = [f"rejected: {_size(each.design)}: {each.reason}" for each in record.rejected]
+    nearest = record.nearest
     if nearest is not None:
         missed = [
             f"{name}{', not known' if percent is None else f' by {percent:.3g} %'}"
-            for name, percent in nearest["misses_percent"].items()
+            for name, percent in nearest.misses_percent.items()
         ]
         lines.append(f"nearest: {_size(nearest)}: misses {', '.join(missed) or 'nothing once rounded'}")
-    if not document["rejected"]:
-        dropped = document["dropped_requirements"]
-        lines += [f"drop the requirement on {each['requirement']}: {each['attainable']}" for each in dropped]
+    if not record.rejected:
+        dropped = record.dropped_requirements
+        lines += [f"drop the requirement on {each.requirement}: {each.attainable}" for each in dropped]
         lines += [] if dropped else ["no design fits with any single requirement dropped"]
     return lines
 
 
-def _of_grade(document: dict[str, Any]) -> list[str]:
+def _of_grade(record: GradedRecord) -> list[str]:
     """The nearest grade: each share of a tolerance or limit that is used by more than the whole."""
-    if document["rejected"]:
-        return [f"rejected: {document['rejected']}"]
-    best = document["design"]
-    used = ", ".join(f"{name} by {100 * (share - 1):.3g} %" for name, share in best["share_used"].items() if share > 1)
-    return [f"nearest grade: {best['reason'] or f'beyond what is allowed: {used}'}"]
+    if record.rejected:
+        return [f"rejected: {record.rejected}"]
+    best = record.design
+    used = ", ".join(f"{name} by {100 * (share - 1):.3g} %" for name, share in best.share_used.items() if share > 1)
+    return [f"nearest grade: {best.reason or f'beyond what is allowed: {used}'}"]
 
 
-def _size(design: dict[str, Any]) -> str:
-    radius_mm, wall_mm = show.short(design["inner_radius_mm"]), show.short(design["wall_thickness_mm"])
-    return f"{design['material']}, R0 {radius_mm} mm, t0 {wall_mm} mm"
+def _size(design: FoundDesign) -> str:
+    radius_mm, wall_mm = show.short(design.inner_radius_mm), show.short(design.wall_thickness_mm)
+    return f"{design.material}, R0 {radius_mm} mm, t0 {wall_mm} mm"
 
 
 def with_base_named(fields: Mapping[str, Any]) -> tuple[dict[str, Any], Design | None]:
@@ -96,14 +103,14 @@ class GivenBase:
             new_changed(design.source, design.name, folder / "designs")
             self.library = Library((folder, *self.library.folders))
 
-    def named(self, document: dict[str, Any]) -> dict[str, Any]:
-        """A document of a selection whose ``base`` names the design."""
-        if "processes" in document:
-            return {**document, "processes": {key: self.named(one) for key, one in document["processes"].items()}}
-        if self._design is None or not self._holds(document["base"]):
-            return document
+    def named(self, record: Any) -> Any:
+        """A selection whose ``base`` names the design."""
+        if isinstance(record, ProcessesRecord):
+            return replace(record, processes={key: self.named(one) for key, one in record.processes.items()})
+        if self._design is None or not self._holds(record.base):
+            return record
         where = self._design.source.where
-        return {**document, "base": self._design.name if where == WHERE else where}
+        return replace(record, base=self._design.name if where == WHERE else where)
 
     def blame(self, error: PneutouchError) -> None:
         """Name the design's own file, or none, in an error."""
@@ -130,8 +137,8 @@ def given_base(design: Design | None) -> Iterator[GivenBase]:
 class Selection(show.Shown):
     """Designs that meet a target, best first; empty if none does. `to_dict` names the misses of each."""
 
-    def __init__(self, designs: tuple[Design, ...], content: dict[str, Any]) -> None:
-        self.designs, self._document = designs, content
+    def __init__(self, designs: tuple[Design, ...], record: SelectedRecord) -> None:
+        self.designs, self._record = designs, record
 
     @property
     def met(self) -> bool:
@@ -140,7 +147,8 @@ class Selection(show.Shown):
 
     def to_dict(self) -> dict[str, Any]:
         """The document that the command ``select`` prints as JSON."""
-        return dict(self._document)
+        document: dict[str, Any] = plain(self._record)
+        return document
 
     def _head(self) -> str:
         return f"Selection: {counted(len(self.designs), 'design')} meet{'s' * (len(self.designs) == 1)} the target"
@@ -150,7 +158,7 @@ class Selection(show.Shown):
 
     def _rows(self) -> list[Any]:
         if not self.designs:
-            return [(line,) for line in unmet_lines(self._document)]
+            return [(line,) for line in unmet_lines(self._record)]
         keys = ("material", "inner_radius_mm", "wall_thickness_mm", "driving_pressures_kPa")
         return [
             (design.name, *(f"{key}={show.short(getattr(design, key))}" for key in keys)) for design in self.designs
@@ -176,18 +184,18 @@ def select(target: str | Path | None = None, **fields: Any) -> Selection:
         if goal.setting.processes is not None:
             by_process = select_processes(goal, where, base.library)
             chosen = [(process, run.base, run.assignments(run.answer.designs[0])) for process, run in by_process.best]
-            content = by_process.document()
+            found: SelectedRecord = by_process.record
         elif goal.given.graded:
             graded = select_graded(goal, where, base.library)
             chosen = [("1", graded.base, graded.assignments())] if graded.passes else []
-            content = graded_document(graded)
+            found = graded_record(graded)
         else:
             selection = run_select(goal, where, base.library)
             ranked = enumerate(selection.answer.designs, start=1)
             chosen = [(str(rank), selection.base, selection.assignments(choice)) for rank, choice in ranked]
-            content = document(selection)
+            found = selected(selection)
         designs = tuple(_selected(goal, *each) for each in chosen)
-        return Selection(designs, base.named(content))
+        return Selection(designs, base.named(found))
 
 
 def _selected(goal: Target, label: str, base: ResolvedDesign, changed: list[str]) -> Design:

@@ -28,6 +28,7 @@ from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, wit
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import DesignPlace, echo, report_next, report_written
 from pneutouch.errors import InputError
+from pneutouch.results.record import plain
 from pneutouch.spec.target import Target
 from pneutouch.spec.values import plain_numbers
 
@@ -177,7 +178,7 @@ def _report(selection: SelectionRun, pick: int, place: DesignPlace | None, chart
 
         write_charts(selection, charts, choice)
     if json:
-        print_json({**shown.document(selection), "written": None if path is None else str(path)})
+        print_json({**plain(shown.selected(selection)), "written": None if path is None else str(path)})
     else:
         from pneutouch.cli.select_text import selection_text
 

@@ -18,6 +18,7 @@ from pneutouch.cli.app import print_json
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import DesignPlace, echo, notify, report_next, report_written, table_text
 from pneutouch.errors import InputError, RuleBrokenError
+from pneutouch.results.record import plain
 from pneutouch.rounding import tenths_below
 from pneutouch.selection import Candidate
 from pneutouch.spec.target import Target
@@ -109,7 +110,7 @@ def select_over(target: Target, where: str, place: DesignPlace | None, pick: int
         if place is not None:
             path = write_choice(run, run.answer.designs[0], *place[:2], overwrite=place.overwrite)
     if json:
-        print_json({**selection.document(), "written": None if path is None else str(path)})
+        print_json({**plain(selection.record), "written": None if path is None else str(path)})
     else:
         echo(processes_text(selection))
         if path is not None:
@@ -175,7 +176,7 @@ def select_graded(target: Target, where: str, place: DesignPlace | None, *, json
     if place is not None and selection.passes:
         path = shown.write_graded(selection, *place[:2], overwrite=place.overwrite)
     if json:
-        print_json({**shown.graded_document(selection), "written": None if path is None else str(path)})
+        print_json({**plain(shown.graded(selection)), "written": None if path is None else str(path)})
     else:
         echo(graded_text(selection))
         if path is not None:

@@ -37,6 +37,6 @@ def left_out(field: dataclasses.Field[Any], held: Any) -> bool:
     return held is field.default or (isinstance(held, tuple | str) and held == field.default)
 
 
-def extended(kind: type[Extended], base: Any, **more: Any) -> Extended:
+def extended(kind: type[Extended], base: Any, /, **more: Any) -> Extended:
     """A record of a kind that has the fields of ``base``, and ``more``."""
     return kind(**{f.name: getattr(base, f.name) for f in dataclasses.fields(base)} | more)

@@ -7,6 +7,7 @@ A design as the state of the page: a base that it has open, and the fields that 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,21 +38,48 @@ FigureRow = tuple[str, str, str]
 """Name of a figure, the figure with its unit, and an addition to it."""
 
 
-def candidate_card(selection: SelectionRun, choice: Candidate, rank: int | None = None) -> dict[str, Any]:
-    """A candidate: its resin, rows of figures with the digits of ``select``, and its place on the chart."""
+@dataclass(frozen=True, slots=True)
+class ChartPlace:
+    """Place of a design on the chart."""
+
+    sensitivity_kPa_per_N: float
+    force_N: float
+
+
+@dataclass(frozen=True, slots=True)
+class CandidateFigures:
+    """A design that was found: its resin, rows of figures with the digits of ``select``, and its place on the chart."""
+
+    rank: int | None
+    resin: str
+    title: str
+    at: ChartPlace | None
+    rows: tuple[FigureRow, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CandidateCard(CandidateFigures):
+    """A design as the page shows it, with the state that makes it the page's design and the command that saves it."""
+
+    kind: str
+    label: str
+    note: str
+    passes: bool
+    state: Question
+    command: str | None
+
+
+def candidate_figures(selection: SelectionRun, choice: Candidate, rank: int | None = None) -> CandidateFigures:
+    """Figures of a candidate."""
     pool = choice.pool
     sensitivity_kPa_per_N, force = float(pool.response.lines.sensitivity_kPa_per_N[0]), float(pool.force[0])
-    return {
-        "rank": rank,
-        "resin": choice.resin.name,
-        "title": choice.resin.material.label,
-        "at": {"sensitivity_kPa_per_N": sensitivity_kPa_per_N, "force_N": force},
-        "rows": [*_figures(selection, choice), *_sizes(selection, choice), *_limits(selection, choice, rank)],
-    }
+    rows = (*_figures(selection, choice), *_sizes(selection, choice), *_limits(selection, choice, rank))
+    place = ChartPlace(sensitivity_kPa_per_N, force)
+    return CandidateFigures(rank, choice.resin.name, choice.resin.material.label, place, rows)
 
 
-def graded_card(selection: GradedSelectionRun) -> dict[str, Any]:
-    """The best grade, as `candidate_card` has a candidate; it has no place on a chart."""
+def grade_figures(selection: GradedSelectionRun) -> CandidateFigures:
+    """Figures of the best grade; it has no place on a chart."""
     best, dome = selection.search.best, selection.sensor.dome
     pressures_kPa = [p / KPA for p in selection.grade_target.pressures]
     rows: list[FigureRow] = []
@@ -62,7 +90,7 @@ def graded_card(selection: GradedSelectionRun) -> dict[str, Any]:
     if not best.note:
         rows.append(("Rated pressure", f"{tenths_below(best.rated / KPA):.1f} kPa", ""))
     title = selection.grade.label
-    return {"rank": 1 if selection.passes else None, "resin": title, "title": title, "at": None, "rows": rows}
+    return CandidateFigures(1 if selection.passes else None, title, title, None, tuple(rows))
 
 
 def _figures(selection: SelectionRun, choice: Candidate) -> list[FigureRow]:
@@ -105,7 +133,7 @@ def _limits(selection: SelectionRun, choice: Candidate, rank: int | None) -> lis
     return rows
 
 
-def state_of(design: DesignFile, base: str, bases: Mapping[str, str], library: Library) -> dict[str, Any]:
+def state_of(design: DesignFile, base: str, bases: Mapping[str, str], library: Library) -> Question:
     """The state that is ``design``: ``base``, by the page's name for it, and by ``table.key`` the texts of its values
     that differ from the base's file, None if a key is left out.
 
@@ -119,7 +147,7 @@ def state_of(design: DesignFile, base: str, bases: Mapping[str, str], library: L
         value = after.get(name)
         if value != before.get(name):
             values[name] = None if value is None else assignments({name: value})[0].partition("=")[2]
-    return {"base": base, "values": values}
+    return Question(base, values)
 
 
 def _flat(design: DesignFile) -> dict[str, Any]:
@@ -143,7 +171,7 @@ class CandidateStates:
         named = (name for name, design in bases.items() if design == target.setting.base)
         self._base = question.base if target.setting.base is None else next(named)
 
-    def state(self, base: ResolvedDesign, changes: list[str]) -> dict[str, Any]:
+    def state(self, base: ResolvedDesign, changes: list[str]) -> Question:
         """The state of the page that is the design that ``select`` saves: a base with assignments."""
         design = validate(DesignFile, assigned(base.design, changes, self._name), PAGE)
         return state_of(design, self._base, self._bases, self._library)

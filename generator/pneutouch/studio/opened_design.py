@@ -29,7 +29,7 @@ def nearest_state(source: DesignSource, bases: Mapping[str, str], library: Libra
     InputError where the design is wrong, and where no state of the page is this very design.
     """
     design = source.changed({})
-    states: list[dict[str, Any]] = []
+    states: list[Question] = []
     for base in bases:
         try:
             states.append(state_of(design, base, bases, library))
@@ -39,7 +39,8 @@ def nearest_state(source: DesignSource, bases: Mapping[str, str], library: Libra
     if not states:
         raise InputError("no design of this page can be read", remedy="mend the design files that pneutouch list names")
     # By the same limits as what comes from a browser.
-    question = Question.of(min(states, key=lambda state: (state["base"] != source.name, len(state["values"]))))
+    nearest = min(states, key=lambda state: (state.base != source.name, len(state.values)))
+    question = Question.of(nearest.document())
     if question.source(bases, library).changed({}).model_dump() != design.model_dump():
         remedy = "build it by its file with the commands"
         raise InputError("has values that the page cannot hold", file=source.where, remedy=remedy)

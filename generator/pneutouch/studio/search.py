@@ -8,22 +8,24 @@ A target as the page sends it: fields with texts, as in a question about a desig
 from __future__ import annotations
 
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.library import CachedLibrary
 from pneutouch.cli.select_text import graded_lines, graded_table, processes_lines, processes_table
 from pneutouch.errors import InputError, PneutouchError, shown
+from pneutouch.results.record import extended, plain
 from pneutouch.rounding import rounded
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, parse_changes, validate
 from pneutouch.spec.target import Target
-from pneutouch.studio.candidate import CandidateStates, candidate_card, graded_card
+from pneutouch.studio.candidate import CandidateCard, CandidateStates, candidate_figures, grade_figures
 from pneutouch.studio.question import PAGE, Question
 from pneutouch.workflows.select.charts import tradeoff
-from pneutouch.workflows.select.document import document, dropped_lines, headline, missed_text, remarks, search_notes
+from pneutouch.workflows.select.document import dropped_lines, headline, missed_text, remarks, search_notes, selected
 from pneutouch.workflows.select.graded import select_graded
-from pneutouch.workflows.select.graded_document import graded_document
+from pneutouch.workflows.select.graded_document import graded
 from pneutouch.workflows.select.processes import select, select_processes
 from pneutouch.workflows.select.select import STEPS, SelectionRun
 
@@ -35,42 +37,86 @@ if TYPE_CHECKING:
     from pneutouch.studio.job import Report
 
 
-def by_process(target: Target, page: CandidateStates, library: Library, report: Report) -> dict[str, Any]:
+@dataclass(frozen=True, slots=True)
+class PageTable:
+    """A table with its caption."""
+
+    caption: str
+    head: list[str]
+    rows: list[list[str]]
+
+
+@dataclass(frozen=True, slots=True)
+class FrontCurve:
+    """The front of a resin."""
+
+    title: str
+    sensitivity_kPa_per_N: tuple[float, ...]
+    force_N: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FrontChart:
+    """The chart that ``select`` draws."""
+
+    driving_pressure_kPa: float
+    gauge_kPa: float
+    window_kPa_per_N: tuple[float, float] | None
+    least_force_N: float | None
+    caption: str
+    fronts: tuple[FrontCurve, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PageSelection:
+    """The answer to a target: ``selection`` is what ``select`` prints; ``chart`` or ``table`` compares the designs."""
+
+    selection: Mapping[str, Any]
+    headline: str
+    notes: list[str]
+    cards: list[CandidateCard]
+    remarks: list[str]
+    chart: FrontChart | None
+    table: PageTable | None
+
+
+def by_process(target: Target, page: CandidateStates, library: Library, report: Report) -> PageSelection:
     """Search each process of a target; for one in which no design meets it, the card shows the nearest."""
     selection = select_processes(target, PAGE, library, progress=report)
     row = {process: number for number, (process, _) in enumerate(selection.best, start=1)}
     cards = [_card(process, run, page, row.get(process)) for process, run in selection.runs.items()]
     searched, (head, rows) = len(selection.runs) + len(selection.left_out), processes_table(selection)
-    return {
-        "selection": {**selection.document(), "written": None},
-        "headline": f"{len(row) or 'none'} of {searched} processes with a design that meets the target",
-        "notes": [],
-        "cards": [card for card in cards if card is not None],
-        "remarks": processes_lines(selection),
-        "chart": None,
-        "table": {"caption": "The best design of each process", "head": head, "rows": rows} if rows else None,
-    }
+    return PageSelection(
+        selection={**plain(selection.record), "written": None},
+        headline=f"{len(row) or 'none'} of {searched} processes with a design that meets the target",
+        notes=[],
+        cards=[card for card in cards if card is not None],
+        remarks=processes_lines(selection),
+        chart=None,
+        table=PageTable("The best design of each process", head, rows) if rows else None,
+    )
 
 
-def _card(process: str, run: SelectionRun, page: CandidateStates, row: int | None) -> dict[str, Any] | None:
+def _card(process: str, run: SelectionRun, page: CandidateStates, row: int | None) -> CandidateCard | None:
     """The best design of a process, in ``row`` of the table, or the nearest one with its misses; None without
     either."""
     choice = run.answer.nearest if row is None else run.answer.designs[0]
     if choice is None:
         return None
-    card = candidate_card(run, choice, None if row is None else 1)
-    return {
-        **card,
-        "rank": row,
-        "title": f"{process}: {card['title']}",
-        "rows": [("Profile", run.base.printer.title, ""), *card["rows"]],
-        "kind": "nearest" if row is None else "process",
-        "label": process,
-        "note": f"it misses: {missed_text(run, choice)}" if row is None else "",
-        "passes": row is not None and 1 in run.judged,
-        "state": page.state(run.base, run.assignments(choice)),
-        "command": None if row is None else page.command(row),
-    }
+    figures = candidate_figures(run, choice, None if row is None else 1)
+    return extended(
+        CandidateCard,
+        figures,
+        rank=row,
+        title=f"{process}: {figures.title}",
+        rows=(("Profile", run.base.printer.title, ""), *figures.rows),
+        kind="nearest" if row is None else "process",
+        label=process,
+        note=f"it misses: {missed_text(run, choice)}" if row is None else "",
+        passes=row is not None and 1 in run.judged,
+        state=page.state(run.base, run.assignments(choice)),
+        command=None if row is None else page.command(row),
+    )
 
 
 _CHANGES = "setting.assignments"
@@ -109,7 +155,7 @@ _DIGITS = 6
 _CHART = "trade-off chart"
 
 
-def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> dict[str, Any]:
+def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> PageSelection:
     """Search for the target that ``values`` state; where it names no base, its designs are those of ``base`` changed.
 
     Raises InputError naming the field.
@@ -126,35 +172,36 @@ def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> dict[s
         )
 
 
-def _selected(target: Target, page: CandidateStates, library: Library, report: Report) -> dict[str, Any]:
+def _selected(target: Target, page: CandidateStates, library: Library, report: Report) -> PageSelection:
     total = len(STEPS) + 1
     run = select(target, PAGE, library, progress=lambda step: report(STEPS.index(step), total, step))
     report(len(STEPS), total, _CHART)
-    return {
-        "selection": {**document(run), "written": None},
-        "headline": headline(run),
-        "notes": search_notes(run),
-        "cards": _cards(run, page),
-        "remarks": [*_nothing_to_drop(run), *remarks(run)],
-        "chart": _chart(run, library),
-        "table": None,
-    }
+    return PageSelection(
+        selection={**plain(selected(run)), "written": None},
+        headline=headline(run),
+        notes=search_notes(run),
+        cards=_cards(run, page),
+        remarks=[*_nothing_to_drop(run), *remarks(run)],
+        chart=_chart(run, library),
+        table=None,
+    )
 
 
-def _cards(run: SelectionRun, page: CandidateStates) -> list[dict[str, Any]]:
+def _cards(run: SelectionRun, page: CandidateStates) -> list[CandidateCard]:
     """The designs by rank; if there are none, the nearest, and those that fit without one of the requirements."""
 
-    def card(choice: Candidate, kind: str, label: str, *, rank: int | None = None, note: str = "") -> dict[str, Any]:
+    def card(choice: Candidate, kind: str, label: str, *, rank: int | None = None, note: str = "") -> CandidateCard:
         """A design as the page shows it, with the state that makes it the page's design."""
-        return {
-            **candidate_card(run, choice, rank),
-            "kind": kind,
-            "label": label,
-            "note": note,
-            "passes": rank in run.judged,
-            "state": page.state(run.base, run.assignments(choice)),
-            "command": None if rank is None else page.command(rank),
-        }
+        return extended(
+            CandidateCard,
+            candidate_figures(run, choice, rank),
+            kind=kind,
+            label=label,
+            note=note,
+            passes=rank in run.judged,
+            state=page.state(run.base, run.assignments(choice)),
+            command=None if rank is None else page.command(rank),
+        )
 
     answer, seen, cards = run.answer, set[str](), []
     for rank, choice in enumerate(answer.designs, start=1):
@@ -176,49 +223,41 @@ def _nothing_to_drop(run: SelectionRun) -> list[str]:
     return [] if answer.designs or run.rejected or answer.dropped else dropped_lines(run)
 
 
-def _chart(run: SelectionRun, library: Library) -> dict[str, Any]:
+def _chart(run: SelectionRun, library: Library) -> FrontChart:
     """The chart that ``select`` draws: sensitivities in kPa/N, forces in N, pressures in kPa."""
     drawn = tradeoff(run, library)
-    content: dict[str, Any] = {
-        "driving_pressure_kPa": drawn.driving_pressure_kPa,
-        "gauge_kPa": drawn.gauge_kPa,
-        "window_kPa_per_N": drawn.window_kPa_per_N and list(drawn.window_kPa_per_N),
-        "least_force_N": drawn.force,
-        "caption": drawn.caption,
-        "fronts": [
-            {
-                "title": front.resin.material.title,
-                "sensitivity_kPa_per_N": front.sensitivity_kPa_per_N.tolist(),
-                "force_N": front.force.tolist(),
-            }
-            for front in drawn.known
-        ],
-    }
-    result: dict[str, Any] = rounded(content, _DIGITS)
-    return result
+    fronts = (
+        FrontCurve(each.resin.material.title, tuple(each.sensitivity_kPa_per_N.tolist()), tuple(each.force.tolist()))
+        for each in drawn.known
+    )
+    chart = FrontChart(
+        drawn.driving_pressure_kPa, drawn.gauge_kPa, drawn.window_kPa_per_N, drawn.force, drawn.caption, tuple(fronts)
+    )
+    return rounded(chart, _DIGITS)
 
 
-def _graded(target: Target, page: CandidateStates, library: Library, report: Report) -> dict[str, Any]:
+def _graded(target: Target, page: CandidateStates, library: Library, report: Report) -> PageSelection:
     """The search for a grade, with the constant membranes of its size as a table in place of the chart."""
     run = select_graded(target, PAGE, library, lambda trial, done, most: report(done, most, "searching grades"))
     head, rows = graded_table(run)
     rejected = [] if run.rejected is None else [f"the grade is rejected by the check: {run.rejected}"]
-    card = {
-        **graded_card(run),
-        "kind": "best" if run.search.met else "nearest",
-        "label": "grade",
-        "note": "",
-        "passes": run.passes,
-        "state": page.state(run.base, run.assignments()),
-        "command": page.command(1) if run.passes else None,
-    }
+    card = extended(
+        CandidateCard,
+        grade_figures(run),
+        kind="best" if run.search.met else "nearest",
+        label="grade",
+        note="",
+        passes=run.passes,
+        state=page.state(run.base, run.assignments()),
+        command=page.command(1) if run.passes else None,
+    )
     headline, *remarks = graded_lines(run)
-    return {
-        "selection": {**graded_document(run), "written": None},
-        "headline": headline,
-        "notes": [],
-        "cards": [card],
-        "remarks": [*rejected, *remarks],
-        "chart": None,
-        "table": {"caption": "The grade, and constant membranes of its size", "head": head, "rows": rows},
-    }
+    return PageSelection(
+        selection={**plain(graded(run)), "written": None},
+        headline=headline,
+        notes=[],
+        cards=[card],
+        remarks=[*rejected, *remarks],
+        chart=None,
+        table=PageTable("The grade, and constant membranes of its size", head, rows),
+    )

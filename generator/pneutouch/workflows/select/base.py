@@ -1,8 +1,6 @@
 """The base of a selection: the design that gives everything that the target does not.
 
 Two base resins to mix: resolved, checked against the printer, and offered to the search as resins.
-
-One gauge that a selection considered, and why it is chosen or not.
 """
 
 from __future__ import annotations
@@ -281,24 +279,3 @@ def _runs_none(printer: Printer, named: dict[str, Material], where: str, library
 
 ANY = "any"
 """Stands for every gauge of the library."""
-
-
-@dataclass(frozen=True, slots=True)
-class GaugeTrial:
-    """A gauge by name; ``smallest_force_N`` by the best design's sensitivity, None if its noise is not known."""
-
-    name: str
-    title: str
-    chosen: bool
-    why: str
-    smallest_force_N: float | None = None
-
-    def document(self) -> dict[str, Any]:
-        """The trial as data."""
-        return {
-            "gauge": self.name,
-            "title": self.title,
-            "chosen": self.chosen,
-            "why": self.why,
-            "smallest_force_N": self.smallest_force_N,
-        }

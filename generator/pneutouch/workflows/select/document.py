@@ -1,8 +1,9 @@
-"""A selection as data and as text; and the chosen design as a file.
+"""A selection as a record and as text; and the chosen design as a file.
 
 A selection in words, for the terminal and the studio.
 """
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,16 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.parts import assemble
+from pneutouch.results.record import extended
+from pneutouch.results.selection import (
+    DroppedChoice,
+    FoundDesign,
+    NearestDesign,
+    RankedDesign,
+    RejectedChoice,
+    SelectionRecord,
+    SolidCheck,
+)
 from pneutouch.rounding import tenths_below
 from pneutouch.selection import Candidate, DroppedRequirement
 from pneutouch.selection.choose import missed_percent
@@ -21,114 +32,100 @@ from pneutouch.workflows.select.checks import RejectedDesign, contact_notes, con
 from pneutouch.workflows.select.select import Confirmation, SelectionRun
 
 
-def document(selection: SelectionRun) -> dict[str, Any]:
+def selected(selection: SelectionRun) -> SelectionRecord:
     """The selection as ``select`` prints it."""
     answer = selection.answer
-    idealised = assemble(selection.base).dead_volume_note
     confirmed = [*selection.confirmed, *[None] * (len(answer.designs) - len(selection.confirmed))]
-    return {
-        "target": selection.target.model_dump(mode="json"),
-        "base": selection.base.where,
-        **({"dead_volume_note": idealised} if idealised else {}),
-        **_contact(selection),
-        "met": bool(answer.designs),
-        "candidates": answer.candidates,
-        "designs": [
-            {
-                "rank": rank,
-                "runner_up": _is_runner_up(answer.designs, rank - 1),
-                "passes_check": True if rank in selection.judged else None,
-                **_choice(selection, choice, solid),
-            }
+    return SelectionRecord(
+        target=selection.target.model_dump(mode="json"),
+        base=selection.base.where,
+        dead_volume_note=assemble(selection.base).dead_volume_note or None,
+        contact=_contact(selection),
+        met=bool(answer.designs),
+        candidates=answer.candidates,
+        designs=tuple(
+            extended(
+                RankedDesign,
+                _choice(selection, choice, solid),
+                rank=rank,
+                runner_up=_is_runner_up(answer.designs, rank - 1),
+                passes_check=True if rank in selection.judged else None,
+            )
             for rank, (choice, solid) in enumerate(zip(answer.designs, confirmed, strict=True), start=1)
-        ],
-        "nearest": None
+        ),
+        nearest=None
         if answer.nearest is None
-        else {
-            **_choice(selection, answer.nearest, None),
-            "misses_percent": missed_percent(selection.problem, answer.nearest),
-        },
-        "dropped_requirements": [_dropped(selection, dropped) for dropped in answer.dropped],
-        "rejected": [_rejected(selection, rejected) for rejected in selection.rejected],
-        "left_out": selection.left_out,
-        **({"gauges": [trial.document() for trial in selection.gauges]} if selection.gauges else {}),
-    }
+        else extended(
+            NearestDesign,
+            _choice(selection, answer.nearest),
+            misses_percent=missed_percent(selection.problem, answer.nearest),
+        ),
+        dropped_requirements=tuple(
+            DroppedChoice(each.requirement, would_need(selection, each), _choice(selection, each.best))
+            for each in answer.dropped
+        ),
+        rejected=tuple(
+            RejectedChoice(each.rule, each.reason, _choice(selection, each.choice)) for each in selection.rejected
+        ),
+        left_out=selection.left_out,
+        gauges=selection.gauges,
+    )
 
 
-def _contact(selection: SelectionRun) -> dict[str, Any]:
-    """Pressing object and search with the solid, as data; empty for a contact that the atlas covers."""
+def _contact(selection: SelectionRun) -> Mapping[str, Any] | None:
+    """Pressing object and search with the solid; None for a contact that the atlas covers."""
     search = selection.by_solid
     if search is None:
-        return {}
+        return None
     notes = contact_notes(search, selection.base)
     record = contact_document(selection.base).get("contact", {"label": contact_text(selection.base)})
-    return {"contact": {**record, "notes": notes, "rounds": search.rounds, "solves": search.solves}}
-
-
-def _rejected(selection: SelectionRun, rejected: RejectedDesign) -> dict[str, Any]:
-    design = _choice(selection, rejected.choice, None)
-    return {"rule": rejected.rule, "reason": rejected.reason, "design": design}
-
-
-def _dropped(selection: SelectionRun, dropped: DroppedRequirement) -> dict[str, Any]:
-    best = _choice(selection, dropped.best, None)
-    return {"requirement": dropped.requirement, "attainable": would_need(selection, dropped), "design": best}
+    return {**record, "notes": notes, "rounds": search.rounds, "solves": search.solves}
 
 
 def _is_runner_up(designs: list[Candidate], index: int) -> bool:
     return any(designs[index].resin.name == other.resin.name for other in designs[:index])
 
 
-def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | None) -> dict[str, Any]:
+def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | None = None) -> FoundDesign:
     pool, lines = choice.pool, choice.pool.response.lines
     sensitivity_kPa_per_N = float(lines.sensitivity_kPa_per_N[0])
     batch = selection.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
-    return {
-        "material": choice.resin.name,
-        "mix": None if choice.resin.grade is None else choice.resin.grade.model_dump(by_alias=True, exclude_none=True),
-        "inner_radius_mm": float(pool.radius[0]),
-        "wall_thickness_mm": float(pool.wall[0]),
-        "driving_pressure_kPa": float(pool.pressure[0]) / KPA,
-        "outer_diameter_mm": 2 * float(pool.radius[0] + pool.wall[0]),
-        "footprint_mm": selection.footprint(choice),
-        "dead_volume_mL": float(batch.dead_volume[0]) / ML,
-        "sensitivity_kPa_per_N": sensitivity_kPa_per_N,
-        "expanded_uncertainty_kPa_per_N": _known(sensitivity_kPa_per_N * choice.expanded),
-        "expanded_uncertainty_relative": _known(choice.expanded),
-        "coverage_factor": 2,
-        **({"place_uncertainty_relative": choice.place} if selection.problem.anywhere else {}),
-        "r_squared": float(lines.r_squared[0]),
-        "force_range_N": [0.0, float(pool.force[0])],
-        "range_end_mm": float(pool.response.range_end[0]),
-        "range_ends_with": choice.ends_with,
-        "stiffness_N_per_mm": float(lines.stiffness[0]),
-        "limit_point_kPa": float(pool.response.limit_pressure[0]) / KPA,
-        "rated_pressure_kPa": choice.rated / KPA,
-        "above_rated_pressure": choice.margins["rated pressure"] < 0,
-        "sensitivity_at_0kPa_and_rated_kPa_per_N": [_known(end) for end in choice.span],
-        "margins": {name: _known(margin) for name, margin in choice.margins.items()},
-        "binding": choice.binding,
-        **_how(choice),
-        "solid": None
-        if solid is None
-        else {
-            "sensitivity_kPa_per_N": _known(solid.sensitivity_kPa_per_N),
-            "within_expanded_uncertainty": solid.within,
-        },
-        "set": selection.assignments(choice),
-    }
+    by_solid = choice.contact
+    return FoundDesign(
+        material=choice.resin.name,
+        mix=None if choice.resin.grade is None else choice.resin.grade.model_dump(by_alias=True, exclude_none=True),
+        inner_radius_mm=float(pool.radius[0]),
+        wall_thickness_mm=float(pool.wall[0]),
+        driving_pressure_kPa=float(pool.pressure[0]) / KPA,
+        outer_diameter_mm=2 * float(pool.radius[0] + pool.wall[0]),
+        footprint_mm=selection.footprint(choice),
+        dead_volume_mL=float(batch.dead_volume[0]) / ML,
+        sensitivity_kPa_per_N=sensitivity_kPa_per_N,
+        expanded_uncertainty_kPa_per_N=_known(sensitivity_kPa_per_N * choice.expanded),
+        expanded_uncertainty_relative=_known(choice.expanded),
+        coverage_factor=2,
+        place_uncertainty_relative=choice.place if selection.problem.anywhere else None,
+        r_squared=float(lines.r_squared[0]),
+        force_range_N=(0.0, float(pool.force[0])),
+        range_end_mm=float(pool.response.range_end[0]),
+        range_ends_with=choice.ends_with,
+        stiffness_N_per_mm=float(lines.stiffness[0]),
+        limit_point_kPa=float(pool.response.limit_pressure[0]) / KPA,
+        rated_pressure_kPa=choice.rated / KPA,
+        above_rated_pressure=choice.margins["rated pressure"] < 0,
+        sensitivity_at_0kPa_and_rated_kPa_per_N=tuple(_known(end) for end in choice.span),
+        margins={name: _known(margin) for name, margin in choice.margins.items()},
+        binding=choice.binding,
+        model="atlas" if by_solid is None else "solid",
+        plate_sensitivity_kPa_per_N=None if by_solid is None else by_solid.plate_kPa_per_N,
+        rounds=None if by_solid is None else by_solid.rounds,
+        solid=None if solid is None else SolidCheck(_known(solid.sensitivity_kPa_per_N), solid.within),
+        set=tuple(selection.assignments(choice)),
+    )
 
 
 def _known(value: float) -> float | None:
     return value if np.isfinite(value) else None
-
-
-def _how(choice: Candidate) -> dict[str, Any]:
-    """The model of the figures; of the solid's also the atlas's sensitivity under its plate, and the searches made."""
-    if choice.contact is None:
-        return {"model": "atlas"}
-    plate_kPa_per_N = choice.contact.plate_kPa_per_N
-    return {"model": "solid", "plate_sensitivity_kPa_per_N": plate_kPa_per_N, "rounds": choice.contact.rounds}
 
 
 def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:
@@ -208,7 +205,7 @@ def remarks(selection: SelectionRun) -> list[str]:
     """The mount for a finger, designs that the check rejects, and resins that were left out."""
     return [
         *mount_note(selection.target, selection.base),
-        *(f"gauge {'chosen' if one.chosen else 'out'}: {one.name}: {one.why}" for one in selection.gauges),
+        *(f"gauge {'chosen' if one.chosen else 'out'}: {one.gauge}: {one.why}" for one in selection.gauges),
         *(_rejected_words(one) for one in selection.rejected),
         *(f"left out: {name}: {why}" for name, why in selection.left_out.items()),
     ]

@@ -1,11 +1,12 @@
-"""A search for a grade as data, and the grade as a design file."""
+"""A search for a grade as a record, and the grade as a design file."""
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from pneutouch.evaluation.contact_object import contact_document
+from pneutouch.results.record import extended
+from pneutouch.results.selection import ConstantMembrane, FoundGrade, GradedRecord, GradeFigures, SearchCost
 from pneutouch.rounding import tenths_below
 from pneutouch.selection.graded import GradeTrial, shares
 from pneutouch.units import KPA, ML
@@ -13,52 +14,53 @@ from pneutouch.workflows.select.checks import write_assigned
 from pneutouch.workflows.select.graded import GradedSelectionRun
 
 
-def graded_document(selection: GradedSelectionRun) -> dict[str, Any]:
-    """The search as ``select`` prints it; ``share_used`` is at most 1 where a tolerance or limit is kept."""
+def graded(selection: GradedSelectionRun) -> GradedRecord:
+    """The search as ``select`` prints it."""
     search, sensor = selection.search, selection.sensor
-    return {
-        "target": selection.target.model_dump(mode="json"),
-        "base": selection.base.where,
-        **contact_document(selection.base),
-        "met": search.met,
-        "design": {
-            "material": selection.grade.model_dump(by_alias=True, exclude_none=True),
-            "inner_radius_mm": sensor.dome.inner_radius,
-            "wall_thickness_mm": sensor.dome.wall_thickness,
-            "dead_volume_mL": sensor.gas.dead_volume / ML,
-            **_figures(selection, search.best),
-            "share_used": shares(selection.grade_target, search.best),
-            "passes_check": True if selection.passes else None,
-            "set": selection.assignments(),
-        },
-        "rejected": selection.rejected,
-        "constant": [
-            {"name": constant.name, "fraction": constant.fraction, **_figures(selection, constant.trial)}
-            for constant in selection.constants
-        ],
-        "nearest_constant_mix": selection.nearest.name,
-        "cost": {"solid_solves": selection.solves, "grades_tried": len(search.trials)},
-        "model": "solid",
-        "left_out": selection.left_out,
-    }
+    return GradedRecord(
+        target=selection.target.model_dump(mode="json"),
+        base=selection.base.where,
+        contact=contact_document(selection.base).get("contact"),
+        met=search.met,
+        design=extended(
+            FoundGrade,
+            _figures(selection, search.best),
+            material=selection.grade.model_dump(by_alias=True, exclude_none=True),
+            inner_radius_mm=sensor.dome.inner_radius,
+            wall_thickness_mm=sensor.dome.wall_thickness,
+            dead_volume_mL=sensor.gas.dead_volume / ML,
+            share_used=shares(selection.grade_target, search.best),
+            passes_check=True if selection.passes else None,
+            set=tuple(selection.assignments()),
+        ),
+        rejected=selection.rejected,
+        constant=tuple(
+            extended(ConstantMembrane, _figures(selection, each.trial), name=each.name, fraction=each.fraction)
+            for each in selection.constants
+        ),
+        nearest_constant_mix=selection.nearest.name,
+        cost=SearchCost(selection.solves, len(search.trials)),
+        model="solid",
+        left_out=selection.left_out,
+    )
 
 
-def _figures(selection: GradedSelectionRun, trial: GradeTrial) -> dict[str, Any]:
-    return {
-        "driving_pressures_kPa": [p / KPA for p in selection.grade_target.pressures],
-        "sensitivity_kPa_per_N": _known(trial.sensitivity_kPa_per_N),
-        "difference_percent": _known((100 * trial.difference,))[0],
-        "force_range_end_N": _known(trial.force),
-        "range_ends_with": list(trial.ends),
-        "rated_pressure_kPa": None if trial.note else trial.rated / KPA,
-        "above_rated_pressure": max(selection.grade_target.pressures) > trial.rated,
-        "meets": selection.meets(trial),
-        "reason": trial.note or None,
-    }
+def _figures(selection: GradedSelectionRun, trial: GradeTrial) -> GradeFigures:
+    return GradeFigures(
+        driving_pressures_kPa=tuple(p / KPA for p in selection.grade_target.pressures),
+        sensitivity_kPa_per_N=_known(trial.sensitivity_kPa_per_N),
+        difference_percent=_known((100 * trial.difference,))[0],
+        force_range_end_N=_known(trial.force),
+        range_ends_with=tuple(trial.ends),
+        rated_pressure_kPa=None if trial.note else trial.rated / KPA,
+        above_rated_pressure=max(selection.grade_target.pressures) > trial.rated,
+        meets=selection.meets(trial),
+        reason=trial.note or None,
+    )
 
 
-def _known(values: tuple[float, ...]) -> list[float | None]:
-    return [float(value) if np.isfinite(value) else None for value in values]
+def _known(values: tuple[float, ...]) -> tuple[float | None, ...]:
+    return tuple(float(value) if np.isfinite(value) else None for value in values)
 
 
 def missed(selection: GradedSelectionRun) -> list[str]:

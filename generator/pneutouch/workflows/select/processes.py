@@ -14,13 +14,15 @@ from pneutouch.catalogue.library import CachedLibrary
 from pneutouch.catalogue.printers import casting_missing, uncast
 from pneutouch.errors import InputError
 from pneutouch.mechanics.gauge_reading import GaugeReading, gauge_reading
+from pneutouch.results.record import extended
+from pneutouch.results.selection import GaugeTrial, ProcessesRecord, ProcessRecord
 from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.material import CAST_SEAT, Material
 from pneutouch.spec.printer import Printer, Process
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
-from pneutouch.workflows.select.base import ANY, GaugeTrial, base_scene, named_by_target, setting_changes, settled_base
-from pneutouch.workflows.select.document import document
+from pneutouch.workflows.select.base import ANY, base_scene, named_by_target, setting_changes, settled_base
+from pneutouch.workflows.select.document import selected
 from pneutouch.workflows.select.select import STEPS, SelectionRun
 from pneutouch.workflows.select.select import select as select_by_target
 
@@ -157,10 +159,14 @@ class ProcessSelection:
             raise InputError(f"must be from 1 to {len(self.best)}", key="pick", value=row)
         return self.best[row - 1][1]
 
-    def document(self) -> dict[str, Any]:
-        """The answers as a JSON document."""
-        shown = {process: {"profile": self.profiles[process], **document(run)} for process, run in self.runs.items()}
-        return {"met": bool(self.best), "processes": shown, "left_out": self.left_out}
+    @property
+    def record(self) -> ProcessesRecord:
+        """The answers as ``select`` prints them."""
+        shown = {
+            process: extended(ProcessRecord, selected(run), profile=self.profiles[process])
+            for process, run in self.runs.items()
+        }
+        return ProcessesRecord(bool(self.best), shown, self.left_out)
 
 
 def select_processes(

@@ -21,6 +21,7 @@ from pneutouch.mechanics.rating import LIMIT_ERROR
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty import measured_errors
 from pneutouch.mechanics.uncertainty.propagate import limit_spread
+from pneutouch.results.selection import GaugeTrial
 from pneutouch.selection import Candidate, CandidateResin, SelectionProblem, SelectionResult, choose
 from pneutouch.selection.choose import Refine
 from pneutouch.selection.contact_search import ContactSelection, choose_by_solid
@@ -32,7 +33,6 @@ from pneutouch.spec.target import Target
 from pneutouch.spec.toml_text import value_text
 from pneutouch.units import KPA
 from pneutouch.workflows.select.base import (
-    GaugeTrial,
     ResinPair,
     base_scene,
     mix_resins,
