@@ -8,14 +8,11 @@ from pneutouch.formats import FORMATS, KEY, format_of
 from pneutouch.results.calibration import OutcomeRecord
 from pneutouch.results.comparison import ComparisonRecord
 from pneutouch.results.fit import MaterialFit
+from pneutouch.results.folder import Manifest
 from pneutouch.results.measured import MeasuredCampaign
-from pneutouch.results.response import ResponseRecord
+from pneutouch.results.response import LoadResponse
 from pneutouch.results.scan import ScanRecord
 from pneutouch.results.simulation import CampaignTruth
-from pneutouch.results.folder import Manifest
-from pneutouch.results.response import LoadResponse
-from pneutouch.results.specimen import SpecimenRecord
-from pneutouch.results.stack import StackRecord
 from pneutouch.schemas.kind import DocumentKind
 from pneutouch.schemas.shape import Schema
 from pneutouch.schemas.typed import of_record

@@ -30,8 +30,8 @@ from pneutouch.printability import refuse
 from pneutouch.report.datasheet import datasheet
 from pneutouch.report.pictures import picture, pressed_files, shown
 from pneutouch.report.print_sheet import print_sheet
-from pneutouch.results.record import plain
 from pneutouch.results.folder import BodyMesh
+from pneutouch.results.record import plain
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION
 from pneutouch.spec.read import Changes
 from pneutouch.units import ML
