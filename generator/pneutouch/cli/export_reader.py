@@ -6,6 +6,7 @@ Output of ``pneutouch export-reader --simulator`` for people.
 """
 
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -26,6 +27,8 @@ from pneutouch.cli.app import (
 )
 from pneutouch.cli.complete import simulators
 from pneutouch.cli.terminal import echo, notify, table_text
+from pneutouch.results.reader import ReaderRecord, SimulatorRecord
+from pneutouch.results.record import plain
 
 
 @app.command("export-reader")
@@ -60,13 +63,13 @@ def export_reader(
             folder = write_reader(result, out)
         if result.note is not None:
             notify(result.note)
-        off_percent = result.document["difference"]["nominal_percent"]
+        off_percent = result.record.difference.nominal_percent
         if off_percent > 0.5:
             notify(f"warning: the table is up to {off_percent:.2f} % of full scale off the model, more than 0.5 %")
         if json:
             print_json({**result.document, "folder": str(folder)})
         else:
-            echo(reader_text(result.document))
+            echo(reader_text(result.record))
             echo(f"\n{folder}")
             files = " and ".join(sorted(path.name for path in folder.glob("*_reader.*")))
             notify(f"how to use it: the examples at the head of {files}")
@@ -84,48 +87,45 @@ def _export_simulator(
         result = make_simulator(evaluate(design, changed, **options), simulator)
         folder = write_simulator(result, out)
     if json:
-        print_json({**result.document, "folder": str(folder)})
+        print_json({**plain(result.record), "folder": str(folder)})
     else:
-        echo(simulator_text(result.document))
+        echo(simulator_text(result.record))
         echo(f"\n{folder}")
 
 
-def reader_text(document: Mapping[str, Any]) -> str:
+def reader_text(record: ReaderRecord) -> str:
     """The box of a reader, and how far it is from the full model."""
-    box, known, rated = document["box"], document["difference"], document["rating"]["driving_pressure_kPa"]
-    relative = document["grid"]["force_uncertainty_relative"]
-    calibration = document["calibration"]
-    low, high = box["driving_pressure_kPa"]
+    box, known, rated = record.box, record.difference, record.rating.driving_pressure_kPa
+    relative, calibration = record.grid.force_uncertainty_relative, record.calibration
+    low, high = box.driving_pressure_kPa
     lines = [
-        f"{document['design']}: force from pressure, by the model {document['model']}"
+        f"{record.design}: force from pressure, by the model {record.model}"
         + (f", calibration {calibration}" if calibration else ", not calibrated"),
         f"  driving pressure   {low:.4g} to {high:.4g} kPa; rated for {rated:.4g} kPa",
-        f"  contact            {document['conditions']['contact']}",
-        f"  contact force      0 to {box['contact_force_N'][1]:.4g} N, to {box['indentation_mm'][1]:.4g} mm of travel",
-        f"  pressure rise      0 to {box['pressure_rise_kPa'][1]:.4g} kPa",
-        f"  ambient pressure   {box['ambient_pressure_kPa'][0]:.5g} to {box['ambient_pressure_kPa'][1]:.5g} kPa",
-        f"  gas temperature    within {box['temperature_change_K']:g} K of that at the tare",
-        f"  table to model     {known['nominal_percent']:.2f} % of full scale at most in {known['states']} states; "
-        f"{known['other_conditions_percent']:.2f} % at other temperatures and ambient pressures",
+        f"  contact            {record.conditions.contact}",
+        f"  contact force      0 to {box.contact_force_N[1]:.4g} N, to {box.indentation_mm[1]:.4g} mm of travel",
+        f"  pressure rise      0 to {box.pressure_rise_kPa[1]:.4g} kPa",
+        f"  ambient pressure   {box.ambient_pressure_kPa[0]:.5g} to {box.ambient_pressure_kPa[1]:.5g} kPa",
+        f"  gas temperature    within {box.temperature_change_K:g} K of that at the tare",
+        f"  table to model     {known.nominal_percent:.2f} % of full scale at most in {known.states} states; "
+        f"{known.other_conditions_percent:.2f} % at other temperatures and ambient pressures",
     ]
     if relative is None:
-        lines.append(f"  uncertainty        unknown: {document['grid']['force_uncertainty_unknown']}")
+        lines.append(f"  uncertainty        unknown: {record.grid.force_uncertainty_unknown}")
     else:
         least, most = (100 * pick(map(pick, relative)) for pick in (min, max))
         lines.append(f"  uncertainty        {least:.2g} to {most:.2g} % of the force (standard), gauge noise not in it")
     return "\n".join(lines)
 
 
-def simulator_text(document: Mapping[str, Any]) -> str:
+def simulator_text(record: SimulatorRecord) -> str:
     """Mass and inertia, and how far the press of every driving pressure goes."""
-    moments = document["inertia_about_centre_g_mm2"]
-    diagonal = ", ".join(f"{moments[k][k]:.4g}" for k in range(3))
+    diagonal = ", ".join(f"{record.inertia_about_centre_g_mm2[k][k]:.4g}" for k in range(3))
     head = ["driving kPa", "apex mm", "range mm", "force N", "pressure kPa", "stiffest N/mm"]
-    keys = ("driving_pressure_kPa", "apex_height_outer_mm", "range_end_mm", "contact_force_N", "pressure_kPa")
-    rows = [[f"{state[key]:.4g}" for key in (*keys, "greatest_stiffness_N_per_mm")] for state in document["states"]]
+    rows = [[f"{getattr(state, field.name):.4g}" for field in fields(state)] for state in record.states]
     lines = [
-        f"{document['design']} for {document['simulator']}, by the model {document['model']}",
-        f"mass {document['mass_g']:.4g} g; inertia about its centre {diagonal} g mm2",
+        f"{record.design} for {record.simulator}, by the model {record.model}",
+        f"mass {record.mass_g:.4g} g; inertia about its centre {diagonal} g mm2",
         "",
         table_text(head, rows),
     ]

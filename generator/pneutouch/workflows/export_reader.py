@@ -12,7 +12,7 @@ Content of a folder of a simulator's model, in ten lines.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -20,23 +20,28 @@ from pneutouch import __version__
 from pneutouch.errors import InputError, nearest
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.reader import curve_of, reader_difference, reader_grid
-from pneutouch.evaluation.reader_record import reader_record
+from pneutouch.evaluation.reader_tables import reader_tables
 from pneutouch.export.reader.render import reader_files, sketch_note
 from pneutouch.export.simulator.description import mjcf_files, urdf_files
 from pneutouch.export.simulator.model import PressTable, SimulatedSensor, press_table, simulated_sensor
+from pneutouch.formats import versioned
 from pneutouch.mechanics import predict
 from pneutouch.output.files import check_writable, digest, json_bytes, with_manifest, write_folder
 from pneutouch.output.files import write_folder as write_files
 from pneutouch.output.recipe import BuildRecipe
+from pneutouch.results.reader import ReaderRecord, ReaderSource, SimulatedState, SimulatorRecord, TableError
+from pneutouch.results.record import plain
 from pneutouch.rounding import rounded
 from pneutouch.units import KPA
 
 
 @dataclass(frozen=True)
 class ReaderResult:
-    """A reader: the name of its folder, its document, its other files by name, and why there is no sketch."""
+    """A reader: the name of its folder, its record, the JSON data of that, of which its files are made, these by name,
+    and why there is no sketch."""
 
     name: str
+    record: ReaderRecord
     document: dict[str, Any]
     files: dict[str, bytes]
     note: str | None
@@ -45,20 +50,24 @@ class ReaderResult:
 def make_reader(evaluation: Evaluation) -> ReaderResult:
     """The reader of an evaluated design. Raises InputError and ComputationError as `evaluation.reader.reader_grid`."""
     grid = reader_grid(evaluation)
-    record = reader_record(evaluation, grid)
-    known = reader_difference(evaluation, grid, record)
-    full_N = record["box"]["contact_force_N"][1]
-    record["difference"] = {
-        "nominal_N": known.nominal_N,
-        "nominal_percent": 100.0 * known.nominal_N / full_N,
-        "other_conditions_N": known.other_conditions_N,
-        "other_conditions_percent": 100.0 * known.other_conditions_N / full_N,
-        "states": known.states,
-    }
-    record["source"] = {"sha256": _source(evaluation), "version": __version__}
+    tables = reader_tables(evaluation, grid)
+    known = reader_difference(evaluation, grid, versioned("reader", plain(tables)))
+    full_N = tables.box.contact_force_N[1]
+    record = ReaderRecord(
+        **{field.name: getattr(tables, field.name) for field in fields(tables)},
+        difference=TableError(
+            nominal_N=known.nominal_N,
+            nominal_percent=100.0 * known.nominal_N / full_N,
+            other_conditions_N=known.other_conditions_N,
+            other_conditions_percent=100.0 * known.other_conditions_N / full_N,
+            states=known.states,
+        ),
+        source=ReaderSource(_source(evaluation), __version__),
+    )
+    document = versioned("reader", plain(record))
     calibration, gauge = evaluation.scene.design.calibration_name, evaluation.scene.gauge
     name = evaluation.scene.name if calibration is None else _calibrated(evaluation, calibration)
-    return ReaderResult(f"{name}-reader", record, reader_files(record, name, gauge), sketch_note(gauge))
+    return ReaderResult(f"{name}-reader", record, document, reader_files(document, name, gauge), sketch_note(gauge))
 
 
 def _calibrated(evaluation: Evaluation, calibration: str) -> str:
@@ -133,10 +142,10 @@ _DIGITS = 6
 
 @dataclass(frozen=True)
 class SimulatorResult:
-    """A model: the name of its folder, its document, and its files by path."""
+    """A model: the name of its folder, its record, and its files by path."""
 
     name: str
-    document: dict[str, Any]
+    record: SimulatorRecord
     files: dict[str, bytes]
     inputs: Mapping[str, Any]
 
@@ -154,7 +163,7 @@ def make_simulator(evaluation: Evaluation, kind: str) -> SimulatorResult:
     sensor = _simulated(evaluation)
     files = {"README.md": readme(sensor, kind), **SIMULATORS[kind](sensor)}
     name = f"{sensor.name}-{kind}"
-    return SimulatorResult(name, _document(evaluation, sensor, kind), files, BuildRecipe.of(evaluation).inputs())
+    return SimulatorResult(name, _record(evaluation, sensor, kind), files, BuildRecipe.of(evaluation).inputs())
 
 
 def _simulated(evaluation: Evaluation) -> SimulatedSensor:
@@ -183,28 +192,28 @@ def press_tables(evaluation: Evaluation, steps: int = STEPS) -> tuple[PressTable
     return tuple(tables)
 
 
-def _document(evaluation: Evaluation, sensor: SimulatedSensor, kind: str) -> dict[str, Any]:
-    content = {
-        "design": sensor.name,
-        "simulator": kind,
-        "model": evaluation.prediction.model,
-        "version": __version__,
-        "mass_g": 1e3 * sensor.inertia.mass,
-        "centre_of_mass_mm": (1e3 * sensor.inertia.centre).tolist(),
-        "inertia_about_centre_g_mm2": (1e9 * sensor.inertia.about_centre).tolist(),
-        "states": [
-            {
-                "driving_pressure_kPa": table.driving_pressure_kPa,
-                "apex_height_outer_mm": 1e3 * table.apex,
-                "range_end_mm": 1e3 * float(table.indentation[-1]),
-                "contact_force_N": float(table.force[-1]),
-                "pressure_kPa": float(table.pressure_kPa[-1]),
-                "greatest_stiffness_N_per_mm": 1e-3 * table.stiffest,
-            }
+def _record(evaluation: Evaluation, sensor: SimulatedSensor, kind: str) -> SimulatorRecord:
+    record = SimulatorRecord(
+        design=sensor.name,
+        simulator=kind,
+        model=evaluation.prediction.model,
+        version=__version__,
+        mass_g=1e3 * sensor.inertia.mass,
+        centre_of_mass_mm=tuple((1e3 * sensor.inertia.centre).tolist()),
+        inertia_about_centre_g_mm2=tuple(map(tuple, (1e9 * sensor.inertia.about_centre).tolist())),
+        states=tuple(
+            SimulatedState(
+                driving_pressure_kPa=table.driving_pressure_kPa,
+                apex_height_outer_mm=1e3 * table.apex,
+                range_end_mm=1e3 * float(table.indentation[-1]),
+                contact_force_N=float(table.force[-1]),
+                pressure_kPa=float(table.pressure_kPa[-1]),
+                greatest_stiffness_N_per_mm=1e-3 * table.stiffest,
+            )
             for table in sensor.tables
-        ],
-    }
-    return rounded(content, _DIGITS, 1e-9)
+        ),
+    )
+    return rounded(record, _DIGITS, 1e-9)
 
 
 def write_simulator(result: SimulatorResult, out: Path) -> Path:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import pprint
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,25 +20,32 @@ _BUS = "ABP2"
 and temperature of 24 bits (drivers Linux abp2030pa and ESPHome honeywellabp2)."""
 
 
-def arduino_gauge(gauge: Gauge) -> dict[str, Any] | str:
-    """Data of a gauge for the sketch, kPa and its output; or the reason why there is no sketch, in words."""
+@dataclass(frozen=True, slots=True)
+class SketchGauge:
+    """A gauge as a sketch reads it: pressure in kPa from its output, float32 literals of C, in volts or by its bus."""
+
+    low: str
+    at_low: str
+    slope: str
+    volts: bool
+    bus: bool = False
+    address: int | None = None
+
+
+def arduino_gauge(gauge: Gauge) -> SketchGauge | str:
+    """Data of a gauge for the sketch; or the reason why there is no sketch, in words."""
     if gauge.is_absolute:
         return f"no sketch: the {gauge.title} is absolute, and its reading less a barometer's is the gauge pressure"
     if gauge.transfer.at_low is None or gauge.transfer.at_high is None:
         return f"no sketch: the {gauge.title} has constants in each part, which a driver of its maker reads"
-    span = gauge.transfer.at_high - gauge.transfer.at_low
-    numbers = {
-        "low": gauge.range_kPa.low,
-        "at_low": gauge.transfer.at_low,
-        "slope": gauge.range_kPa.span / span,
-        "volts": gauge.transfer.output == "V",
-        "bus": False,
-    }
+    slope = gauge.range_kPa.span / (gauge.transfer.at_high - gauge.transfer.at_low)
+    low, at_low, volts = gauge.range_kPa.low, gauge.transfer.at_low, gauge.transfer.output == "V"
+    numbers = SketchGauge(f32(low), f32(at_low), f32(slope), volts)
     if gauge.transfer.output != "count":
         return numbers
     if not gauge.order_code.startswith(_BUS) or "I2C" not in gauge.interfaces or gauge.i2c_address is None:
         return f"no sketch: how the {gauge.title} is read over its bus is not covered"
-    return {**numbers, "bus": True, "address": gauge.i2c_address}
+    return replace(numbers, bus=True, address=gauge.i2c_address)
 
 
 NO_GAUGE = "no sketch: the design names no gauge, see pneumatics.gauge"
@@ -80,12 +88,9 @@ def reader_files(record: Mapping[str, Any], name: str, gauge: Gauge | None = Non
         f"{c}_reader.py": _rendered("reader.py.j2", record, c=c, source=_module(), table=_table(record)),
     }
     known = None if gauge is None else arduino_gauge(gauge)
-    if isinstance(known, dict):
-        numbers = {key: f32(known[key]) for key in ("low", "at_low", "slope")}
+    if isinstance(known, SketchGauge):
         # The compiler of a sketch looks for headers in the sketch's own folder.
-        files[f"arduino/{c}_sketch/{c}_sketch.ino"] = _rendered(
-            "reader.ino.j2", record, c=c, gauge={**known, **numbers}
-        )
+        files[f"arduino/{c}_sketch/{c}_sketch.ino"] = _rendered("reader.ino.j2", record, c=c, gauge=known)
         files[f"arduino/{c}_sketch/{c}_reader.h"] = header
     return files
 

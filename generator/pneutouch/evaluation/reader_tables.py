@@ -1,4 +1,4 @@
-"""The document of a reader, ``reader.json``: the source of its files in C and Python.
+"""The tables of a reader: the source of its files in C and Python.
 
 Standard uncertainty of the force that is read at a pressure rise, over the grid of a reader.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,8 +15,17 @@ from pneutouch.arrays import Array
 from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, ReaderGrid
 from pneutouch.evaluation.uncertainty import known, unknown
 from pneutouch.export.reader.reading import NOISES, UNSTEADY
-from pneutouch.formats import KEY, format_of
 from pneutouch.mechanics.predict import contact_words
+from pneutouch.results.reader import (
+    ForceTable,
+    GasTable,
+    ReaderBox,
+    ReaderConditions,
+    ReaderRating,
+    ReaderTables,
+    ReadGauge,
+    ZeroDrift,
+)
 from pneutouch.units import KPA, ML
 
 if TYPE_CHECKING:
@@ -115,78 +124,81 @@ FILTER_S = 1.0
 """Time constant of the mean by which a touch is distinguished from the zero: our choice."""
 
 
-def reader_record(evaluation: Evaluation, grid: ReaderGrid) -> dict[str, Any]:
-    """The document without its source and its largest difference from the full model. Numbers are float32 ones."""
-    scene, sensor = evaluation.scene, evaluation.sensor
+def reader_tables(evaluation: Evaluation, grid: ReaderGrid) -> ReaderTables:
+    """The reader without its source and its largest difference from the full model. Numbers are float32 ones."""
+    scene, sensor, rating = evaluation.scene, evaluation.sensor, evaluation.rating
     relative = force_uncertainty(evaluation, grid)
     ambient_kPa = sensor.gas.ambient_pressure / KPA
-    return {
-        KEY: format_of("reader"),
-        "design": scene.name,
-        "calibration": scene.design.calibration_name,
-        "model": grid.model,
-        "units": {"pressure": "kPa", "force": "N", "length": "mm", "volume": "mL", "temperature": "degC"},
-        "grid": {
-            "driving_pressure_kPa": _single(grid.driving_pressure / KPA),
-            "pressure_rise_kPa": _single(grid.rise / KPA),
-            "contact_force_N": _single(grid.force),
-            "indentation_mm": _single(grid.reach),
-            "pressure_factor": _single(grid.pressure_factor),
-            "force_uncertainty_relative": None if relative is None else _single(relative),
-            "force_uncertainty_unknown": why_unknown(evaluation, grid),
-        },
-        "gas": {"driving_pressure_kPa": _single(grid.gas_pressure / KPA), "volume_mL": _single(grid.gas_volume / ML)},
-        "box": {
-            "driving_pressure_kPa": _single(np.array([grid.low, grid.high]) / KPA),
-            "driving_pressure_margin_kPa": _one(_margin(grid) / KPA),
-            "contact_force_N": [0.0, _one(grid.full_scale)],
-            "pressure_rise_kPa": [0.0, _one(float(grid.rise[grid.computed :, -1].max()) / KPA)],
-            "indentation_mm": [0.0, _one(float(grid.reach[grid.computed :].max()))],
-            "ambient_pressure_kPa": _single(np.array([ambient_kPa - CHANGE_KPA, ambient_kPa + CHANGE_KPA])),
-            "temperature_change_K": CHANGE_K,
-        },
-        "rating": {"driving_pressure_kPa": _one(evaluation.rating.pressure_kPa), "basis": evaluation.rating.basis},
-        "gauge": _gauge(evaluation),
-        "zero": _zero(evaluation, grid),
-        "conditions": {
-            "driving_pressures_kPa": scene.design.pneumatics.driving_pressures_kPa,
-            "ambient_pressure_kPa": _one(ambient_kPa),
-            "dead_volume_mL": sensor.gas.dead_volume / ML,
-            "contact": contact_words(sensor.protocol),
-            "assumptions": list(evaluation.prediction.assumptions),
-        },
-    }
+    return ReaderTables(
+        design=scene.name,
+        calibration=scene.design.calibration_name,
+        model=grid.model,
+        units={"pressure": "kPa", "force": "N", "length": "mm", "volume": "mL", "temperature": "degC"},
+        grid=ForceTable(
+            driving_pressure_kPa=_single(grid.driving_pressure / KPA),
+            pressure_rise_kPa=_rows(grid.rise / KPA),
+            contact_force_N=_rows(grid.force),
+            indentation_mm=_single(grid.reach),
+            pressure_factor=_single(grid.pressure_factor),
+            force_uncertainty_relative=None if relative is None else _rows(relative),
+            force_uncertainty_unknown=why_unknown(evaluation, grid),
+        ),
+        gas=GasTable(_single(grid.gas_pressure / KPA), _single(grid.gas_volume / ML)),
+        box=_box(grid, ambient_kPa),
+        rating=ReaderRating(_one(rating.pressure_kPa), rating.basis),
+        gauge=_gauge(evaluation),
+        zero=_zero(evaluation, grid),
+        conditions=ReaderConditions(
+            driving_pressures_kPa=tuple(scene.design.pneumatics.driving_pressures_kPa),
+            ambient_pressure_kPa=_one(ambient_kPa),
+            dead_volume_mL=sensor.gas.dead_volume / ML,
+            contact=contact_words(sensor.protocol),
+            assumptions=tuple(evaluation.prediction.assumptions),
+        ),
+    )
 
 
-def _gauge(evaluation: Evaluation) -> dict[str, Any]:
+def _box(grid: ReaderGrid, ambient_kPa: float) -> ReaderBox:
+    return ReaderBox(
+        driving_pressure_kPa=_single(np.array([grid.low, grid.high]) / KPA),
+        driving_pressure_margin_kPa=_one(_margin(grid) / KPA),
+        contact_force_N=(0.0, _one(grid.full_scale)),
+        pressure_rise_kPa=(0.0, _one(float(grid.rise[grid.computed :, -1].max()) / KPA)),
+        indentation_mm=(0.0, _one(float(grid.reach[grid.computed :].max()))),
+        ambient_pressure_kPa=_single(np.array([ambient_kPa - CHANGE_KPA, ambient_kPa + CHANGE_KPA])),
+        temperature_change_K=CHANGE_K,
+    )
+
+
+def _gauge(evaluation: Evaluation) -> ReadGauge:
     """The gauge of the design and the gauge pressures that it reads; without one the sensor's limit."""
     gauge, gas = evaluation.scene.gauge, evaluation.sensor.gas
     ambient_kPa = gas.ambient_pressure / KPA
     if gauge is None:
-        return {"name": None, "range_kPa": _single(np.array([-ambient_kPa, gas.gauge_limit / KPA]))}
+        return ReadGauge(None, _single(np.array([-ambient_kPa, gas.gauge_limit / KPA])))
     # An absolute gauge reads the ambient pressure too: what it reads at every ambient pressure of the box.
     low, _ = gauge.gauge_pressures_kPa(ambient_kPa - CHANGE_KPA)
     _, high = gauge.gauge_pressures_kPa(ambient_kPa + CHANGE_KPA)
     # A gauge at rest may read below its range by its error.
     below = 0.0 if gauge.error_kPa is None else gauge.error_kPa.nominal
-    return {"name": evaluation.scene.design.pneumatics.gauge, "range_kPa": _single(np.array([low - below, high]))}
+    return ReadGauge(evaluation.scene.design.pneumatics.gauge, _single(np.array([low - below, high])))
 
 
-def _zero(evaluation: Evaluation, grid: ReaderGrid) -> dict[str, float]:
+def _zero(evaluation: Evaluation, grid: ReaderGrid) -> ZeroDrift:
     """Bounds of the drift that a reader follows: the effect of warmer air on the sealed gas, and the gauge's noise."""
     ambient = evaluation.sensor.gas.ambient_pressure
     content = (grid.gas_pressure + ambient) * grid.gas_volume
     inside = grid.gas_pressure >= min(grid.low, grid.gas_pressure[-2])
     per_kelvin_kPa = float((content / np.gradient(content, grid.gas_pressure))[inside].max()) / REFERENCE_K / KPA
-    return {
-        "drift_kPa_per_K": _one(per_kelvin_kPa),
-        "temperature_rate_K_per_h": AIR_K_PER_H,
-        "drift_rate_kPa_per_s": _one(per_kelvin_kPa * AIR_K_PER_H / 3600.0),
-        "drift_most_kPa": _one(per_kelvin_kPa * CHANGE_K),
-        "noise_least_kPa": _one(_noise_kPa(evaluation, grid)),
-        "noise_most_kPa": _one(_noise_most_kPa(evaluation, grid)),
-        "filter_s": FILTER_S,
-    }
+    return ZeroDrift(
+        drift_kPa_per_K=_one(per_kelvin_kPa),
+        temperature_rate_K_per_h=AIR_K_PER_H,
+        drift_rate_kPa_per_s=_one(per_kelvin_kPa * AIR_K_PER_H / 3600.0),
+        drift_most_kPa=_one(per_kelvin_kPa * CHANGE_K),
+        noise_least_kPa=_one(_noise_kPa(evaluation, grid)),
+        noise_most_kPa=_one(_noise_most_kPa(evaluation, grid)),
+        filter_s=FILTER_S,
+    )
 
 
 def _noise_most_kPa(evaluation: Evaluation, grid: ReaderGrid) -> float:
@@ -217,6 +229,10 @@ def _one(value: float) -> float:
     return float(f"{float(np.float32(value)):.9g}")
 
 
-def _single(values: Array) -> Any:
-    """Nested lists of numbers as `_one` gives them."""
-    return [_one(value) for value in values] if values.ndim == 1 else [_single(row) for row in values]
+def _single(values: Array) -> tuple[float, ...]:
+    """Numbers as `_one` gives them."""
+    return tuple(map(_one, values))
+
+
+def _rows(table: Array) -> tuple[tuple[float, ...], ...]:
+    return tuple(map(_single, table))

@@ -1,0 +1,216 @@
+"""A reader of force from the pressure of one sensor, and a sensor's model for a simulator."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class ForceTable:
+    """Pressure rise and contact force over driving pressures (rows) and equal shares of the indentation (columns)."""
+
+    driving_pressure_kPa: tuple[float, ...]
+    """Gauge pressure before contact, equal steps, one a row; rows below zero serve other conditions alone."""
+    pressure_rise_kPa: tuple[tuple[float, ...], ...]
+    """Gauge pressure less driving pressure; ascending along a row from 0."""
+    contact_force_N: tuple[tuple[float, ...], ...]
+    """Force at these rises; ascending along a row from 0."""
+    indentation_mm: tuple[float, ...]
+    """Indentation of the last column of each row."""
+    pressure_factor: tuple[float, ...]
+    """Pressure rise of the sensor over that of the gas law, by row: 1 without a calibration."""
+    force_uncertainty_relative: tuple[tuple[float, ...], ...] | None
+    """Standard uncertainty (k = 1) of the force over the force, without the gauge's noise; null: unknown."""
+    force_uncertainty_unknown: str | None
+    """Reason why it is unknown."""
+
+
+@dataclass(frozen=True, slots=True)
+class GasTable:
+    """Gas without contact over the driving pressure."""
+
+    driving_pressure_kPa: tuple[float, ...]
+    """Gauge pressure before contact, equal steps."""
+    volume_mL: tuple[float, ...]
+    """Cavity and dead volume there."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReaderBox:
+    """Bounds of the readings that hold; outside a reader returns a status in place of a force."""
+
+    driving_pressure_kPa: tuple[float, ...]
+    """Least and greatest driving pressure."""
+    driving_pressure_margin_kPa: float
+    """Distance below it at which a driving pressure still counts as inside."""
+    contact_force_N: tuple[float, float]
+    """Greatest over all driving pressures; at one it ends with the row."""
+    pressure_rise_kPa: tuple[float, float]
+    """Least and greatest pressure rise."""
+    indentation_mm: tuple[float, float]
+    """Least and greatest indentation."""
+    ambient_pressure_kPa: tuple[float, ...]
+    """Least and greatest ambient pressure, absolute."""
+    temperature_change_K: float
+    """Change of the gas since the tare, up or down. The wall is taken as unchanged."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReaderRating:
+    """The rated pressure."""
+
+    driving_pressure_kPa: float
+    """Greatest driving pressure to be used."""
+    basis: str
+    """Basis of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReadGauge:
+    """The gauge that is read."""
+
+    name: str | None
+    """Gauge of the design; null: none is named."""
+    range_kPa: tuple[float, ...]
+    """Gauge pressures that it reads; outside it is saturated."""
+
+
+@dataclass(frozen=True, slots=True)
+class ZeroDrift:
+    """Bounds of the drift of the zero that a reader follows."""
+
+    drift_kPa_per_K: float
+    """Drift of the sealed gas without contact; the greatest of the box."""
+    temperature_rate_K_per_h: float
+    """Fastest change of the air's temperature."""
+    drift_rate_kPa_per_s: float
+    """Both together: a faster change is no drift."""
+    drift_most_kPa: float
+    """Greatest drift since the tare that is followed."""
+    noise_least_kPa: float
+    """Least noise that counts."""
+    noise_most_kPa: float
+    """Scatter of readings without contact up to which they are a tare."""
+    filter_s: float
+    """Time constant of the mean that is set against the zero."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReaderConditions:
+    """Object and conditions that the grid holds for."""
+
+    driving_pressures_kPa: tuple[float, ...]
+    """Driving pressures of the design."""
+    ambient_pressure_kPa: float
+    """Absolute pressure around the sensor."""
+    dead_volume_mL: float
+    """Gas volume behind the cavity."""
+    contact: str
+    """Object that presses the sensor, and its place: another object reads otherwise."""
+    assumptions: tuple[str, ...]
+    """Assumptions, in sentences."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReaderTables:
+    """Tables, box and conditions of a reader."""
+
+    design: str
+    """Name of the design."""
+    calibration: str | None
+    """Name of the calibration; null: the design as drawn."""
+    model: str
+    """Model that computed the grid."""
+    units: Mapping[str, str]
+    """Units by quantity."""
+    grid: ForceTable
+    """Table of the force."""
+    gas: GasTable
+    """Table of the gas."""
+    box: ReaderBox
+    """Bounds of the readings that hold."""
+    rating: ReaderRating
+    """Rated pressure."""
+    gauge: ReadGauge
+    """Gauge that is read."""
+    zero: ZeroDrift
+    """Drift of the zero that is followed."""
+    conditions: ReaderConditions
+    """Object and conditions that the grid holds for."""
+
+
+@dataclass(frozen=True, slots=True)
+class TableError:
+    """Largest difference of the force from the full model, at random states that the grid does not hold."""
+
+    nominal_N: float
+    """Difference at the conditions of the tare."""
+    nominal_percent: float
+    """The same over full scale."""
+    other_conditions_N: float
+    """Difference at other temperatures of the gas and other ambient pressures."""
+    other_conditions_percent: float
+    """The same over full scale."""
+    states: int
+    """Number of states."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReaderSource:
+    """Origin of a reader."""
+
+    sha256: str
+    """Digest of the design with all that it names, the calibration, the options and the version."""
+    version: str
+    """Version of the program."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReaderRecord(ReaderTables):
+    """Contact force from the gauge pressure of one sensor."""
+
+    difference: TableError
+    """Largest difference from the full model."""
+    source: ReaderSource
+    """Origin."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedState:
+    """A driving pressure of a simulated sensor."""
+
+    driving_pressure_kPa: float
+    """Gauge pressure before contact."""
+    apex_height_outer_mm: float
+    """Apex height of the outer surface, inflated, before contact."""
+    range_end_mm: float
+    """Indentation up to which the figures hold."""
+    contact_force_N: float
+    """Force at that indentation."""
+    pressure_kPa: float
+    """Gauge pressure at that indentation."""
+    greatest_stiffness_N_per_mm: float
+    """Greatest slope of the force over the indentation."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatorRecord:
+    """A sensor as a model of a simulator."""
+
+    design: str
+    """Name of the design."""
+    simulator: str
+    """Format of the model."""
+    model: str
+    """Model that computed it."""
+    version: str
+    """Version of the program."""
+    mass_g: float
+    """Mass."""
+    centre_of_mass_mm: tuple[float, ...]
+    """Centre of mass in the design frame."""
+    inertia_about_centre_g_mm2: tuple[tuple[float, ...], ...]
+    """Inertia about the centre of mass."""
+    states: tuple[SimulatedState, ...]
+    """One entry a driving pressure."""
