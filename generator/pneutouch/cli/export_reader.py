@@ -95,13 +95,13 @@ def _export_simulator(
 
 def reader_text(record: ReaderRecord) -> str:
     """The box of a reader, and how far it is from the full model."""
-    box, known, rated = record.box, record.difference, record.rating.driving_pressure_kPa
+    box, known, rated_kPa = record.box, record.difference, record.rating.driving_pressure_kPa
     relative, calibration = record.grid.force_uncertainty_relative, record.calibration
     low, high = box.driving_pressure_kPa
     lines = [
         f"{record.design}: force from pressure, by the model {record.model}"
         + (f", calibration {calibration}" if calibration else ", not calibrated"),
-        f"  driving pressure   {low:.4g} to {high:.4g} kPa; rated for {rated:.4g} kPa",
+        f"  driving pressure   {low:.4g} to {high:.4g} kPa; rated for {rated_kPa:.4g} kPa",
         f"  contact            {record.conditions.contact}",
         f"  contact force      0 to {box.contact_force_N[1]:.4g} N, to {box.indentation_mm[1]:.4g} mm of travel",
         f"  pressure rise      0 to {box.pressure_rise_kPa[1]:.4g} kPa",

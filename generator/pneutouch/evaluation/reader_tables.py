@@ -234,5 +234,5 @@ def _single(values: Array) -> tuple[float, ...]:
     return tuple(map(_one, values))
 
 
-def _rows(table: Array) -> tuple[tuple[float, ...], ...]:
-    return tuple(map(_single, table))
+def _rows(values: Array) -> tuple[tuple[float, ...], ...]:
+    return tuple(map(_single, values))
