@@ -214,3 +214,39 @@ class SimulatorRecord:
     """Inertia about the centre of mass."""
     states: tuple[SimulatedState, ...]
     """One entry a driving pressure."""
+
+
+@dataclass(frozen=True, slots=True)
+class DomePress:
+    """The press at one driving pressure, lists of one length over the indentation, in SI units but for the kPa."""
+
+    driving_pressure_kPa: float
+    """Gauge pressure before contact."""
+    apex_m: float
+    """Apex height of the outer surface, inflated, before contact."""
+    indentation_m: tuple[float, ...]
+    """Travel of the object after first contact."""
+    force_N: tuple[float, ...]
+    """Force on the object."""
+    force_slope_N_per_m: tuple[float, ...]
+    """Slope of the force."""
+    pressure_kPa: tuple[float, ...]
+    """Gauge pressure."""
+    pressure_slope_kPa_per_m: tuple[float, ...]
+    """Slope of the pressure."""
+
+
+@dataclass(frozen=True, slots=True)
+class DomeTable:
+    """Table of the module that gives a joint of a simulator the force of the dome."""
+
+    name: str
+    """Name of the design."""
+    radius_m: float
+    """Radius of the sphere that stands for the dome."""
+    inertia_share: float
+    """Inertia of the joint in greatest stiffness times time step squared."""
+    damping_share: float
+    """Damping of the joint in time step times greatest stiffness."""
+    states: tuple[DomePress, ...]
+    """One entry a driving pressure."""

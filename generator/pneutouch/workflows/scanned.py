@@ -2,10 +2,9 @@
 
 import io
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -61,7 +60,7 @@ def scanned(run: ScanRun) -> ScanRecord:
     return rounded(record, _DIGITS)
 
 
-def inputs(run: ScanRun) -> dict[str, Any]:
+def _inputs(run: ScanRun) -> Mapping[str, object]:
     """Everything that the result depends on, as data; measured signals by their file names."""
     design = run.design
     options = run.options
@@ -192,7 +191,7 @@ def write_scan(run: ScanRun, record: ScanRecord, out: Path) -> Path:
     files = {"scan.json": json_bytes(versioned("scan", plain(record))), "scan.svg": spectra(run).encode()}
     for number, seen in enumerate(run.seen):
         files[f"signal-{number + 1}.csv"] = signal_csv(seen, run.bars, run.kept)
-    write_folder(folder, with_manifest(files, run.name, inputs(run)))
+    write_folder(folder, with_manifest(files, run.name, _inputs(run)))
     return folder
 
 

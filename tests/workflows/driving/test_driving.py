@@ -8,7 +8,7 @@ import pytest
 from pneutouch.evaluation import evaluate
 from pneutouch.results.record import plain
 from pneutouch.spec.tasks import DrivingTask
-from pneutouch.units import KPA
+from pneutouch.units import KPA, ML
 from pneutouch.workflows.driving import LeakSource, driving_record, driving_schedule
 from pneutouch.workflows.driving.pressures import band, reach_curves, solutions
 
@@ -82,9 +82,9 @@ def test_volumes_are_boyles_and_add_up_over_the_tasks(schedule):
     for answer in (one for one in schedule.answers if one.reached):
         state = answer.solutions[0].state
         held = (state.driving_pressure + ambient) * state.cavity_volume / ambient
-        assert answer.gas.injected == pytest.approx(held - rest, rel=1e-9)
-        done += answer.gas.moved
-        assert done == pytest.approx(answer.gas.injected, rel=1e-9)
+        assert answer.gas.injected_mL * ML == pytest.approx(held - rest, rel=1e-9)
+        done += answer.gas.moved_mL
+        assert done == pytest.approx(answer.gas.injected_mL, rel=1e-9)
 
 
 def test_a_leak_behind_a_cap_is_that_of_the_gas_behind_it(schedule):
@@ -94,8 +94,8 @@ def test_a_leak_behind_a_cap_is_that_of_the_gas_behind_it(schedule):
     gas, answer = schedule.curves.gas, schedule.answers[0]
     k = int(np.argmin(np.abs(gas.pressure - answer.solutions[0].state.driving_pressure)))
     expected = 0.05 * behind / gas.capacity[k] * gas.pressure[k] / (20.0 * KPA)
-    assert 60 * answer.gas.loss / KPA == pytest.approx(expected, rel=1e-9)
-    assert answer.gas.hold == pytest.approx(answer.gas.step / answer.gas.loss, rel=0.1)
+    assert answer.gas.loss_kPa_per_min == pytest.approx(expected, rel=1e-9)
+    assert answer.gas.hold_s == pytest.approx(60 * answer.gas.step_kPa / answer.gas.loss_kPa_per_min, rel=0.1)
 
 
 def test_the_document_has_every_task_and_nothing_that_is_no_number(schedule):

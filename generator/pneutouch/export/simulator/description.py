@@ -26,6 +26,8 @@ from pneutouch.export.simulator.model import (
     RigidInertia,
     SimulatedSensor,
 )
+from pneutouch.results.reader import DomePress, DomeTable
+from pneutouch.results.record import plain
 from pneutouch.rounding import rounded
 
 _XML_DIGITS = 9
@@ -71,7 +73,7 @@ def mjcf_files(sensor: SimulatedSensor) -> dict[str, bytes]:
 def module(sensor: SimulatedSensor) -> bytes:
     """The callbacks with the table of the sensor, as a module that needs MuJoCo alone."""
     source = (Path(__file__).parent / "dome_force.py").read_text(encoding="utf-8")
-    table = pprint.pformat(dome_table(sensor), width=118, compact=True, sort_dicts=False)
+    table = pprint.pformat(plain(dome_table(sensor)), width=118, compact=True, sort_dicts=False)
     usage = (
         '\n\ndef install(model: Any, driving_pressure_kPa: float | None = None, prefix: str = "") -> DomeForce:\n'
         '    """Give a model that holds this sensor the force and the pressure of its dome; see `install_dome`."""\n'
@@ -80,30 +82,22 @@ def module(sensor: SimulatedSensor) -> bytes:
     return f"{source}\n\nTABLE: dict[str, Any] = {table}\n{usage}".encode()
 
 
-def dome_table(sensor: SimulatedSensor) -> dict[str, Any]:
+def dome_table(sensor: SimulatedSensor) -> DomeTable:
     """The table as the module reads it."""
-    return rounded(
-        {
-            "name": sensor.name,
-            "radius_m": sensor.radius,
-            "inertia_share": INERTIA_SHARE,
-            "damping_share": DAMPING_SHARE,
-            "states": [_state(table) for table in sensor.tables],
-        },
-        _DIGITS,
+    table = DomeTable(sensor.name, sensor.radius, INERTIA_SHARE, DAMPING_SHARE, tuple(map(_state, sensor.tables)))
+    return rounded(table, _DIGITS)
+
+
+def _state(table: PressTable) -> DomePress:
+    return DomePress(
+        driving_pressure_kPa=table.driving_pressure_kPa,
+        apex_m=table.apex,
+        indentation_m=tuple(table.indentation.tolist()),
+        force_N=tuple(table.force.tolist()),
+        force_slope_N_per_m=tuple(table.force_slope.tolist()),
+        pressure_kPa=tuple(table.pressure_kPa.tolist()),
+        pressure_slope_kPa_per_m=tuple(table.pressure_slope_kPa_per_m.tolist()),
     )
-
-
-def _state(table: PressTable) -> dict[str, Any]:
-    return {
-        "driving_pressure_kPa": table.driving_pressure_kPa,
-        "apex_m": table.apex,
-        "indentation_m": table.indentation.tolist(),
-        "force_N": table.force.tolist(),
-        "force_slope_N_per_m": table.force_slope.tolist(),
-        "pressure_kPa": table.pressure_kPa.tolist(),
-        "pressure_slope_kPa_per_m": table.pressure_slope_kPa_per_m.tolist(),
-    }
 
 
 def mjcf(sensor: SimulatedSensor) -> bytes:

@@ -107,29 +107,6 @@ HOLD_SHARE = 0.01
 
 
 @dataclass(frozen=True)
-class SealedState:
-    """The gas of one state.
-
-    Attributes:
-        injected: From the vented sensor, volume at ambient pressure, mm3.
-        moved: From the task before (the vented sensor before the first), mm3.
-        by_temperature: Change of the pressure, MPa/K.
-        slope: Change of the figure over the driving pressure, in its unit over MPa; None at a jump.
-        step: Change of the driving pressure that changes the figure by `HOLD_SHARE`, MPa; None at an extremum.
-        loss: Fall of the pressure by the leak, MPa/s; None if the leak is not known.
-        hold: Time in which the leak changes the figure by `HOLD_SHARE`, s; None if one of both is not known.
-    """
-
-    injected: float
-    moved: float
-    by_temperature: float
-    slope: float | None
-    step: float | None
-    loss: float | None
-    hold: float | None
-
-
-@dataclass(frozen=True)
 class TaskAnswer:
     """A task and the driving pressures that do it, the preferred one (the lowest) first.
 
@@ -138,7 +115,7 @@ class TaskAnswer:
 
     task: DrivingTask
     solutions: tuple[DrivingSolution, ...]
-    gas: SealedState | None
+    gas: TaskGas | None
     changes: tuple[OfflineChange, ...] = ()
     possible: PressureBand | None = None
 
@@ -182,11 +159,11 @@ def driving_schedule(
     gas, conductance = curves.gas, None
     if leak is not None:
         conductance = leak.conductance(gas, curves.evaluation.assembly)
-    answers, before = [], 0.0
+    answers, before_mL = [], 0.0
     for task, states in zip(tasks, solved, strict=True):
         if states:
-            sealed = _sealed(curves, gas, task, states[0].state.driving_pressure, before, conductance)
-            before = sealed.injected
+            sealed = _sealed(curves, gas, task, states[0].state.driving_pressure, before_mL, conductance)
+            before_mL = sealed.injected_mL
             answers.append(TaskAnswer(task, states, sealed))
         else:
             moved = tuple(offline_changes(curves, task.figure, task.value))
@@ -195,27 +172,31 @@ def driving_schedule(
 
 
 def _sealed(
-    curves: ReachCurves, gas: SealedGas, task: DrivingTask, pressure: float, before: float, conductance: float | None
-) -> SealedState:
-    """The gas at a driving pressure (MPa) that is among the states; ``before`` is the gas injected already, mm3."""
+    curves: ReachCurves, gas: SealedGas, task: DrivingTask, pressure: float, before_mL: float, conductance: float | None
+) -> TaskGas:
+    """The gas at a driving pressure (MPa) that is among the states; ``before_mL`` is the gas injected already."""
     k = int(np.searchsorted(gas.pressure, pressure))
     values = curves.values(task.figure)
     near = slice(max(0, k - 1), k + 2)
     slope = float(np.gradient(values[near], gas.pressure[near])[min(k, 1)])
     known = bool(np.isfinite(slope))
     step = HOLD_SHARE * task.value / abs(slope) if known and slope != 0.0 else None
-    hold = None
+    hold = np.inf
     if conductance is not None and step is not None and pressure > 0.0:
         hold = gas.holding_time(conductance, pressure, pressure - step)
-    injected = float(gas.injected[k])
-    return SealedState(
-        injected=injected,
-        moved=injected - before,
-        by_temperature=float(gas.by_temperature(REFERENCE_TEMPERATURE)[k]),
-        slope=slope if known else None,
-        step=step,
-        loss=None if conductance is None else float(gas.loss(conductance)[k]),
-        hold=hold,
+    percent_per_kPa = math.copysign(100.0 * HOLD_SHARE / (step / KPA), slope) if step is not None else 0.0
+    kPa_per_K = float(gas.by_temperature(REFERENCE_TEMPERATURE)[k]) / KPA
+    injected_mL = float(gas.injected[k]) / ML
+    return TaskGas(
+        injected_mL=injected_mL,
+        moved_mL=injected_mL - before_mL,
+        by_temperature_kPa_per_K=kPa_per_K,
+        figure_by_temperature_percent_per_K=percent_per_kPa * kPa_per_K if known else None,
+        figure_by_pressure_percent_per_kPa=percent_per_kPa if known else None,
+        hold_percent=100.0 * HOLD_SHARE,
+        step_kPa=None if step is None else step / KPA,
+        loss_kPa_per_min=None if conductance is None else 60.0 * float(gas.loss(conductance)[k]) / KPA,
+        hold_s=None if np.isinf(hold) else hold,
     )
 
 
@@ -277,7 +258,7 @@ def _task(answer: TaskAnswer, rated: float) -> ReachedTask | MissedTask:
     )
     known = {field.name: getattr(stated, field.name) for field in fields(stated)}
     if answer.gas is not None:
-        return ReachedTask(**known, gas=_gas(answer.gas))
+        return ReachedTask(**known, gas=answer.gas)
     return MissedTask(**known, possible_band=_band(answer.possible), offline=answer.changes)
 
 
@@ -295,23 +276,3 @@ def _solution(solution: DrivingSolution, rated: float) -> TaskSolution:
 
 def _band(band: PressureBand | None) -> PressureInterval | None:
     return None if band is None else PressureInterval(band.low / KPA, band.high / KPA, band.open_low, band.open_high)
-
-
-def _gas(gas: SealedState) -> TaskGas:
-    by_temperature_kPa_per_K = gas.by_temperature / KPA
-    percent_per_kPa = None
-    if gas.slope is not None:
-        percent_per_kPa = 0.0 if gas.step is None else math.copysign(100.0 * HOLD_SHARE / (gas.step / KPA), gas.slope)
-    return TaskGas(
-        injected_mL=gas.injected / ML,
-        moved_mL=gas.moved / ML,
-        by_temperature_kPa_per_K=by_temperature_kPa_per_K,
-        figure_by_temperature_percent_per_K=None
-        if percent_per_kPa is None
-        else percent_per_kPa * by_temperature_kPa_per_K,
-        figure_by_pressure_percent_per_kPa=percent_per_kPa,
-        hold_percent=100.0 * HOLD_SHARE,
-        step_kPa=None if gas.step is None else gas.step / KPA,
-        loss_kPa_per_min=None if gas.loss is None else 60.0 * gas.loss / KPA,
-        hold_s=None if gas.hold is None or np.isinf(gas.hold) else gas.hold,
-    )
