@@ -11,9 +11,10 @@ import pytest
 from pneutouch import __version__
 from pneutouch.catalogue import DesignSource
 from pneutouch.errors import InputError
+from pneutouch.results.record import plain
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
-from pneutouch.studio.faults import fault_document
+from pneutouch.studio.faults import faults_of
 from pneutouch.studio.opened_design import open_file
 from pneutouch.studio.question import Question
 from pneutouch.studio.server import bases_of
@@ -32,7 +33,8 @@ DESIGNS = sorted(path.stem for path in (ROOT / "designs").glob("*.toml"))
 
 def opened(path):
     """What the page is answered for a file."""
-    return open_file({"files": [{"name": path.name, "path": str(path)}], "bases": BASES}, path.parent, lambda *_: None)
+    arguments = {"files": [{"name": path.name, "path": str(path)}], "bases": BASES}
+    return plain(open_file(arguments, path.parent, lambda *_: None))
 
 
 def fields(source):
@@ -48,7 +50,7 @@ def refused(path, *words):
     """The message for a file that is refused: it names the file as the user knows it, and not where it lies."""
     with pytest.raises(InputError) as error:
         opened(path)
-    messages = [each["message"] for each in fault_document(error.value)["problems"]]
+    messages = [each.message for each in faults_of(error.value).problems]
     assert messages[0].startswith(path.name), messages
     assert str(path.parent) not in " ".join(messages)
     for word in words:
@@ -254,7 +256,7 @@ def test_damaged_design_files_are_designs_or_refused(name, tmp_path, library):
         try:
             found = opened(path)
         except InputError as error:
-            assert "mine.toml" in fault_document(error)["problems"][0]["message"]
+            assert "mine.toml" in faults_of(error).problems[0].message
             continue
         accepted += 1
         assert shown(found, library) == fields(DesignSource("mine", read_toml(path), "mine.toml"))

@@ -11,12 +11,13 @@ import pytest
 
 from pneutouch.catalogue import DesignSource
 from pneutouch.errors import InputError, PneutouchError
+from pneutouch.results.record import plain
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declarations, table_of
 from pneutouch.spec.read import validate
 from pneutouch.spec.target import Target
 from pneutouch.studio.candidate import state_of
-from pneutouch.studio.faults import fault_document
+from pneutouch.studio.faults import faults_of
 from pneutouch.studio.question import Question
 from pneutouch.studio.search import target_of
 from pneutouch.studio.server import bases_of
@@ -142,12 +143,12 @@ def test_where_nothing_is_found_it_says_so_in_the_words_of_select(command):
 def test_an_error_stands_at_its_field_in_the_words_of_the_command(values, field, flags, command):
     with pytest.raises(PneutouchError) as raised:
         asked(values)
-    first = fault_document(raised.value)["problems"][0]
-    assert field in first["fields"]
+    first = faults_of(raised.value).problems[0]
+    assert field in first.fields
     if flags is not None:
         said = command("select", *flags)
         assert said.returncode == 2
-        assert first["message"].rpartition(": ")[2] in " ".join(said.stderr.split())
+        assert first.message.rpartition(": ")[2] in " ".join(said.stderr.split())
 
 
 def test_no_path_is_opened_as_a_base(tmp_path):
@@ -251,4 +252,4 @@ def test_a_target_is_a_job_of_the_studio():
     arguments = {"base": "paper-dome", "values": {"target.force_range_N": "0"}, "files": [], "bases": bases}
     answer = answered({"kind": "select", "arguments": arguments, "folder": "."}, lambda *progress: None)
     problem = {"message": "must be from 0.0001 to 100000 N", "fields": ["target.force_range_N"]}
-    assert answer == {"status": 422, "content": {"problems": [problem]}}
+    assert plain(answer) == {"status": 422, "content": {"problems": [problem]}}

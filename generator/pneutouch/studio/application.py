@@ -9,7 +9,7 @@ import gzip
 from collections.abc import AsyncIterator, Callable
 from functools import partial
 from importlib.resources import files
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
@@ -20,9 +20,10 @@ from starlette.routing import Route
 from pneutouch import __version__
 from pneutouch.catalogue import Library
 from pneutouch.errors import ComputationError, PneutouchError
+from pneutouch.results.record import plain
 from pneutouch.studio.answer import Answers
-from pneutouch.studio.faults import fault_document, fault_status, too_little_memory
-from pneutouch.studio.form import designs_document, form_document, target_form_document
+from pneutouch.studio.faults import fault_status, faults_of, too_little_memory
+from pneutouch.studio.form import design_form, designs_of, target_form
 from pneutouch.studio.guard import Application, Guard, TooLargeError, too_large
 from pneutouch.studio.job_routes import Desk
 from pneutouch.studio.question import PageLibrary, Question, json_body
@@ -71,8 +72,6 @@ def respond(known: dict[str, PageFile], request: Request) -> Response:
 _WAITING = 8
 """Questions that may wait for an answer at once; a page sends two."""
 
-QuickAnswer = Callable[[Question], dict[str, Any]]
-
 
 class Studio:
     """Answers the page. ``bases`` are the designs that it may open, by name or path; ``first`` the one it begins with.
@@ -90,15 +89,15 @@ class Studio:
 
     async def form(self, request: Request) -> Response:
         """Content that the page is built from."""
-        form = await run_in_threadpool(form_document, self._library)
-        known = {"designs": designs_document(self._bases), "first": self._first, "version": __version__}
-        return JSONResponse({**form, **known})
+        form = await run_in_threadpool(design_form, self._library)
+        known = {"designs": designs_of(self._bases), "first": self._first, "version": __version__}
+        return JSONResponse({**plain(form), **known})
 
     async def target_form(self, request: Request) -> Response:
         """Content that the form of a target is built from."""
-        return JSONResponse(await run_in_threadpool(target_form_document, self._library, self._bases))
+        return JSONResponse(plain(await run_in_threadpool(target_form, self._library, self._bases)))
 
-    async def at_once(self, answer: QuickAnswer, request: Request) -> Response:
+    async def at_once(self, answer: Callable[[Question], object], request: Request) -> Response:
         """An answer of ``answer``, which is computed in this process, one at a time."""
         if self._waiting >= _WAITING:
             return _fault(ComputationError("too many questions at once", remedy="wait for an answer"), 503)
@@ -107,7 +106,7 @@ class Studio:
             question = await _question(request)
             async with self._one:
                 content = await run_in_threadpool(answer, question)
-            return JSONResponse(content)
+            return JSONResponse(plain(content))
         except PneutouchError as error:
             return _fault(error)
         except MemoryError:
@@ -168,7 +167,7 @@ async def _question(request: Request) -> Question:
 
 
 def _fault(error: PneutouchError, status: int | None = None) -> Response:
-    return JSONResponse(fault_document(error), status or fault_status(error))
+    return JSONResponse(plain(faults_of(error)), status or fault_status(error))
 
 
 async def _refused(request: Request, error: Exception) -> Response:

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,12 +21,32 @@ STAGES = ("prediction", *STEPS)
 SHEET = "datasheet.html"
 
 
+@dataclass(frozen=True, slots=True)
+class BuiltFiles:
+    """Files of a kind, and the kind in words."""
+
+    files: list[str]
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltDesign:
+    """A design that was built: its files, the datasheet's path and the findings."""
+
+    name: str
+    question: Question
+    groups: list[BuiltFiles]
+    left_out: Mapping[str, Any]
+    sheet: str
+    findings: list[Mapping[str, Any]]
+
+
 def build_design(
     arguments: Mapping[str, Any], folder: Path, report: Callable[[int, int, str | None], None]
-) -> dict[str, Any]:
+) -> BuiltDesign:
     """Build the design of ``question`` into ``folder``, under ``name`` where one is given.
 
-    Returns its name, the groups of files with what they are, the datasheet's path and the findings. Raises InputError
+    Raises InputError
     naming the field, and RuleBrokenError where a rule is broken.
     """
     question, library = Question.of(arguments.get("question")), Library.default()
@@ -41,11 +61,11 @@ def build_design(
     made = build(evaluation, folder, lambda step: report(STAGES.index(step), len(STAGES), step))
     files = sorted(path.relative_to(made).as_posix() for path in made.rglob("*") if path.is_file())
     groups = described(files, made.name)
-    return {
-        "name": source.name,
-        "question": question.document(),
-        "groups": [{"files": [f"{made.name}/{each}" for each in names], "words": words} for names, words in groups],
-        "left_out": json.loads((made / MANIFEST).read_text(encoding="utf-8")).get("left_out", {}),
-        "sheet": f"{made.name}/{SHEET}",
-        "findings": [finding.document() for finding in evaluation.findings],
-    }
+    return BuiltDesign(
+        name=source.name,
+        question=question,
+        groups=[BuiltFiles([f"{made.name}/{each}" for each in names], words) for names, words in groups],
+        left_out=json.loads((made / MANIFEST).read_text(encoding="utf-8")).get("left_out", {}),
+        sheet=f"{made.name}/{SHEET}",
+        findings=[finding.document() for finding in evaluation.findings],
+    )

@@ -2,12 +2,11 @@
 
 import re
 from collections.abc import Callable
-from typing import Any
+from dataclasses import dataclass
 
 from pydantic import BaseModel
 
 from pneutouch.errors import ComputationError, InputError, PneutouchError
-from pneutouch.results.record import plain
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
 from pneutouch.spec.target import Target
@@ -19,9 +18,32 @@ _MODELS = (DesignFile, Target)
 """The files that the page has a form for; no two have a table of the same name."""
 
 
-def fault_document(error: PneutouchError) -> dict[str, Any]:
-    """Every problem with its words and the fields, ``table.key``, that it stands at; the words are the CLI's."""
-    return {"problems": [_problem(each) for each in (error, *error.others)]}
+@dataclass(frozen=True, slots=True)
+class PageProblem:
+    """A problem with its words, which are the CLI's, and the fields, ``table.key``, that it stands at."""
+
+    message: str
+    fields: list[str]
+
+
+@dataclass(frozen=True, slots=True)
+class PageFault:
+    """The problems of an error."""
+
+    problems: list[PageProblem]
+
+
+@dataclass(frozen=True, slots=True)
+class PageResponse:
+    """Status and content of a computation."""
+
+    status: int
+    content: object
+
+
+def faults_of(error: PneutouchError) -> PageFault:
+    """The problems of an error."""
+    return PageFault([_problem(each) for each in (error, *error.others)])
 
 
 def fault_status(error: PneutouchError) -> int:
@@ -29,17 +51,17 @@ def fault_status(error: PneutouchError) -> int:
     return BAD_INPUT if isinstance(error, InputError) else FAILED
 
 
-def reported(compute: Callable[[], object]) -> dict[str, Any]:
-    """``status`` and ``content`` of a computation; an error is an answer too, without a traceback."""
+def reported(compute: Callable[[], object]) -> PageResponse:
+    """The response of a computation; an error is an answer too, without a traceback."""
     try:
-        return {"status": 200, "content": plain(compute())}
+        return PageResponse(200, compute())
     except PneutouchError as error:
         fault = error
     except MemoryError:
         fault = too_little_memory()
     except Exception as error:
         fault = ComputationError(f"internal fault ({type(error).__name__}: {error})", remedy="please report it")
-    return {"status": fault_status(fault), "content": fault_document(fault)}
+    return PageResponse(fault_status(fault), faults_of(fault))
 
 
 def too_little_memory() -> PneutouchError:
@@ -47,10 +69,10 @@ def too_little_memory() -> PneutouchError:
     return ComputationError("not enough memory", remedy="close other programs")
 
 
-def _problem(error: PneutouchError) -> dict[str, Any]:
+def _problem(error: PneutouchError) -> PageProblem:
     words = error.problem if not error.remedy else f"{error.problem}; {error.remedy}"
     alone = type(error)(words)
-    return {"message": alone.message(), "fields": _fields(error)}
+    return PageProblem(alone.message(), _fields(error))
 
 
 def _fields(error: PneutouchError) -> list[str]:

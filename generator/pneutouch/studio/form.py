@@ -4,6 +4,8 @@ import datetime
 import types
 import typing
 from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from pydantic import BaseModel
@@ -28,25 +30,59 @@ _KIND_OF_MATERIAL = {"membrane.material": "elastomer", "connector.material": "ri
 Option = dict[str, str]
 
 
-def form_document(library: Library) -> dict[str, Any]:
-    """Groups of fields with label, unit, bounds, help and the names to choose from; sizes by object; printers by
-    material; profiles that cast, which alone need a mould."""
-    sizes = {kind: [f"contact.{key}" for key in keys] for kind, keys in SIZES.items()}
+@dataclass(frozen=True, slots=True)
+class FormField:
+    """A field of a form, with the names to choose from."""
+
+    name: str
+    label: str
+    unit: str
+    low: float | None
+    high: float | None
+    default: str | float | None
+    help: str
+    kind: str
+    optional: bool
+    options: list[Option]
+
+
+@dataclass(frozen=True, slots=True)
+class FormGroup:
+    """The fields of a table."""
+
+    name: str
+    fields: list[FormField]
+
+
+@dataclass(frozen=True, slots=True)
+class DesignForm:
+    """The form of a design: fields, sizes by object, printers by material, and profiles that cast, which alone need a
+    mould."""
+
+    groups: list[FormGroup]
+    sizes: dict[str, list[str]]
+    printers: dict[str, list[str]]
+    castings: list[str]
+
+
+@dataclass(frozen=True, slots=True)
+class TargetForm:
+    """The form of a target, with an example as it sends it."""
+
+    groups: list[FormGroup]
+    example: dict[str, str]
+
+
+def design_form(library: Library) -> DesignForm:
+    """The form of a design file."""
+    sizes = {str(kind): [f"contact.{key}" for key in keys] for kind, keys in SIZES.items()}
     castings = [name for name, one in library.all("printers", Printer).items() if one.is_casting]
-    return {
-        "groups": _groups(DesignFile, library),
-        "sizes": sizes,
-        "printers": _printers(library),
-        "castings": castings,
-    }
+    return DesignForm(_groups(DesignFile, library), sizes, _printers(library), castings)
 
 
-def target_form_document(library: Library, bases: Mapping[str, str]) -> dict[str, Any]:
-    """Groups of fields of a target; its base is one of the designs that the page may open."""
-    groups = _groups(Target, library)
-    for field in (field for group in groups for field in group["fields"] if field["name"] == "setting.base"):
-        field["options"] = designs_document(bases)
-    return {"groups": groups, "example": _example_target()}
+def target_form(library: Library, bases: Mapping[str, str]) -> TargetForm:
+    """The form of a target; its base is one of the designs that the page may open."""
+    return TargetForm(_groups(Target, library, {"setting.base": designs_of(bases)}), _example_target())
 
 
 def _example_target() -> dict[str, str]:
@@ -68,7 +104,7 @@ def _printers(library: Library) -> dict[str, list[str]]:
     }
 
 
-def designs_document(bases: Mapping[str, str]) -> list[Option]:
+def designs_of(bases: Mapping[str, str]) -> list[Option]:
     """The designs that can be opened, with their titles and their names in commands."""
     titles = {entry["name"]: entry["title"] for entry in listing("designs")["designs"] if "error" not in entry}
     known = Library.default().paths("designs")
@@ -78,32 +114,36 @@ def designs_document(bases: Mapping[str, str]) -> list[Option]:
     ]
 
 
-def _groups(file: type[BaseModel], library: Library) -> list[dict[str, Any]]:
-    """The tables of a file with their fields."""
+def _groups(
+    file: type[BaseModel], library: Library, options: Mapping[str, list[Option]] = MappingProxyType({})
+) -> list[FormGroup]:
+    """The tables of a file with their fields; ``options`` are the names to choose from that the page gives."""
     groups = []
     for name in file.model_fields:
         model = table_of(file, name)
         if model is not None:
-            fields = [_field(name, model, each, library) for each in declarations(model)]
-            groups.append({"name": name, "fields": [field for field in fields if field["name"] not in _TWICE]})
+            fields = [_field(name, model, each, library, options) for each in declarations(model)]
+            groups.append(FormGroup(name, [field for field in fields if field.name not in _TWICE]))
     return groups
 
 
-def _field(table: str, model: type[BaseModel], declared: Declaration, library: Library) -> dict[str, Any]:
+def _field(
+    table: str, model: type[BaseModel], declared: Declaration, library: Library, options: Mapping[str, list[Option]]
+) -> FormField:
     name = f"{table}.{declared.key}"
     kinds = _kinds(model.model_fields[declared.key].annotation)
-    return {
-        "name": name,
-        "label": _label(declared),
-        "unit": declared.unit,
-        "low": declared.low,
-        "high": declared.high,
-        "default": declared.default if isinstance(declared.default, str | float | int) else None,
-        "help": declared.help,
-        "kind": _kind(kinds, declared),
-        "optional": types.NoneType in kinds,
-        "options": _options(name, kinds, declared, library),
-    }
+    return FormField(
+        name=name,
+        label=_label(declared),
+        unit=declared.unit,
+        low=declared.low,
+        high=declared.high,
+        default=declared.default if isinstance(declared.default, str | float | int) else None,
+        help=declared.help,
+        kind=_kind(kinds, declared),
+        optional=types.NoneType in kinds,
+        options=options[name] if name in options else _options(name, kinds, declared, library),
+    )
 
 
 def _label(declared: Declaration) -> str:

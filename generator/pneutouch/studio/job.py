@@ -11,8 +11,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from pneutouch.results.record import plain
 from pneutouch.stopping import STOPS
-from pneutouch.studio.faults import reported
+from pneutouch.studio.faults import PageResponse, reported
 
 KINDS: dict[str, str] = {
     "build": "building:build_design",
@@ -38,7 +39,7 @@ LARGEST_MEMORY = 12 << 30
 Report = Callable[[int, int, str | None], None]
 
 
-def answered(request: Mapping[str, Any], report: Report) -> dict[str, Any]:
+def answered(request: Mapping[str, Any], report: Report) -> PageResponse:
     """Status and content of a job; an error is an answer too."""
     module, _, name = KINDS[request["kind"]].partition(":")
 
@@ -56,7 +57,7 @@ def work(request: bytes, out: BinaryIO) -> None:
     def report(done: int, total: int, what: str | None = None) -> None:
         write({"progress": {"done": done, "total": total, "what": what}})
 
-    write(answered(json.loads(request), report))
+    write(plain(answered(json.loads(request), report)))
 
 
 def _stop(number: int, frame: Any) -> None:

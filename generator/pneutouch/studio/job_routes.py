@@ -12,7 +12,8 @@ from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import Route
 
 from pneutouch.errors import InputError, PneutouchError
-from pneutouch.studio.faults import fault_document, fault_status
+from pneutouch.results.record import plain
+from pneutouch.studio.faults import fault_status, faults_of
 from pneutouch.studio.guard import SHEET, UPLOADS, Uploads
 from pneutouch.studio.job import KINDS
 from pneutouch.studio.jobs import Job, Jobs
@@ -162,7 +163,7 @@ async def _object(request: Request) -> dict[str, Any]:
 
 
 def _fault(error: PneutouchError, status: int | None = None) -> Response:
-    return JSONResponse(fault_document(error), status or fault_status(error))
+    return JSONResponse(plain(faults_of(error)), status or fault_status(error))
 
 
 def _unknown() -> Response:

@@ -5,6 +5,7 @@ The state of the page that is a design from elsewhere.
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -52,16 +53,25 @@ _EXPORT_KEYS = {KEY, "version", "base", "values"}
 
 _ENDINGS = "a 3MF that pneutouch build wrote, a design file (.toml), or an exported design (.json)"
 
-Content = dict[str, Any]
 Bases = Mapping[str, str]
 
 
-def open_file(arguments: Mapping[str, Any], folder: Path, report: Callable[[int, int, str | None], None]) -> Content:
+@dataclass(frozen=True, slots=True)
+class OpenedDesign:
+    """A design that was opened: its name, the state of the page that shows it, and notes for the user."""
+
+    name: str
+    question: Question
+    notes: list[str]
+
+
+def open_file(
+    arguments: Mapping[str, Any], folder: Path, report: Callable[[int, int, str | None], None]
+) -> OpenedDesign:
     """Read the one file of ``files``; the state of the page that shows its design, and notes on parts that the page
     cannot show.
 
-    ``name`` is the design's, ``question`` the state, ``notes`` are lines for the user. Raises InputError that names
-    file, key and value.
+    Raises InputError that names file, key and value.
     """
     if len(arguments["files"]) != 1:
         raise InputError("one file is opened at a time", remedy="give one file")
@@ -72,7 +82,7 @@ def open_file(arguments: Mapping[str, Any], folder: Path, report: Callable[[int,
         raise _by_name(error, path) from None
 
 
-def _opened(path: Path, bases: Bases, library: Library) -> Content:
+def _opened(path: Path, bases: Bases, library: Library) -> OpenedDesign:
     readers = {".3mf": _from_3mf, ".toml": _from_toml, ".json": _from_export}
     reader = readers.get(path.suffix.lower())
     if reader is None:
@@ -80,17 +90,17 @@ def _opened(path: Path, bases: Bases, library: Library) -> Content:
     return reader(path, bases, library)
 
 
-def _from_toml(path: Path, bases: Bases, library: Library) -> Content:
+def _from_toml(path: Path, bases: Bases, library: Library) -> OpenedDesign:
     content = read_toml(path)
     if is_specimen(content):
         remedy = "give the design of a sensor; pneutouch build takes a specimen"
         raise InputError("a texture specimen, which has no curves to show", file=path, remedy=remedy)
     source = DesignSource(name_of(path), content, str(path))
     load_scene(source, {}, library)
-    return _content(source.name, nearest_state(source, bases, library), [])
+    return OpenedDesign(source.name, nearest_state(source, bases, library), [])
 
 
-def _from_3mf(path: Path, bases: Bases, library: Library) -> Content:
+def _from_3mf(path: Path, bases: Bases, library: Library) -> OpenedDesign:
     # What reads meshes loads for a 3MF alone.
     from pneutouch.export.threemf_read import read_threemf
     from pneutouch.output.recipe import other_versions, read_recipe
@@ -104,10 +114,10 @@ def _from_3mf(path: Path, bases: Bases, library: Library) -> Content:
     notes += _other_options(recipe.options)
     if notes:
         notes.append(f"pneutouch build {path.name} builds it as it was")
-    return _content(scene.name, nearest_state(source, bases, library), notes)
+    return OpenedDesign(scene.name, nearest_state(source, bases, library), notes)
 
 
-def _from_export(path: Path, bases: Bases, library: Library) -> Content:
+def _from_export(path: Path, bases: Bases, library: Library) -> OpenedDesign:
     content = _json(path)
     if KEY not in content:
         remedy = "give a file that Export wrote on this page"
@@ -120,10 +130,10 @@ def _from_export(path: Path, bases: Bases, library: Library) -> Content:
     load_scene(source, {}, library)
     version = one_line(content["version"])
     notes = [] if version == __version__ else [f"exported by pneutouch {version} (here {__version__})"]
-    return _content(source.name, question, notes)
+    return OpenedDesign(source.name, question, notes)
 
 
-def _json(path: Path) -> Content:
+def _json(path: Path) -> dict[str, Any]:
     try:
         content = json.loads(read_bytes(path, _MOST_EXPORTED, "exported design"))
     except (ValueError, RecursionError):
@@ -131,10 +141,6 @@ def _json(path: Path) -> Content:
     if not isinstance(content, dict):
         raise InputError("not an exported design", file=path, remedy=f"give {_ENDINGS}")
     return content
-
-
-def _content(name: str, question: Question, notes: list[str]) -> Content:
-    return {"name": name, "question": question.document(), "notes": notes}
 
 
 def _other_parts(scene: ResolvedDesign, here: ResolvedDesign) -> list[str]:
