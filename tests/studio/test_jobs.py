@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from pneutouch.errors import ComputationError
+from pneutouch.results.record import plain
 from pneutouch.studio import jobs as kept
 from pneutouch.studio.jobs import Job, Jobs
 from pneutouch.studio.server import bases_of
@@ -81,10 +82,10 @@ def test_progress_then_content_and_files(tmp_path):
     async def run():
         async with played(tmp_path) as jobs:
             job = await jobs.start("build", {})
-            assert job.document()["files"] == []
+            assert plain(job.record)["files"] == []
             await ended(job)
-            assert jobs.documents() == [job.document()]
-            return job.document()
+            assert jobs.records == [job.record]
+            return plain(job.record)
 
     assert asyncio.run(run()) == {
         "job": 1,
@@ -103,7 +104,7 @@ def test_an_error_is_its_answer_and_nothing_is_kept(status, tmp_path):
         async with played(tmp_path) as jobs:
             job = await jobs.start("build", {"status": status})
             await ended(job)
-            return job.document()
+            return plain(job.record)
 
     document = asyncio.run(run())
     assert (document["state"], document["status"], document["files"]) == ("failed", status, [])
@@ -124,11 +125,11 @@ def test_cancelled_it_ends_with_all_it_started_and_leaves_nothing(manner, tmp_pa
             ending = asyncio.create_task(jobs.cancel(job))
             await asyncio.sleep(0)
             # Not before its process has ended is there room for another.
-            assert (job.state, job.document()["state"]) == ("cancelled", "running")
+            assert (job.state, plain(job.record)["state"]) == ("cancelled", "running")
             with pytest.raises(ComputationError, match="another job is running"):
                 await jobs.start("build", {})
             await ending
-            assert job.document()["state"] == "cancelled"
+            assert plain(job.record)["state"] == "cancelled"
             child = job.progress.get("child")
             while child and not gone(child):
                 await asyncio.sleep(0.005)
@@ -165,7 +166,7 @@ def test_ended_from_outside_it_has_failed_and_another_can_run(manner, tmp_path):
                 await begun(job)
                 os.kill(job.process.pid, signal.SIGKILL)
             await ended(job)
-            document, kept_files = job.document(), left(tmp_path)
+            document, kept_files = plain(job.record), left(tmp_path)
             again = await jobs.start("build", {})
             await ended(again)
             return document, kept_files, again.state
@@ -210,7 +211,7 @@ def test_the_oldest_of_a_kind_goes_and_others_stay(tmp_path, monkeypatch):
         async with played(tmp_path) as jobs:
             for kind in ("build", "open", "open", "open"):
                 await ended(await jobs.start(kind, {}))
-            return [(each["job"], each["kind"]) for each in jobs.documents()]
+            return [(each.job, each.kind) for each in jobs.records]
 
     assert asyncio.run(run()) == [(1, "build"), (3, "open"), (4, "open")]
     assert sorted(path.name for path in tmp_path.iterdir()) == ["job-1", "job-3", "job-4"]

@@ -229,7 +229,7 @@ def test_every_shipped_design_is_a_state_over_every_other(library):
     files = {name: DesignSource.of(name, library).changed({}) for name in bases}
     for base, name in product(bases, bases):
         state = state_of(files[name], base, bases, library)
-        assert opened(json.loads(json.dumps(state.document())), library) == files[name], (base, name)
+        assert opened(json.loads(json.dumps(plain(state))), library) == files[name], (base, name)
         assert bool(state.values) is (files[name] != files[base])
 
 

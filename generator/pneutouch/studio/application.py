@@ -118,7 +118,7 @@ class Studio:
         """The answer of the process; 409 where a newer question took its place."""
         try:
             question = await _question(request)
-            answer = await self._solver.request(question.document())
+            answer = await self._solver.request(plain(question))
         except PneutouchError as error:
             return _fault(error)
         except SupersededError:

@@ -74,7 +74,7 @@ class Desk:
 
     async def known(self, request: Request) -> Response:
         """The jobs that run or whose files are kept: a page that is opened again finds its own there."""
-        return JSONResponse({"jobs": self.jobs.documents()})
+        return JSONResponse(plain({"jobs": self.jobs.records}))
 
     async def start(self, request: Request) -> Response:
         """Begin a job with the JSON of the page; ``uploads``, numbers of files, are given to it as paths."""
@@ -89,7 +89,7 @@ class Desk:
             return _fault(error)
         except PneutouchError as error:
             return _fault(error, _BUSY)
-        return JSONResponse(job.document(), 202)
+        return JSONResponse(plain(job.record), 202)
 
     def _uploaded(self, number: Any) -> dict[str, str]:
         try:
@@ -101,7 +101,7 @@ class Desk:
     async def state(self, request: Request) -> Response:
         """State of a job."""
         job = self._job(request)
-        return _unknown() if job is None else JSONResponse(job.document())
+        return _unknown() if job is None else JSONResponse(plain(job.record))
 
     async def cancel(self, request: Request) -> Response:
         """End a job."""
@@ -109,7 +109,7 @@ class Desk:
         if job is None:
             return _unknown()
         await self.jobs.cancel(job)
-        return JSONResponse(job.document())
+        return JSONResponse(plain(job.record))
 
     async def file(self, request: Request) -> Response:
         """One file of a job, by its name in the job's list."""

@@ -8,6 +8,7 @@ import shutil
 import signal
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,27 @@ _COMMAND = (sys.executable, "-m", "pneutouch.studio.job")
 """The process of a job."""
 
 Content = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class JobFile:
+    """A file of a job, by its path below the job's folder."""
+
+    name: str
+    bytes: int
+
+
+@dataclass(frozen=True, slots=True)
+class JobRecord:
+    """The state of a job for the page; its files once it is done."""
+
+    job: int
+    kind: str
+    state: str
+    progress: Content
+    status: int
+    content: Content
+    files: list[JobFile]
 
 
 class Job:
@@ -45,14 +67,15 @@ class Job:
         """True if it has not ended; one that was cancelled may take a moment to."""
         return self.state == "running" or (self.process is not None and self.process.returncode is None)
 
-    def document(self) -> Content:
-        """The state of the job for the page; the names and bytes of the files once it is done.
+    @property
+    def record(self) -> JobRecord:
+        """The state of the job for the page.
 
         One that is cancelled still runs until its process has ended: only then another can begin.
         """
-        files = [{"name": name, "bytes": path.stat().st_size} for name, path in self.files().items()]
-        state = {"job": self.number, "kind": self.kind, "state": "running" if self.runs else self.state}
-        return {**state, "progress": self.progress, "status": self.status, "content": self.content, "files": files}
+        files = [JobFile(name, path.stat().st_size) for name, path in self.files().items()]
+        state = "running" if self.runs else self.state
+        return JobRecord(self.number, self.kind, state, self.progress, self.status, self.content, files)
 
     def files(self) -> dict[str, Path]:
         """Files of a job that is done, by their path below its folder; none before."""
@@ -77,9 +100,10 @@ class Jobs:
         """A job by its number. Raises KeyError if unknown, or no longer."""
         return self._jobs[number]
 
-    def documents(self) -> list[Content]:
+    @property
+    def records(self) -> list[JobRecord]:
         """The jobs that are known, as the page sees them, oldest first."""
-        return [job.document() for job in self._jobs.values()]
+        return [job.record for job in self._jobs.values()]
 
     async def start(self, kind: str, arguments: Mapping[str, Any]) -> Job:
         """Begin a job. Raises ComputationError while another runs."""

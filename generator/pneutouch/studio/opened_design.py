@@ -16,6 +16,7 @@ from pneutouch.errors import InputError, PneutouchError, one_line
 from pneutouch.evaluation.evaluate import PredictionOptions
 from pneutouch.formats import KEY, check_format
 from pneutouch.output.recipe import scene_kinds
+from pneutouch.results.record import plain
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.values import name_of
@@ -41,7 +42,7 @@ def nearest_state(source: DesignSource, bases: Mapping[str, str], library: Libra
         raise InputError("no design of this page can be read", remedy="mend the design files that pneutouch list names")
     # By the same limits as what comes from a browser.
     nearest = min(states, key=lambda state: (state.base != source.name, len(state.values)))
-    question = Question.of(nearest.document())
+    question = Question.of(plain(nearest))
     if question.source(bases, library).changed({}).model_dump() != design.model_dump():
         remedy = "build it by its file with the commands"
         raise InputError("has values that the page cannot hold", file=source.where, remedy=remedy)

@@ -53,10 +53,6 @@ class Question:
                 raise InputError(f"the text is longer than {_LONGEST_TEXT} characters", key=key)
         return cls(base, values)
 
-    def document(self) -> dict[str, Any]:
-        """The question as the page sends it."""
-        return {"base": self.base, "values": dict(self.values)}
-
     def source(self, bases: Mapping[str, str], library: Library) -> DesignSource:
         """The design as a source; ``bases`` are designs by name or path, by the name that the page has for them.
 

@@ -25,7 +25,7 @@ from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.part import OnePiece, Sleeve
 from pneutouch.spec.printer import Printer
-from pneutouch.spec.read import parse_changes
+from pneutouch.spec.read import Changes, parse_changes
 from pneutouch.spec.target import Target
 
 USUAL = "TangoPlus+VeroClear"
@@ -111,7 +111,7 @@ _WALL_SHARE = 0.15
 """Wall over radius of the dome that a base is drawn with where only the wall is given."""
 
 
-def setting_changes(target: Target, library: Library) -> dict[str, Any]:
+def setting_changes(target: Target, library: Library) -> Changes:
     """Changes of a target to its base design, by ``table.key``.
 
     Raises InputError for what the search finds itself.
@@ -158,7 +158,7 @@ def named_by_target(target: Target, where: str) -> Iterator[None]:
 def _base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
     given, chosen = target.given, setting_changes(target, library)
     sizes = {"membrane.inner_radius_mm": given.inner_radius_mm, "membrane.wall_thickness_mm": given.wall_thickness_mm}
-    changes = chosen | {key: size for key, size in sizes.items() if size is not None}
+    changes = {**chosen} | {key: size for key, size in sizes.items() if size is not None}
     source = _source(target, library)
     membrane = source.changed(chosen).membrane
     if given.wall_thickness_mm is not None and given.inner_radius_mm is None:
@@ -223,12 +223,12 @@ def _source(target: Target, library: Library) -> DesignSource:
     return replace(source, content={key: value for key, value in source.content.items() if key != CALIBRATION})
 
 
-def settled_base(target: Target, changes: dict[str, Any], library: Library) -> DesignFile:
+def settled_base(target: Target, changes: Changes, library: Library) -> DesignFile:
     """The base design with its changes, before its names are resolved."""
     return _source(target, library).changed(changes)
 
 
-def _on_finger(finger_mm: float, target: Target, changes: dict[str, Any], library: Library) -> dict[str, Any]:
+def _on_finger(finger_mm: float, target: Target, changes: Changes, library: Library) -> dict[str, str | float]:
     """The mount for a finger: the base's where it is a sleeve, else the sleeve made for the nearest finger."""
     sleeves = {
         name: mount for name in library.paths("mounts") if isinstance(mount := library.load("mounts", name), Sleeve)
@@ -244,7 +244,7 @@ def _on_finger(finger_mm: float, target: Target, changes: dict[str, Any], librar
     return {"connector.mount": chosen, _FINGER: finger_mm}
 
 
-def _some_resin(target: Target, where: str, changes: dict[str, Any], library: Library) -> str:
+def _some_resin(target: Target, where: str, changes: Changes, library: Library) -> str:
     """A resin that the base can be drawn with: the first of those allowed that its printer runs, else the first."""
     profile = settled_base(target, changes, library).print.profile
     key = "setting.profile" if target.setting.profile is not None else "print.profile"

@@ -1,7 +1,6 @@
 """A graded selection: a grade for a target that no constant mix meets, and the constant mixes of its size."""
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -35,7 +34,7 @@ from pneutouch.selection.problem import SelectionProblem
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
-from pneutouch.spec.read import assignments
+from pneutouch.spec.read import Changes, assignments
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 from pneutouch.workflows.select.base import ResinPair, base_scene, requested_pair, setting_changes
@@ -61,7 +60,7 @@ class GradedSelectionRun:
 
     target: Target
     base: ResolvedDesign
-    changes: dict[str, Any]
+    changes: Changes
     sensor: Sensor
     pair: ResinPair
     grade_target: GradeTarget

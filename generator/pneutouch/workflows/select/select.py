@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -28,7 +27,7 @@ from pneutouch.selection.contact_search import ContactSelection, choose_by_solid
 from pneutouch.selection.mixes import met_by_fraction
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
-from pneutouch.spec.read import assignments
+from pneutouch.spec.read import Changes, assignments
 from pneutouch.spec.target import Target
 from pneutouch.spec.toml_text import value_text
 from pneutouch.units import KPA
@@ -83,7 +82,7 @@ class SelectionRun:
 
     target: Target
     base: ResolvedDesign
-    changes: dict[str, Any]
+    changes: Changes
     sensor: Sensor
     problem: SelectionProblem
     answer: SelectionResult
