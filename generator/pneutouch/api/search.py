@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from pneutouch.api import show
 from pneutouch.api.design import Design, source_of
@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 
 SelectedRecord = SelectionRecord | GradedRecord | ProcessesRecord
 """Output of ``select``, by the kind of its target."""
+
+_OnBase = TypeVar("_OnBase", bound=SelectionRecord | GradedRecord)
 
 
 def unmet_lines(record: SelectedRecord) -> list[str]:
@@ -103,10 +105,13 @@ class GivenBase:
             new_changed(design.source, design.name, folder / "designs")
             self.library = Library((folder, *self.library.folders))
 
-    def named(self, record: Any) -> Any:
+    def named(self, record: SelectedRecord) -> SelectedRecord:
         """A selection whose ``base`` names the design."""
         if isinstance(record, ProcessesRecord):
-            return replace(record, processes={key: self.named(one) for key, one in record.processes.items()})
+            return replace(record, processes={key: self._renamed(one) for key, one in record.processes.items()})
+        return self._renamed(record)
+
+    def _renamed(self, record: _OnBase) -> _OnBase:
         if self._design is None or not self._holds(record.base):
             return record
         where = self._design.source.where

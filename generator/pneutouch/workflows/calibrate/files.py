@@ -291,7 +291,7 @@ def _covariance(calibration: Calibration) -> tuple[list[int], Array]:
     return kept, 0.5 * (whole + whole.T)
 
 
-def _response(gap: ResponseGap, calibration: Calibration) -> dict[str, Any]:
+def _response(gap: ResponseGap, calibration: Calibration) -> dict[str, float | list[float]]:
     correction = gap.correction
     return {
         "force_factors": [*correction.force_factors],

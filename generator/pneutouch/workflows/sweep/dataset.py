@@ -168,12 +168,16 @@ def _variable(variable: SweepVariable, values: Any, shape: tuple[int, ...], dims
     return dims, np.array(values, float).reshape(shape), {"units": variable.units, **names}
 
 
-def _coordinates(study: SweepStudy) -> dict[str, Any]:
+Coordinate = tuple[str, Any, dict[str, str]]
+"""Dimension of a coordinate, its values, and its attributes."""
+
+
+def _coordinates(study: SweepStudy) -> dict[str, Coordinate]:
     """Values of the varied fields: along their own dimension in a grid, along ``point`` in a list."""
     plan = study.plan
     if plan.axes:
         return {axis.name: (axis.name, *_column(axis.key, axis.values)) for axis in plan.axes}
-    coordinates: dict[str, Any] = {
+    coordinates: dict[str, Coordinate] = {
         "point": ("point", np.arange(plan.count, dtype=np.int32), {"long_name": "number in the list"})
     }
     for key in plan.varied:

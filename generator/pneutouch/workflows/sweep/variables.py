@@ -120,11 +120,11 @@ POINT: tuple[SweepVariable, ...] = (
 """Variables of every point."""
 
 
-def state_values(state: Document) -> dict[str, Any]:
+def state_values(state: Document) -> dict[str, float | str | None]:
     """Values of a state of a prediction that a dataset keeps, its uncertainty included."""
     return {variable.name: variable.read(state) for variable in STATE}
 
 
-def point_values(prediction: Document) -> dict[str, Any]:
+def point_values(prediction: Document) -> dict[str, float | str | None]:
     """Values of a prediction that a dataset keeps, apart from its states."""
     return {variable.name: variable.read(prediction) for variable in POINT}
