@@ -13,6 +13,8 @@ from pneutouch.results.measured import MeasuredCampaign
 from pneutouch.results.response import LoadResponse
 from pneutouch.results.scan import ScanRecord
 from pneutouch.results.simulation import CampaignTruth
+from pneutouch.results.specimen import SpecimenRecord
+from pneutouch.results.stack import StackRecord
 from pneutouch.schemas.kind import DocumentKind
 from pneutouch.schemas.shape import Schema
 from pneutouch.schemas.typed import of_record
@@ -34,8 +36,8 @@ _DOCUMENTS: dict[str, tuple[type | str, str, str]] = {
     "response": (LoadResponse, "A simulated signal", "`response.json` of `respond`, `pneutouch respond --json`"),
     "scan": (ScanRecord, "A scan of a specimen", "`scan.json` of `scan`, `pneutouch scan --json`"),
     "truth": (CampaignTruth, "Truth of a simulated campaign", "`truth.json` of `simulate`"),
-    "specimen-report": ("objects.specimen", "A built texture specimen", "`specimen.json` of `build`"),
-    "stack": ("objects.stack", "A voxel stack", "`stack.json` of every stack for voxel printing"),
+    "specimen-report": (SpecimenRecord, "A built texture specimen", "`specimen.json` of `build`"),
+    "stack": (StackRecord, "A voxel stack", "`stack.json` of every stack for voxel printing"),
     "exported-design": (
         "objects.exported_design",
         "A design exported from the studio",

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import base64
-from dataclasses import replace
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypedDict
 
@@ -19,9 +17,8 @@ from pneutouch.evaluation.result import by_model, rating_record
 from pneutouch.evaluation.uncertainty import unknown
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.models import USUAL
-from pneutouch.parts import Assembly, assemble
-from pneutouch.results.record import plain
 from pneutouch.parts import assemble
+from pneutouch.results.record import plain
 from pneutouch.rounding import rounded
 from pneutouch.studio.drawing import DrawnDesign, PressedWall, ViewedDesign, drawn_design, pressed_wall, viewed_design
 
