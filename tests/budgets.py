@@ -13,6 +13,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from tests.trees import tree_of
+
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "generator" / "pneutouch"
 KEY = "sensitivity_kPa_per_N"
@@ -38,7 +40,7 @@ def lines_of(paths: list[Path]) -> int:
 
 
 def trees(folder: Path) -> Iterator[ast.Module]:
-    return (ast.parse(path.read_text(encoding="utf-8")) for path in sources(folder))
+    return (tree_of(path) for path in sources(folder))
 
 
 def package_lines() -> int:

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import pneutouch
+from tests.trees import tree_of
 
 PACKAGE = Path(pneutouch.__file__).parent
 QUANTITIES = ("pressure", "force", "indentation", "depth", "sensitivity", "stiffness", "radius", "thickness", "volume")
@@ -49,7 +50,7 @@ def without_unit(tree: ast.Module) -> list[str]:
 
 
 def trees(folder: Path) -> list[tuple[Path, ast.Module]]:
-    return [(path, ast.parse(path.read_text())) for path in sorted(folder.rglob("*.py"))]
+    return [(path, tree_of(path)) for path in sorted(folder.rglob("*.py"))]
 
 
 def test_every_public_name_is_documented():

@@ -26,6 +26,7 @@ from pneutouch.errors import (
 from pneutouch.mechanics.solid.newton import NoConvergenceError
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import validate
+from tests.trees import nodes_of
 
 PACKAGE = Path(pneutouch.__file__).parent
 OPTION = re.compile(r"(?<![\w-])--[a-z]")
@@ -142,7 +143,7 @@ def test_there_are_three_kinds_with_an_exit_code_each():
 
 def texts(path):
     """Texts of a file, docstrings included, each with its line."""
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in nodes_of(path):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             yield node.lineno, node.value
 

@@ -7,6 +7,7 @@ import graphlib
 from pathlib import Path
 
 import pneutouch
+from tests.trees import nodes_of, tree_of
 
 PACKAGE = Path(pneutouch.__file__).parent
 
@@ -34,7 +35,7 @@ APART = [{"parts", "mechanics"}]
 
 def imports(path: Path):
     """Own packages a file imports, with the line."""
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in nodes_of(path):
         names = []
         if isinstance(node, ast.ImportFrom) and node.module:
             names = [node.module] if node.module != "pneutouch" else [f"pneutouch.{a.name}" for a in node.names]
@@ -79,7 +80,7 @@ def test_report_computes_nothing():
 
 def test_modules_of_records_define_classes_alone():
     for name in DRAWN_FROM:
-        tree = ast.parse(modules()[name].read_text())
+        tree = tree_of(modules()[name])
         assert not [node.name for node in tree.body if isinstance(node, ast.FunctionDef)], name
 
 
@@ -103,7 +104,7 @@ def test_files_and_functions_stay_short():
 def test_no_print_and_no_mutable_state_at_module_level():
     wrong = []
     for path in PACKAGE.rglob("*.py"):
-        tree = ast.parse(path.read_text())
+        tree = tree_of(path)
         for node in ast.walk(tree):
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "print":
                 wrong.append(f"{path}:{node.lineno}: print")
@@ -123,7 +124,7 @@ def modules() -> dict[str, Path]:
 def dependencies(path: Path, known: dict[str, Path]) -> set[str]:
     """Own files that a file imports anywhere in it: at the top, under TYPE_CHECKING and inside functions."""
     found = set()
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in nodes_of(path):
         if isinstance(node, ast.ImportFrom) and node.module:
             found |= {
                 f"{node.module}.{a.name}" if f"{node.module}.{a.name}" in known else node.module for a in node.names

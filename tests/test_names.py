@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import pneutouch
+from tests.trees import nodes_of, tree_of
 from tests.unit_names import places
 
 PACKAGE = Path(pneutouch.__file__).parent
@@ -18,7 +19,7 @@ def public_classes(folder: Path) -> dict[str, list[str]]:
     """Public classes by name, with the places where they are defined; nested classes count."""
     places = defaultdict(list)
     for path in sorted(folder.rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes_of(path):
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 places[node.name].append(f"{path.relative_to(folder)}:{node.lineno}")
     return places
@@ -28,7 +29,7 @@ def type_aliases(folder: Path) -> dict[str, dict[str, str]]:
     """Names in capitals and small letters that a module binds to anything but a class: by name, places by what they mean."""
     meanings = defaultdict(dict)
     for path in sorted(folder.rglob("*.py")):
-        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        for node in tree_of(path).body:
             for target in node.targets if isinstance(node, ast.Assign) else []:
                 if isinstance(target, ast.Name) and target.id[0].isupper() and not target.id.isupper():
                     meanings[target.id][ast.unparse(node.value)] = f"{path.relative_to(folder)}:{node.lineno}"

@@ -16,6 +16,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from tests.trees import nodes_of, tree_of
+
 PACKAGE = Path(__file__).parents[1] / "generator" / "pneutouch"
 FACTORS = {"KPA": "kPa", "ML": "mL", "UM": "um"}
 """Constants of ``pneutouch.units`` and the unit of a number that is multiplied by one."""
@@ -103,7 +105,7 @@ class File:
     def __init__(self, path: Path, signatures: Signatures) -> None:
         """``signatures`` are the parameters of all functions and classes."""
         self.name = str(path)
-        self.tree = ast.parse(path.read_text(encoding="utf-8"))
+        self.tree = tree_of(path)
         self.signatures = signatures
         self.origins: dict[str, str] = {}
         for node in ast.walk(self.tree):
@@ -260,7 +262,7 @@ def signatures(paths: list[Path]) -> Signatures:
     """Parameters of functions and fields of classes by name, with the names of their files."""
     found: Signatures = {}
     for path in paths:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes_of(path):
             if isinstance(node, ast.FunctionDef):
                 names = [a.arg for a in _arguments(node)]
                 names = names[1:] if names[:1] in (["self"], ["cls"]) else names

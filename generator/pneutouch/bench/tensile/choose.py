@@ -13,7 +13,7 @@ Measured with the solid (neo-Hookean) on the shipped domes paper-dome, fingertip
 shipped design at 0, at its rated pressure and at 0.9 of its limit point. The largest first invariant anywhere on the
 faces half a wall away from the clamp is that of uniaxial tension by 1.92 at 0.17 MPa, 1.79 at 0.2 MPa and 2.09, 2.22,
 2.33 and 2.39 at 0.08, 0.05, 0.025 and 0.012 MPa: in a softer wall the trapped gas hardly yields, and the wall bulges
-instead. ``python -m benchmarks.materials --reach`` measures them again.
+instead. The reach of ``benchmarks.materials`` measures them again.
 """
 
 from collections.abc import Sequence
