@@ -140,11 +140,11 @@ def test_a_campaign_names_it_and_a_build_of_it_has_a_name_of_its_own(place, tmp_
 
 def test_the_recipe_of_a_calibrated_build_is_shown(place):
     from pneutouch.cli.show import _recipe
+    from pneutouch.results.stored import ShownRecipe
 
     inputs = {"design": {"calibration": "mine", "membrane": {"material": "TangoPlus", "wall_thickness_mm": None}}}
     inputs |= {"model": None, "closure": None, "clamp": None, "tolerance": None, "compared_resins": []}
-    recipe = {"inputs": inputs, "name": "x", "version": "1", "versions": {}, "other_versions": [], "input_hash": "a"}
-    text = "\n".join(_recipe(recipe))
+    text = "\n".join(_recipe(ShownRecipe("pneutouch/recipe/1", "x", "1", inputs, "a", {}, ())))
     assert "calibration" in text and "mine" in text and "membrane.material" in text and "wall_thickness" not in text
 
 

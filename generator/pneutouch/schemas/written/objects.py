@@ -1,4 +1,4 @@
-"""Schemas of the records on an object: a built texture specimen, a voxel stack, an exported design."""
+"""The schema of a design that the studio exported."""
 
 from pneutouch.schemas.shape import TEXT, Schema, described_by, mapping, record
 
