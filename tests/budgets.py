@@ -116,15 +116,15 @@ def wording_lines() -> int:
 
 
 BUDGETS = (
-    Budget("lines of the package", package_lines, 82_600, 70_000),
-    Budget("files of the package", package_files, 490, 450),
+    Budget("lines of the package", package_lines, 84_700, 70_000),
+    Budget("files of the package", package_files, 505, 450),
     Budget("lines of benchmarks", benchmark_lines, 6_500, 6_500),
-    Budget("functions that return dict[str, Any]", dictionaries, 200, 30),
+    Budget("functions that return dict[str, Any]", dictionaries, 56, 30),
     Budget("modules that predict paper-dome loads", loaded_modules, 150, 150),
-    Budget("lines in these", loaded_lines, 22_000, 18_000),
-    Budget("classes that hold a sensitivity, solver to sheet", classes_with_a_sensitivity, 8, 5),
-    Budget(f"files with the key {KEY}", files_with_the_key, 83, 30),
-    Budget("lines of tests that assert wording", wording_lines, 2_000, 600),
+    Budget("lines in these", loaded_lines, 22_500, 18_000),
+    Budget("classes that hold a sensitivity, solver to sheet", classes_with_a_sensitivity, 11, 5),
+    Budget(f"files with the key {KEY}", files_with_the_key, 72, 30),
+    Budget("lines of tests that assert wording", wording_lines, 690, 600),
 )
 
 
