@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from pneutouch.schemas import document_kinds, schema_of
-from pneutouch.schemas.facts import bounds, default_text
-from pneutouch.schemas.kind import DocumentKind
+from pneutouch.schemas.catalogue import bounds, default_text
+from pneutouch.schemas.pieces import DocumentKind
 from reference_pages import markdown
 from reference_pages.markdown import code, plain, table
 

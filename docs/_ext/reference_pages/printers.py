@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from pneutouch.catalogue import Library
-from pneutouch.schemas.shape import unit_of
+from pneutouch.schemas.pieces import unit_of
 from pneutouch.spec.fields import Table
 from pneutouch.spec.mixing import MixingCurve, MixingPoint
 from pneutouch.spec.printer import FeatureSize, Printer

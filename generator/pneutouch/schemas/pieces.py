@@ -1,10 +1,11 @@
-"""Pieces that schemas of written documents are put together from; every key of a record is described."""
+"""Pieces of schemas; every key of a record is described.
+
+Kind of a document: its form, its title, its place, and the function that makes its schema.
+"""
 
 import re
-from collections.abc import Iterable, Mapping
-from typing import Any
-
-from pneutouch.schemas.helps import help_of
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, Literal, NamedTuple
 
 Schema = dict[str, Any]
 
@@ -113,5 +114,14 @@ def record(help: str, keys: Mapping[str, Schema], optional: Iterable[str] = ()) 
 
 def _with_unit(key: str, schema: Schema) -> Schema:
     unit = unit_of(key)
-    schema = schema if schema.get("description") else {**schema, "description": help_of(key)}
+    assert schema.get("description"), key
     return {**schema, "x-unit": unit} if unit and "x-unit" not in schema else schema
+
+
+class DocumentKind(NamedTuple):
+    """A kind of document that is read or written; ``where`` states where it lies or what takes it."""
+
+    form: Literal["TOML", "JSON"]
+    title: str
+    where: str
+    make: Callable[[], dict[str, Any]]

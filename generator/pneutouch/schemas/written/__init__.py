@@ -1,1 +1,0 @@
-"""Schemas of the JSON documents that the program writes."""
