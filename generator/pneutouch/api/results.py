@@ -30,7 +30,7 @@ class CheckResult(show.Shown):
 
     def to_dict(self) -> dict[str, Any]:
         """The document that the command ``check`` prints as JSON."""
-        content = {"design": self.name, "passed": self.passed, "findings": [f.document() for f in self.findings]}
+        content = {"design": self.name, "passed": self.passed, "findings": [plain(f.stated) for f in self.findings]}
         return {**content, "mixing_curves": plain(self.curves)} if self.curves else content
 
     def _head(self) -> str:

@@ -150,7 +150,7 @@ def check(
             from pneutouch.results.record import plain
 
             by_curve = {"mixing_curves": plain(curves)} if curves else {}
-            listed = [f.document() for f in findings]
+            listed = [plain(f.stated) for f in findings]
             print_json({"design": design, "passed": not broken, "findings": listed, **by_curve})
         else:
             from pneutouch.cli.prediction_text import findings_text

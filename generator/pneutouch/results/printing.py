@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal, Self, get_args
+from typing import Literal, Self, get_args
 
-from pneutouch.results.record import plain
 from pneutouch.rounding import rounded
 
 Severity = Literal["error", "warning", "note"]
@@ -60,10 +59,6 @@ class Finding:
             # Counts are whole numbers; a document states them as every other value.
             excess = rounded(Excess(float(excess.measured), float(excess.limit), excess.unit), 4)
         return replace(self, where_mm=where_mm, excess=excess)
-
-    def document(self) -> Any:
-        """JSON data of the finding as documents state it."""
-        return plain(self.stated)
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +119,3 @@ class JobEstimate:
     """Time; null: the printer's profile does not state enough."""
     assumptions: tuple[str, ...]
     """Assumptions, in sentences."""
-
-    def document(self) -> Any:
-        """JSON data of the estimate."""
-        return plain(self)

@@ -76,7 +76,7 @@ def document_kinds() -> dict[str, DocumentKind]:
     return {**file_kinds(), **written_kinds()}
 
 
-def schema_of(name: str) -> dict[str, Any]:
+def schema_of(name: str) -> Schema:
     """The schema of a kind of document, as data: descriptions state unit, bounds and default too.
 
     Raises InputError for a name that is none.

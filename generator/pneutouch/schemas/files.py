@@ -22,7 +22,7 @@ _SCALAR = {"type": ["number", "string", "boolean"]}
 _VALUE = any_of(_SCALAR, items({"anyOf": [_SCALAR, {"type": "array"}]}))
 
 
-def _fields(value: dict[str, Any], help: str) -> dict[str, Any]:
+def _fields(value: dict[str, Any], help: str) -> Schema:
     """A table of fields of the design: keys in quotes as ``"table.key"``, or tables of keys."""
     return {
         "type": "object",
@@ -31,7 +31,7 @@ def _fields(value: dict[str, Any], help: str) -> dict[str, Any]:
     }
 
 
-def sweep_schema() -> dict[str, Any]:
+def sweep_schema() -> Schema:
     """The schema of a sweep file, see `workflows.sweep.read`."""
     steps = record(
         "A range of equal steps.",

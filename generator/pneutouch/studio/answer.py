@@ -157,7 +157,7 @@ def full_answer(question: Question, bases: Mapping[str, str], library: Library) 
         prediction=Prediction(evaluation).to_dict(),
         curves=_curves(evaluation),
         check=CheckResult(source.name, tuple(evaluation.findings)).to_dict(),
-        jobs=[job.document() for job in evaluation.estimates],
+        jobs=plain(evaluation.estimates),
         walls=[pressed_wall(state) for state in evaluation.prediction.states],
     )
 

@@ -11,6 +11,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.models import model_options
 from pneutouch.output.files import MANIFEST
+from pneutouch.results.record import plain
 from pneutouch.spec.values import plain_name
 from pneutouch.studio.question import Question
 from pneutouch.workflows.build import STEPS, build, calibrated_name, described
@@ -67,5 +68,5 @@ def build_design(
         groups=[BuiltFiles([f"{made.name}/{each}" for each in names], words) for names, words in groups],
         left_out=json.loads((made / MANIFEST).read_text(encoding="utf-8")).get("left_out", {}),
         sheet=f"{made.name}/{SHEET}",
-        findings=[finding.document() for finding in evaluation.findings],
+        findings=[plain(finding.stated) for finding in evaluation.findings],
     )

@@ -13,6 +13,7 @@ from typing import Any
 
 from pictures.rules import EXHIBITS, Case
 from pneutouch.report.style import BOLD, figure, svg
+from pneutouch.results.record import plain
 
 FOLDER = Path(__file__).resolve().parents[4] / "docs/reference/rules"
 RECORD = FOLDER / "findings.json"
@@ -47,7 +48,7 @@ def picture_name(rule: str, side: str) -> str:
 
 def recorded(case: Case) -> dict[str, Any]:
     """What the page states of a case."""
-    return {"case": case.label, "findings": [finding.document() for finding in case.findings]}
+    return {"case": case.label, "findings": [plain(finding.stated) for finding in case.findings]}
 
 
 def picture(case: Case, side: str) -> str:
