@@ -33,9 +33,9 @@ nitpicky = True
 # module imports for a type checker alone have their bare names.
 nitpick_ignore_regex = [
     ("py:class", "Axes|DataFrame|Path"),
-    ("py:class", "CalibrationOutcome|CompareResult|Evaluation|Rating|UncertainStateRecord"),
+    ("py:class", "CalibrationOutcome|CompareResult|DrivingRecord|Evaluation|Rating|SelectedRecord|StateRecord"),
     ("py:.*", r"(collections|matplotlib|numpy|os|pandas|pathlib|typing|xarray)\..*"),
-    ("py:.*", r"pneutouch\.(arrays|body|catalogue|evaluation|mechanics|parts|printability|workflows)\..*"),
+    ("py:.*", r"pneutouch\.(arrays|body|catalogue|evaluation|mechanics|parts|printability|results|workflows)\..*"),
 ]
 keep_warnings = False
 
