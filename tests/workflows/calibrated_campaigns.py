@@ -120,13 +120,13 @@ def _outcomes(name, truth, rng) -> dict[float, Outcome]:
         evaluate(design, changes, model="atlas", library=library).uncertainty for design in (DESIGN, f"{DESIGN}@{name}")
     )
     for pressure, old, new in zip(changes["pneumatics.driving_pressures_kPa"], plain, calibrated, strict=True):
-        one, two = (entry["figures"]["sensitivity_kPa_per_N"] for entry in (old, new))
+        one, two = (entry.known["sensitivity_kPa_per_N"] for entry in (old, new))
         true = truth[f"{pressure:g}"]["sensitivity_kPa_per_N"] * other / read
-        fresh = np.exp(2 * one["standard_uncertainty_relative"] * np.sqrt(1 - one["shares"]["ageing"]))
+        fresh = np.exp(2 * one.standard_uncertainty_relative * np.sqrt(1 - one.shares["ageing"]))
         outcomes[pressure] = Outcome(
-            Interval(one["value"] / fresh, one["value"] * fresh, true),
-            Interval(two["at_calibration"]["low"], two["at_calibration"]["high"], true),
-            Interval(one["low"], one["high"], true * year),
-            Interval(two["low"], two["high"], true * year),
+            Interval(one.value / fresh, one.value * fresh, true),
+            Interval(two.at_calibration.low, two.at_calibration.high, true),
+            Interval(one.low, one.high, true * year),
+            Interval(two.low, two.high, true * year),
         )
     return outcomes

@@ -91,9 +91,7 @@ def test_the_document_follows_its_schema_and_its_tables_are_small(result):
 
 def test_the_uncertainty_is_that_of_the_sensitivity_where_the_curve_is_as_stiff(evaluation, result):
     """The force at a rise is the rise over the sensitivity: their relative uncertainties are of one size."""
-    stated = [
-        entry["figures"]["sensitivity_kPa_per_N"]["standard_uncertainty_relative"] for entry in evaluation.uncertainty
-    ]
+    stated = [entry.known["sensitivity_kPa_per_N"].standard_uncertainty_relative for entry in evaluation.uncertainty]
     relative = np.array(result.document["grid"]["force_uncertainty_relative"])
     assert relative.min() > 0.5 * min(stated) and relative.max() < 2.0 * max(stated)
 

@@ -2,8 +2,7 @@
 
 A record is a frozen dataclass: its fields are the keys of a document, in their order, and the text below a field is its
 help. A field without a default is always written. A field with one is left out of a document while it holds it.
-Standard dataclasses, not pydantic's: records are made by this program alone and need no validation, and the 30 classes
-of a prediction are defined in a fifth of the time.
+Standard dataclasses, not pydantic's: records are made by this program alone and need no validation.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ import dataclasses
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-import numpy as np
+from pydantic import BaseModel
 
 Extended = TypeVar("Extended")
 
@@ -27,7 +26,10 @@ def plain(value: Any) -> Any:
         return {key: plain(held) for key, held in value.items()}
     if isinstance(value, list | tuple):
         return [plain(held) for held in value]
-    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+    if isinstance(value, BaseModel):
+        return value.model_dump(mode="json")
+    # An array: numpy is not loaded for this, as names are completed without it.
+    return value.tolist() if hasattr(value, "tolist") else value
 
 
 def left_out(field: dataclasses.Field[Any], held: Any) -> bool:

@@ -6,6 +6,7 @@ from functools import partial
 
 from pneutouch.export.reader.render import SCHEMA
 from pneutouch.formats import FORMATS, KEY, format_of
+from pneutouch.results.behaviour import CalibratedBy
 from pneutouch.results.calibration import OutcomeRecord
 from pneutouch.results.comparison import ComparisonRecord
 from pneutouch.results.fit import MaterialFit
@@ -122,7 +123,11 @@ def exported_design() -> Schema:
 
 def prediction() -> Schema:
     """Schema of the output of ``pneutouch predict --json``, part of which ``prediction.json`` holds."""
-    return of_record(PredictionRecord, {"PredictionRecord.contact": contact()})
+    source = model_schema(CalibratedBy)["properties"]
+    keys = {key: {k: v for k, v in field.items() if k != "default"} for key, field in source.items()}
+    calibration = record("The calibration that the prediction is of.", keys)
+    instead = {"PredictionRecord.contact": contact(), "PredictionRecord.calibration": calibration}
+    return of_record(PredictionRecord, instead)
 
 
 def reader() -> Schema:
