@@ -125,6 +125,8 @@ def prediction() -> Schema:
     """Schema of the output of ``pneutouch predict --json``, part of which ``prediction.json`` holds."""
     source = model_schema(CalibratedBy)["properties"]
     keys = {key: {k: v for k, v in field.items() if k != "default"} for key, field in source.items()}
+    unknown = [key for key, field in CalibratedBy.model_fields.items() if field.default is None]
+    keys |= {key: or_null(keys[key]) for key in unknown}
     calibration = record("The calibration that the prediction is of.", keys)
     instead = {"PredictionRecord.contact": contact(), "PredictionRecord.calibration": calibration}
     return of_record(PredictionRecord, instead)
