@@ -160,3 +160,14 @@ def test_text_and_sheet_state_the_specimen_and_that_data_are_simulated(simulated
     sensor = content["source"]["sensor"]
     for text in (prediction_text(predicted_in_full(evaluation)), content_of(sheet_data(evaluation, ""))["status"]):
         assert f"sensor {sensor}" in text and ("SIMULATED DATA" in text) is simulated
+
+
+def test_a_calibrated_prediction_is_of_its_schema(place):
+    from pneutouch.evaluation.result import predicted_in_full
+    from pneutouch.output.files import json_bytes
+    from pneutouch.results.record import plain
+    from tests.schemas.held import hold
+
+    document = json.loads(json_bytes(plain(predicted_in_full(predicted(place)))))
+    assert document["calibration"]["sensor"]
+    hold("prediction", document)
