@@ -25,13 +25,13 @@ from pneutouch.mechanics.atlas.respond import ENDS, respond
 from pneutouch.mechanics.atlas.table import SHIPPED, shipped
 from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.models.solid import curve_between, reported_events
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid_states import curve_between, reported_events
 from pneutouch.units import KPA
 
 COUNT, SEED = 500, 2000

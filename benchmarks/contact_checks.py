@@ -22,13 +22,13 @@ from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.harmonic.press import OffAxisPress, OffAxisState
 from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.indenter import RigidBase, ball
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe
-from pneutouch.mechanics.solid_states import solid_states
 from pneutouch.selection.contact_search import tried
 from pneutouch.selection.front import ContactFronts, contact_front, place
 from pneutouch.spec.read import parse_changes

@@ -15,11 +15,11 @@ from pneutouch.bench.tensile.fit import LawForm
 from pneutouch.errors import BeyondLimitError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.limits import Limits
+from pneutouch.mechanics.models.solid import press_settings, solid_probe, solid_result
 from pneutouch.mechanics.paper_sensor import material_sensor, young_modulus
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indent import indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
-from pneutouch.mechanics.solid_states import press_settings, solid_probe, solid_result
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 

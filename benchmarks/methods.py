@@ -13,16 +13,16 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import AtlasPress, batch_of
 from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, EDGE, ENDS, OUTSIDE, respond
 from pneutouch.mechanics.atlas.table import AtlasSlices, shipped
-from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.events import range_end
-from pneutouch.mechanics.membrane import membrane_states
-from pneutouch.mechanics.models import DEFAULT_TOLERANCE, models_for
+from pneutouch.mechanics.models.atlas import outside_atlas
+from pneutouch.mechanics.models.choice import DEFAULT_TOLERANCE, models_for
+from pneutouch.mechanics.models.membrane import membrane_states
+from pneutouch.mechanics.models.solid import curve_between, reported_events
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid_states import curve_between, reported_events
 from pneutouch.units import KPA
 
 ATLAS, AUTO = "atlas", f"auto at {DEFAULT_TOLERANCE:.0%}"

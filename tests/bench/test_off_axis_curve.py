@@ -8,8 +8,10 @@ from pneutouch.bench.simulate import press_curves
 from pneutouch.catalogue.scene import load_scene
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.resins import rating_of
-from pneutouch.mechanics import Sensor, harmonic_states, solid_states
+from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.harmonic.press import OffAxisPress
+from pneutouch.mechanics.models import harmonic as harmonic_states
+from pneutouch.mechanics.models import solid as solid_states
 from pneutouch.parts import assemble
 
 BALL: dict[str, object] = {"contact.object": "ball", "contact.ball_radius_mm": 6.0, "contact.offset_mm": 3.0}

@@ -25,7 +25,7 @@ from pneutouch.bench.simulate import (
 from pneutouch.bench.simulate.curve import line_pressure, sensor_pressure
 from pneutouch.bench.simulate.runs import _lagging, _shut_in, within
 from pneutouch.bench.simulate.scatter import parameters
-from pneutouch.mechanics.solid_states import solid_result
+from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.units import KPA
 from tests.bench.truths import NO_WALL, R0, ends, line, rng
 

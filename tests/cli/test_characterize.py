@@ -13,7 +13,7 @@ import pneutouch as pt
 from pneutouch.cli.characterize import _report_next
 from pneutouch.cli.entry import app
 from pneutouch.errors import InputError
-from pneutouch.mechanics.models import USUAL
+from pneutouch.mechanics.models.choice import USUAL
 from pneutouch.workflows.characterize import campaign as characterizing
 
 SET = ["contact.tilt_deg=10"]

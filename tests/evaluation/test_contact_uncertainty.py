@@ -14,9 +14,9 @@ from pneutouch.evaluation.charts import curve, under_contact
 from pneutouch.evaluation.result import by_model
 from pneutouch.evaluation.uncertainty import known, uncertainties
 from pneutouch.mechanics.contact_correction import plate_alone
+from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indenter import ball, cone
-from pneutouch.mechanics.solid_states import solid_states
 from pneutouch.mechanics.uncertainty import FIGURES, INPUTS, ContactModel, batch_of, contact_model
 from pneutouch.mechanics.uncertainty.contact_model import SPREAD
 from pneutouch.mechanics.uncertainty.neighbours import log_figures
@@ -217,7 +217,7 @@ def test_the_interval_is_that_of_all_derivatives_by_the_solid(evaluated, library
 def test_a_prediction_already_solved_is_not_solved_again(rough, monkeypatch):
     """The contact is solved at two moduli and two coefficients alone."""
     solved = []
-    import pneutouch.mechanics.solid_states as module
+    import pneutouch.mechanics.models.solid as module
 
     original = module.solid_states
     monkeypatch.setattr(module, "solid_states", lambda *given: solved.append(given[0]) or original(*given))

@@ -11,9 +11,9 @@ from pneutouch.evaluation.calibrated import check_fitted
 from pneutouch.evaluation.contact_object import object_section
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
 from pneutouch.evaluation.result import by_model
-from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.harmonic.press import OffAxisPress
-from pneutouch.mechanics.models import USUAL, models_for
+from pneutouch.mechanics.models.atlas import outside_atlas
+from pneutouch.mechanics.models.choice import USUAL, models_for
 from pneutouch.parts import assemble
 from pneutouch.report.conditions import SHEAR as SHEAR_HEAD
 from pneutouch.report.conditions import shear_rows

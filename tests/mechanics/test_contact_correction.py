@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.contact_correction import GRIPS, NODES, _log_ratio, contact_ratio
+from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.solid.indenter import ball
-from pneutouch.mechanics.solid_states import solid_states
 from pneutouch.units import KPA
 
 DEPTH = 5.5

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import re
+import sys
 from dataclasses import replace
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -13,11 +15,16 @@ from hypothesis import strategies as st
 
 from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.mechanics import predict
-from pneutouch.mechanics.models import MODELS, NUMERICAL, models_for, parse_tolerance
+from pneutouch.mechanics.models import choice
+from pneutouch.mechanics.models.accuracy import NUMERICAL
+from pneutouch.mechanics.models.choice import model_named, models_for, parse_tolerance
+from pneutouch.mechanics.models.interface import Answer, Model
 from pneutouch.mechanics.predict import contact_words
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.units import KPA, ML
+
+CENTRAL = ("membrane", "atlas", "solid")
 
 PAPER = Sensor(
     Dome(9.25, 1.5),
@@ -58,7 +65,7 @@ def test_a_percentage_and_its_share_are_the_same(value):
 
 
 def test_stated_errors_fall_as_the_models_get_dearer():
-    errors = [NUMERICAL[model] for model in MODELS]
+    errors = [NUMERICAL[model] for model in CENTRAL]
     assert errors == sorted(errors, reverse=True) and len(set(errors)) == len(errors)
 
 
@@ -67,8 +74,8 @@ def test_every_model_on_the_way_meets_the_tolerance_and_the_rest_say_why_not(tol
     way = models_for(PAPER, tolerance)
     assert way.models[-1] == "solid"
     assert all(NUMERICAL[model] <= tolerance for model in way.models)
-    assert list(way.models) == [model for model in MODELS if model in way.models]
-    assert {line.split(":")[0] for line in way.passed} == set(MODELS) - set(way.models)
+    assert list(way.models) == [model for model in CENTRAL if model in way.models]
+    assert {line.split(":")[0] for line in way.passed} == set(CENTRAL) - set(way.models)
 
 
 def test_at_two_percent_the_atlas_answers_and_names_both_parts_of_its_error():
@@ -227,3 +234,56 @@ def test_the_atlas_asked_by_name_says_what_its_answer_lacks():
     found = predict("", hard, [0.0], model="atlas")
     assert [e.kind for e in found.states[0].events if e.ends_range] == ["inward buckling"]
     assert "buckles" in said(found)
+
+
+def test_a_batch_of_the_atlas_answers_as_each_sensor_alone():
+    """Sensors of other walls, resins, steps and driving pressures in one pass; one of them beyond its limit point."""
+    atlas = model_named("atlas")
+    sensors = [PAPER, PAPER.replace(wall_thickness=1.1, steps=9), PAPER.replace(shear_modulus=0.4), PAPER]
+    pressures = [np.array(some) * KPA for some in ([0.0, 12.0], [5.0], [0.0, 20.0, 40.0], [50.0])]
+    together = atlas.answer(sensors, pressures)
+    for sensor, driven, answer in zip(sensors[:3], pressures[:3], together[:3], strict=True):
+        alone = atlas.answer_one(sensor, driven)
+        assert len(answer.result.states) == driven.size
+        assert answer.result.limits.limit_point == pytest.approx(alone.result.limits.limit_point, rel=1e-12)
+        for one, other in zip(answer.result.states, alone.result.states, strict=True):
+            assert one.force == pytest.approx(other.force, rel=1e-9)
+            assert one.figures.sensitivity_kPa_per_N == pytest.approx(other.figures.sensitivity_kPa_per_N, rel=1e-9)
+    assert isinstance(together[3], BeyondLimitError) and together[3].pressure == pytest.approx(50.0 * KPA)
+
+
+class _Halved(Model):
+    """The solid at half the force, under a name of its own."""
+
+    name = "halved"
+
+    def covers(self, sensor):
+        return None if sensor.protocol.friction == 0.0 else "it knows no friction"
+
+    def answer(self, sensors, driving_pressures):
+        solid = model_named("solid").answer(sensors, driving_pressures)
+        halved = [replace(state, force=0.5 * state.force) for state in solid[0].result.states]
+        return [Answer(replace(solid[0].result, states=tuple(halved)))]
+
+    def errors(self, sensor, driving_pressures):
+        return model_named("solid").errors(sensor, driving_pressures)
+
+    def assumptions(self, sensor):
+        return ("half of the force",)
+
+    def stated_error(self, sensor):
+        return 0.015
+
+
+def test_a_model_is_one_file_and_one_line(monkeypatch):
+    """A module with a ``MODEL`` and its line of the table answer by name and for `auto`, at their place."""
+    module = ModuleType("halved_model")
+    module.MODEL = _Halved()
+    monkeypatch.setitem(sys.modules, "halved_model", module)
+    monkeypatch.setattr(choice, "MODELS", {"halved": "halved_model", **choice.MODELS})
+    named, auto, solid = (predict("x", PAPER, [0.0], model=m, tolerance=0.016) for m in ("halved", "auto", "solid"))
+    assert named.model == auto.model == "halved" and named.assumptions[0] == "half of the force"
+    assert named.states[0].force == pytest.approx(0.5 * solid.states[0].force, rel=1e-12)
+    with pytest.raises(InputError) as caught:
+        predict("x", PAPER.replace(friction=0.3), [0.0], model="halved")
+    assert (caught.value.key, caught.value.value) == ("model", "halved")

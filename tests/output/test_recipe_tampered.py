@@ -8,7 +8,7 @@ import pytest
 
 from pneutouch.errors import InputError
 from pneutouch.export.threemf_read import read_threemf
-from pneutouch.mechanics.models import DEFAULT_TOLERANCE
+from pneutouch.mechanics.models.choice import DEFAULT_TOLERANCE
 from pneutouch.output.recipe import evaluate_recipe, other_versions, read_recipe
 from pneutouch.workflows.build import build
 from tests.export.threemf_files import with_metadata, with_recipe

@@ -12,7 +12,7 @@ from pneutouch.bench.record import MeasuredCurve, SuspectInterval
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.evaluation.charts import in_resin
 from pneutouch.evaluation.evaluate import sensor_of
-from pneutouch.mechanics.atlas_states import atlas_result
+from pneutouch.mechanics.models.atlas import MODEL
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.parts import assemble
 from pneutouch.report.measured import CampaignReport, GroupComparison
@@ -31,7 +31,7 @@ def states_of(resin: str, pressures: tuple[float, ...], library: Library) -> dic
     """The atlas's states of the paper's dome in a resin, by kPa."""
     sensor = sensor_of(assemble(load_scene("paper-dome", library=library)))
     variant = in_resin(sensor, library.all("materials", Material)[resin])
-    result, _ = atlas_result(variant, np.array(pressures) * KPA)
+    result, _ = MODEL.answer_one(variant, np.array(pressures) * KPA)
     return dict(zip(pressures, result.states, strict=True))
 
 

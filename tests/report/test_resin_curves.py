@@ -79,7 +79,7 @@ def test_seven_resins_are_compared_and_stop_at_their_own_limits(evaluated, libra
 def test_curves_under_friction_are_the_solids_within_a_percent(resin, model, evaluated, library):
     """Between the pressures at which they were solved; the hard resin's ranges end by an event."""
     from pneutouch.evaluation.charts import in_resin, resin_curves
-    from pneutouch.mechanics.solid_states import solid_states
+    from pneutouch.mechanics.models.solid import solid_states
 
     material = library.load("materials", resin)
     sensor = evaluated("paper-dome").sensor.replace(friction=0.6)

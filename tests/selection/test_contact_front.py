@@ -9,7 +9,7 @@ import pytest
 
 from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.charts import resized, tradeoff_problem
-from pneutouch.mechanics.atlas_states import atlas_result
+from pneutouch.mechanics.models.atlas import MODEL
 from pneutouch.selection.contact_search import SolvedStates, tried
 from pneutouch.selection.front import contact_front, front, place
 
@@ -29,7 +29,7 @@ def test_a_contact_that_changes_nothing_leaves_the_fronts_as_they_are(evaluated)
         asked.append((radius, wall))
         sized = sensor.replace(inner_radius=radius, wall_thickness=wall, depth=problem.depth_share * radius)
         sized = sized.replace(shear_modulus=resin.shear_modulus, break_stretch=resin.break_stretch)
-        return SolvedStates(atlas_result(sized, np.array(pressures))[0].states)
+        return SolvedStates(MODEL.answer_one(sized, np.array(pressures)).result.states)
 
     (plain,), drawn = front(problem), contact_front(problem, solve)
     (found,) = drawn.fronts

@@ -88,7 +88,7 @@ def test_the_solid_solves_a_judged_design_once(fingertip, monkeypatch):
     solved = fingertip.confirmed[0].sensitivity_kPa_per_N
     afresh = workflow._confirm(fingertip, fingertip.answer.designs[0], None)
     assert solved == pytest.approx(afresh.sensitivity_kPa_per_N, rel=1e-4)
-    monkeypatch.setattr("pneutouch.mechanics.solid_states.solid_states", None)
+    monkeypatch.setattr("pneutouch.mechanics.models.solid.solid_states", None)
     again = workflow._confirm(fingertip, fingertip.answer.designs[0], fingertip.judged[1])
     assert again == fingertip.confirmed[0]
 

@@ -18,7 +18,7 @@ from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.mechanics.harmonic import settling
 from pneutouch.mechanics.harmonic.friction_path import ENDED_BEFORE, STEPS
 from pneutouch.mechanics.harmonic.press import OffAxisPath
-from pneutouch.mechanics.harmonic_states import off_axis_press
+from pneutouch.mechanics.models.harmonic import off_axis_press
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.events import DETAIL, OBJECT_EDGE
 from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, RigidBase, RigidObject, ball, cylinder, edge

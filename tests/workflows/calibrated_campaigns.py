@@ -14,7 +14,7 @@ from pneutouch.bench.simulate import ModelDeviation, ScatterModel, SimulationTru
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
-from pneutouch.mechanics.models import NUMERICAL
+from pneutouch.mechanics.models.accuracy import NUMERICAL
 from pneutouch.mechanics.uncertainty.sources.calibrated import FORCE_GAUGE
 from pneutouch.mechanics.uncertainty.sources.model import GAUGE
 from pneutouch.spec.read import assignments

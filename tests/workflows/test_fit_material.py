@@ -10,8 +10,8 @@ import pytest
 
 from pneutouch.bench.tensile.fit import tension
 from pneutouch.catalogue import Library
+from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.spec.material import HyperelasticLaw, Material
 from tests.conftest import ROOT
 from tests.schemas.held import hold, hold_folder

@@ -11,7 +11,7 @@ from pneutouch.api.design import Design, pressures_changed
 from pneutouch.api.fields import keywords, named_by_keyword
 from pneutouch.api.prediction import Prediction
 from pneutouch.errors import InputError
-from pneutouch.mechanics.models import model_options
+from pneutouch.mechanics.models.choice import model_options
 from pneutouch.report import comparison_words
 from pneutouch.results.comparison import RowRecord
 from pneutouch.results.record import plain

@@ -96,7 +96,7 @@ def simulate(
     ``model`` None: the solid, and harmonic for contact off the axis.
     """
     from pneutouch.bench.simulate import SimulationTruth
-    from pneutouch.mechanics.models import USUAL
+    from pneutouch.mechanics.models.choice import USUAL
     from pneutouch.workflows.simulate import simulate as run
     from pneutouch.workflows.simulate_inputs import SimulationOptions
 
@@ -142,7 +142,7 @@ def characterize(
     ``model`` None: the solid, and harmonic for contact off the axis. Files that cannot be read are listed under
     ``failures``.
     """
-    from pneutouch.mechanics.models import USUAL
+    from pneutouch.mechanics.models.choice import USUAL
     from pneutouch.workflows.characterize.campaign import characterize as run
     from pneutouch.workflows.characterize.campaign import write
 
@@ -235,7 +235,7 @@ def respond(
     a load beyond the range.
     """
     from pneutouch.evaluation.evaluate import evaluate
-    from pneutouch.mechanics.models import model_options
+    from pneutouch.mechanics.models.choice import model_options
     from pneutouch.workflows.respond import Load, run_respond
     from pneutouch.workflows.responded import responded, write_respond
 

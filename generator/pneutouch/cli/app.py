@@ -195,7 +195,7 @@ def predict(
     with reporting():
         if for_ or tasks is not None:
             from pneutouch.cli.driving import report_driving
-            from pneutouch.mechanics.models import model_options
+            from pneutouch.mechanics.models.choice import model_options
 
             if monte_carlo:
                 raise InputError("cannot be given with `for_` or `tasks`", key="monte_carlo", value=monte_carlo)
@@ -207,7 +207,7 @@ def predict(
             raise InputError("needs `for_` or `tasks`", key="leak", value=str(leak))
         from pneutouch.evaluation.evaluate import evaluate
         from pneutouch.evaluation.result import predicted_in_full
-        from pneutouch.mechanics.models import model_options
+        from pneutouch.mechanics.models.choice import model_options
         from pneutouch.results.record import plain
 
         evaluation = evaluate(

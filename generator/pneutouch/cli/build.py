@@ -173,7 +173,7 @@ def _evaluated(
 ) -> Evaluation:
     from pneutouch.catalogue import DesignSource, Library
     from pneutouch.evaluation.evaluate import evaluate
-    from pneutouch.mechanics.models import model_options
+    from pneutouch.mechanics.models.choice import model_options
     from pneutouch.spec.values import plain_name
 
     source = DesignSource.of(design, Library.default())

@@ -63,7 +63,7 @@ def characterize(
     with reporting():
         from pneutouch.cli.progress import bar
         from pneutouch.errors import InputError, nearest
-        from pneutouch.mechanics.models import USUAL
+        from pneutouch.mechanics.models.choice import USUAL
         from pneutouch.results.record import plain
         from pneutouch.workflows.characterize.campaign import EVIDENCE, write
         from pneutouch.workflows.characterize.campaign import characterize as run

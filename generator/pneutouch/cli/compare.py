@@ -44,7 +44,7 @@ def compare(
     """Compare designs, builds and measurements: their differences, and those that exceed their uncertainty."""
     with reporting():
         from pneutouch.cli.progress import bar
-        from pneutouch.mechanics.models import model_options
+        from pneutouch.mechanics.models.choice import model_options
         from pneutouch.results.record import plain
         from pneutouch.workflows.compare import compare as run
         from pneutouch.workflows.compare import write

@@ -51,7 +51,7 @@ def export_reader(
     with reporting():
         from pneutouch.cli.progress import bar
         from pneutouch.evaluation.evaluate import evaluate
-        from pneutouch.mechanics.models import model_options
+        from pneutouch.mechanics.models.choice import model_options
         from pneutouch.workflows.export_reader import make_reader, write_reader
 
         options = model_options(model or (None if tolerance else "auto"), tolerance)

@@ -62,7 +62,7 @@ def respond(
     with reporting():
         load = _load(step, sine, peak, duration)
         from pneutouch.evaluation.evaluate import evaluate
-        from pneutouch.mechanics.models import model_options
+        from pneutouch.mechanics.models.choice import model_options
         from pneutouch.workflows.respond import run_respond
         from pneutouch.workflows.responded import responded, write_respond
 

@@ -75,7 +75,7 @@ def simulate(
     """Simulate a measurement campaign: records with known truth, always labelled as simulated."""
     with reporting():
         from pneutouch.bench.simulate import SimulationTruth
-        from pneutouch.mechanics.models import USUAL
+        from pneutouch.mechanics.models.choice import USUAL
         from pneutouch.workflows.simulate import simulate
         from pneutouch.workflows.simulate_inputs import SimulationOptions
 

@@ -20,9 +20,9 @@ from pneutouch.evaluation.uncertainty import known
 from pneutouch.mechanics import Sensor, SensorState, predict
 from pneutouch.mechanics.atlas.respond import OUTSIDE, respond
 from pneutouch.mechanics.atlas.table import shipped
-from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.contact_correction import plate_alone
 from pneutouch.mechanics.limits import RATED_SHARE, limit_point
+from pneutouch.mechanics.models.atlas import outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.mechanics.solid.indenter import RigidBase
@@ -162,11 +162,10 @@ def resin_curves(
 
 def _by_atlas(variants: dict[str, Sensor], highest: float) -> dict[str, ResinCurve]:
     """Curves of the resins that the atlas covers, all in one call; without points outside it."""
-    from pneutouch.mechanics.atlas.press import batch_of
+    from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
     from pneutouch.mechanics.atlas.respond import EDGE, OUTSIDE, respond
     from pneutouch.mechanics.atlas.table import shipped
-    from pneutouch.mechanics.atlas_states import outside_atlas
-    from pneutouch.mechanics.uncertainty.neighbours import joined
+    from pneutouch.mechanics.models.atlas import outside_atlas
 
     inside = {title: variant for title, variant in variants.items() if outside_atlas(variant) is None}
     if not inside:
@@ -176,7 +175,9 @@ def _by_atlas(variants: dict[str, Sensor], highest: float) -> dict[str, ResinCur
     share = np.linspace(0.0, 1.0, _POINTS["atlas"])
     grids = [min(highest, _MARGIN * float(limit)) * share for limit in limits]
     steps = next(iter(inside.values())).protocol.steps
-    response = respond(joined([batch_of(v, grid) for v, grid in zip(inside.values(), grids, strict=True)]), steps)
+    response = respond(
+        SensorBatch.join([batch_of(v, grid) for v, grid in zip(inside.values(), grids, strict=True)]), steps
+    )
     known = np.isfinite(response.lines.sensitivity_kPa_per_N) & ~np.isin(response.ends, (OUTSIDE, EDGE))
     rows = zip(
         inside,
@@ -300,7 +301,7 @@ def resized(sensor: Sensor, problem: SelectionProblem) -> SolveCandidate:
 
     def solve(resin: CandidateResin, pool: CandidatePool, pressures: list[float]) -> SolvedStates:
         """States of a candidate at driving pressures (MPa), or why there are none."""
-        from pneutouch.mechanics.solid_states import solid_states
+        from pneutouch.mechanics.models.solid import solid_states
 
         radius = float(pool.radius[0])
         sized = in_resin(sensor, resin.material).replace(

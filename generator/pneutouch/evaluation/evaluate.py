@@ -18,7 +18,7 @@ from pneutouch.evaluation.contact_object import check_first_touch, check_object,
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
 from pneutouch.mechanics.gauge_reading import gauge_reading
-from pneutouch.mechanics.models import DEFAULT_TOLERANCE, USUAL
+from pneutouch.mechanics.models.choice import DEFAULT_TOLERANCE, USUAL
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.viscous.prony import AGED, ageing_ratio
 from pneutouch.parts import Assembly, assemble

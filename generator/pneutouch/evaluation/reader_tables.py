@@ -85,12 +85,12 @@ def why_unknown(evaluation: Evaluation, grid: ReaderGrid) -> str | None:
 def _slopes(batch: SensorBatch) -> Array:
     """Slopes of ln force at a fixed pressure rise by the inputs in their unit of uncertainty, (inputs, n, columns)."""
     from pneutouch.mechanics.atlas.respond import respond
-    from pneutouch.mechanics.uncertainty.neighbours import joined, moved, neighbourhood, unit_step
+    from pneutouch.mechanics.uncertainty.neighbours import moved, neighbourhood, unit_step
     from pneutouch.mechanics.uncertainty.source import INPUTS
 
     unit, size = unit_step(batch), len(batch)
     moves = [moved(batch, name, sign * _STEP * unit[i]) for i, name in enumerate(INPUTS) for sign in (1.0, -1.0)]
-    response = respond(joined([batch, *moves]), _STEPS, neighbourhood())
+    response = respond(SensorBatch.join([batch, *moves]), _STEPS, neighbourhood())
     curves = [(response.rise[k], response.force[k]) for k in range(size * (1 + len(moves)))]
     shares = np.linspace(0.0, 1.0, UNCERTAINTY_COLUMNS)
     slopes = np.zeros((len(INPUTS), size, UNCERTAINTY_COLUMNS))

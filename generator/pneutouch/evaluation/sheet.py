@@ -31,7 +31,7 @@ from pneutouch.evaluation.sheet_data import (
 from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.evaluation.uncertainty import unknown
 from pneutouch.mechanics import Sensor, SensorPrediction
-from pneutouch.mechanics.models import stated_error
+from pneutouch.mechanics.models.choice import stated_error
 from pneutouch.mechanics.viscous.describe import ViscousRuns
 from pneutouch.mechanics.viscous.prony import ageing_ratio, ageing_unknown
 from pneutouch.mechanics.viscous.runs import LoopRun, RelaxationRun
@@ -155,7 +155,7 @@ def constant_membranes(sensor: Sensor, prediction: SensorPrediction) -> tuple[Co
 
 def _constant(sensor: Sensor, pressures: np.ndarray, label: str) -> ComparedMembrane | None:
     """A constant membrane at the pressures that it can be solved for; None if there are none."""
-    from pneutouch.mechanics.solid_states import solid_states
+    from pneutouch.mechanics.models.solid import solid_states
 
     for count in range(pressures.size, 0, -1):
         try:
@@ -193,7 +193,7 @@ def ageing_data(prediction: SensorPrediction, material: Material, sensor: Sensor
     why = ageing_unknown(material)
     if why is not None:
         return why
-    from pneutouch.mechanics.atlas_states import outside_atlas
+    from pneutouch.mechanics.models.atlas import outside_atlas
     from pneutouch.mechanics.viscous.describe import ageing_shift
 
     changes: tuple[tuple[float, float], ...] = ()

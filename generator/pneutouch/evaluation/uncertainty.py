@@ -22,7 +22,8 @@ from pneutouch.evaluation.calibrated import friction_spread
 from pneutouch.evaluation.contact_object import contact_notes
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
-from pneutouch.mechanics.models import LIMIT_DISCRETISATION, NUMERICAL, stated_error
+from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION, NUMERICAL
+from pneutouch.mechanics.models.choice import stated_error
 from pneutouch.results.uncertainty import FigureRecord, SampledInterval, SampleRecord, UncertaintyRecord
 from pneutouch.rounding import rounded
 from pneutouch.spec.calibration import SensorCalibration
@@ -100,8 +101,8 @@ def unknown(sensor: Sensor, model: str) -> str | None:
     """
     if model == "membrane":
         return _TREND
-    from pneutouch.mechanics.atlas_states import outside_atlas
     from pneutouch.mechanics.contact_correction import plate_alone
+    from pneutouch.mechanics.models.atlas import outside_atlas
 
     why = outside_atlas(plate_alone(sensor))
     return None if why is None else f"the sensor is outside the atlas: {why}"
@@ -109,7 +110,7 @@ def unknown(sensor: Sensor, model: str) -> str | None:
 
 def _softer_unknown(sensor: Sensor) -> str | None:
     """Reason why the derivatives of a wall too soft for the atlas itself are unknown, or None if they are known."""
-    from pneutouch.mechanics.atlas_states import outside_atlas
+    from pneutouch.mechanics.models.atlas import outside_atlas
     from pneutouch.mechanics.uncertainty.neighbours import softer_walls
 
     why = outside_atlas(sensor, softer_walls())

@@ -16,7 +16,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
-from pneutouch.mechanics.atlas_states import outside_atlas
+from pneutouch.mechanics.models.atlas import outside_atlas
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA
 
@@ -108,7 +108,7 @@ def plate_alone(sensor: Sensor) -> Sensor:
 def _pressed(sensor: Sensor, pressures: tuple[float, ...]) -> tuple[Array, ...]:
     """Travel, force and rise (3, n) by the solid at ascending pressures, without the highest that it cannot be driven
     to; a fit and its checks need the same ones again."""
-    from pneutouch.mechanics.solid_states import solid_states
+    from pneutouch.mechanics.models.solid import solid_states
 
     for count in range(len(pressures), 0, -1):
         try:

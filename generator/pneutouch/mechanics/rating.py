@@ -9,7 +9,7 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.contact_correction import outside_fit
 from pneutouch.mechanics.limits import RATED_SHARE, Limits
-from pneutouch.mechanics.models import LIMIT_DISCRETISATION
+from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.propagate import COUPON, COVERAGE, limit_spread
 from pneutouch.rounding import tenths_below

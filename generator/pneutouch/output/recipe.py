@@ -20,7 +20,7 @@ from pneutouch.evaluation.evaluate import CLAMPS, Evaluation, PredictionOptions,
 from pneutouch.export.threemf_read import Package
 from pneutouch.formats import check_format, versioned
 from pneutouch.mechanics.membrane_contact import CLOSURES
-from pneutouch.mechanics.models import MODEL_CHOICES
+from pneutouch.mechanics.models.choice import MODEL_CHOICES
 from pneutouch.output.files import input_hash, versions
 from pneutouch.spec.fields import Table
 from pneutouch.spec.read import validate

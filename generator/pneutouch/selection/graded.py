@@ -216,7 +216,7 @@ def trial_of(
     rim: float = np.nan,
 ) -> GradeTrial:
     """Figures of a sensor by the solid; NaN with the reason where it has none. ``rate``: limits to a rated pressure."""
-    from pneutouch.mechanics.solid_states import solid_result
+    from pneutouch.mechanics.models.solid import solid_result
 
     unknown = (np.nan,) * len(pressures)
     try:

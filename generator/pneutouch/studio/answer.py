@@ -15,8 +15,8 @@ from pneutouch.evaluation.charts import curve, resin_curves, tuning
 from pneutouch.evaluation.evaluate import PredictionOptions, evaluate_scene, sensor_of
 from pneutouch.evaluation.result import by_model, rating_record
 from pneutouch.evaluation.uncertainty import unknown
-from pneutouch.mechanics.atlas_states import outside_atlas
-from pneutouch.mechanics.models import USUAL
+from pneutouch.mechanics.models.atlas import outside_atlas
+from pneutouch.mechanics.models.choice import USUAL
 from pneutouch.parts import assemble
 from pneutouch.results.record import plain
 from pneutouch.rounding import rounded

@@ -9,7 +9,7 @@ from typing import Any
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
-from pneutouch.mechanics.models import model_options
+from pneutouch.mechanics.models.choice import model_options
 from pneutouch.output.files import MANIFEST
 from pneutouch.results.record import plain
 from pneutouch.spec.values import plain_name

@@ -13,7 +13,7 @@ from pneutouch.arrays import Array, hermite
 from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, SensorBatch, batch_of
 from pneutouch.mechanics.atlas.table import shipped
-from pneutouch.mechanics.atlas_states import outside_atlas
+from pneutouch.mechanics.models.atlas import outside_atlas
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA
 
@@ -195,7 +195,7 @@ def _solid_curve(sensor: Sensor, pressure: float) -> LoadingCurve:
 
     from scipy.interpolate import CubicSpline
 
-    from pneutouch.mechanics.solid_states import solid_states
+    from pneutouch.mechanics.models.solid import solid_states
 
     try:
         state = solid_states(sensor.replace(steps=_SOLID_STEPS), np.array([pressure]))[0]

@@ -11,7 +11,7 @@ from pneutouch.catalogue.library import elastomers
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.table import least_limit, shipped
-from pneutouch.mechanics.atlas_states import resin_outside_atlas
+from pneutouch.mechanics.models.atlas import resin_outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import LIMIT_ERROR, rated_pressure
 from pneutouch.mechanics.sensor import Sensor

@@ -31,7 +31,7 @@ from pneutouch.evaluation.gauge import reading_of
 from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
 from pneutouch.formats import versioned
 from pneutouch.mechanics import Sensor
-from pneutouch.mechanics.models import USUAL, usual_model
+from pneutouch.mechanics.models.choice import USUAL, usual_model
 from pneutouch.output.files import MANIFEST, entry, input_hash, json_bytes, manifest, replacing
 from pneutouch.results.record import plain
 from pneutouch.results.simulation import CampaignTruth, ParameterValue, SimulatedPopulation, SimulatedSpecimen

@@ -17,7 +17,7 @@ from pneutouch.catalogue import DesignSource, Library, known_design
 from pneutouch.catalogue.scene import split_calibration
 from pneutouch.errors import InputError, nearest
 from pneutouch.evaluation.resins import SimulatedResin
-from pneutouch.mechanics.models import USUAL
+from pneutouch.mechanics.models.choice import USUAL
 from pneutouch.spec.campaign import CAMPAIGN, CampaignRun, RunKind, campaign_of
 from pneutouch.spec.files import is_file, read_bytes
 from pneutouch.spec.read import Changes, parse_changes

@@ -13,13 +13,13 @@ from pneutouch.mechanics.anywhere.table import PlaceTableRecipe
 from pneutouch.mechanics.harmonic.press import OffAxisPress
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject, ProfiledObject
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.models.solid import KINDS
 from pneutouch.mechanics.solid.indent import PressSettings
 from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, Indenter, RigidBase, RigidObject, ball, edge
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch, inflate, state_at
 from pneutouch.mechanics.solid.mesh import arc_cells, dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe
-from pneutouch.mechanics.solid_states import KINDS
 
 _AMBIENT = 0.05
 """Least ambient pressure in mu; a softer gas is one with more volume behind the cavity."""

@@ -13,8 +13,8 @@ from pneutouch.bench.calibrate.parameters import FRICTION, MODULUS, NAMES, USUAL
 from pneutouch.catalogue import load_scene
 from pneutouch.errors import InputError
 from pneutouch.mechanics.contact_correction import GRIPS
+from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.solid_states import solid_states
 from pneutouch.units import KPA
 from pneutouch.workflows.calibrate.files import CampaignSource, savable
 from pneutouch.workflows.calibrate.fit import calibrate

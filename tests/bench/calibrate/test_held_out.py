@@ -10,7 +10,7 @@ import pytest
 from pneutouch.bench.calibrate import Observations, fit, predict_held_out
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS
 from pneutouch.errors import InputError
-from pneutouch.mechanics.solid_states import solid_result
+from pneutouch.mechanics.models.solid import solid_result
 from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, disturbed, other
 
 

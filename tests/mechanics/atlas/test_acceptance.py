@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from benchmarks.atlas import Gap, compare_all, random_cases
 
-from pneutouch.mechanics.models import TABULATION
+from pneutouch.mechanics.models.accuracy import TABULATION
 
 COUNT = 2000
 HALF = 0.005

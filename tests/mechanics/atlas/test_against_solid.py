@@ -14,6 +14,7 @@ from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.inflation import RISING_BRANCH
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.mechanics.prediction import ModelResult
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.mechanics.solid.indenter import RigidBase
@@ -21,7 +22,6 @@ from pneutouch.mechanics.solid.inflate import at_volume, inflate
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe
-from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 
 # Radius mm, wall/R0, mu MPa, dead volume/R0^3, depth/R0, driving pressure kPa, gauge limit MPa, break stretch.

@@ -10,8 +10,8 @@ from pneutouch.mechanics.harmonic import model
 from pneutouch.mechanics.harmonic.fields import Harmonics
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.surface import LyingObject
-from pneutouch.mechanics.harmonic_states import EVEN_ORDERS, ORDERS, off_axis_press
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.models.harmonic import EVEN_ORDERS, ORDERS, off_axis_press
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.solid.indent import PressSettings
 from pneutouch.mechanics.solid.indenter import RigidBase, ball, edge

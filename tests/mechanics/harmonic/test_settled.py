@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.mechanics.harmonic_states import _Curve, change
+from pneutouch.mechanics.models.harmonic import _Curve, change
 
 TRAVEL = np.linspace(0.0, 2.0, 15)
 CURVE = _Curve(TRAVEL, TRAVEL**1.5, 0.004 * TRAVEL**1.5, -1.5)

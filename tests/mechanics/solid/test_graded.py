@@ -13,7 +13,8 @@ from pneutouch.catalogue.mixture import mixed_material
 from pneutouch.errors import InputError
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.models import models_for
+from pneutouch.mechanics.models.choice import models_for
+from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.cavity import Gas
@@ -23,7 +24,6 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene
 from pneutouch.mechanics.solid.object_contact import Plate
-from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.shape.meridian import arc_share
 from pneutouch.spec.grade import Grade
 from pneutouch.units import KPA

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import BeyondLimitError
-from pneutouch.mechanics.solid_states import solid_result, solid_states
+from pneutouch.mechanics.models.solid import solid_result, solid_states
 from pneutouch.units import KPA
 from tests.mechanics.solid.test_graded import sensor
 

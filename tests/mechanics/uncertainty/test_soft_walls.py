@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pneutouch.evaluation.evaluate import evaluate
-from pneutouch.mechanics.atlas_states import outside_atlas
+from pneutouch.mechanics.models.atlas import outside_atlas
 from pneutouch.mechanics.uncertainty import FIGURES, batch_of
 from pneutouch.mechanics.uncertainty.contact_model import pressed_logs
 from pneutouch.mechanics.uncertainty.neighbours import log_figures, moved, softer_walls

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from pneutouch.catalogue import Library
-from pneutouch.mechanics.atlas.press import batch_of
+from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.uncertainty.neighbours import joined
 from pneutouch.mechanics.viscous.describe import LOOP_SPEEDS, RAMP_SPEED, loop_by_solid, relaxation_by_solid
 from pneutouch.mechanics.viscous.prony import ageing_ratio, prony_series
 from pneutouch.mechanics.viscous.runs import loop, relaxation
@@ -119,7 +118,7 @@ def needed(material: Material, measured: float) -> str:
     fresh = material_sensor(material)
     ratios = np.append(np.geomspace(1 / 3, 3, 89), 1.0)
     moved = [batch_of(fresh.replace(shear_modulus=r * fresh.wall.shear_modulus), DRIVEN) for r in ratios]
-    curves = respond(joined(moved), fresh.protocol.steps).lines.sensitivity_kPa_per_N.reshape(len(ratios), -1)
+    curves = respond(SensorBatch.join(moved), fresh.protocol.steps).lines.sensitivity_kPa_per_N.reshape(len(ratios), -1)
     size = np.abs(curves - curves[-1]).mean(axis=1) / curves.mean(axis=1)
     known = np.isfinite(size)
     enough = ratios[known & (np.nan_to_num(size) >= measured)]

@@ -7,10 +7,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from pneutouch.mechanics.models.solid import press_settings, solid_probe, solid_states
 from pneutouch.mechanics.solid.friction_loop import friction_loop
 from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.mechanics.solid.inflate import state_at
-from pneutouch.mechanics.solid_states import press_settings, solid_probe, solid_states
 from pneutouch.mechanics.viscous.describe import _Run, loop_by_solid, relaxation_by_solid
 from pneutouch.mechanics.viscous.prony import Prony
 from pneutouch.mechanics.viscous.runs import loop, relaxation

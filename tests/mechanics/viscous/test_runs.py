@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.solid_states import solid_result
+from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.mechanics.viscous.prony import Prony
 from pneutouch.mechanics.viscous.runs import HOLD_TIMES, loop, relaxation
 from tests.mechanics.viscous.closed import after_ramp, energy_loss

@@ -35,8 +35,8 @@ WHOLE = 0.002
 """Share of the cases that compute everything; the others end where the computing of seconds begins."""
 
 LEFT_OUT = (
-    "pneutouch.mechanics.solid_states.solid_states",
-    "pneutouch.mechanics.solid_states.solid_result",
+    "pneutouch.mechanics.models.solid.solid_states",
+    "pneutouch.mechanics.models.solid.solid_result",
     "pneutouch.workflows.build.refuse",
     "pneutouch.workflows.calibrate.calibrate.calibrate",
     "pneutouch.workflows.compare._parts",

@@ -30,8 +30,8 @@ from pneutouch.bench.calibrate.parameters import (
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
 from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasSlices, shipped
-from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.contact_correction import contact_ratio, plate_alone
+from pneutouch.mechanics.models.atlas import outside_atlas
 from pneutouch.mechanics.sensor import Sensor
 
 _NODES = 60

@@ -190,7 +190,7 @@ def _drawn(
     sensor: Sensor, driving: float, steps: RunProtocol, truth: SimulationTruth, seed: tuple[int, ...]
 ) -> tuple[FigureArrays, int] | None:
     """Figures of the nominal sensor (first) and of the specimens that reach every depth; None if too few do."""
-    from pneutouch.mechanics.atlas_states import outside_atlas
+    from pneutouch.mechanics.models.atlas import outside_atlas
 
     depth = max(steps.depths)
     nominal = sensor.replace(depth=depth, gauge_limit=np.inf)

@@ -46,6 +46,11 @@ class SensorBatch:
     def __len__(self) -> int:
         return self.inner_radius.size
 
+    @classmethod
+    def join(cls, batches: Sequence[SensorBatch]) -> SensorBatch:
+        """Batches one after the other."""
+        return cls(*(np.concatenate([getattr(batch, field.name) for batch in batches]) for field in fields(cls)))
+
     def take(self, rows: Index | Flags | slice) -> SensorBatch:
         """Some of the sensors."""
         return SensorBatch(*(getattr(self, field.name)[rows] for field in fields(self)))

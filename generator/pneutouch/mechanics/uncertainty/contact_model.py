@@ -15,11 +15,11 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
-from pneutouch.mechanics.atlas.press import batch_of
+from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.contact_correction import GRIPS, plate_alone
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
-from pneutouch.mechanics.uncertainty.neighbours import joined, log_figures
+from pneutouch.mechanics.uncertainty.neighbours import log_figures
 from pneutouch.mechanics.uncertainty.source import CONTACT_FIGURES, FIGURES
 
 SAME = 1e-6
@@ -30,7 +30,7 @@ SAME = 1e-6
 def pressed_logs(sensor: Sensor, pressures: tuple[float, ...]) -> Array:
     """Logarithms of the figures at ascending driving pressures, MPa, (figures, n), read-only; all NaN if the solid
     cannot solve the highest. The chart, the budget and the curves of a datasheet need the same ones again."""
-    from pneutouch.mechanics.solid_states import solid_states
+    from pneutouch.mechanics.models.solid import solid_states
 
     try:
         logs = state_logs(solid_states(sensor, np.array(pressures)))
@@ -257,7 +257,7 @@ class ContactModel:
             rows, changes = np.arange(count), np.hstack([changes[:, :1], inner, changes[:, 1:]])
         if sensor.wall != self.sensor.wall:
             plates = [batch_of(plate_alone(one), at[rows]) for one in (sensor, self.sensor)]
-            there, here = np.split(log_figures(joined(plates)), 2, axis=1)
+            there, here = np.split(log_figures(SensorBatch.join(plates)), 2, axis=1)
             changes = changes - (there - here)
         return between(np.array(self.pressures), at[rows], changes)
 

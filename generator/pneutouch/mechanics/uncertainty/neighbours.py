@@ -63,13 +63,6 @@ def moved(batch: SensorBatch, name: str, by: Array) -> SensorBatch:
     return replace(batch, dead_volume=np.maximum(value + by, least))
 
 
-def joined(batches: list[SensorBatch]) -> SensorBatch:
-    """Batches one after the other."""
-    return SensorBatch(
-        *(np.concatenate([getattr(b, field) for b in batches]) for field in SensorBatch.__dataclass_fields__)
-    )
-
-
 def unit_step(batch: SensorBatch) -> Array:
     """Size of a step of one in each input, (inputs, n): the input itself; for the dead volume all the gas, mm3."""
     steps = np.ones((len(INPUTS), len(batch)))

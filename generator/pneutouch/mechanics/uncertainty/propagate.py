@@ -18,7 +18,7 @@ import numpy as np
 from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.contact_model import ContactModel, ContactShift
-from pneutouch.mechanics.uncertainty.neighbours import joined, log_figures, moved, neighbourhood, unit_step
+from pneutouch.mechanics.uncertainty.neighbours import log_figures, moved, neighbourhood, unit_step
 from pneutouch.mechanics.uncertainty.source import DEAD, FIGURES, INPUTS, UncertaintySource
 from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors
@@ -86,7 +86,7 @@ def derivatives(
     far = np.sqrt(kurtosis) * widest
     offsets = (step * unit, -step * unit, far, -far)
     rows = [moved(batch, name, offset[i]) for i, name in enumerate(INPUTS) for offset in offsets]
-    every, size = joined([batch, *rows]), len(batch)
+    every, size = SensorBatch.join([batch, *rows]), len(batch)
     logs = log_figures(every, None if groups is None else np.tile(groups, 1 + len(rows)))
     if shift is not None:
         by = np.log(every.shear_modulus.reshape(-1, size) / batch.shear_modulus)
@@ -219,7 +219,9 @@ def propagate_groups(groups: Sequence[tuple[SensorBatch, list[UncertaintySource]
     spreads = [_by_input(batch, sources) for batch, sources in groups]
     standard, kurtosis = (np.concatenate(part, axis=-1) for part in zip(*spreads, strict=True))
     sizes = [len(batch) for batch in batches]
-    slopes_of = derivatives(joined(batches), standard, kurtosis, groups=np.repeat(np.arange(len(groups)), sizes))
+    slopes_of = derivatives(
+        SensorBatch.join(batches), standard, kurtosis, groups=np.repeat(np.arange(len(groups)), sizes)
+    )
     return [
         _combined(sources, slopes_of.part(slice(end - size, end)), None)
         for (_, sources), size, end in zip(groups, sizes, np.cumsum(sizes), strict=True)

@@ -19,7 +19,8 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.atlas_states import outside_atlas
+from pneutouch.mechanics.models.atlas import outside_atlas
+from pneutouch.mechanics.models.solid import press_settings, solid_probe
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.cavity import FillingState, Gas
 from pneutouch.mechanics.solid.continuation import LONGEST, PathFollower, PlateState
@@ -27,7 +28,6 @@ from pneutouch.mechanics.solid.indent import follower_of, shut_in
 from pneutouch.mechanics.solid.inflate import first_touch, inflate, state_at
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure
-from pneutouch.mechanics.solid_states import press_settings, solid_probe
 from pneutouch.mechanics.viscous.prony import Prony, ageing_ratio, prony_series, relaxed
 from pneutouch.mechanics.viscous.runs import HOLD_TIMES, LoopRun, Memory, RelaxationRun, loop, loop_run, relaxation
 from pneutouch.spec.material import Material

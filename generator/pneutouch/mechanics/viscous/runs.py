@@ -172,7 +172,7 @@ def relaxation(
 ) -> list[list[RelaxationRun]]:
     """Press to ``depth`` mm at ``speed`` mm/s and hold for ``times`` (ascending, s, > 0); lists by pressure, series.
 
-    The sensor's modulus is the relaxed one and the sensor lies inside the atlas (`atlas_states.outside_atlas`).
+    The sensor's modulus is the relaxed one and the sensor lies inside the atlas (`models.atlas.outside_atlas`).
     """
     share = np.linspace(0.0, 1.0, steps + 1)
     # The history is taken as even between times: those between the requested ones must not be left out.

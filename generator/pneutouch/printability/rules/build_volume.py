@@ -112,7 +112,7 @@ def _sensitivities(sensor: Sensor, pressure: float, low: float, high: float) -> 
     """The atlas's sensitivities between both walls; nothing where it does not cover the sensor."""
     from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.atlas.respond import OUTSIDE, respond
-    from pneutouch.mechanics.atlas_states import outside_atlas
+    from pneutouch.mechanics.models.atlas import outside_atlas
 
     sensitivities = []
     for wall in (low, high):

@@ -21,7 +21,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.calibrated import check_fitted
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.formats import versioned
-from pneutouch.mechanics.models import USUAL, usual_model
+from pneutouch.mechanics.models.choice import USUAL, usual_model
 from pneutouch.output.files import MANIFEST, check_writable, entry, input_hash, json_bytes, manifest, write_folder
 from pneutouch.parts import assemble
 from pneutouch.report.measured import CampaignReport

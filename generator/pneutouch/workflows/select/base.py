@@ -16,7 +16,7 @@ from pneutouch.catalogue import DEFAULT, DesignSource, Library, ResolvedDesign, 
 from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixed_material, mixing
 from pneutouch.catalogue.printers import casting_missing, made_by, makers, uncast
 from pneutouch.errors import InputError, PneutouchError, shown
-from pneutouch.mechanics.atlas_states import resin_outside_atlas
+from pneutouch.mechanics.models.atlas import resin_outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.selection.mixes import levels
 from pneutouch.selection.problem import CandidateResin

@@ -29,7 +29,7 @@ from pneutouch.evaluation.subject import subject_of
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.evaluation.uncertainty import even_wall, known, unknown
 from pneutouch.mechanics.atlas.press import SensorBatch
-from pneutouch.mechanics.models import NUMERICAL
+from pneutouch.mechanics.models.accuracy import NUMERICAL
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indenter import RigidBase
@@ -230,7 +230,7 @@ class CandidateSolver:
 
     def __call__(self, resin: CandidateResin, pool: CandidatePool, pressures: list[float]) -> SolvedStates:
         """States at driving pressures, MPa, rising; or why there are none."""
-        from pneutouch.mechanics.solid_states import solid_states
+        from pneutouch.mechanics.models.solid import solid_states
 
         try:
             scene, sensor = self.drawn(resin, pool)

@@ -14,7 +14,7 @@ from pneutouch.catalogue.printers import casting_missing
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.mechanics.atlas.table import shipped
-from pneutouch.mechanics.atlas_states import resin_outside_atlas
+from pneutouch.mechanics.models.atlas import resin_outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import LIMIT_ERROR
 from pneutouch.mechanics.sensor import Sensor
@@ -286,7 +286,7 @@ def problem_of(
 
 def _confirm(selection: SelectionRun, choice: Candidate, judged: Evaluation | None) -> Confirmation:
     """The solid's sensitivity, compared with that of the atlas; of a design judged already it is known."""
-    from pneutouch.mechanics.solid_states import solid_states
+    from pneutouch.mechanics.models.solid import solid_states
 
     if judged is None:
         wall = material_sensor(choice.resin.material).wall

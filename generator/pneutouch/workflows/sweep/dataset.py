@@ -19,7 +19,7 @@ import numpy as np
 from pneutouch import __version__
 from pneutouch.errors import InputError
 from pneutouch.formats import KEY, check_format, format_of
-from pneutouch.mechanics.models import USUAL
+from pneutouch.mechanics.models.choice import USUAL
 from pneutouch.output.files import replace_files
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of

@@ -19,7 +19,7 @@ from pneutouch.errors import InputError, nearest, shown
 from pneutouch.evaluation.evaluate import CLAMPS
 from pneutouch.mechanics import MODEL_CHOICES
 from pneutouch.mechanics.membrane_contact import CLOSURES
-from pneutouch.mechanics.models import USUAL
+from pneutouch.mechanics.models.choice import USUAL
 from pneutouch.spec.design import CALIBRATION, DesignFile
 from pneutouch.spec.fields import table_of
 from pneutouch.spec.files import design_inside

@@ -16,7 +16,7 @@ from pneutouch.catalogue.library import CachedLibrary, elastomers
 from pneutouch.errors import BeyondLimitError, InputError, PneutouchError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.result import predicted
-from pneutouch.mechanics.models import USUAL
+from pneutouch.mechanics.models.choice import USUAL
 from pneutouch.output.files import digest, json_bytes
 from pneutouch.results.record import plain
 from pneutouch.spec.contact import LYING

@@ -19,7 +19,6 @@ from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.contact_model import ContactModel
-from pneutouch.mechanics.uncertainty.neighbours import joined
 from pneutouch.mechanics.uncertainty.source import (
     CONTACT_FIGURES,
     FIGURE,
@@ -91,7 +90,7 @@ def _table_s1_sensitivities(sensors: tuple[Sensor, ...]) -> Array:
     """Sensitivities by the atlas at 0 and 22 kPa, kPa/N, (n, 2). Kept, since they do not depend on the design."""
     if not sensors:
         return np.empty((0, 2))
-    batch = joined([batch_of(sensor, [0.0, 22.0 * KPA]) for sensor in sensors])
+    batch = SensorBatch.join([batch_of(sensor, [0.0, 22.0 * KPA]) for sensor in sensors])
     return respond(batch).lines.sensitivity_kPa_per_N.reshape(-1, 2)
 
 

@@ -1,12 +1,13 @@
 """The model ``atlas``: the solid's answers looked up for a sensor, in the form that every model returns."""
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from itertools import groupby
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.errors import BeyondLimitError
-from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, batch_of
+from pneutouch.errors import BeyondLimitError, PneutouchError
+from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, SensorBatch, batch_of
 from pneutouch.mechanics.atlas.recipe import FIELDS
 from pneutouch.mechanics.atlas.respond import (
     BREAK,
@@ -18,15 +19,20 @@ from pneutouch.mechanics.atlas.respond import (
     NEAR,
     OUTSIDE,
     AtlasResponse,
+    AtlasRun,
     run,
 )
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, AtlasSlices, shipped
 from pneutouch.mechanics.events import Event
 from pneutouch.mechanics.limits import LimitPoint, Limits
+from pneutouch.mechanics.models.accuracy import NUMERICAL, TABULATION
+from pneutouch.mechanics.models.interface import Answer, Limitation, Model
+from pneutouch.mechanics.models.statements import BODY, NOT_CHECKED, discretised, solid_assumptions
 from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor, WallMaterial
 from pneutouch.mechanics.solid.events import CREASE, DETAIL, PathPoint, crossing
+from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.units import KPA
 
 _BULGE, _RING_FROM, _RING_ROUND = 0.0107, 0.6, 0.04
@@ -34,6 +40,13 @@ _BULGE, _RING_FROM, _RING_ROUND = 0.0107, 0.6, 0.04
 distance inside its edge at which the solid's ring begins (R0): `meets_ring`."""
 
 _BUCKLES = "the wall buckles inward under the plate, or its gas no longer holds it"
+_TABULATION_SUMMARY = (
+    f"Tabulation: sensitivity within {TABULATION:.1%} of the solid, that is within {NUMERICAL['atlas']:.1%} "
+    "of a refined mesh."
+)
+_TOGETHER = 500
+"""Sensors of one pass: more would hold more memory and take no less time."""
+
 _DETAIL = {EDGE: DETAIL["plate_rim"], GAUGE: DETAIL["gauge_range"], BREAK: DETAIL["break"], BUCKLING: _BUCKLES}
 
 
@@ -91,50 +104,83 @@ def meets_ring(sensor: Sensor) -> bool:
     return deep > 0.0 and gap < _BULGE * deep / wall + _RING_ROUND
 
 
-class AnswerLimitation(NamedTuple):
-    """Reason why `auto` must not use a result; ``fatal`` if it is no result at all."""
-
-    why: str
-    fatal: bool
-
-
-_MEETS_RING = AnswerLimitation(
+_MEETS_RING = Limitation(
     "in a deep press the wall meets the ring that clamps its flange, which the atlas leaves out: its sensitivity is up "
     "to 10% too high without driving pressure",
     False,
 )
 
 _LIMITATIONS = {
-    OUTSIDE: AnswerLimitation("the press leaves the states that the atlas covers", True),
-    EDGE: AnswerLimitation("the contact reaches the plate's edge", True),
-    BUCKLING: AnswerLimitation("the wall buckles in the press, which the solid places more exactly", False),
-    BREAK: AnswerLimitation("the break strain is reached in the press, which the solid places more exactly", False),
+    OUTSIDE: Limitation("the press leaves the states that the atlas covers", True),
+    EDGE: Limitation("the contact reaches the plate's edge", True),
+    BUCKLING: Limitation("the wall buckles in the press, which the solid places more exactly", False),
+    BREAK: Limitation("the break strain is reached in the press, which the solid places more exactly", False),
 }
 
 
-def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[ModelResult, AnswerLimitation | None]:
-    """Results of the atlas at driving pressures (MPa, ascending), and their limitation, or None.
+class AtlasModel(Model):
+    """The shipped atlas."""
 
-    The sensor must lie in the box (`outside_atlas`). Raises BeyondLimitError beyond the limit point.
-    """
-    batch = batch_of(sensor, driving_pressures)
+    name = "atlas"
+
+    def covers(self, sensor: Sensor) -> str | None:
+        """Reason why a sensor lies outside the box of the atlas."""
+        return outside_atlas(sensor)
+
+    def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answer | PneutouchError]:
+        """Answers looked up in one pass for all sensors that are pressed in as many steps."""
+        answers: list[Answer | PneutouchError | None] = [None] * len(sensors)
+        order = sorted(range(len(sensors)), key=lambda i: sensors[i].protocol.steps)
+        for _, same in groupby(order, key=lambda i: sensors[i].protocol.steps):
+            rows = list(same)
+            for start in range(0, len(rows), _TOGETHER):
+                some = rows[start : start + _TOGETHER]
+                found = _looked_up([sensors[i] for i in some], [driving_pressures[i] for i in some])
+                for i, answer in zip(some, found, strict=True):
+                    answers[i] = answer
+        return [answer for answer in answers if answer is not None]
+
+    def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
+        """Errors of the solid's mesh and of the table."""
+        return discretised(_TABULATION_SUMMARY, sensitivity_tabulation_relative=TABULATION)
+
+    def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
+        """Assumptions of the solid."""
+        return solid_assumptions(sensor, f"{BODY}; {NOT_CHECKED}")
+
+
+MODEL = AtlasModel()
+
+
+def _looked_up(sensors: list[Sensor], driving_pressures: list[Array]) -> list[Answer | PneutouchError]:
+    """Answers for sensors of one number of steps, in one pass."""
+    batch = SensorBatch.join([batch_of(*pair) for pair in zip(sensors, driving_pressures, strict=True)])
     # Each pressure is a group of its own: its figures do not depend on the others.
-    response, press, whole = run(batch, sensor.protocol.steps, shipped(), np.arange(len(batch)), FIELDS)
-    limit = float(press.slices.limit_pressure[0]) * sensor.wall.shear_modulus
-    for pressure in driving_pressures:
+    passed = run(batch, sensors[0].protocol.steps, shipped(), np.arange(len(batch)), FIELDS)
+    fields = dict(zip(FIELDS, passed.press.several(FIELDS, passed.whole), strict=True))
+    ends = np.cumsum([len(pressures) for pressures in driving_pressures])
+    rows = zip(sensors, ends.tolist(), driving_pressures, strict=True)
+    return [_answer(sensor, passed, fields, range(end - len(some), end)) for sensor, end, some in rows]
+
+
+def _answer(sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: range) -> Answer | PneutouchError:
+    """The answer for one sensor, whose driving pressures are some rows of a pass."""
+    response, press = passed.response, passed.press
+    limit = float(press.limit[rows[0]]) * sensor.wall.shear_modulus
+    for pressure in press.batch.driving_pressure[rows].tolist():
         if pressure >= limit:
-            raise BeyondLimitError(float(pressure), limit, "it lies beyond the limit point")
-    ends = [int(end) for end in response.ends]
-    fields = dict(zip(FIELDS, press.several(FIELDS, whole), strict=True))
-    states = tuple(_state(sensor, press, whole, fields, response, i) for i in range(len(batch)))
+            return BeyondLimitError(pressure, limit, "it lies beyond the limit point")
+    states = tuple(_state(sensor, press, passed.whole, fields, response, i) for i in rows)
+    ends = response.ends[rows].tolist()
     limitation = next((reason for end, reason in _LIMITATIONS.items() if end in ends), None)
-    if limitation is None and response.near_buckling.any():
+    if limitation is None and response.near_buckling[rows].any():
         why = f"the wall would buckle within {NEAR:g} R0 more of travel, where the table is less accurate"
-        limitation = AnswerLimitation(why, False)
+        limitation = Limitation(why, False)
     if limitation is None and meets_ring(sensor):
         limitation = _MEETS_RING
-    curve, point, rupture = _inflation(sensor, press.slices)
-    return ModelResult(point, Limits(limit, rupture, sensor.gas.gauge_limit), curve, states), limitation
+    curve, point, rupture = _inflation(sensor, press.slices, int(press.k[rows[0]]))
+    limits = Limits(limit, rupture, sensor.gas.gauge_limit)
+    return Answer(ModelResult(point, limits, curve, states), limitation)
 
 
 def _state(
@@ -176,18 +222,18 @@ def _events(depth: Array, field: dict[str, Array], end: int, range_end: float) -
     return sorted(happened, key=lambda event: event.indentation)
 
 
-def _inflation(sensor: Sensor, slices: AtlasSlices) -> tuple[InflationCurve, LimitPoint, float | None]:
+def _inflation(sensor: Sensor, slices: AtlasSlices, wall: int) -> tuple[InflationCurve, LimitPoint, float | None]:
     """Free inflation to a little past the limit point, that point, and the pressure at the break strain."""
     length, mu = sensor.dome.inner_radius, sensor.wall.shear_modulus
     nu = np.concatenate([np.linspace(0.0, 1.0, 91), np.linspace(1.0, shipped().recipe.highest_volume, 7)[1:]])
-    k = np.zeros(nu.size, dtype=np.intp)
+    k = np.full(nu.size, wall)
     apex = slices.free_apex(k, nu)[:, 0]
     inner, stretch = slices.field("inner_apex", k, nu, apex), slices.field("stretch", k, nu, apex)
     pressure = slices.point(k, nu, apex).pressure * mu
     volume = (REST_VOLUME + nu * slices.reach(k)) * length**3
     top = 90
     thinning = float(apex[top] - inner[top]) * length / sensor.dome.wall_thickness
-    limit = float(slices.limit_pressure[0]) * mu
+    limit = float(slices.limit_pressure[wall]) * mu
     point = LimitPoint(float(inner[top]) * length, float(apex[top]) * length, limit, thinning)
     rupture = None
     if sensor.wall.break_stretch is not None:

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pneutouch.mechanics import harmonic_states
-from pneutouch.mechanics.harmonic_states import _change_from, _Curve
+from pneutouch.mechanics.models import harmonic as harmonic_states
+from pneutouch.mechanics.models.harmonic import _change_from, _Curve
 
 
 class Press:

@@ -13,10 +13,10 @@ from pneutouch.evaluation.result import by_model
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.atlas_states import atlas_result, meets_ring, outside_atlas
+from pneutouch.mechanics.models.atlas import MODEL, meets_ring, outside_atlas
+from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.mechanics.solid.indenter import RigidBase
-from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.results.record import plain as data
 
 SENSOR = Sensor(
@@ -30,7 +30,7 @@ PRESSURES = np.array([0.0, 0.012, 0.022])
 
 @pytest.fixture(scope="module")
 def both():
-    found, lacking = atlas_result(SENSOR, PRESSURES)
+    found, lacking = MODEL.answer_one(SENSOR, PRESSURES)
     assert lacking is None
     return found, solid_result(SENSOR, PRESSURES)
 
@@ -80,10 +80,10 @@ def test_the_inflation_curve_and_the_limits_are_the_solids(both):
 
 def test_the_pressure_at_the_break_strain_is_the_solids():
     brittle = SENSOR.replace(break_stretch=1.35, gauge_limit=0.5)
-    ours, theirs = atlas_result(brittle, PRESSURES[:1])[0], solid_result(brittle, PRESSURES[:1])
+    ours, theirs = MODEL.answer_one(brittle, PRESSURES[:1]).result, solid_result(brittle, PRESSURES[:1])
     assert ours.limits.break_strain == pytest.approx(theirs.limits.break_strain, rel=0.02)
     assert ours.limits.break_strain < ours.limits.limit_point
-    assert atlas_result(SENSOR.replace(break_stretch=None), PRESSURES[:1])[0].limits.break_strain is None
+    assert MODEL.answer_one(SENSOR.replace(break_stretch=None), PRESSURES[:1]).result.limits.break_strain is None
 
 
 @pytest.mark.parametrize(
@@ -97,7 +97,7 @@ def test_the_pressure_at_the_break_strain_is_the_solids():
 def test_the_event_that_ends_a_range_is_the_solids(changes, kind):
     sensor = SENSOR.replace(**{"depth": 6.9375, **changes})
     pressure = np.array([0.0 if kind == "inward buckling" else 0.022])
-    (ours,), (theirs,) = atlas_result(sensor, pressure)[0].states, solid_result(sensor, pressure).states
+    (ours,), (theirs,) = MODEL.answer_one(sensor, pressure).result.states, solid_result(sensor, pressure).states
     mine = next(event for event in ours.events if event.ends_range)
     other = next(event for event in theirs.events if event.ends_range)
     assert mine.kind == other.kind == kind
@@ -110,7 +110,7 @@ def test_warnings_on_the_way_are_the_solids():
     deep = SENSOR.replace(depth=6.9)
     found = [
         {e.kind: e.indentation for e in f.states[0].events if not e.ends_range}
-        for f in (atlas_result(deep, PRESSURES[:1])[0], solid_result(deep, PRESSURES[:1]))
+        for f in (MODEL.answer_one(deep, PRESSURES[:1]).result, solid_result(deep, PRESSURES[:1]))
     ]
     # The table holds no pressure on the base: docs/background/atlas.md.
     assert set(found[1]) - set(found[0]) == {"wall on its base"} and found[0].keys() <= found[1].keys() and found[0]
@@ -137,7 +137,7 @@ def test_a_batch_has_every_number_of_the_sensor():
 
 def test_beyond_the_limit_point_the_limit_is_named():
     with pytest.raises(BeyondLimitError) as caught:
-        atlas_result(SENSOR, np.array([0.0, 0.05]))
+        MODEL.answer_one(SENSOR, np.array([0.0, 0.05]))
     assert 1e3 * caught.value.limit == pytest.approx(39.6, abs=0.1)
 
 

@@ -11,11 +11,15 @@ from typing import Protocol
 import numpy as np
 
 from pneutouch.arrays import Array, distinct, hermite
+from pneutouch.errors import PneutouchError
 from pneutouch.mechanics.events import LOBES, SWAY, Event, range_end
 from pneutouch.mechanics.harmonic.fields import Harmonics
 from pneutouch.mechanics.harmonic.object_contact import pressed_face
 from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.limits import LAW_RANGE, LimitPoint, Limits
+from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION, OBJECT_DISCRETISATION, SENSITIVITY_DISCRETISATION
+from pneutouch.mechanics.models.interface import Answer, Model, one_by_one
+from pneutouch.mechanics.models.statements import BODY, NOT_CHECKED, discretised, solid_assumptions
 from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState, WallPath
 from pneutouch.mechanics.pressed_face import PressedFace
 from pneutouch.mechanics.response import figures
@@ -27,8 +31,52 @@ from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch,
 from pneutouch.mechanics.solid.mesh import dome, nodes_along, object_cells, printed_dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe, burst, met
+from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.shape.meridian import arc_share
 from pneutouch.units import KPA
+
+_SUMMARY = (
+    f"Discretisation: sensitivity within {SENSITIVITY_DISCRETISATION:.1%}, limit pressure "
+    f"within {LIMIT_DISCRETISATION:.1%} of a refined mesh."
+)
+_OBJECT_SUMMARY = (
+    f"Discretisation: sensitivity within {OBJECT_DISCRETISATION:.0%}, limit pressure within "
+    f"{LIMIT_DISCRETISATION:.1%} of a refined mesh (docs/background/contact.md)."
+)
+
+
+class Solid(Model):
+    """Axisymmetric finite elements with trapped gas and contact."""
+
+    name = "solid"
+    holds_flange = True
+
+    def covers(self, sensor: Sensor) -> str | None:
+        """Deviation of the contact from the axis, or None."""
+        return sensor.protocol.off_axis
+
+    def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answer | PneutouchError]:
+        """Answers of `solid_result`."""
+        return one_by_one(lambda *one: Answer(solid_result(*one)), sensors, driving_pressures)
+
+    def stated_error(self, sensor: Sensor) -> float:
+        """The error of the mesh, which is greater under an object that is no plate."""
+        return SENSITIVITY_DISCRETISATION if sensor.protocol.body is None else OBJECT_DISCRETISATION
+
+    def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
+        """Errors of the mesh."""
+        if sensor.protocol.body is not None:
+            return discretised(_OBJECT_SUMMARY, OBJECT_DISCRETISATION)
+        return discretised(_SUMMARY)
+
+    def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
+        """Assumptions of the solid, and the waves that it looks for."""
+        waves = sensor.protocol.waves
+        checked = f"sway and lobes are looked for with up to {waves} waves around the axis" if waves else NOT_CHECKED
+        return solid_assumptions(sensor, f"{BODY}; {checked}")
+
+
+MODEL = Solid()
 
 
 def leaves_law(probe: StrainProbe, run: Inflation, largest: float | None) -> tuple[float, float] | None:

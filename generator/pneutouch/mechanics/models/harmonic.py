@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.errors import ComputationError, InputError
+from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.harmonic.friction_path import ShearPath
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject
-from pneutouch.mechanics.models import HARMONICS_SETTLED
+from pneutouch.mechanics.models.accuracy import HARMONICS_SETTLED, OBJECT_DISCRETISATION
+from pneutouch.mechanics.models.interface import Answer, Model, one_by_one
+from pneutouch.mechanics.models.solid import curve_between, press_settings, reported_events, solid_result
+from pneutouch.mechanics.models.statements import discretised, solid_assumptions
 from pneutouch.mechanics.off_axis_curve import OffAxisCurve, RangeCurve, ShearCurve
 from pneutouch.mechanics.prediction import ModelResult, SensorState
 from pneutouch.mechanics.response import Figures, figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch, state_at
 from pneutouch.mechanics.solid.stress import StrainProbe
-from pneutouch.mechanics.solid_states import curve_between, press_settings, reported_events, solid_result
+from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.units import KPA
 
 ORDERS = (4, 6, 8, 12)
@@ -34,6 +38,41 @@ _READ = 56
 
 _COMPARED = 3
 """States at which an answer is compared with fewer harmonics."""
+
+_BODY = (
+    "hyperelastic solid with Fourier sums around the axis and the wall's full stiffness; what is not symmetric about "
+    "the planes of symmetry of the scene is left out"
+)
+_SUMMARY = (
+    f"Discretisation: sensitivity within {OBJECT_DISCRETISATION:.0%} by the mesh; the last raise of the harmonics "
+    f"changed sensitivity, force and pressure by less than {HARMONICS_SETTLED:.0%} (docs/background/off-axis.md)."
+)
+
+
+class Harmonic(Model):
+    """The solid with as many harmonics around its axis as the contact needs."""
+
+    name = "harmonic"
+
+    def covers(self, sensor: Sensor) -> str | None:
+        """Reason why a sensor is not covered: a flange held as printed."""
+        held = sensor.dome.flange is not None
+        return "the flange is held as printed, and the wall's contact with its top is axisymmetric" if held else None
+
+    def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answer | PneutouchError]:
+        """Answers of `harmonic_result`."""
+        return one_by_one(lambda *one: Answer(harmonic_result(*one)), sensors, driving_pressures)
+
+    def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
+        """Errors of the mesh and of the sums."""
+        return discretised(_SUMMARY, OBJECT_DISCRETISATION)
+
+    def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
+        """Assumptions of the solid and of the sums around the axis."""
+        return solid_assumptions(sensor, _BODY)
+
+
+MODEL = Harmonic()
 
 
 def harmonic_result(sensor: Sensor, driving_pressures: Array) -> ModelResult:

@@ -1,8 +1,12 @@
 """The model ``membrane``: the paper's theory run for a sensor, states I and II."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.errors import PneutouchError
 from pneutouch.mechanics.events import events, range_end
 from pneutouch.mechanics.inflation import (
     LIMIT_HEIGHT,
@@ -14,11 +18,61 @@ from pneutouch.mechanics.inflation import (
 )
 from pneutouch.mechanics.limits import limit_point, limits
 from pneutouch.mechanics.membrane_contact import PressedStates, TrappedGas, press
+from pneutouch.mechanics.models.interface import Answer, Limitation, Model, one_by_one
 from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.units import KPA
+
+_ASSUMPTIONS = (
+    "thin neo-Hookean membrane, incompressible, C1 = mu/2; no bending stiffness: the wall's own stiffness is missing",
+    "constant curvature of the free part and one thickness everywhere (paper, eq. 3 and 11)",
+    "R0 is the inner radius; outer heights add the thinned wall",
+    "uniaxial elongation at break is set against the equibiaxial stretch",
+)
+
+_NO_LAW = Limitation("it covers neither other laws, nor a clamped flange", False)
+
+
+@dataclass(frozen=True)
+class Membrane(Model):
+    """The paper's theory with one of the closures of `membrane_contact`."""
+
+    closure: str = "variational"
+
+    name = "membrane"
+    correctable = False
+
+    def covers(self, sensor: Sensor) -> str | None:
+        """Reason why a sensor is none of the theory: another contact or a graded wall."""
+        graded = None if sensor.wall.grade is None else "the wall is graded along its arc"
+        return sensor.protocol.other_contact or graded
+
+    def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answer | PneutouchError]:
+        """Answers in closed form; a fitted law and a flange are not part of it."""
+        return one_by_one(self._answer, sensors, driving_pressures)
+
+    def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
+        """Errors of state I."""
+        return error_against_exact_membrane(sensor, driving_pressures)
+
+    def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
+        """Assumptions of the theory."""
+        return _ASSUMPTIONS
+
+    def closed(self, closure: str) -> Model:
+        """The theory with another closure."""
+        return Membrane(closure)
+
+    def _answer(self, sensor: Sensor, driving_pressures: Array) -> Answer:
+        plain = sensor.wall.law is None and sensor.dome.flange is None
+        states = membrane_states(sensor, driving_pressures, self.closure)
+        result = ModelResult(limit_point(sensor), limits(sensor), inflation_curve(sensor), states)
+        return Answer(result, None if plain else _NO_LAW)
+
+
+MODEL = Membrane()
 
 
 def error_against_exact_membrane(sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
@@ -41,12 +95,6 @@ def error_against_exact_membrane(sensor: Sensor, driving_pressures: Array) -> Er
 
 _FINE = 8
 """Events are looked for on a grid this many times finer than the steps."""
-
-
-def membrane_result(sensor: Sensor, driving_pressures: Array, closure: str) -> ModelResult:
-    """Limit point, limits and states of the membrane theory."""
-    states = membrane_states(sensor, driving_pressures, closure)
-    return ModelResult(limit_point(sensor), limits(sensor), inflation_curve(sensor), states)
 
 
 def inflation_curve(sensor: Sensor) -> InflationCurve:

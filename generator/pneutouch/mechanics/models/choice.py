@@ -1,0 +1,116 @@
+"""The table of models, cheapest first, and the choice of the cheapest one that is good enough."""
+
+from dataclasses import dataclass
+from importlib import import_module
+from typing import TypedDict, cast
+
+from pneutouch.errors import InputError, nearest
+from pneutouch.mechanics.models.interface import Model
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.spec.values import plain_number
+
+MODELS = {
+    "membrane": "pneutouch.mechanics.models.membrane",
+    "atlas": "pneutouch.mechanics.models.atlas",
+    "solid": "pneutouch.mechanics.models.solid",
+    "harmonic": "pneutouch.mechanics.models.harmonic",
+}
+"""The modules of the models by name, cheapest first: each holds its model as ``MODEL`` and is loaded where it is asked
+for."""
+
+MODEL_CHOICES = (*MODELS, "auto")
+
+USUAL = "usual"
+"""The model if none is named: harmonic for contact off the axis, else the solid."""
+
+DEFAULT_TOLERANCE = 0.02
+
+
+@dataclass(frozen=True)
+class ModelSequence:
+    """Models to try, cheapest first, and why others were passed over."""
+
+    models: tuple[str, ...]
+    passed: tuple[str, ...]
+
+
+def model_named(name: str) -> Model:
+    """A model of the table. Raises InputError for an unknown name."""
+    if name not in MODELS:
+        raise InputError(f"unknown model.{nearest(name, MODEL_CHOICES)}", key="model", value=name)
+    return cast(Model, import_module(MODELS[name]).MODEL)
+
+
+def outside(name: str, sensor: Sensor) -> str | None:
+    """Reason why a model of the table does not cover a sensor, or None if it does."""
+    return model_named(name).covers(sensor)
+
+
+def stated_error(name: str, sensor: Sensor) -> float:
+    """Relative numerical error in sensitivity that a model states for a sensor."""
+    return model_named(name).stated_error(sensor)
+
+
+def usual_model(sensor: Sensor) -> str:
+    """The model of a sensor if none is named."""
+    return "solid" if sensor.protocol.off_axis is None else "harmonic"
+
+
+def models_for(sensor: Sensor, tolerance: float) -> ModelSequence:
+    """The models up to the usual one whose stated error meets a tolerance (a fraction), cheapest first.
+
+    Raises InputError for a tolerance that none can state, and where no model covers the sensor.
+    """
+    best = usual_model(sensor)
+    least = stated_error(best, sensor)
+    if not tolerance >= least:
+        problem = f"no model can state so small an error; the best is the {best}'s {100 * least:g}% in sensitivity"
+        raise InputError(problem, key="tolerance", value=f"{100 * tolerance:g}%")
+    names = list(MODELS)
+    passed, models = [], []
+    for name in names[: names.index(best) + 1]:
+        error = stated_error(name, sensor)
+        if error > tolerance:
+            passed.append(f"{name}: its stated error of {error:.1%} is more than {tolerance:.1%}")
+        elif (why := outside(name, sensor)) is not None:
+            passed.append(f"{name}: {why}")
+        else:
+            models.append(name)
+    if not models:
+        raise InputError(f"no model covers the sensor: {'; '.join(passed)}", key="model", value="auto")
+    return ModelSequence(tuple(models), tuple(passed))
+
+
+def remedy(sensor: Sensor) -> str:
+    """A model to take in place of one that has no answer for a sensor."""
+    return f"take `model` auto or {usual_model(sensor)}"
+
+
+class ModelOptions(TypedDict):
+    """The model of a prediction and, where it is auto, the numerical error as a fraction that it must meet."""
+
+    model: str
+    tolerance: float
+
+
+def model_options(model: str | None, tolerance: float | str | None) -> ModelOptions:
+    """The model and the tolerance of a prediction; a tolerance alone requires the cheapest model that meets it."""
+    if tolerance is None:
+        return {"model": model or USUAL, "tolerance": DEFAULT_TOLERANCE}
+    if model not in (None, "auto"):
+        problem = f"with `model` {model}: a tolerance is for `model` auto"
+        raise InputError(problem, key="tolerance", value=str(tolerance), remedy="give one of both")
+    return {"model": "auto", "tolerance": parse_tolerance(str(tolerance))}
+
+
+def parse_tolerance(text: str) -> float:
+    """A tolerance as a fraction from text: ``2%`` or ``0.02``. Raises InputError."""
+    number = text.strip().removesuffix("%")
+    try:
+        value = plain_number(number) / (100.0 if text.strip().endswith("%") else 1.0)
+    except ValueError:
+        value = float("nan")
+    if not 0.0 < value <= 1.0:
+        problem = "it must be a positive share of at most 1, such as 2% or 0.02"
+        raise InputError(problem, key="tolerance", value=text)
+    return value
