@@ -102,7 +102,7 @@ def budgets(folder: Path) -> Pair:
 
     from pneutouch.mechanics.atlas.respond import respond
     from pneutouch.mechanics.paper_sensor import material_sensor
-    from pneutouch.mechanics.uncertainty import batch_of
+    from pneutouch.mechanics.atlas.press import batch_of
 
     batch = batch_of(material_sensor(materials(LIBRARY)["TangoPlus"]), np.linspace(0.0, 0.015, 200).tolist())
     batch = replace(batch, wall_thickness=np.linspace(1.0, 2.0, 200))

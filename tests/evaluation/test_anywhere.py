@@ -14,7 +14,7 @@ import pneutouch
 from pneutouch.cli.app import app
 from pneutouch.evaluation.anywhere import contact_anywhere, contact_chart
 from pneutouch.evaluation.result import predicted
-from pneutouch.mechanics.uncertainty.source import FIGURES
+from pneutouch.mechanics.atlas.figures import FIGURES
 from pneutouch.report.anywhere import contact_figures, contact_section
 from pneutouch.results.record import plain as data
 

@@ -9,7 +9,8 @@ import pytest
 
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.uncertainty import known
-from pneutouch.mechanics.uncertainty import FIGURES, monte_carlo
+from pneutouch.mechanics.atlas.figures import FIGURES
+from pneutouch.mechanics.uncertainty import monte_carlo
 from pneutouch.report.certainty import SENSITIVITY
 from pneutouch.results.record import plain as data
 from pneutouch.units import KPA, ML

@@ -20,8 +20,8 @@ from pneutouch.evaluation.comparison import (
     variance_of_ratio,
 )
 from pneutouch.evaluation.uncertainty import known
-from pneutouch.mechanics.uncertainty.neighbours import log_figures, moved
-from pneutouch.mechanics.uncertainty.source import DEAD, FIGURE, FIGURES, INPUTS
+from pneutouch.mechanics.atlas.figures import DEAD, FIGURES, INPUTS, log_figures, moved
+from pneutouch.mechanics.uncertainty.source import FIGURE
 from pneutouch.mechanics.uncertainty.sources.model import MODEL_CORRELATION, table_s1_errors
 from pneutouch.results.record import plain as data
 from pneutouch.spec.material import Material

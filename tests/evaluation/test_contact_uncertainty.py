@@ -13,14 +13,15 @@ from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.charts import curve, under_contact
 from pneutouch.evaluation.result import by_model
 from pneutouch.evaluation.uncertainty import known, uncertainties
-from pneutouch.mechanics.contact_correction import plate_alone
+from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, DEAD, FIGURES, INPUTS, SENSITIVITY, log_figures
+from pneutouch.mechanics.atlas.press import batch_of
+from pneutouch.mechanics.corrected import figures as corrected
+from pneutouch.mechanics.corrected.figures import under_plate
 from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indenter import ball, cone
-from pneutouch.mechanics.uncertainty import FIGURES, INPUTS, ContactModel, batch_of, contact_model
+from pneutouch.mechanics.uncertainty import ContactModel
 from pneutouch.mechanics.uncertainty.contact_model import SPREAD
-from pneutouch.mechanics.uncertainty.neighbours import log_figures
-from pneutouch.mechanics.uncertainty.source import CONTACT_FIGURES, DEAD, SENSITIVITY
 from pneutouch.results.record import plain as data
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
@@ -76,7 +77,7 @@ def test_the_derivative_by_the_modulus_is_the_solids_with_friction(rough):
 
 def test_the_figures_are_in_the_units_of_a_prediction(evaluated):
     answer = evaluated("paper-dome", model="atlas")
-    found = np.exp(log_figures(batch_of(plate_alone(answer.sensor), (22 * KPA,)))[:, 0])
+    found = np.exp(log_figures(batch_of(under_plate(answer.sensor), (22 * KPA,)))[:, 0])
     (state,) = [one for one in data(by_model(answer.prediction))["states"] if one["driving_pressure_kPa"] == 22.0]
     limit_kPa = data(by_model(answer.prediction))["limit_point"]["driving_pressure_kPa"]
     assert found[:2] == pytest.approx([state["sensitivity_kPa_per_N"], limit_kPa], rel=1e-6)
@@ -86,10 +87,12 @@ def test_the_shift_of_a_contact_is_taken_at_a_softer_and_a_stiffer_wall(evaluate
     """The softer wall first: the change by the modulus enters with its own sign at either end."""
     sensor = evaluated("paper-dome", model="atlas").sensor
     modulus, shape = sensor.wall.shear_modulus, (len(FIGURES), 2)
+    plate = log_figures(batch_of(under_plate(sensor), (0.0, 22 * KPA)))
     stub = SimpleNamespace(
         sensor=sensor,
         pressures=(0.0, 22 * KPA),
-        logs=log_figures(batch_of(plate_alone(sensor), (0.0, 22 * KPA))) + 0.5,
+        logs=plate + 0.5,
+        plate=lambda pressures: plate,
         _change=lambda moved: np.full(shape, moved.wall.shear_modulus / modulus),
     )
     nodes = ContactModel.shift(stub, 0.3).nodes[:, list(CONTACT_FIGURES)]
@@ -107,9 +110,9 @@ def test_the_ends_are_solved_and_the_highest_left_out_where_it_is_not_reached(mo
         asked.append(tuple(round(p / KPA) for p in pressures))
         return np.full((len(FIGURES), len(pressures)), 0.0 if max(pressures) <= top_kPa * KPA else np.nan)
 
-    monkeypatch.setattr(contact_model, "pressed_logs", logs_of)
+    monkeypatch.setattr(corrected, "pressed_logs", logs_of)
     sensor = evaluated("paper-dome", model="atlas").sensor
-    contact_model.solved_at(sensor, [p * KPA for p in (0, 10, 20, 30)], [], least=2)
+    corrected.solved_at(sensor, [p * KPA for p in (0, 10, 20, 30)], [], least=2)
     assert asked == tried
 
 
@@ -125,7 +128,7 @@ def test_between_the_pressures_that_are_solved_the_derivatives_are_the_solids(ev
     nodes = ContactModel(sensor, (0.0, middle, 22 * KPA)).shift(half).nodes
     found = (nodes[2] - nodes[0])[list(CONTACT_FIGURES), 1] / (2 * half)
     up, down = (sensor.replace(shear_modulus=modulus * math.exp(x)) for x in (half, -half))
-    plates = [log_figures(batch_of(plate_alone(one), (middle,)))[list(CONTACT_FIGURES), 0] for one in (up, down)]
+    plates = [log_figures(batch_of(under_plate(one), (middle,)))[list(CONTACT_FIGURES), 0] for one in (up, down)]
     direct = (logs(up, middle) - logs(down, middle) - (plates[0] - plates[1])) / (2 * half)
     assert np.abs(direct[:3]).max() > 0.02
     np.testing.assert_allclose(found[0], direct[0], atol=0.01)
@@ -144,7 +147,7 @@ def test_the_limit_pressure_and_the_height_know_of_no_friction(rough):
 
 @pytest.mark.slow
 def test_the_tuning_curve_passes_through_the_solids_states(rough):
-    drawn = curve(plate_alone(rough.sensor), 30 * KPA, "here")
+    drawn = curve(under_plate(rough.sensor), 30 * KPA, "here")
     bent = under_contact(rough.sensor, drawn, rough.prediction.states)
     for pressure in (5 * KPA, 20 * KPA):
         found = np.interp(pressure / KPA, bent.driving_pressure_kPa, bent.sensitivity_kPa_per_N)

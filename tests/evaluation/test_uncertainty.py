@@ -10,8 +10,10 @@ import pytest
 from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.result import by_model, predicted
 from pneutouch.evaluation.uncertainty import uncertainties
+from pneutouch.mechanics.atlas.figures import FIGURES
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.models.accuracy import NUMERICAL
-from pneutouch.mechanics.uncertainty import FIGURES, batch_of, budget, gas_text, model_errors
+from pneutouch.mechanics.uncertainty import budget, gas_text, model_errors
 from pneutouch.output.files import json_bytes
 from pneutouch.results.record import plain as data
 from pneutouch.spec.material import Material

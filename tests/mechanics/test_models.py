@@ -18,7 +18,7 @@ from pneutouch.mechanics import predict
 from pneutouch.mechanics.models import choice
 from pneutouch.mechanics.models.accuracy import NUMERICAL
 from pneutouch.mechanics.models.choice import model_named, models_for, parse_tolerance
-from pneutouch.mechanics.models.interface import Answer, Model
+from pneutouch.mechanics.models.interface import ModelAnswer, SensorModel
 from pneutouch.mechanics.predict import contact_words
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.mechanics.solid.indenter import ball
@@ -252,7 +252,7 @@ def test_a_batch_of_the_atlas_answers_as_each_sensor_alone():
     assert isinstance(together[3], BeyondLimitError) and together[3].pressure == pytest.approx(50.0 * KPA)
 
 
-class _Halved(Model):
+class _Halved(SensorModel):
     """The solid at half the force, under a name of its own."""
 
     name = "halved"
@@ -263,7 +263,7 @@ class _Halved(Model):
     def answer(self, sensors, driving_pressures):
         solid = model_named("solid").answer(sensors, driving_pressures)
         halved = [replace(state, force=0.5 * state.force) for state in solid[0].result.states]
-        return [Answer(replace(solid[0].result, states=tuple(halved)))]
+        return [ModelAnswer(replace(solid[0].result, states=tuple(halved)))]
 
     def errors(self, sensor, driving_pressures):
         return model_named("solid").errors(sensor, driving_pressures)

@@ -7,10 +7,11 @@ import pytest
 
 from pneutouch.evaluation.result import rating_record
 from pneutouch.mechanics import predict
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.limits import Limits
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import Rating, rated_pressure, rating
-from pneutouch.mechanics.uncertainty import ModelErrors, batch_of, budget
+from pneutouch.mechanics.uncertainty import ModelErrors, budget
 from pneutouch.mechanics.uncertainty.propagate import LIMIT
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.units import KPA

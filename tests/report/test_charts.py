@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from pneutouch.errors import InputError
 from pneutouch.evaluation.charts import tradeoff, tuning
 from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.uncertainty import batch_of
 from pneutouch.report.certainty import OTHERS, SENSITIVITY, ends, ranked, share_bars, shares
 from pneutouch.report.curves import sensitivities
 from pneutouch.report.tradeoff import tradeoff_chart, tuning_chart

@@ -25,8 +25,8 @@ def test_a_resin_that_cannot_be_solved_does_not_stop_the_sheet(evaluated, librar
 def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library):
     from pneutouch.catalogue.library import elastomers
     from pneutouch.evaluation.charts import in_resin, resin_curves
+    from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.atlas.respond import respond
-    from pneutouch.mechanics.uncertainty import batch_of
 
     sensor, elastic = evaluated("paper-dome").sensor, elastomers(library)
     found = resin_curves(sensor, elastic, 0.022, "solid", None)

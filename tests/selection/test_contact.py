@@ -9,8 +9,8 @@ import pneutouch as pt
 from pneutouch.cli.select_text import selection_text
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.mechanics.corrected.designs import ContactFactors, figures_of, places
 from pneutouch.results.record import plain as data
-from pneutouch.selection.contact_factors import ContactFactors, figures_of, places
 from pneutouch.selection.contact_search import ROUNDS
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.select.charts import tradeoff

@@ -16,7 +16,8 @@ from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.mechanics.inflation import LIMIT_HEIGHT, LIMIT_PRESSURE, RISING_BRANCH, relative_pressure
 from pneutouch.mechanics.line.transient import gain_at
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.uncertainty import batch_of, budget, document, model_errors
+from pneutouch.mechanics.atlas.press import batch_of
+from pneutouch.mechanics.uncertainty import budget, document, model_errors
 from pneutouch.mechanics.viscous.describe import LOOP_SPEEDS, RAMP_SPEED
 from pneutouch.mechanics.viscous.prony import prony_series
 from pneutouch.mechanics.viscous.runs import loop, relaxation

@@ -7,7 +7,7 @@ import math
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
-from pneutouch.mechanics.contact_correction import GRIPS, outside_fit
+from pneutouch.mechanics.corrected.figures import GRIPS, outside_fit
 from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
 from pneutouch.results.prediction import SensitivityError
 from pneutouch.spec.calibration import CalibratedResponse, SensorCalibration

@@ -18,16 +18,18 @@ from pneutouch.errors import ComputationError
 from pneutouch.evaluation.sheet_data import ChartPoint, ResinCurve, TradeOff, TuningChart, TuningCurve
 from pneutouch.evaluation.uncertainty import known
 from pneutouch.mechanics import Sensor, SensorState, predict
-from pneutouch.mechanics.atlas.respond import OUTSIDE, respond
+from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, SENSITIVITY
+from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
+from pneutouch.mechanics.atlas.respond import EDGE, OUTSIDE, respond
 from pneutouch.mechanics.atlas.table import shipped
-from pneutouch.mechanics.contact_correction import plate_alone
+from pneutouch.mechanics.corrected.figures import CorrectedAtlas, pressed_logs, under_plate
 from pneutouch.mechanics.limits import RATED_SHARE, limit_point
-from pneutouch.mechanics.models.atlas import outside_atlas
+from pneutouch.mechanics.models.choice import outside
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.mesh import MOST_CELLS, object_cells
-from pneutouch.mechanics.uncertainty import FIGURES, ContactModel, GasNotes, batch_of, gas_notes
+from pneutouch.mechanics.uncertainty import GasNotes, gas_notes
 from pneutouch.selection import CandidateResin, SelectionProblem
 from pneutouch.selection.candidates import CandidatePool
 from pneutouch.selection.contact_search import SolveCandidate, SolvedStates
@@ -47,8 +49,6 @@ POINTS = 41
 _BUDGETS = 7
 """Driving pressures at which the interval is worked out; its logarithm is straight between them."""
 
-_SENSITIVITY = FIGURES.index("sensitivity_kPa_per_N")
-
 
 def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
     """The curve from no driving pressure to ``highest`` (MPa), or to `RATED_SHARE` of the limit point if that comes
@@ -57,17 +57,11 @@ def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
     The sensor must lie in the atlas. Pressures at which it has no answer are left out; None if fewer than two are
     left.
     """
-    limit = (
-        float(shipped().slices(np.array([sensor.dome.wall_thickness / sensor.dome.inner_radius]), ()).limit_pressure[0])
-        * sensor.wall.shear_modulus
-    )
-    pressures = np.linspace(0.0, min(highest, RATED_SHARE * limit), POINTS)
-    response = respond(batch_of(sensor, pressures.tolist()), sensor.protocol.steps)
-    kept = np.isfinite(response.lines.sensitivity_kPa_per_N) & (response.ends != OUTSIDE)
-    if kept.sum() < 2:
+    found = _by_atlas({label: sensor}, highest, POINTS, RATED_SHARE, (OUTSIDE,)).get(label)
+    if found is None:
         return None
-    factor = np.array([sensor.correction.sensitivity_factor(pressure) for pressure in pressures[kept].tolist()])
-    return TuningCurve(label, pressures[kept] / KPA, factor * response.lines.sensitivity_kPa_per_N[kept])
+    factor = np.array([sensor.correction.sensitivity_factor(p * KPA) for p in found.driving_pressure_kPa.tolist()])
+    return TuningCurve(label, found.driving_pressure_kPa, factor * found.sensitivity_kPa_per_N)
 
 
 def under_contact(sensor: Sensor, drawn: TuningCurve, states: Sequence[SensorState]) -> TuningCurve:
@@ -76,11 +70,18 @@ def under_contact(sensor: Sensor, drawn: TuningCurve, states: Sequence[SensorSta
     ``states`` are the solid's, at a few driving pressures; the ratio is straight in its logarithm between them.
     Pressures that it cannot be solved at are left out.
     """
-    contact = ContactModel(sensor, tuple((drawn.driving_pressure_kPa * KPA).tolist()), states)
-    ratio = contact.ratio[_SENSITIVITY]
+    at, values = _corrected(sensor, drawn, states)
+    return TuningCurve(drawn.label, at, values)
+
+
+def _corrected(
+    sensor: Sensor, drawn: TuningCurve | ResinCurve, states: Sequence[SensorState], least: int = 3
+) -> tuple[Array, Array]:
+    """Driving pressures (kPa) and sensitivities (kPa/N) of a plate's curve times the ratio of the contact to it."""
+    pressures = tuple((drawn.driving_pressure_kPa * KPA).tolist())
+    ratio = CorrectedAtlas(sensor, pressures, states, least).ratio[SENSITIVITY]
     kept = np.isfinite(ratio)
-    sensitivity_kPa_per_N = np.exp(ratio[kept]) * drawn.sensitivity_kPa_per_N[kept]
-    return TuningCurve(drawn.label, drawn.driving_pressure_kPa[kept], sensitivity_kPa_per_N)
+    return drawn.driving_pressure_kPa[kept], np.exp(ratio[kept]) * drawn.sensitivity_kPa_per_N[kept]
 
 
 def interval(
@@ -104,7 +105,7 @@ def interval(
     estimate = known(
         sensor, (at * KPA).tolist(), material, materials, printer, model, calibration, states, anywhere=anywhere
     )
-    widths = estimate.budget.expanded[_SENSITIVITY]
+    widths = estimate.budget.expanded[SENSITIVITY]
     good = np.isfinite(widths)
     width = np.interp(drawn.driving_pressure_kPa, at[good], widths[good])
     return drawn.sensitivity_kPa_per_N * np.exp(-width), drawn.sensitivity_kPa_per_N * np.exp(width)
@@ -147,7 +148,10 @@ def resin_curves(
     if sensor.protocol.off_axis is not None:
         return {}
     variants = {m.title: in_resin(sensor, m) for m in materials.values() if m.kind == "elastomer"}
-    looked_up = {} if model == "membrane" else _by_atlas({t: plate_alone(v) for t, v in variants.items()}, highest)
+    looked_up = {}
+    if model != "membrane":
+        plates = {title: under_plate(variant) for title, variant in variants.items()}
+        looked_up = _by_atlas(plates, highest, _POINTS["atlas"], _MARGIN, (OUTSIDE, EDGE))
     model = "membrane" if model == "membrane" else "solid"
     curves = {}
     for title, variant in variants.items():
@@ -160,36 +164,27 @@ def resin_curves(
     return curves
 
 
-def _by_atlas(variants: dict[str, Sensor], highest: float) -> dict[str, ResinCurve]:
-    """Curves of the resins that the atlas covers, all in one call; without points outside it."""
-    from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
-    from pneutouch.mechanics.atlas.respond import EDGE, OUTSIDE, respond
-    from pneutouch.mechanics.atlas.table import shipped
-    from pneutouch.mechanics.models.atlas import outside_atlas
+def _by_atlas(
+    variants: dict[str, Sensor], highest: float, points: int, share: float, left_out: tuple[int, ...]
+) -> dict[str, ResinCurve]:
+    """Curves by title of the sensors that the atlas covers, all in one call, from no driving pressure to ``highest``
+    (MPa) or that share of their limit points.
 
-    inside = {title: variant for title, variant in variants.items() if outside_atlas(variant) is None}
+    Pressures without an answer, and those whose range ends in one of the ways ``left_out``, are missing.
+    """
+    inside = {title: variant for title, variant in variants.items() if outside("atlas", variant) is None}
     if not inside:
         return {}
     walls = np.array([variant.dome.wall_thickness / variant.dome.inner_radius for variant in inside.values()])
     limits = shipped().slices(walls, ()).limit_pressure * np.array([v.wall.shear_modulus for v in inside.values()])
-    share = np.linspace(0.0, 1.0, _POINTS["atlas"])
-    grids = [min(highest, _MARGIN * float(limit)) * share for limit in limits]
-    steps = next(iter(inside.values())).protocol.steps
-    response = respond(
-        SensorBatch.join([batch_of(v, grid) for v, grid in zip(inside.values(), grids, strict=True)]), steps
-    )
-    known = np.isfinite(response.lines.sensitivity_kPa_per_N) & ~np.isin(response.ends, (OUTSIDE, EDGE))
-    rows = zip(
-        inside,
-        grids,
-        response.lines.sensitivity_kPa_per_N.reshape(-1, share.size),
-        known.reshape(-1, share.size),
-        strict=True,
-    )
+    grids = [np.linspace(0.0, min(highest, share * float(limit)), points) for limit in limits]
+    batch = SensorBatch.join([batch_of(v, grid) for v, grid in zip(inside.values(), grids, strict=True)])
+    response = respond(batch, next(iter(inside.values())).protocol.steps)
+    values = response.lines.sensitivity_kPa_per_N
+    known = (np.isfinite(values) & ~np.isin(response.ends, left_out)).reshape(-1, points)
+    rows = zip(inside, grids, values.reshape(-1, points), known, strict=True)
     return {
-        title: ResinCurve(grid[kept] / KPA, values[kept], "atlas")
-        for title, grid, values, kept in rows
-        if kept.sum() > 1
+        title: ResinCurve(grid[kept] / KPA, row[kept], "atlas") for title, grid, row, kept in rows if kept.sum() > 1
     }
 
 
@@ -200,20 +195,14 @@ def _under_contact(variant: Sensor, plate: ResinCurve, states: Sequence[SensorSt
     logarithm is straight in between, or between the ``states`` where there are any. Where an event ends a range, the
     plate's range ends elsewhere: there a parabola through the logarithms of the solid's at both ends and the middle.
     """
-    from pneutouch.mechanics.uncertainty import FIGURES, ContactModel
-    from pneutouch.mechanics.uncertainty.contact_model import pressed_logs
-
     at = plate.driving_pressure_kPa * KPA
-    s, end = FIGURES.index("sensitivity_kPa_per_N"), FIGURES.index("range_end_mm")
     lowest, highest = float(at[0]), float(at[-1])
-    ends = ContactModel(variant, (lowest, highest), states).logs
-    if states or np.abs(ends[end] - np.log(variant.protocol.depth)).max() < _AT_DEPTH:
-        ratio = ContactModel(variant, tuple(at.tolist()), states, least=2).ratio[s]
-        kept = np.isfinite(ratio)
-        values, model = np.exp(ratio[kept]) * plate.sensitivity_kPa_per_N[kept], "atlas corrected by the solid"
-        return ResinCurve(at[kept] / KPA, values, model) if kept.sum() > 1 else None
+    ends = CorrectedAtlas(variant, (lowest, highest), states).logs
+    if states or np.abs(ends[CONTACT_FIGURES[-1]] - np.log(variant.protocol.depth)).max() < _AT_DEPTH:
+        curve = ResinCurve(*_corrected(variant, plate, states, least=2), "atlas corrected by the solid")
+        return curve if curve.driving_pressure_kPa.size > 1 else None
     middle = 0.5 * (lowest + highest)
-    three = np.append(ends[s], pressed_logs(variant.replace(waves=0), (middle,))[s])
+    three = np.append(ends[SENSITIVITY], pressed_logs(variant.replace(waves=0), (middle,))[SENSITIVITY])
     if not np.isfinite(three).all():
         return None
     parabola = np.polyfit([lowest, highest, middle], three, 2)
@@ -239,7 +228,7 @@ def _by_model(variant: Sensor, highest: float, model: str, closure: str | None) 
 def air(evaluation: Evaluation) -> GasNotes:
     """Effects of temperature and speed on the sealed air, one entry a state."""
     pressures = [state.driving_pressure for state in evaluation.prediction.states]
-    return gas_notes(batch_of(plate_alone(evaluation.sensor), pressures))
+    return gas_notes(batch_of(under_plate(evaluation.sensor), pressures))
 
 
 def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
@@ -248,7 +237,7 @@ def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
     The sensitivities at its own driving pressures are those of the prediction's model.
     """
     scene, sensor, prediction = evaluation.scene, evaluation.sensor, evaluation.prediction
-    drawn = curve(plate_alone(sensor), highest, "this design")
+    drawn = curve(under_plate(sensor), highest, "this design")
     if drawn is not None and sensor.protocol.other_contact is not None:
         drawn = under_contact(sensor, drawn, prediction.states)
     if drawn is None or drawn.driving_pressure_kPa.size < 2:
@@ -323,7 +312,7 @@ def resized(sensor: Sensor, problem: SelectionProblem) -> SolveCandidate:
 
 def tradeoff_problem(evaluation: Evaluation, pressure: float) -> SelectionProblem:
     """The selection problem of the design: everything but its resin, radius and wall is settled."""
-    sensor, printer, recipe = plate_alone(evaluation.sensor), evaluation.scene.printer, shipped().recipe
+    sensor, printer, recipe = under_plate(evaluation.sensor), evaluation.scene.printer, shipped().recipe
     wall = printer.smallest.wall("elastomer")
     return SelectionProblem(
         resins=_resins(evaluation),
@@ -350,7 +339,7 @@ def _resins(evaluation: Evaluation) -> tuple[CandidateResin, ...]:
     candidates = []
     for name, material in evaluation.resins.items():
         runs = evaluation.scene.printer.mode_for(material) is not None
-        if runs and outside_atlas(in_resin(plate_alone(evaluation.sensor), material)) is None:
+        if runs and outside("atlas", in_resin(under_plate(evaluation.sensor), material)) is None:
             paper = material_sensor(material)
             candidates.append(
                 CandidateResin(name, material, paper.wall.shear_modulus, paper.wall.break_stretch or np.inf)

@@ -52,7 +52,7 @@ def force_uncertainty(evaluation: Evaluation, grid: ReaderGrid) -> Array | None:
     sensor, scene = evaluation.sensor, evaluation.scene
     if why_unknown(evaluation, grid) is not None:
         return None
-    from pneutouch.mechanics.uncertainty.source import FIGURES, SENSITIVITY
+    from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
 
     rows = grid.driving_pressure[grid.computed :]
     budget = known(
@@ -84,9 +84,8 @@ def why_unknown(evaluation: Evaluation, grid: ReaderGrid) -> str | None:
 
 def _slopes(batch: SensorBatch) -> Array:
     """Slopes of ln force at a fixed pressure rise by the inputs in their unit of uncertainty, (inputs, n, columns)."""
+    from pneutouch.mechanics.atlas.figures import INPUTS, moved, neighbourhood, unit_step
     from pneutouch.mechanics.atlas.respond import respond
-    from pneutouch.mechanics.uncertainty.neighbours import moved, neighbourhood, unit_step
-    from pneutouch.mechanics.uncertainty.source import INPUTS
 
     unit, size = unit_step(batch), len(batch)
     moves = [moved(batch, name, sign * _STEP * unit[i]) for i, name in enumerate(INPUTS) for sign in (1.0, -1.0)]

@@ -193,11 +193,11 @@ def ageing_data(prediction: SensorPrediction, material: Material, sensor: Sensor
     why = ageing_unknown(material)
     if why is not None:
         return why
-    from pneutouch.mechanics.models.atlas import outside_atlas
+    from pneutouch.mechanics.models.choice import outside
     from pneutouch.mechanics.viscous.describe import ageing_shift
 
     changes: tuple[tuple[float, float], ...] = ()
-    if outside_atlas(sensor) is None:
+    if outside("atlas", sensor) is None:
         ends = [prediction.states[k].driving_pressure for k in (0, -1)]
         shift = ageing_shift(sensor, material, ends)[1]
         if np.isfinite(shift).all():

@@ -101,17 +101,16 @@ def unknown(sensor: Sensor, model: str) -> str | None:
     """
     if model == "membrane":
         return _TREND
-    from pneutouch.mechanics.contact_correction import plate_alone
-    from pneutouch.mechanics.models.atlas import outside_atlas
+    from pneutouch.mechanics.corrected.figures import outside_corrected
 
-    why = outside_atlas(plate_alone(sensor))
+    why = outside_corrected(sensor)
     return None if why is None else f"the sensor is outside the atlas: {why}"
 
 
 def _softer_unknown(sensor: Sensor) -> str | None:
     """Reason why the derivatives of a wall too soft for the atlas itself are unknown, or None if they are known."""
+    from pneutouch.mechanics.atlas.figures import softer_walls
     from pneutouch.mechanics.models.atlas import outside_atlas
-    from pneutouch.mechanics.uncertainty.neighbours import softer_walls
 
     why = outside_atlas(sensor, softer_walls())
     return None if why is None else f"the sensor is outside the atlas: {why}"
@@ -144,15 +143,16 @@ def known(
     numerical error. ``states`` are the solid's of another contact, at the pressures where it has been solved already.
     ``anywhere`` counts an unknown place of contact, where the design's own contact is the central plate.
     """
-    from pneutouch.mechanics.contact_correction import plate_alone
-    from pneutouch.mechanics.uncertainty import ContactModel, batch_of, budget, model_errors
+    from pneutouch.mechanics.atlas.press import batch_of
+    from pneutouch.mechanics.corrected.figures import under_plate
+    from pneutouch.mechanics.uncertainty import ContactModel, budget, model_errors
 
     contact = None
     anywhere = anywhere and sensor.protocol.other_contact is None
     if sensor.protocol.other_contact is not None:
         spread = None if calibration is None else friction_spread(calibration)
-        contact = ContactModel(sensor, tuple(float(p) for p in pressures), states, spread)
-    batch = batch_of(plate_alone(sensor), pressures)
+        contact = ContactModel(sensor, tuple(float(p) for p in pressures), states, fitted_spread=spread)
+    batch = batch_of(under_plate(sensor), pressures)
     numerical = {"sensitivity_kPa_per_N": stated_error(model, sensor), "limit_pressure_kPa": LIMIT_DISCRETISATION}
     near, errors = is_near_paper(sensor), model_errors(material, materials)
     estimate = budget(
@@ -189,7 +189,8 @@ def uncertainties(
         notes_of_wall += (_soft_note(sensor),)
     if why is not None:
         return tuple(UncertaintyRecord(unknown=why) for _ in states)
-    from pneutouch.mechanics.uncertainty import FIGURES, document, gas_text, text
+    from pneutouch.mechanics.atlas.figures import FIGURES
+    from pneutouch.mechanics.uncertainty import document, gas_text, text
 
     pressures, materials = [state.driving_pressure for state in states], list(resins().values())
     calibrated = scene.calibration is not None
@@ -249,7 +250,8 @@ def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float
 
 def _sampled(estimate: SensorBudget, row: int, samples: int, figures: Mapping[str, FigureRecord]) -> SampleRecord:
     """The 95.45 % intervals of the samples about the model's figures, and the share of samples without a figure."""
-    from pneutouch.mechanics.uncertainty import FIGURES, monte_carlo
+    from pneutouch.mechanics.atlas.figures import FIGURES
+    from pneutouch.mechanics.uncertainty import monte_carlo
 
     budget = estimate.budget
     drawn = monte_carlo(estimate.batch, budget.sources, row, samples, shift=budget.shift)

@@ -10,7 +10,7 @@ from pneutouch.arrays import Array
 from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.membrane_contact import CLOSURES
 from pneutouch.mechanics.models.choice import DEFAULT_TOLERANCE, USUAL, model_named, models_for, remedy, usual_model
-from pneutouch.mechanics.models.interface import Answer, Model
+from pneutouch.mechanics.models.interface import ModelAnswer, SensorModel
 from pneutouch.mechanics.prediction import SensorPrediction
 from pneutouch.mechanics.sensor import IndentationProtocol, ResponseCorrection, Sensor
 from pneutouch.units import KPA, ML
@@ -86,7 +86,7 @@ def contact_words(protocol: IndentationProtocol) -> str:
     return f"rigid {body}, {hold}, {' and '.join(places) or 'central'}, straight down{moved}"
 
 
-def _named(name: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[Model, Answer, str | None]:
+def _named(name: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[SensorModel, ModelAnswer, str | None]:
     """A model asked for by name, its answer, and its limitation in words, or None."""
     model = model_named(name)
     why = model.covers(sensor)
@@ -97,7 +97,9 @@ def _named(name: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[M
     return model, answer, None if lacking is None else f"asked for by name, although {lacking.why}"
 
 
-def _cheapest(sensor: Sensor, pressures: Array, closure: str, tolerance: float) -> tuple[Model, Answer, str | None]:
+def _cheapest(
+    sensor: Sensor, pressures: Array, closure: str, tolerance: float
+) -> tuple[SensorModel, ModelAnswer, str | None]:
     """The cheapest model that meets a tolerance, its answer, and why it and no other."""
     sequence = models_for(sensor, tolerance)
     passed = list(sequence.passed)

@@ -7,7 +7,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import batch_of
-from pneutouch.mechanics.contact_correction import outside_fit
+from pneutouch.mechanics.corrected.figures import outside_fit
 from pneutouch.mechanics.limits import RATED_SHARE, Limits
 from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION
 from pneutouch.mechanics.sensor import Sensor

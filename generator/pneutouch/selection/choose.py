@@ -11,10 +11,10 @@ import numpy as np
 from pneutouch.arrays import Array, Flags, Index, distinct
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import ENDS, respond
+from pneutouch.mechanics.corrected.designs import ContactFigures
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE
 from pneutouch.mechanics.uncertainty.sources.place import place_uncertainties
 from pneutouch.selection.candidates import REQUIREMENTS, CandidatePool, evaluated, margins, rated, search
-from pneutouch.selection.contact_factors import ContactFigures
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
 EACH = 3

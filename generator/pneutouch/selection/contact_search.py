@@ -16,6 +16,7 @@ import numpy as np
 from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import AtlasResponse
+from pneutouch.mechanics.corrected.designs import ContactFactors, ContactFigures, ending, places, solid_response
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.selection.candidates import REQUIREMENTS, CandidatePool, evaluated, joined, margins, rated
 from pneutouch.selection.choose import (
@@ -33,7 +34,6 @@ from pneutouch.selection.choose import (
     searched,
     shortlist,
 )
-from pneutouch.selection.contact_factors import ContactFactors, ContactFigures, ending, places, solid_response
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
 _SETTLED = 0.25

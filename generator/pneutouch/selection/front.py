@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Index
+from pneutouch.mechanics.corrected.designs import ContactFactors
 from pneutouch.selection.candidates import CandidatePool, evaluated, joined, margins
-from pneutouch.selection.contact_factors import ContactFactors
 from pneutouch.selection.contact_search import ContactTrial, SolveCandidate, tried
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 

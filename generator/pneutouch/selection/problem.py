@@ -9,7 +9,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.recipe import AtlasRecipe
-from pneutouch.selection.contact_factors import ContactFactors
+from pneutouch.mechanics.corrected.designs import ContactFactors
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 

@@ -15,8 +15,7 @@ from pneutouch.evaluation.charts import curve, resin_curves, tuning
 from pneutouch.evaluation.evaluate import PredictionOptions, evaluate_scene, sensor_of
 from pneutouch.evaluation.result import by_model, rating_record
 from pneutouch.evaluation.uncertainty import unknown
-from pneutouch.mechanics.models.atlas import outside_atlas
-from pneutouch.mechanics.models.choice import USUAL
+from pneutouch.mechanics.models.choice import USUAL, outside
 from pneutouch.parts import assemble
 from pneutouch.results.record import plain
 from pneutouch.rounding import rounded
@@ -110,9 +109,9 @@ class Answers:
         source = question.source(self._bases, self._library)
         scene = load_scene(source, {}, self._library)
         assembly = assemble(scene)
-        drawing, outside = drawn_design(assembly), outside_atlas(sensor_of(assembly))
-        if outside is not None:
-            return QuickAnswer(**_head(source), drawing=drawing, outside=outside, prediction=None, curves=None)
+        drawing, why = drawn_design(assembly), outside("atlas", sensor_of(assembly))
+        if why is not None:
+            return QuickAnswer(**_head(source), drawing=drawing, outside=why, prediction=None, curves=None)
         resins = partial(elastomers, self._library, scene.printer.is_casting)
         evaluation = evaluate_scene(scene, resins, PredictionOptions("atlas"))
         self._last = question, evaluation

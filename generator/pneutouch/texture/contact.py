@@ -13,7 +13,7 @@ from pneutouch.arrays import Array, hermite
 from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, SensorBatch, batch_of
 from pneutouch.mechanics.atlas.table import shipped
-from pneutouch.mechanics.models.atlas import outside_atlas
+from pneutouch.mechanics.models.choice import outside
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA
 
@@ -80,7 +80,7 @@ def touch(sensor: Sensor, driving_pressure: float, preload: float) -> PreloadCon
     for pressures that are negative, beyond the limit point or beyond the pressure sensor's range.
     """
     _check(sensor, driving_pressure, preload)
-    curve = None if outside_atlas(sensor) else _atlas_curve(sensor, driving_pressure)
+    curve = None if outside("atlas", sensor) else _atlas_curve(sensor, driving_pressure)
     model = "atlas"
     if curve is None or curve[1][-1] < preload:
         model, curve = "solid", _solid_curve(sensor, driving_pressure)
@@ -143,7 +143,7 @@ def _check(sensor: Sensor, pressure: float, preload: float) -> None:
             f"driving pressure {pressure / KPA:g} kPa: beyond the pressure sensor's range of "
             f"{sensor.gas.gauge_limit / KPA:g} kPa"
         )
-    if outside_atlas(sensor) is None:
+    if outside("atlas", sensor) is None:
         ratio = np.array([sensor.dome.wall_thickness / sensor.dome.inner_radius])
         limit = float(shipped().slices(ratio, ()).limit_pressure[0]) * sensor.wall.shear_modulus
         if pressure >= limit:

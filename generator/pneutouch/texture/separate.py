@@ -7,9 +7,8 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
-from pneutouch.mechanics.atlas.press import SensorBatch
+from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.uncertainty import batch_of
 from pneutouch.texture.contact import touches
 from pneutouch.texture.scalogram import MORSE
 from pneutouch.texture.scan import NOISE, RATE

@@ -12,7 +12,7 @@ from pneutouch.bench.calibrate.model import FittedContact
 from pneutouch.bench.calibrate.parameters import FRICTION, MODULUS, NAMES, USUAL, parse_names
 from pneutouch.catalogue import load_scene
 from pneutouch.errors import InputError
-from pneutouch.mechanics.contact_correction import GRIPS
+from pneutouch.mechanics.corrected.figures import GRIPS
 from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.units import KPA

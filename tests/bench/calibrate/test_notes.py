@@ -10,7 +10,7 @@ import pytest
 from pneutouch.bench.calibrate import notes
 from pneutouch.bench.calibrate.notes import _MOVED, _shared, amount
 from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, FRICTION_PRIOR, MODULUS, OFFSET, WALL
-from pneutouch.mechanics.contact_correction import GRIPS
+from pneutouch.mechanics.corrected.figures import GRIPS
 from pneutouch.wording import listed
 
 

@@ -18,8 +18,8 @@ from pneutouch.mechanics.anywhere.reading import (
     state_conditions,
 )
 from pneutouch.mechanics.anywhere.table import RECIPE, DomeConditions
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.uncertainty import batch_of
 
 PAPER = DomeConditions(np.array([0.162, 0.162]), np.array([0.0, 0.55]), np.array([0.18, 0.18]))
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from pneutouch.catalogue import Library
-from pneutouch.mechanics.atlas.press import SensorBatch
+from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.uncertainty import Budget, batch_of, budget, model_errors
+from pneutouch.mechanics.uncertainty import Budget, budget, model_errors
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 

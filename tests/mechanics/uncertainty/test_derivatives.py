@@ -9,12 +9,12 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from pneutouch.mechanics.atlas.figures import DEAD, FIGURES, INPUTS, SENSITIVITY, neighbourhood
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.uncertainty import FIGURES, INPUTS, batch_of
-from pneutouch.mechanics.uncertainty.neighbours import neighbourhood
 from pneutouch.mechanics.uncertainty.propagate import STEP, derivatives
-from pneutouch.mechanics.uncertainty.source import DEAD, FIGURE, SENSITIVITY
+from pneutouch.mechanics.uncertainty.source import FIGURE
 from tests.mechanics.test_contact import PAPER
 from tests.mechanics.uncertainty.designs import TEN, batch_for, budget_for, materials
 

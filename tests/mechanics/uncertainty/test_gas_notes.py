@@ -10,8 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.uncertainty import batch_of, gas_notes
+from pneutouch.mechanics.uncertainty import gas_notes
 from pneutouch.mechanics.uncertainty.document import ADIABATIC, REFERENCE_TEMPERATURE
 from tests.mechanics.test_contact import PAPER
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from pneutouch.mechanics.atlas.figures import INPUTS, neighbourhood
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.uncertainty import COVERAGE, ModelErrors, monte_carlo
-from pneutouch.mechanics.uncertainty.neighbours import neighbourhood
 from pneutouch.mechanics.uncertainty.propagate import COUPON, LIMIT, limit_spread, wall_slope
-from pneutouch.mechanics.uncertainty.source import FIGURE, INPUTS
+from pneutouch.mechanics.uncertainty.source import FIGURE
 from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.mechanics.uncertainty import FIGURES, monte_carlo
-from pneutouch.mechanics.uncertainty.source import SENSITIVITY
+from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
+from pneutouch.mechanics.uncertainty import monte_carlo
 from tests.mechanics.uncertainty.designs import TEN, batch_for, budget_for
 
 FLOOR = 0.01

@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
+from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.uncertainty import COVERAGE, FIGURES, batch_of, model_errors
+from pneutouch.mechanics.uncertainty import COVERAGE, model_errors
 from pneutouch.mechanics.uncertainty.propagate import propagate, propagate_groups
-from pneutouch.mechanics.uncertainty.source import SENSITIVITY
 from tests.mechanics.test_contact import PAPER
 from tests.mechanics.uncertainty.designs import TEN, batch_for, budget_for, materials
 

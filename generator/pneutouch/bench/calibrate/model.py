@@ -30,8 +30,8 @@ from pneutouch.bench.calibrate.parameters import (
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
 from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasSlices, shipped
-from pneutouch.mechanics.contact_correction import contact_ratio, plate_alone
-from pneutouch.mechanics.models.atlas import outside_atlas
+from pneutouch.mechanics.corrected.curves import contact_ratio
+from pneutouch.mechanics.corrected.figures import outside_corrected, under_plate
 from pneutouch.mechanics.sensor import Sensor
 
 _NODES = 60
@@ -121,11 +121,10 @@ class AtlasModel:
     """
 
     def __init__(self, sensor: Sensor, points: ObservationPoints, contact: "FittedContact | None" = None) -> None:
-        sensor = plate_alone(sensor)
-        why = outside_atlas(sensor)
+        why = outside_corrected(sensor)
         if why is not None:
             raise InputError(f"calibrate: the atlas does not cover this sensor: {why}; no fit without it")
-        self.sensor, self.points = sensor, points
+        self.sensor, self.points = under_plate(sensor), points
         deep = float(points.travel.max(initial=0.0)) + OFFSET_BOUND
         self._ratio = None
         if contact is not None and points.travel.size:

@@ -190,11 +190,11 @@ def _drawn(
     sensor: Sensor, driving: float, steps: RunProtocol, truth: SimulationTruth, seed: tuple[int, ...]
 ) -> tuple[FigureArrays, int] | None:
     """Figures of the nominal sensor (first) and of the specimens that reach every depth; None if too few do."""
-    from pneutouch.mechanics.models.atlas import outside_atlas
+    from pneutouch.mechanics.models.choice import outside
 
     depth = max(steps.depths)
     nominal = sensor.replace(depth=depth, gauge_limit=np.inf)
-    if outside_atlas(nominal) is not None:
+    if outside("atlas", nominal) is not None:
         return None
     count = truth.specimens
     some = SimulatedSpecimens.draw(truth.scatter, count, np.random.default_rng([*seed, count]))

@@ -6,7 +6,7 @@ from itertools import groupby
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.errors import BeyondLimitError, PneutouchError
+from pneutouch.errors import BeyondLimitError
 from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, SensorBatch, batch_of
 from pneutouch.mechanics.atlas.recipe import FIELDS
 from pneutouch.mechanics.atlas.respond import (
@@ -26,7 +26,7 @@ from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, AtlasSlices, shi
 from pneutouch.mechanics.events import Event
 from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.models.accuracy import NUMERICAL, TABULATION
-from pneutouch.mechanics.models.interface import Answer, Limitation, Model
+from pneutouch.mechanics.models.interface import Answered, Limitation, ModelAnswer, SensorModel
 from pneutouch.mechanics.models.statements import BODY, NOT_CHECKED, discretised, solid_assumptions
 from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
@@ -118,7 +118,7 @@ _LIMITATIONS = {
 }
 
 
-class AtlasModel(Model):
+class AtlasTables(SensorModel):
     """The shipped atlas."""
 
     name = "atlas"
@@ -127,9 +127,9 @@ class AtlasModel(Model):
         """Reason why a sensor lies outside the box of the atlas."""
         return outside_atlas(sensor)
 
-    def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answer | PneutouchError]:
+    def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
         """Answers looked up in one pass for all sensors that are pressed in as many steps."""
-        answers: list[Answer | PneutouchError | None] = [None] * len(sensors)
+        answers: list[Answered | None] = [None] * len(sensors)
         order = sorted(range(len(sensors)), key=lambda i: sensors[i].protocol.steps)
         for _, same in groupby(order, key=lambda i: sensors[i].protocol.steps):
             rows = list(same)
@@ -149,10 +149,10 @@ class AtlasModel(Model):
         return solid_assumptions(sensor, f"{BODY}; {NOT_CHECKED}")
 
 
-MODEL = AtlasModel()
+MODEL = AtlasTables()
 
 
-def _looked_up(sensors: list[Sensor], driving_pressures: list[Array]) -> list[Answer | PneutouchError]:
+def _looked_up(sensors: list[Sensor], driving_pressures: list[Array]) -> list[Answered]:
     """Answers for sensors of one number of steps, in one pass."""
     batch = SensorBatch.join([batch_of(*pair) for pair in zip(sensors, driving_pressures, strict=True)])
     # Each pressure is a group of its own: its figures do not depend on the others.
@@ -163,7 +163,7 @@ def _looked_up(sensors: list[Sensor], driving_pressures: list[Array]) -> list[An
     return [_answer(sensor, passed, fields, range(end - len(some), end)) for sensor, end, some in rows]
 
 
-def _answer(sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: range) -> Answer | PneutouchError:
+def _answer(sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: range) -> Answered:
     """The answer for one sensor, whose driving pressures are some rows of a pass."""
     response, press = passed.response, passed.press
     limit = float(press.limit[rows[0]]) * sensor.wall.shear_modulus
@@ -180,7 +180,7 @@ def _answer(sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: ra
         limitation = _MEETS_RING
     curve, point, rupture = _inflation(sensor, press.slices, int(press.k[rows[0]]))
     limits = Limits(limit, rupture, sensor.gas.gauge_limit)
-    return Answer(ModelResult(point, limits, curve, states), limitation)
+    return ModelAnswer(ModelResult(point, limits, curve, states), limitation)
 
 
 def _state(

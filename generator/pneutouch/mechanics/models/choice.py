@@ -5,7 +5,7 @@ from importlib import import_module
 from typing import TypedDict, cast
 
 from pneutouch.errors import InputError, nearest
-from pneutouch.mechanics.models.interface import Model
+from pneutouch.mechanics.models.interface import SensorModel
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.spec.values import plain_number
 
@@ -34,11 +34,11 @@ class ModelSequence:
     passed: tuple[str, ...]
 
 
-def model_named(name: str) -> Model:
+def model_named(name: str) -> SensorModel:
     """A model of the table. Raises InputError for an unknown name."""
     if name not in MODELS:
         raise InputError(f"unknown model.{nearest(name, MODEL_CHOICES)}", key="model", value=name)
-    return cast(Model, import_module(MODELS[name]).MODEL)
+    return cast(SensorModel, import_module(MODELS[name]).MODEL)
 
 
 def outside(name: str, sensor: Sensor) -> str | None:

@@ -9,13 +9,13 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.errors import ComputationError, InputError, PneutouchError
+from pneutouch.errors import ComputationError, InputError
 from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.harmonic.friction_path import ShearPath
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject
 from pneutouch.mechanics.models.accuracy import HARMONICS_SETTLED, OBJECT_DISCRETISATION
-from pneutouch.mechanics.models.interface import Answer, Model, one_by_one
+from pneutouch.mechanics.models.interface import Answered, ModelAnswer, SensorModel, one_by_one
 from pneutouch.mechanics.models.solid import curve_between, press_settings, reported_events, solid_result
 from pneutouch.mechanics.models.statements import discretised, solid_assumptions
 from pneutouch.mechanics.off_axis_curve import OffAxisCurve, RangeCurve, ShearCurve
@@ -49,7 +49,7 @@ _SUMMARY = (
 )
 
 
-class Harmonic(Model):
+class HarmonicElements(SensorModel):
     """The solid with as many harmonics around its axis as the contact needs."""
 
     name = "harmonic"
@@ -59,9 +59,9 @@ class Harmonic(Model):
         held = sensor.dome.flange is not None
         return "the flange is held as printed, and the wall's contact with its top is axisymmetric" if held else None
 
-    def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answer | PneutouchError]:
+    def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
         """Answers of `harmonic_result`."""
-        return one_by_one(lambda *one: Answer(harmonic_result(*one)), sensors, driving_pressures)
+        return one_by_one(lambda *one: ModelAnswer(harmonic_result(*one)), sensors, driving_pressures)
 
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
         """Errors of the mesh and of the sums."""
@@ -72,7 +72,7 @@ class Harmonic(Model):
         return solid_assumptions(sensor, _BODY)
 
 
-MODEL = Harmonic()
+MODEL = HarmonicElements()
 
 
 def harmonic_result(sensor: Sensor, driving_pressures: Array) -> ModelResult:

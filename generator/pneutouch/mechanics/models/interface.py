@@ -21,14 +21,18 @@ class Limitation(NamedTuple):
     fatal: bool
 
 
-class Answer(NamedTuple):
+class ModelAnswer(NamedTuple):
     """The result of a model for one sensor, and its limitation, or None."""
 
     result: ModelResult
     limitation: Limitation | None = None
 
 
-class Model(ABC):
+Answered = ModelAnswer | PneutouchError
+"""An answer, or the error of a sensor that has none."""
+
+
+class SensorModel(ABC):
     """A model of the sensor.
 
     ``correctable``: a calibration's factors on force and rise, found against finite elements, hold for its answers.
@@ -44,7 +48,7 @@ class Model(ABC):
         """Reason why the model has no answer for a sensor, or None if it covers it."""
 
     @abstractmethod
-    def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answer | PneutouchError]:
+    def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
         """Answers for sensors that the model covers, each at driving pressures of its own (MPa, ascending).
 
         A sensor that has none, for instance beyond its limit point, gets its error and stops no other.
@@ -62,24 +66,24 @@ class Model(ABC):
         """Relative numerical error in sensitivity."""
         return NUMERICAL[self.name]
 
-    def answer_one(self, sensor: Sensor, driving_pressures: Array) -> Answer:
+    def answer_one(self, sensor: Sensor, driving_pressures: Array) -> ModelAnswer:
         """The answer for one sensor. Raises its error."""
         (answer,) = self.answer([sensor], [driving_pressures])
         if isinstance(answer, PneutouchError):
             raise answer
         return answer
 
-    def closed(self, closure: str) -> Model:
+    def closed(self, closure: str) -> SensorModel:
         """The model with a closure of the membrane's contact; no other model has one."""
         return self
 
 
 def one_by_one(
-    answer: Callable[[Sensor, Array], Answer], sensors: Sequence[Sensor], driving_pressures: Sequence[Array]
-) -> list[Answer | PneutouchError]:
+    answer: Callable[[Sensor, Array], ModelAnswer], sensors: Sequence[Sensor], driving_pressures: Sequence[Array]
+) -> list[Answered]:
     """Answers of a model that takes one sensor at a time."""
 
-    def tried(sensor: Sensor, pressures: Array) -> Answer | PneutouchError:
+    def tried(sensor: Sensor, pressures: Array) -> Answered:
         try:
             return answer(sensor, pressures)
         except PneutouchError as error:

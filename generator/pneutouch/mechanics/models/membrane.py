@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.errors import PneutouchError
 from pneutouch.mechanics.events import events, range_end
 from pneutouch.mechanics.inflation import (
     LIMIT_HEIGHT,
@@ -18,7 +17,7 @@ from pneutouch.mechanics.inflation import (
 )
 from pneutouch.mechanics.limits import limit_point, limits
 from pneutouch.mechanics.membrane_contact import PressedStates, TrappedGas, press
-from pneutouch.mechanics.models.interface import Answer, Limitation, Model, one_by_one
+from pneutouch.mechanics.models.interface import Answered, Limitation, ModelAnswer, SensorModel, one_by_one
 from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
@@ -36,7 +35,7 @@ _NO_LAW = Limitation("it covers neither other laws, nor a clamped flange", False
 
 
 @dataclass(frozen=True)
-class Membrane(Model):
+class MembraneTheory(SensorModel):
     """The paper's theory with one of the closures of `membrane_contact`."""
 
     closure: str = "variational"
@@ -49,7 +48,7 @@ class Membrane(Model):
         graded = None if sensor.wall.grade is None else "the wall is graded along its arc"
         return sensor.protocol.other_contact or graded
 
-    def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answer | PneutouchError]:
+    def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
         """Answers in closed form; a fitted law and a flange are not part of it."""
         return one_by_one(self._answer, sensors, driving_pressures)
 
@@ -61,18 +60,18 @@ class Membrane(Model):
         """Assumptions of the theory."""
         return _ASSUMPTIONS
 
-    def closed(self, closure: str) -> Model:
+    def closed(self, closure: str) -> SensorModel:
         """The theory with another closure."""
-        return Membrane(closure)
+        return MembraneTheory(closure)
 
-    def _answer(self, sensor: Sensor, driving_pressures: Array) -> Answer:
+    def _answer(self, sensor: Sensor, driving_pressures: Array) -> ModelAnswer:
         plain = sensor.wall.law is None and sensor.dome.flange is None
         states = membrane_states(sensor, driving_pressures, self.closure)
         result = ModelResult(limit_point(sensor), limits(sensor), inflation_curve(sensor), states)
-        return Answer(result, None if plain else _NO_LAW)
+        return ModelAnswer(result, None if plain else _NO_LAW)
 
 
-MODEL = Membrane()
+MODEL = MembraneTheory()
 
 
 def error_against_exact_membrane(sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:

@@ -11,14 +11,13 @@ from typing import Protocol
 import numpy as np
 
 from pneutouch.arrays import Array, distinct, hermite
-from pneutouch.errors import PneutouchError
 from pneutouch.mechanics.events import LOBES, SWAY, Event, range_end
 from pneutouch.mechanics.harmonic.fields import Harmonics
 from pneutouch.mechanics.harmonic.object_contact import pressed_face
 from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.limits import LAW_RANGE, LimitPoint, Limits
 from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION, OBJECT_DISCRETISATION, SENSITIVITY_DISCRETISATION
-from pneutouch.mechanics.models.interface import Answer, Model, one_by_one
+from pneutouch.mechanics.models.interface import Answered, ModelAnswer, SensorModel, one_by_one
 from pneutouch.mechanics.models.statements import BODY, NOT_CHECKED, discretised, solid_assumptions
 from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState, WallPath
 from pneutouch.mechanics.pressed_face import PressedFace
@@ -45,7 +44,7 @@ _OBJECT_SUMMARY = (
 )
 
 
-class Solid(Model):
+class SolidElements(SensorModel):
     """Axisymmetric finite elements with trapped gas and contact."""
 
     name = "solid"
@@ -55,9 +54,9 @@ class Solid(Model):
         """Deviation of the contact from the axis, or None."""
         return sensor.protocol.off_axis
 
-    def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answer | PneutouchError]:
+    def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
         """Answers of `solid_result`."""
-        return one_by_one(lambda *one: Answer(solid_result(*one)), sensors, driving_pressures)
+        return one_by_one(lambda *one: ModelAnswer(solid_result(*one)), sensors, driving_pressures)
 
     def stated_error(self, sensor: Sensor) -> float:
         """The error of the mesh, which is greater under an object that is no plate."""
@@ -76,7 +75,7 @@ class Solid(Model):
         return solid_assumptions(sensor, f"{BODY}; {checked}")
 
 
-MODEL = Solid()
+MODEL = SolidElements()
 
 
 def leaves_law(probe: StrainProbe, run: Inflation, largest: float | None) -> tuple[float, float] | None:

@@ -1,23 +1,19 @@
 """The uncertainty of a prediction: stated sources, their shares, expanded uncertainties with k = 2 (JCGM 100)."""
 
-from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.uncertainty.budget import budget, monte_carlo
 from pneutouch.mechanics.uncertainty.contact_model import ContactModel
 from pneutouch.mechanics.uncertainty.document import GasNotes, document, gas_notes, gas_text, shares, text
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
-from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, UncertaintySource
+from pneutouch.mechanics.uncertainty.source import UncertaintySource
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors, measured_errors, model_errors
 
 __all__ = [
     "COVERAGE",
-    "FIGURES",
-    "INPUTS",
     "Budget",
     "ContactModel",
     "GasNotes",
     "ModelErrors",
     "UncertaintySource",
-    "batch_of",
     "budget",
     "document",
     "gas_notes",

@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
+from pneutouch.mechanics.atlas.figures import FIGURES, log_figures, moved
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.contact_model import ContactModel, ContactShift
-from pneutouch.mechanics.uncertainty.neighbours import log_figures, moved
 from pneutouch.mechanics.uncertainty.propagate import Budget, propagate
-from pneutouch.mechanics.uncertainty.source import FIGURE, FIGURES, JOINT, UncertaintySource
+from pneutouch.mechanics.uncertainty.source import FIGURE, JOINT, UncertaintySource
 from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors
 from pneutouch.spec.calibration import SensorCalibration

@@ -1,105 +1,20 @@
-"""A sensor under another contact than the atlas's plate without friction, by the solid's answers.
+"""The uncertainty of a sensor under another contact than the atlas's plate without friction.
 
 The atlas gives the derivatives by wall, radius, gas and driving pressure. The derivative by the modulus, which is
 uncertain by far the most, and that by the friction are the solid's, with the contact itself
 (docs/background/contact.md).
-
-Answers of the solid for a sensor under its contact, at the few driving pressures that suffice.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.errors import ComputationError
+from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, FIGURES, log_figures
 from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
-from pneutouch.mechanics.contact_correction import GRIPS, plate_alone
-from pneutouch.mechanics.prediction import SensorState
-from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
-from pneutouch.mechanics.uncertainty.neighbours import log_figures
-from pneutouch.mechanics.uncertainty.source import CONTACT_FIGURES, FIGURES
-
-SAME = 1e-6
-"""Driving pressures nearer to each other than this, MPa, are one."""
-
-
-@lru_cache(maxsize=128)
-def pressed_logs(sensor: Sensor, pressures: tuple[float, ...]) -> Array:
-    """Logarithms of the figures at ascending driving pressures, MPa, (figures, n), read-only; all NaN if the solid
-    cannot solve the highest. The chart, the budget and the curves of a datasheet need the same ones again."""
-    from pneutouch.mechanics.models.solid import solid_states
-
-    try:
-        logs = state_logs(solid_states(sensor, np.array(pressures)))
-    except ComputationError:
-        logs = np.full((len(FIGURES), len(pressures)), np.nan)
-    logs.setflags(write=False)
-    return logs
-
-
-def state_logs(states: Sequence[SensorState], correction: ResponseCorrection | None = None) -> Array:
-    """Logarithms of the figures of solved states, (figures, n); NaN for a missing figure. The factors of a
-    ``correction`` that the states hold are taken out."""
-    rows = np.full((len(FIGURES), len(states)), np.nan)
-    for k, state in enumerate(states):
-        if state.figures is not None:
-            force, rise = (1.0, 1.0) if correction is None else correction.at(state.driving_pressure)
-            fitted = state.figures.scaled(1.0 / force, 1.0 / rise)
-            rows[CONTACT_FIGURES, k] = (
-                fitted.sensitivity_kPa_per_N,
-                fitted.stiffness,
-                fitted.force_range[1],
-                state.range_end,
-            )
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(np.log(rows))
-
-
-def solved_at(
-    sensor: Sensor, pressures: Sequence[float], states: Sequence[SensorState], least: int = 3
-) -> tuple[Array, Array]:
-    """Driving pressures (k,) from which those at ``pressures`` follow, and the logarithms of the figures (figures, k).
-
-    ``states`` of the sensor are taken as they are. What lies beyond them is solved at its ends, without the highest
-    that the solid cannot be driven to, and the middle of all where there are fewer than ``least`` then.
-    """
-    given, bare = state_logs(states, sensor.correction), sensor.replace(waves=0)
-    known = {state.driving_pressure: given[:, k] for k, state in enumerate(states)}
-    outside = [p for p in pressures if not known or not min(known) - SAME <= p <= max(known) + SAME]
-    for count in range(len(outside), 0, -1):
-        some = tuple(dict.fromkeys((outside[0], outside[count - 1])))
-        solved = pressed_logs(bare, some)
-        if not np.isnan(solved).all():
-            known.update(zip(some, solved.T, strict=True))
-            break
-    between_them = any(not _among(p, known) for p in pressures)
-    if between_them and 2 <= len(known) < least:
-        middle = 0.5 * (min(known) + max(known))
-        known[middle] = pressed_logs(bare, (middle,))[:, 0]
-    if not known:
-        return np.array(pressures), np.full((len(FIGURES), len(pressures)), np.nan)
-    at = sorted(known)
-    return np.array(at), np.stack([known[p] for p in at], axis=1)
-
-
-def _among(pressure: float, others: dict[float, Array]) -> bool:
-    return any(abs(pressure - other) <= SAME for other in others)
-
-
-def between(where: Array, at: Array, values: Array) -> Array:
-    """Straight lines between values (figures, k) at driving pressures (k,), at others (n,); NaN above the highest, and
-    below the lowest, that have one."""
-    rows = np.full((len(values), where.size), np.nan)
-    for row, line in zip(rows, values, strict=True):
-        good = np.isfinite(line)
-        if good.any():
-            inside = (where >= at[good][0] - SAME) & (where <= at[good][-1] + SAME)
-            row[inside] = np.interp(where[inside], at[good], line[good])
-    return rows
-
+from pneutouch.mechanics.corrected.figures import GRIPS, CorrectedAtlas, between, pressed_logs, under_plate
+from pneutouch.mechanics.sensor import Sensor
 
 SPREAD = 2.0
 """A stated coefficient may be this factor off in either direction, even in its logarithm: an assumption. Dry rubber on
@@ -160,41 +75,19 @@ class ContactShift:
 
 
 @dataclass(frozen=True)
-class ContactModel:
-    """One sensor under its contact at n ascending driving pressures, MPa.
+class ContactModel(CorrectedAtlas):
+    """One sensor under its contact, and what another modulus or friction changes.
 
-    ``states`` are those of the solid where it has been solved already, at these or at other driving pressures; between
-    them, and ``least`` pressures, the logarithm of the figures over those under the plate is straight.
-    What another modulus or friction changes is solved at the lowest and the highest pressure and is straight between,
-    unless an event ends the range. ``fitted_spread`` is the standard uncertainty of the coefficient where a calibration
-    fitted it.
+    That is solved at the lowest and the highest pressure and is straight between, unless an event ends the range.
+    ``fitted_spread`` is the standard uncertainty of the coefficient where a calibration fitted it.
     """
 
-    sensor: Sensor
-    pressures: tuple[float, ...]
-    states: Sequence[SensorState] = ()
     fitted_spread: float | None = None
-    least: int = 3
-
-    @cached_property
-    def logs(self) -> Array:
-        """Logarithms of the figures under the contact, (figures, n)."""
-        at, solved = self._solved
-        if at.size == len(self.pressures) and np.abs(at - np.array(self.pressures)).max() <= SAME:
-            return solved
-        return self.ratio + log_figures(batch_of(plate_alone(self.sensor), self.pressures))
-
-    @cached_property
-    def ratio(self) -> Array:
-        """Logarithms of the figures under the contact over those under the plate, by the atlas, (figures, n)."""
-        at, solved = self._solved
-        plate = log_figures(batch_of(plate_alone(self.sensor), at))
-        return between(np.array(self.pressures), at, solved - plate)
 
     def shift(self, half: float) -> ContactShift:
         """The shift over a spread of the modulus; a side that the solid cannot solve is as the middle."""
         half = max(half, _LEAST_STEP)
-        here = self.logs - log_figures(batch_of(plate_alone(self.sensor), self.pressures))
+        here = self.logs - self.plate(self.pressures)
         modulus = self.sensor.wall.shear_modulus
         less, more = (self._change(self.sensor.replace(shear_modulus=f * modulus)) for f in np.exp([-half, half]))
         nodes = np.stack([here + less, here, here + more])
@@ -238,15 +131,10 @@ class ContactModel:
         origin = f"fitted: {value:.3g}, standard uncertainty {spread:.2g}; the solid at {ends[0]:.2g} and {ends[1]:.2g}"
         return FrictionSpread(np.abs(slope) * spread, value * slope, origin)
 
-    @cached_property
-    def _solved(self) -> tuple[Array, Array]:
-        """Driving pressures (k,) that the sensor is solved at, and the logarithms of its figures (figures, k)."""
-        return solved_at(self.sensor, self.pressures, self.states, self.least)
-
     def _change(self, sensor: Sensor) -> Array:
         """Change of the logarithms of another sensor's figures under its contact, less the change under the plate,
         (figures, n); NaN beyond the highest driving pressure at which the solid can solve it."""
-        at, solved = self._solved
+        at, solved = self.solved
         for count in range(at.size, 0, -1):
             rows = np.unique([0, count - 1])
             changes = pressed_logs(sensor.replace(waves=0), tuple(at[rows].tolist())) - solved[:, rows]
@@ -256,7 +144,7 @@ class ContactModel:
             inner = pressed_logs(sensor.replace(waves=0), tuple(at[1 : count - 1].tolist())) - solved[:, 1 : count - 1]
             rows, changes = np.arange(count), np.hstack([changes[:, :1], inner, changes[:, 1:]])
         if sensor.wall != self.sensor.wall:
-            plates = [batch_of(plate_alone(one), at[rows]) for one in (sensor, self.sensor)]
+            plates = [batch_of(under_plate(one), at[rows]) for one in (sensor, self.sensor)]
             there, here = np.split(log_figures(SensorBatch.join(plates)), 2, axis=1)
             changes = changes - (there - here)
         return between(np.array(self.pressures), at[rows], changes)

@@ -9,13 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
+from pneutouch.mechanics.atlas.figures import FIGURES, INPUTS, SENSITIVITY, neighbourhood
 from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.line.air import ADIABATIC, REFERENCE_TEMPERATURE
 from pneutouch.mechanics.response import lines
-from pneutouch.mechanics.uncertainty.neighbours import neighbourhood
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
-from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, SENSITIVITY
 from pneutouch.mechanics.uncertainty.sources.model import FRICTION, PLACE
 from pneutouch.mechanics.uncertainty.sources.modulus import AGEING
 from pneutouch.results.uncertainty import FigureRecord, IntervalRecord, UncertaintyRecord

@@ -16,10 +16,10 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
+from pneutouch.mechanics.atlas.figures import DEAD, FIGURES, INPUTS, log_figures, moved, neighbourhood, unit_step
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.contact_model import ContactModel, ContactShift
-from pneutouch.mechanics.uncertainty.neighbours import log_figures, moved, neighbourhood, unit_step
-from pneutouch.mechanics.uncertainty.source import DEAD, FIGURES, INPUTS, UncertaintySource
+from pneutouch.mechanics.uncertainty.source import UncertaintySource
 from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors
 from pneutouch.spec.calibration import SensorCalibration

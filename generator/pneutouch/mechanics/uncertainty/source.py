@@ -9,37 +9,14 @@ from typing import Literal
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
+from pneutouch.mechanics.atlas.figures import DEAD, FIGURES, INPUTS
 from pneutouch.results.uncertainty import SourceRecord
-
-FIGURES = (
-    "sensitivity_kPa_per_N",
-    "limit_pressure_kPa",
-    "stiffness_N_per_mm",
-    "force_at_range_end_N",
-    "range_end_mm",
-    "apex_height_outer_mm",
-)
-"""The predicted figures, in the order of every array over figures."""
-
-INPUTS = ("shear_modulus", "wall_thickness", "inner_radius", "dead_volume", "ambient_pressure", "driving_pressure")
-"""Inputs that a source may act on through the model, in the order of every array over inputs; names of
-`SensorBatch`."""
 
 FIGURE = "figure"
 """Acts on the predicted figure itself, as a relative error."""
 
 JOINT = "parameters"
 """Acts on several inputs together, whose deviations are correlated."""
-
-SENSITIVITY = FIGURES.index("sensitivity_kPa_per_N")
-CONTACT_FIGURES = (
-    SENSITIVITY,
-    FIGURES.index("stiffness_N_per_mm"),
-    FIGURES.index("force_at_range_end_N"),
-    FIGURES.index("range_end_mm"),
-)
-"""Figures that depend on the contact; the last is the end of the range."""
-DEAD = INPUTS.index("dead_volume")
 
 Distribution = Literal["normal", "rectangular", "lognormal", "log-rectangular"]
 

@@ -19,7 +19,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.models.atlas import outside_atlas
+from pneutouch.mechanics.models.choice import outside
 from pneutouch.mechanics.models.solid import press_settings, solid_probe
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.cavity import FillingState, Gas
@@ -238,7 +238,7 @@ def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[flo
     hold, cycle = (relaxation_by_solid, loop_by_solid) if by_solid else (relaxation, loop)
     for series in prony_series(material):
         relaxed_sensor = relaxed(sensor, material, series)
-        if not by_solid and outside_atlas(relaxed_sensor) is not None:
+        if not by_solid and outside("atlas", relaxed_sensor) is not None:
             continue
         kept.append(series.source)
         held.append(hold(relaxed_sensor, [series], driving_pressures, depth, RAMP_SPEED))

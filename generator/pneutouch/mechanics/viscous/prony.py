@@ -75,9 +75,9 @@ def unknown(sensor: Sensor, material: Material, model: str) -> str | None:
     test = sensor.protocol
     if test.other_contact is not None and test.off_axis is None and sensor.wall.law is None:
         return None
-    from pneutouch.mechanics.models.atlas import outside_atlas
+    from pneutouch.mechanics.models.choice import outside
 
-    reasons = [outside_atlas(relaxed(sensor, material, series)) for series in prony_series(material)]
+    reasons = [outside("atlas", relaxed(sensor, material, series)) for series in prony_series(material)]
     return None if None in reasons else f"the sensor is outside the atlas: {reasons[0]}"
 
 

@@ -112,12 +112,12 @@ def _sensitivities(sensor: Sensor, pressure: float, low: float, high: float) -> 
     """The atlas's sensitivities between both walls; nothing where it does not cover the sensor."""
     from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.atlas.respond import OUTSIDE, respond
-    from pneutouch.mechanics.models.atlas import outside_atlas
+    from pneutouch.mechanics.models.choice import outside
 
     sensitivities = []
     for wall in (low, high):
         other = sensor.replace(wall_thickness=wall)
-        if outside_atlas(other) is not None:
+        if outside("atlas", other) is not None:
             return ""
         response = respond(batch_of(other, [pressure]), sensor.protocol.steps)
         value = float(response.lines.sensitivity_kPa_per_N[0])

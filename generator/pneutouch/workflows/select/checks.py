@@ -28,6 +28,7 @@ from pneutouch.evaluation.sheet_data import TuningCurve
 from pneutouch.evaluation.subject import subject_of
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.evaluation.uncertainty import even_wall, known, unknown
+from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.models.accuracy import NUMERICAL
 from pneutouch.mechanics.prediction import SensorState
@@ -35,7 +36,7 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.uncertainty import ModelErrors
 from pneutouch.mechanics.uncertainty.propagate import Budget, propagate_groups
-from pneutouch.mechanics.uncertainty.source import FIGURES, SENSITIVITY, UncertaintySource
+from pneutouch.mechanics.uncertainty.source import UncertaintySource
 from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.mechanics.uncertainty.sources.model import PLACE
 from pneutouch.output.new import write_design

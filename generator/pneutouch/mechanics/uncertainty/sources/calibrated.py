@@ -7,16 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
+from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
 from pneutouch.mechanics.atlas.press import SensorBatch
-from pneutouch.mechanics.uncertainty.source import (
-    FIGURE,
-    FIGURES,
-    JOINT,
-    SENSITIVITY,
-    Distribution,
-    UncertaintySource,
-    counting,
-)
+from pneutouch.mechanics.uncertainty.source import FIGURE, JOINT, Distribution, UncertaintySource, counting
 from pneutouch.mechanics.uncertainty.sources.model import CORRECTION, FRICTION, GAUGE, MODEL_CORRELATION
 from pneutouch.spec.calibration import CalibratedResponse, SensorCalibration
 from pneutouch.units import KPA, ML

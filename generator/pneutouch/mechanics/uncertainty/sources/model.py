@@ -14,20 +14,13 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.errors import InputError, shown
+from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, FIGURES, SENSITIVITY
 from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.contact_model import ContactModel
-from pneutouch.mechanics.uncertainty.source import (
-    CONTACT_FIGURES,
-    FIGURE,
-    FIGURES,
-    SENSITIVITY,
-    Distribution,
-    UncertaintySource,
-    counting,
-)
+from pneutouch.mechanics.uncertainty.source import FIGURE, Distribution, UncertaintySource, counting
 from pneutouch.spec.material import Material, PaperMeasurements
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA

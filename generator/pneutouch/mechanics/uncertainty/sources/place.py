@@ -10,9 +10,10 @@ from pneutouch.mechanics.anywhere.reading import (
     batch_conditions,
     place_uncertainty,
 )
+from pneutouch.mechanics.atlas.figures import SENSITIVITY
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import AtlasResponse, respond
-from pneutouch.mechanics.uncertainty.source import FIGURE, SENSITIVITY, UncertaintySource, counting
+from pneutouch.mechanics.uncertainty.source import FIGURE, UncertaintySource, counting
 from pneutouch.mechanics.uncertainty.sources.model import PLACE
 
 _ORIGIN = (

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.mechanics.contact_correction import GRIPS, NODES, _log_ratio, contact_ratio
+from pneutouch.mechanics.corrected.curves import NODES, _log_ratio, contact_ratio
+from pneutouch.mechanics.corrected.figures import GRIPS
 from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.solid.indenter import ball

@@ -1,4 +1,4 @@
-"""A batch with its inputs moved, and the figures of all that, in one call of the atlas."""
+"""The predicted figures of batches and of their neighbours, whose inputs are moved, in one call of the atlas."""
 
 from dataclasses import replace
 from functools import cache
@@ -9,8 +9,32 @@ from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, shipped
-from pneutouch.mechanics.uncertainty.source import DEAD, FIGURES, INPUTS
 from pneutouch.units import KPA
+
+FIGURES = (
+    "sensitivity_kPa_per_N",
+    "limit_pressure_kPa",
+    "stiffness_N_per_mm",
+    "force_at_range_end_N",
+    "range_end_mm",
+    "apex_height_outer_mm",
+)
+"""The predicted figures, in the order of every array over figures."""
+
+INPUTS = ("shear_modulus", "wall_thickness", "inner_radius", "dead_volume", "ambient_pressure", "driving_pressure")
+"""Inputs that a source may act on through the model, in the order of every array over inputs; names of
+`SensorBatch`."""
+
+SENSITIVITY = FIGURES.index("sensitivity_kPa_per_N")
+CONTACT_FIGURES = (
+    SENSITIVITY,
+    FIGURES.index("stiffness_N_per_mm"),
+    FIGURES.index("force_at_range_end_N"),
+    FIGURES.index("range_end_mm"),
+)
+"""Figures that depend on the contact; the last is the end of the range."""
+DEAD = INPUTS.index("dead_volume")
+
 
 _MARGIN = 0.001
 """Distance by which the neighbourhood of the box stays inside the surveyed data (`AtlasRecipe.beyond`), in R0."""

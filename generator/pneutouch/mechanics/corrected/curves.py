@@ -3,10 +3,8 @@
 The atlas presses with a plate without friction. Its force and pressure rise times the ratio of the solid's curves with
 a contact to the solid's with that plate, at the same travels and driving pressures, are those under the contact. The
 ratio is of one sensor; nearby its logarithm is taken as the same. With friction that of the force moves by up to 0.04
-for a modulus 1.3 times as large, that of the sensitivity by up to 0.02 (`tests/mechanics/test_contact_correction.py`):
+for a modulus 1.3 times as large, that of the sensitivity by up to 0.02 (`tests/mechanics/test_corrected_curves.py`):
 a fit takes the ratio at its own estimate.
-
-Sensors that a calibration covers: those that the atlas, with which every fit is made, has answers for.
 """
 
 from dataclasses import dataclass
@@ -16,13 +14,9 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
-from pneutouch.mechanics.models.atlas import outside_atlas
+from pneutouch.mechanics.corrected.figures import GRIPS, under_plate
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA
-
-GRIPS = 2.0
-"""Coefficient from which on the contact is taken as one that grips: beyond it the sensitivity of the paper's sensor in
-its resins changes by less than 0.5 % (`tests/mechanics/test_contact_correction.py`)."""
 
 NODES = (0.0, 0.1, 0.25, 0.45, 0.7, 1.0, 1.4, GRIPS)
 """Coefficients at which the solid is solved where friction is fitted."""
@@ -83,25 +77,13 @@ def contact_ratio(
     # A surface that grips in place of the largest coefficients: nothing slips there any more.
     held = [bare.replace(friction=np.inf if friction >= GRIPS else friction) for friction in frictions]
     depths, pressures = np.linspace(0.0, deepest, _STEPS + 1)[1:], tuple(grains.tolist())
-    under, over = _pressed(plate_alone(bare), pressures), [_pressed(one, pressures) for one in held]
+    under, over = _pressed(under_plate(bare), pressures), [_pressed(one, pressures) for one in held]
     count = min(len(under), *(len(presses) for presses in over))
     if not count:
         listed = ", ".join(f"{pressure / KPA:g}" for pressure in pressures)
         raise ComputationError(f"calibrate: the solid cannot press the sensor with its contact at {listed} kPa")
     logs = [[_log_ratio(presses[k], under[k], depths) for k in range(count)] for presses in over]
     return ContactRatio(np.array(frictions), grains[:count], depths, np.array(logs).transpose(2, 0, 1, 3))
-
-
-def plate_alone(sensor: Sensor) -> Sensor:
-    """The sensor under a plate without friction; one that is wide enough where an object was in its place.
-
-    A place off the axis and an object that lies across the dome are kept: the correction is axisymmetric.
-    """
-    protocol = sensor.protocol
-    if protocol.other_contact is None or (protocol.body is not None and protocol.body.lying):
-        return sensor
-    plate = protocol.plate_radius if protocol.body is None else max(protocol.plate_radius, 2 * sensor.dome.inner_radius)
-    return sensor.replace(body=None, plate_rim=None, friction=0.0, plate_radius=plate)
 
 
 @lru_cache(maxsize=64)
@@ -124,16 +106,3 @@ def _log_ratio(contact: Array, plate: Array, depths: Array) -> Array:
     at = np.minimum(depths, min(contact[0, -1], plate[0, -1]))
     over, under = (np.array([np.interp(at, one[0], row) for row in one[1:]]) for one in (contact, plate))
     return np.asarray(np.log(over / under))
-
-
-_DEPTH = 0.75
-"""Depth in R0 that a fit takes at most: that of the sensitivity test (paper, section 3-B)."""
-
-
-def outside_fit(sensor: Sensor) -> str | None:
-    """Reason why no fit to measured runs covers a sensor, or None if one does.
-
-    Friction and objects are the solid's correction of the atlas (`contact_correction`).
-    """
-    plate = plate_alone(sensor)
-    return outside_atlas(plate.replace(depth=min(plate.protocol.depth, _DEPTH * plate.dome.inner_radius)))
