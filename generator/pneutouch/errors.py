@@ -37,6 +37,7 @@ class PneutouchError(Exception):
 
     problem: what is wrong.  file: where it is written.  key: the key in that file, or the parameter of the function.
     value:   what was given there.  remedy: what to do about it.  All but the problem may be None.
+    fields:  the keys, ``table.key``, that a problem with a table or a whole file is about.
     """
 
     exit_code = 3
@@ -49,10 +50,12 @@ class PneutouchError(Exception):
         key: str | None = None,
         value: Any = None,
         remedy: str | None = None,
+        fields: Sequence[str] = (),
     ) -> None:
         super().__init__(problem)
         self.problem, self.key, self.value, self.remedy = problem, key, value, remedy
         self.file = None if file is None else str(file)
+        self.fields = tuple(fields)
         self.others: tuple[PneutouchError, ...] = ()
 
     def message(self, option: Callable[[str], str | None] = lambda parameter: None) -> str:
@@ -104,6 +107,14 @@ class BeyondLimitError(ComputationError):
 
     def __init__(self, pressure: float, limit: float, problem: str) -> None:
         super().__init__(problem)
+        self.pressure, self.limit = pressure, limit
+
+
+class StatedPressureError(InputError):
+    """A driving pressure of a design beyond the limit point: that ``pressure`` and the ``limit``, MPa."""
+
+    def __init__(self, pressure: float, limit: float, problem: str, **place: Any) -> None:
+        super().__init__(problem, **place)
         self.pressure, self.limit = pressure, limit
 
 

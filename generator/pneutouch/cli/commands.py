@@ -162,7 +162,7 @@ def _leave_out_file(error: PneutouchError, changed: Sequence[str]) -> None:
     for one in (error, *error.others):
         key = (one.key or "").split("[")[0]
         if one.file is not None and "." not in key:
-            named = [name for name in changed if name.startswith(key) and name.rpartition(".")[2] in one.problem]
+            named = [name for name in changed if name in one.fields]
             if named:
                 key = one.key = named[0]
         if any(key == name or key.startswith(f"{name}.") for name in changed):

@@ -12,7 +12,7 @@ import numpy as np
 
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.catalogue.library import Resins, alike, elastomers
-from pneutouch.errors import BeyondLimitError, InputError, nearest
+from pneutouch.errors import BeyondLimitError, InputError, StatedPressureError, nearest
 from pneutouch.evaluation.calibrated import assumption, calibrated_error, calibrated_sensor, check_options, unmeasured
 from pneutouch.evaluation.contact_object import check_first_touch, check_object, check_plate, contact_object, rigid_base
 from pneutouch.evaluation.table_s1 import sensitivity_error
@@ -280,7 +280,9 @@ def _beyond_limit(scene: ResolvedDesign, error: BeyondLimitError) -> InputError:
     """The limit point in terms of the design file."""
     pressures_kPa = scene.design.pneumatics.driving_pressures_kPa
     k = int(np.argmin([abs(p - error.pressure / KPA) for p in pressures_kPa]))
-    return InputError(
+    return StatedPressureError(
+        error.pressure,
+        error.limit,
         "beyond the limit point, where the dome snaps; with this resin, wall and radius it must be at most "
         f"{error.limit / KPA:.2f} kPa",
         file=scene.where,

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, WithJsonSchema, model_validator
 
-from pneutouch.spec.fields import EntryError, Table, number
+from pneutouch.spec.fields import EntryError, FieldsError, Table, number
 
 ContactKind = Literal["plate", "ball", "cone", "ring", "profile", "edge", "cylinder"]
 
@@ -138,39 +138,51 @@ class ContactTable(Table):
     def _has_its_sizes(self) -> ContactTable:
         missing = [key for key in SIZES[self.object] if getattr(self, key) is None]
         if missing:
-            raise ValueError(f'object = "{self.object}" needs {" and ".join(missing)}')
+            raise FieldsError(f'object = "{self.object}" needs {" and ".join(missing)}', "object", *missing)
         if "object" not in self.model_fields_set:
             for kind, keys in SIZES.items():
                 for key in keys:
                     if getattr(self, key) is not None:
-                        raise ValueError(f'{key} is the size of another object; give object = "{kind}" as well')
+                        raise FieldsError(
+                            f'{key} is the size of another object; give object = "{kind}" as well', "object", key
+                        )
         if self.object == "ring":
             radius, section = self.ring_radius_mm, self.ring_section_radius_mm
             if radius is not None and section is not None and section >= radius:
-                raise ValueError(
+                raise FieldsError(
                     f"ring_section_radius_mm = {section:g} must be less than ring_radius_mm = {radius:g}: "
-                    "a ring without a hole is a ball"
+                    "a ring without a hole is a ball",
+                    "ring_radius_mm",
+                    "ring_section_radius_mm",
                 )
         return self
 
     @model_validator(mode="after")
     def _stands_off_the_axis(self) -> ContactTable:
         if self.offset_mm and self.object not in _MOVABLE:
-            raise ValueError(
+            raise FieldsError(
                 f"offset_mm = {self.offset_mm:g}: a {self.object} presses centrally; only a plate or a ball, an edge "
-                "or a cylinder can stand off the axis"
+                "or a cylinder can stand off the axis",
+                "object",
+                "offset_mm",
             )
         if self.tilt_deg and not self.is_plate:
-            raise ValueError(f"tilt_deg = {self.tilt_deg:g}: only a plate can lean, not {self._article}")
+            raise FieldsError(
+                f"tilt_deg = {self.tilt_deg:g}: only a plate can lean, not {self._article}", "object", "tilt_deg"
+            )
         if self.shear_mm and self.object not in _MOVABLE:
-            raise ValueError(
+            raise FieldsError(
                 f"shear_mm = {self.shear_mm:g}: only a plate or a ball, an edge or a cylinder moves sideways, not "
-                f"{self._article}"
+                f"{self._article}",
+                "object",
+                "shear_mm",
             )
         if self.shear_mm and not self.friction:
-            raise ValueError(
+            raise FieldsError(
                 f"shear_mm = {self.shear_mm:g} without friction: the object would slide; give friction above 0, "
-                "such as 0.6, or inf"
+                "such as 0.6, or inf",
+                "friction",
+                "shear_mm",
             )
         return self
 

@@ -13,7 +13,7 @@ from pydantic import AfterValidator, Field, SerializerFunctionWrapHandler, model
 
 from pneutouch.errors import shown
 from pneutouch.spec.contact import ContactTable
-from pneutouch.spec.fields import EntryError, Table, declaration, name, number, numbers
+from pneutouch.spec.fields import EntryError, FieldsError, Table, declaration, name, number, numbers
 from pneutouch.spec.grade import ResinOrMix
 from pneutouch.spec.part import PerforatedRing
 
@@ -97,9 +97,11 @@ class Membrane(Table):
     @model_validator(mode="after")
     def _wall_below_radius(self) -> Membrane:
         if self.wall_thickness_mm >= self.inner_radius_mm:
-            raise ValueError(
+            raise FieldsError(
                 f"wall_thickness_mm = {self.wall_thickness_mm:g} must be less than "
-                f"inner_radius_mm = {self.inner_radius_mm:g}"
+                f"inner_radius_mm = {self.inner_radius_mm:g}",
+                "inner_radius_mm",
+                "wall_thickness_mm",
             )
         return self
 
@@ -253,9 +255,11 @@ class DesignFile(Table):
             # None, or what the table that it stands in refuses.
             return content
         if old is not None and old != new:
-            raise ValueError(
+            raise FieldsError(
                 f"contact.plate_diameter_mm = {shown(new)} and indentation.plate_diameter_mm = {shown(old)} are one "
-                "diameter: change both, or take one out"
+                "diameter: change both, or take one out",
+                "indentation.plate_diameter_mm",
+                "contact.plate_diameter_mm",
             )
         return {**content, "indentation": {**tables[0], "plate_diameter_mm": new}}
 
@@ -285,8 +289,10 @@ class DesignFile(Table):
     @model_validator(mode="after")
     def _depth_inside_dome(self) -> DesignFile:
         if self.depth_mm > 0.95 * self.membrane.inner_radius_mm:
-            raise ValueError(
+            raise FieldsError(
                 f"indentation.depth_mm = {self.depth_mm:g} must be at most 0.95 of "
-                f"membrane.inner_radius_mm = {self.membrane.inner_radius_mm:g}: the plate would reach the seat"
+                f"membrane.inner_radius_mm = {self.membrane.inner_radius_mm:g}: the plate would reach the seat",
+                "membrane.inner_radius_mm",
+                "indentation.depth_mm",
             )
         return self

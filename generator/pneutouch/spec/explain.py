@@ -57,7 +57,8 @@ def explained(model: type[BaseModel], detail: Any, where: str) -> InputError:
         if key.endswith("]") and not isinstance(detail["input"], Mapping):
             # One value may be written for a list of one, and the message holds it.
             key = key.rpartition("[")[0]
-        return InputError(str(error), file=where, key=key)
+        named = [f"{key}.{field}" if key else field for field in getattr(error, "fields", ())]
+        return InputError(str(error), file=where, key=key, fields=named)
     if not path:
         return InputError(str(detail["msg"]), file=where)
     if detail["type"] == "literal_error":

@@ -40,6 +40,14 @@ class Declaration:
         return f"one of the {self.registry}" if self.registry else self.help
 
 
+class FieldsError(ValueError):
+    """Problem with several fields of a table, or ``table.key`` of a file: their names."""
+
+    def __init__(self, problem: str, *fields: str) -> None:
+        super().__init__(problem)
+        self.fields = fields
+
+
 class EntryError(ValueError):
     """Problem with one entry of a list: its ``index`` and ``value``."""
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, SerializerFunctionWrapHandler, field_validator, model_serializer, model_validator
 
-from pneutouch.spec.fields import Table, number
+from pneutouch.spec.fields import FieldsError, Table, number
 from pneutouch.spec.printer import Process
 
 Names = Annotated[list[str], Field(min_length=1, max_length=50)]
@@ -62,12 +62,20 @@ class TargetFigures(Table):
     def _stiffness_is_ordered(self) -> TargetFigures:
         least, most = self.stiffness_least_N_per_mm, self.stiffness_most_N_per_mm
         if least is not None and most is not None and least > most:
-            raise ValueError(
+            raise FieldsError(
                 f"stiffness_least_N_per_mm = {least:g} and stiffness_most_N_per_mm = {most:g} contradict each other; "
-                f"the least must not exceed the most"
+                f"the least must not exceed the most",
+                "stiffness_least_N_per_mm",
+                "stiffness_most_N_per_mm",
             )
         if all(v is None for v in (self.sensitivity_kPa_per_N, self.force_range_N, least, most)):
-            raise ValueError("give at least one of sensitivity_kPa_per_N, force_range_N and a stiffness")
+            raise FieldsError(
+                "give at least one of sensitivity_kPa_per_N, force_range_N and a stiffness",
+                "sensitivity_kPa_per_N",
+                "force_range_N",
+                "stiffness_least_N_per_mm",
+                "stiffness_most_N_per_mm",
+            )
         return self
 
     @model_validator(mode="after")
@@ -76,17 +84,22 @@ class TargetFigures(Table):
         if both_kPa is None:
             return self
         if not 0 <= both_kPa[0] < both_kPa[1] <= 1000:
-            raise ValueError(
-                f"same_sensitivity_at_kPa = {both_kPa}: must be two rising driving pressures from 0 to 1000 kPa"
+            raise FieldsError(
+                f"same_sensitivity_at_kPa = {both_kPa}: must be two rising driving pressures from 0 to 1000 kPa",
+                "same_sensitivity_at_kPa",
             )
         if self.sensitivity_kPa_per_N is None:
-            raise ValueError(
-                "same_sensitivity_at_kPa needs sensitivity_kPa_per_N: at some sensitivity a constant mix does it"
+            raise FieldsError(
+                "same_sensitivity_at_kPa needs sensitivity_kPa_per_N: at some sensitivity a constant mix does it",
+                "sensitivity_kPa_per_N",
+                "same_sensitivity_at_kPa",
             )
         if self.driving_pressure_kPa is not None:
-            raise ValueError(
+            raise FieldsError(
                 f"driving_pressure_kPa = {self.driving_pressure_kPa:g} and same_sensitivity_at_kPa = {both_kPa} "
-                f"contradict each other; give one of them"
+                f"contradict each other; give one of them",
+                "driving_pressure_kPa",
+                "same_sensitivity_at_kPa",
             )
         return self
 
@@ -122,13 +135,17 @@ class Given(Table):
     def _wall_below_radius(self) -> Given:
         radius, wall = self.inner_radius_mm, self.wall_thickness_mm
         if radius is not None and wall is not None and wall >= radius:
-            raise ValueError(f"wall_thickness_mm = {wall:g} must be less than inner_radius_mm = {radius:g}")
+            raise FieldsError(
+                f"wall_thickness_mm = {wall:g} must be less than inner_radius_mm = {radius:g}",
+                "inner_radius_mm",
+                "wall_thickness_mm",
+            )
         return self
 
     @model_validator(mode="after")
     def _mix_or_materials(self) -> Given:
         if self.materials is not None and (self.mix is not None or self.graded):
-            raise ValueError("materials and a mix contradict each other; give one of them")
+            raise FieldsError("materials and a mix contradict each other; give one of them", "materials", "mix")
         return self
 
 
@@ -178,9 +195,13 @@ class Setting(Table):
         if self.processes is None:
             return self
         if "any" in self.processes and len(self.processes) > 1:
-            raise ValueError("processes: any stands for all of them; give it alone, or leave it out")
+            raise FieldsError("processes: any stands for all of them; give it alone, or leave it out", "processes")
         if self.profile is not None:
-            raise ValueError("processes and profile contradict each other: a profile is of one process; leave one out")
+            raise FieldsError(
+                "processes and profile contradict each other: a profile is of one process; leave one out",
+                "profile",
+                "processes",
+            )
         return self
 
     @model_serializer(mode="wrap")
@@ -216,9 +237,11 @@ class Target(Table):
         largest, radius = self.target.max_diameter_mm, self.given.inner_radius_mm
         wall = self.given.wall_thickness_mm or 0.0
         if largest is not None and radius is not None and 2 * (radius + wall) > largest:
-            raise ValueError(
+            raise FieldsError(
                 f"target.max_diameter_mm = {largest:g} and given.inner_radius_mm = {radius:g} contradict each other: "
-                f"the dome alone is {2 * (radius + wall):g} mm wide"
+                f"the dome alone is {2 * (radius + wall):g} mm wide",
+                "target.max_diameter_mm",
+                "given.inner_radius_mm",
             )
         return self
 
@@ -226,8 +249,10 @@ class Target(Table):
     def _mix_on_one_machine(self) -> Target:
         if self.setting.processes is not None and (self.given.mix is not None or self.given.graded):
             mixed = "given.graded" if self.given.graded else "given.mix"
-            raise ValueError(
-                f"setting.processes and {mixed} contradict each other: a mix is printed on one machine; leave one out"
+            raise FieldsError(
+                f"setting.processes and {mixed} contradict each other: a mix is printed on one machine; leave one out",
+                "setting.processes",
+                mixed,
             )
         return self
 
@@ -235,15 +260,38 @@ class Target(Table):
     def _grade_and_its_requirement(self) -> Target:
         target, graded = self.target, self.given.graded
         if target.is_for_a_grade and not graded:
-            raise ValueError("same_sensitivity_at_kPa and widest_range are met by grades; give given.graded = true too")
+            raise FieldsError(
+                "same_sensitivity_at_kPa and widest_range are met by grades; give given.graded = true too",
+                "target.same_sensitivity_at_kPa",
+                "target.widest_range",
+                "given.graded",
+            )
         if graded and not target.is_for_a_grade:
-            raise ValueError("given.graded needs target.same_sensitivity_at_kPa or target.widest_range")
+            raise FieldsError(
+                "given.graded needs target.same_sensitivity_at_kPa or target.widest_range",
+                "target.same_sensitivity_at_kPa",
+                "target.widest_range",
+                "given.graded",
+            )
         if graded and target.sensitivity_kPa_per_N is None:
-            raise ValueError("given.graded needs target.sensitivity_kPa_per_N")
+            raise FieldsError(
+                "given.graded needs target.sensitivity_kPa_per_N", "target.sensitivity_kPa_per_N", "given.graded"
+            )
         if graded and (target.stiffness_least_N_per_mm, target.stiffness_most_N_per_mm) != (None, None):
-            raise ValueError("the search for a grade takes no bounds on the stiffness; leave them out")
+            raise FieldsError(
+                "the search for a grade takes no bounds on the stiffness; leave them out",
+                "target.stiffness_least_N_per_mm",
+                "target.stiffness_most_N_per_mm",
+                "given.graded",
+            )
         if graded and self.setting.gauge == "any":
-            raise ValueError("the search for a grade does not choose the gauge; give setting.gauge by name")
+            raise FieldsError(
+                "the search for a grade does not choose the gauge; give setting.gauge by name", "setting.gauge"
+            )
         if graded and self.weights.contact_anywhere:
-            raise ValueError("contact_anywhere ranks resins and mixes; the search for a grade does not take it")
+            raise FieldsError(
+                "contact_anywhere ranks resins and mixes; the search for a grade does not take it",
+                "given.graded",
+                "weights.contact_anywhere",
+            )
         return self

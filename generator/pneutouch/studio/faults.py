@@ -1,21 +1,14 @@
 """Errors of the library as the page takes them: a message for each field that caused one."""
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
-
-from pydantic import BaseModel
 
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
-from pneutouch.spec.target import Target
 
 BAD_INPUT = 422
 FAILED = 500
-
-_MODELS = (DesignFile, Target)
-"""The files that the page has a form for; no two have a table of the same name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,30 +64,11 @@ def too_little_memory() -> PneutouchError:
 
 def _problem(error: PneutouchError) -> PageProblem:
     words = error.problem if not error.remedy else f"{error.problem}; {error.remedy}"
-    alone = type(error)(words)
-    return PageProblem(alone.message(), _fields(error))
+    return PageProblem(PneutouchError(words).message(), _fields(error))
 
 
 def _fields(error: PneutouchError) -> list[str]:
-    """Fields of an error: its key, or, for one on a table or on the file, those that its words name."""
+    """Fields of an error: its key, or those that one on a table or on the file is about."""
     key = (error.key or "").partition("[")[0]
-    table, _, field = key.partition(".")
-    if field or (key in DesignFile.model_fields and table_of(DesignFile, key) is None):
-        return [key]
-    named = []
-    for name, model in _tables():
-        if table and name != table:
-            continue
-        named += [f"{name}.{each}" for each in model.model_fields if f"{name}.{each}" in error.problem]
-        if table == name:
-            named += [f"{name}.{each}" for each in model.model_fields if _is_named(each, error.problem)]
-    return list(dict.fromkeys(named))
-
-
-def _tables() -> list[tuple[str, type[BaseModel]]]:
-    tables = [(name, table_of(file, name)) for file in _MODELS for name in file.model_fields]
-    return [(name, model) for name, model in tables if model is not None]
-
-
-def _is_named(field: str, problem: str) -> bool:
-    return re.search(rf"\b{field}\b", problem) is not None
+    alone = "." in key or (key in DesignFile.model_fields and table_of(DesignFile, key) is None)
+    return [key] if alone else list(error.fields)

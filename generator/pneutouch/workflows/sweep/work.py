@@ -13,7 +13,7 @@ from typing import Any
 from pneutouch import __version__
 from pneutouch.catalogue import KINDS, DesignSource, Library, load_scene
 from pneutouch.catalogue.library import CachedLibrary, elastomers
-from pneutouch.errors import BeyondLimitError, InputError, PneutouchError
+from pneutouch.errors import InputError, PneutouchError, StatedPressureError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.result import predicted
 from pneutouch.mechanics.models.choice import USUAL
@@ -252,12 +252,7 @@ def _record(chunk: SweepChunk, point: SweepPoint, library: Library) -> Record:
         try:
             states, values = _predicted(chunk, left, library)
             break
-        except InputError as error:
-            # evaluate states the limit in words; the numbers are in the error that it was made from.
-            beyond = error.__context__
-            if not isinstance(beyond, BeyondLimitError):
-                states = _stopped("refused", str(error), len(left.driving_pressures_kPa), library)
-                break
+        except StatedPressureError as beyond:
             kept_kPa = [p for p in left.driving_pressures_kPa[:-1] if p * KPA < min(beyond.limit, beyond.pressure)]
             text = (
                 f"driving pressure beyond the limit point, where the dome snaps: at most {beyond.limit / KPA:.2f} kPa"
@@ -266,7 +261,8 @@ def _record(chunk: SweepChunk, point: SweepPoint, library: Library) -> Record:
             values = {"limit_point_kPa": float(f"{beyond.limit / KPA:.12g}")}
             left = replace(left, driving_pressures_kPa=tuple(kept_kPa))
         except PneutouchError as error:
-            states = _stopped("failed", str(error), len(left.driving_pressures_kPa), library)
+            status = "refused" if isinstance(error, InputError) else "failed"
+            states = _stopped(status, str(error), len(left.driving_pressures_kPa), library)
             break
         except (MemoryError, OSError):
             raise
