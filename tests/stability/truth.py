@@ -87,7 +87,7 @@ def unbalance(solid: SolidModel, state: SolverState) -> float:
     load = abs(state.filling.pressure) * float(np.linalg.norm(state.by_volume))
     noise = solid.noise
     if state.touch is not None:
-        load += float(np.linalg.norm(solid.push(solid.contact.force(state.touch.traction, state.touch.slope))))
+        load += float(np.linalg.norm(solid.faces.push(solid.contact.force(state.touch.traction, state.touch.slope))))
         noise += solid.contact.noise
     return float(np.linalg.norm(state.residual)) / (1e-9 * (load + 1e-3 * solid.wall) + 11.0 * noise)
 

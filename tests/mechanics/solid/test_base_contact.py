@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.base_contact import BaseContact
 from pneutouch.mechanics.solid.cavity import Liquid, Regulator
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.indenter import RigidBase
@@ -77,7 +76,7 @@ def test_the_second_variation_around_the_axis_counts_the_base():
 def test_the_opening_and_the_flange_leave_the_wall_free():
     deep = _sunk(RigidBase())
     assert deep.base.at(deep.rest).energy > 0.0
-    free = BaseContact(deep, RigidBase(opening=20.0, flange=22.0)).at(deep.rest)
+    free = _sunk(RigidBase(opening=20.0, flange=22.0)).base.at(deep.rest)
     assert free.energy == 0.0 and free.blocks is None and free.inner_blocks is None and not free.gradient.any()
 
 

@@ -23,7 +23,7 @@ class Springs:
         self.solid = solid
 
     def at(self, x):
-        families = ((self.solid.mesh.outer, self.solid.push), (self.solid.mesh.inner, self.solid.swell))
+        families = ((self.solid.mesh.outer, self.solid.faces.push), (self.solid.mesh.inner, self.solid.faces.swell))
         energy, gradient, blocks = 0.0, 0.0, []
         for edges, gathered in families:
             place = x[edges].reshape(edges.shape[0], -1)

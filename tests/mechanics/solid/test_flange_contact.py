@@ -69,7 +69,7 @@ def test_gradient_and_tangent_are_derivatives_of_the_energy(pressed_in):
     d, step = rng.normal(size=solid.size), 1e-8
     up, down = (term.at(x + s * step * solid.expand(d)) for s in (1, -1))
     assert (up.energy - down.energy) / (2 * step) == pytest.approx(float(here.gradient @ d), rel=1e-6)
-    band = solid.fold_pattern.matrix([here.fold_blocks])
+    band = solid.faces.fold.matrix([here.fold_blocks])
     answer = band[0] * d
     for k in range(1, band.shape[0]):
         answer[k:] += band[k, :-k] * d[:-k]

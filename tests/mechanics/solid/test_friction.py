@@ -151,13 +151,11 @@ def test_the_tangent_is_the_derivative_of_the_residual(friction):
     up, down = (solver.hold(evaluate(scene, x + s * step * solid.expand(d))).residual for s in (1, -1))
     sign = np.where(at.points.sliding, np.sign(at.points.slip), 0.0)
     slope = at.touch.slope
-    k = dense(
-        solid.contact_pattern.added(full_tangent(scene, at.state), [solver.step.stick(at.points.sticking, slope)])
-    )
+    k = dense(solid.faces.outer.added(full_tangent(scene, at.state), [solver.step.stick(at.points.sticking, slope)]))
     k += at.state.filling.rate * np.outer(at.state.by_volume, at.state.by_volume)
     blocks = solver.step.slide(at.points.traction, at.touch, sign)
     move = solid.expand(d)[solid.mesh.outer].reshape(len(solid.mesh.outer), -1, 1)
-    change = k @ d + solid.push((blocks @ move)[..., 0])
+    change = k @ d + solid.faces.push((blocks @ move)[..., 0])
     measured = (up - down) / (2 * step)
     assert np.abs(change - measured).max() < 5e-3 * np.abs(measured).max()
     assert np.abs(k @ d - measured).max() > (1e-2 if friction < 1.0 else 0.0) * np.abs(measured).max()
@@ -175,7 +173,7 @@ def test_systems_with_one_sided_blocks_are_solved():
     x = OneSidedBlocks(solid).solve(band, blocks, b)
     for k in range(2):
         edges = solid.expand(x[:, k])[solid.mesh.outer].reshape(len(blocks), -1, 1)
-        assert np.allclose(dense(band) @ x[:, k] + solid.push((blocks @ edges)[..., 0]), b[:, k])
+        assert np.allclose(dense(band) @ x[:, k] + solid.faces.push((blocks @ edges)[..., 0]), b[:, k])
 
 
 def test_systems_without_their_leading_unknowns_have_the_same_solution():
@@ -200,7 +198,7 @@ def test_a_singular_system_has_a_response_that_is_not_finite():
     sides = OneSidedBlocks(solid)
     nothing = np.zeros((len(solid.mesh.outer), 6, 6))
     rows = np.eye(3, solid.size)
-    found = sides.response(sides.widened(np.zeros((solid.contact_pattern.width + 1, solid.size))), nothing, rows, 0)
+    found = sides.response(sides.widened(np.zeros((solid.faces.outer.width + 1, solid.size))), nothing, rows, 0)
     assert found.shape == (3, 3) and np.isnan(found).all()
 
 

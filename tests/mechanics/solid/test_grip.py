@@ -100,7 +100,7 @@ class Held:
         force = np.zeros((pull.shape[0], 2 * contact.shape.shape[1]))
         force[:, RADIAL] = pull @ contact.shape
         blocks = contact.blocks([(RADIAL, RADIAL, np.where(here, self._stiffness, 0.0))])
-        return TermState(0.5 * float(np.vdot(pull, off)), self._solid.push(force), blocks)
+        return TermState(0.5 * float(np.vdot(pull, off)), self._solid.faces.push(force), blocks)
 
 
 class HoldingFollower(PathFollower):

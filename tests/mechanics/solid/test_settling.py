@@ -45,7 +45,7 @@ def test_the_step_is_the_least_of_the_model_with_contact(pressed, number):
     pulled = state.inner + banded_product(bare, newton.step)
     pulled += state.filling.rate * state.by_volume * (state.by_volume @ newton.step)
     traction = contact.linear(state.touch, solid.expand(newton.step))
-    pushed = solid.push(contact.force(np.maximum(traction, 0.0), state.touch.slope))
+    pushed = solid.faces.push(contact.force(np.maximum(traction, 0.0), state.touch.slope))
     changed = ((traction > 0.0) != (state.touch.traction > 0.0)).sum()
     assert changed > 3
     assert np.linalg.norm(pulled + pushed) < 1e-9 * np.linalg.norm(pushed)

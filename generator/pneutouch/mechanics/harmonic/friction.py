@@ -207,4 +207,4 @@ class SurfaceFrictionTerm(FrictionTerm):
         direction = np.where(sliding[..., None], directions(trial), 0.0)
         form = self.step.spring_form(slope, (cap > 0.0) & ~sliding, direction, turn)
         force = self.step.force(clipped(trial, cap), slope)
-        return TermState(self.energy(x), self.solid.push(force), self.step.contact.form_blocks(form))
+        return TermState(self.energy(x), self.solid.faces.push(force), self.step.contact.form_blocks(form))

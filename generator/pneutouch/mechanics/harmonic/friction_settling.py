@@ -126,7 +126,7 @@ class SurfaceLinearContact(LinearContact):
         """Gradient (size,) of tractions."""
         slope = self.touch.slope
         load = tractions.normal[..., None] * upward(slope) + in_space(tractions.trial, slope)
-        return self.solid.push(self.step.contact.load_forces(load))
+        return self.solid.faces.push(self.step.contact.load_forces(load))
 
     def blocks(self, status: PointStatus, begun: PointTractions) -> tuple[Array, Array | None]:
         """Stiffness of points that keep a status, symmetric and not; ``begun``: their tractions without a move."""
@@ -212,7 +212,7 @@ class SurfaceFrictionSolver(FrictionSolver):
             follows = step.sliding_form(load, touch, sign)
             form = pressed + springs if follows is None else pressed + springs + follows
             blocks = contact.form_blocks(springs if follows is None else springs + follows)
-            push = self.solid.push(contact.load_forces(-(form @ drift)))
+            push = self.solid.faces.push(contact.load_forces(-(form @ drift)))
             move = system.whole(system.solve(push, blocks))
             gone = contact.points(self.solid.expand(move)) - drift
             pressing = np.where(touching, contact.stiffness * np.einsum("...i,...i->...", normal, gone), 0.0)

@@ -1,7 +1,4 @@
-"""The discrete body with harmonics: energy, forces and stiffness of a wall that is no body of revolution.
-
-The rigid base under a wall that is no body of revolution: met at every angle as the solid meets it.
-"""
+"""The discrete body with harmonics: energy, forces and stiffness of a wall that is no body of revolution."""
 
 from __future__ import annotations
 
@@ -14,78 +11,43 @@ from pneutouch.mechanics.harmonic.assembly import HarmonicCavity, NodePairOperat
 from pneutouch.mechanics.harmonic.fields import AXIAL, FieldGroup, Harmonics
 from pneutouch.mechanics.harmonic.material import GradientLaw, LawFields
 from pneutouch.mechanics.harmonic.object_contact import HarmonicContact, X, Y, Z, face_operator, upward
-from pneutouch.mechanics.harmonic.surface import SurfaceHeight, revolved
-from pneutouch.mechanics.solid.banded import AssemblyPattern
-from pneutouch.mechanics.solid.base_contact import BaseContact, BaseFace, BaseLoad
-from pneutouch.mechanics.solid.elements import F_RR, F_RZ, HOOP, RADIAL, TermState, gauss_square, strain_operator
+from pneutouch.mechanics.harmonic.surface import revolved
+from pneutouch.mechanics.solid.base_contact import BaseContact, BaseFace, BaseMeeting
+from pneutouch.mechanics.solid.elements import F_RR, F_RZ, HOOP, RADIAL, gauss_square, strain_operator
+from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.model import PointFields, SolidModel
 
 
-class HarmonicBase:
-    """Base that both faces of the wall can lie down on; an `EnergyTerm` of coefficients (n_nodes, columns)."""
-
-    noise = 0.0
-
-    def __init__(self, solid: SolidModel, base: BaseContact, harmonics: Harmonics, signs: Array) -> None:
-        self._solid = solid
-        self._outer = _HarmonicFace(base.outer, harmonics, signs)
-        self._inner = _HarmonicFace(base.inner, harmonics, signs)
-
-    def at(self, x: Array) -> TermState:
-        """Energy and its derivatives at coefficients x."""
-        outer, inner = self._outer.meet(x), self._inner.meet(x)
-        energy, gradient = 0.0, np.zeros(self._solid.size)
-        if outer is not None:
-            energy += self._outer.energy(outer[1])
-            gradient = self._solid.push(self._outer.force(*outer))
-        if inner is not None:
-            energy += self._inner.energy(inner[1])
-            gradient = gradient + self._solid.swell(self._inner.force(*inner))
-        return TermState(
-            energy,
-            gradient,
-            None if outer is None else self._outer.hessian(*outer),
-            None if inner is None else self._inner.hessian(*inner),
-        )
-
-    def load(self, x: Array) -> BaseLoad:
-        """Load of the outer wall on the base at coefficients x."""
-        met = self._outer.meet(x)
-        if met is None:
-            return BaseLoad()
-        most = float(met[1].max())
-        return BaseLoad(float(np.vdot(self._outer.weight, met[1])), most, most / self._outer.stiffness)
-
-
-class _HarmonicFace:
-    """One face of the wall at the angles; arrays of points are (n_edges, n_points, n_angles)."""
+class HarmonicFace(BaseFace):
+    """One face of the wall at the angles; arrays of points are (n_edges, n_points, n_angles), slopes of the base have
+    one axis more and curvatures two, by x and y."""
 
     def __init__(self, face: BaseFace, harmonics: Harmonics, signs: Array) -> None:
-        self._face, self.stiffness = face, face.stiffness
+        self._face, self.high, self.stiffness = face, face.high, face.stiffness
         self._operator = face_operator(face.edges, face.shape.shape[0], harmonics, signs)
         angles = harmonics.contact_angles.size
         self.weight = np.repeat(face.weight[..., None], angles, axis=2) / angles
 
-    def meet(self, x: Array) -> tuple[SurfaceHeight, Array] | None:
-        """The base under the points and their tractions; None if no point is below it."""
-        place = self._operator.fields(x)
-        if place[..., Z].min() >= self._face.high:
+    def meet(self, nodes: Array) -> BaseMeeting | None:
+        """Points below the surface of the base for coefficients (n_nodes, columns); None if there are none."""
+        place = self._operator.fields(nodes)
+        if place[..., Z].min() >= self.high:
             return None
         under = revolved(self._face.surface, place[..., X], place[..., Y])
         traction = np.maximum(self.stiffness * (under.height - place[..., Z]), 0.0)
-        return (under, traction) if traction.any() else None
+        radius = np.hypot(place[..., X], place[..., Y])
+        return BaseMeeting(radius, traction, under.slope, under.curve) if traction.any() else None
 
-    def energy(self, traction: Array) -> float:
-        return float(np.vdot(self.weight, traction**2)) / (2.0 * self.stiffness)
+    def force(self, meeting: BaseMeeting) -> Array:
+        """Derivative of the energy by edge coefficients, (n_edges, n columns)."""
+        return self._operator.forces(-(self.weight * meeting.traction)[..., None] * upward(meeting.slope))
 
-    def force(self, under: SurfaceHeight, traction: Array) -> Array:
-        return self._operator.forces(-(self.weight * traction)[..., None] * upward(under.slope))
-
-    def hessian(self, under: SurfaceHeight, traction: Array) -> Array:
-        normal = upward(under.slope)
-        stiff = np.where(traction > 0.0, self.stiffness, 0.0) * self.weight
+    def hessian(self, meeting: BaseMeeting) -> Array:
+        """Second derivative by edge coefficients, (n_edges, n columns, n columns)."""
+        normal = upward(meeting.slope)
+        stiff = np.where(meeting.traction > 0.0, self.stiffness, 0.0) * self.weight
         form = (stiff[..., None] * normal)[..., :, None] * normal[..., None, :]
-        form[..., :Z, :Z] += (self.weight * traction)[..., None, None] * under.curve
+        form[..., :Z, :Z] += (self.weight * meeting.traction)[..., None, None] * meeting.curve
         return self._operator.stiffness(form)
 
 
@@ -110,30 +72,27 @@ class HarmonicModel(SolidModel):
     """
 
     def __init__(self, solid: SolidModel, order: int, stride: int = 1) -> None:
-        if solid.fold is not None:
+        if solid.faces.fold is not None:
             raise ValueError("a wall that can lie down on its own flange has no harmonics yet")
-        vars(self).update(vars(solid))
-        self.harmonics = harmonics = Harmonics(order, stride)
-        mesh = self.mesh
-        self.rest = harmonics.lifted(solid.rest)
+        self.harmonics, self._solid = Harmonics(order, stride), solid
+        super().__init__(solid.mesh, solid.material, solid.scheme, solid.grade)
+
+    def _assemble(self, base: RigidBase | None) -> None:
+        """Number the unknowns, and build what acts on the faces at the angles; the base is the solid's."""
+        solid, harmonics = self._solid, self.harmonics
+        self.rest, self.meeting = harmonics.lifted(solid.rest), solid.meeting
         self.dofs, signs = _number(solid, harmonics)
         self._sign = signs
         self.size = int(self.dofs.max()) + 1
-        tables = [self.dofs[x].reshape(x.shape[0], -1) for x in (mesh.cells, mesh.inner, mesh.outer)]
         self._operators(signs)
-        self.pattern = AssemblyPattern(tables[:2], self.size, forms={0: self._field.entries(self.dofs)})
-        self.contact_pattern = AssemblyPattern(tables[2:], self.size, self.pattern.width)
-        self.edge_pattern = AssemblyPattern(tables[1:2], self.size, self.pattern.width)
-        self.cavity = HarmonicCavity(mesh.inner, harmonics, signs)
-        self.contact = HarmonicContact(solid.contact, harmonics, signs)
-        self.harmonic_base = None if solid.base is None else HarmonicBase(self, solid.base, harmonics, signs)
-        self.supports = () if self.harmonic_base is None else (self.harmonic_base,)
-        idle = self.forces(self.local(self.rest))
-        self.noise = float(np.linalg.norm(self.pattern.vector([idle, np.zeros((len(mesh.inner), tables[1].shape[1]))])))
-
-    def base_load(self, x: Array) -> BaseLoad:
-        """Load of the outer wall on its base at coefficients x (n_nodes, columns)."""
-        return BaseLoad() if self.harmonic_base is None else self.harmonic_base.load(x)
+        self._patterns(forms={0: self._field.entries(self.dofs)})
+        self.cavity = HarmonicCavity(self.mesh.inner, harmonics, signs)
+        self.contact = HarmonicContact(solid, harmonics, signs)
+        self.base = None
+        if solid.base is not None:
+            outer, inner = (HarmonicFace(face, harmonics, signs) for face in (solid.base.outer, solid.base.inner))
+            self.base = BaseContact(outer, inner, self.faces)
+        self.supports = () if self.base is None else (self.base,)
 
     def lowest(self, x: Array, edges: Index, above: float = -np.inf) -> float:
         """Least height at the angles of the nodes of a face that are higher than ``above`` at rest, in R0."""

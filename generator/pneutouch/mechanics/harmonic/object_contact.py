@@ -31,11 +31,11 @@ class HarmonicContact(Contact):
     """The solid's contact with every quadrature point of the outer wall taken at each angle: arrays of points are
     (n_edges, n_points, n_angles), slopes have one axis more and curvatures two, by x and y."""
 
-    def __init__(self, axisymmetric: Contact, harmonics: Harmonics, signs: Array) -> None:
-        vars(self).update(vars(axisymmetric))
+    def __init__(self, solid: SolidModel, harmonics: Harmonics, signs: Array) -> None:
+        super().__init__(solid.mesh, solid.mesh.nodes / solid.length, solid.contact.stiffness)
         self._operator = face_operator(self.edges, self.shape.shape[0], harmonics, signs)
         angles, self._symmetric = harmonics.contact_angles.size, harmonics.stride > 1
-        self.weight = np.repeat(axisymmetric.weight[..., None], angles, axis=2) / angles
+        self.weight = np.repeat(self.weight[..., None], angles, axis=2) / angles
         self.noise = float(np.finfo(np.float64).eps * self.stiffness * np.linalg.norm(self.weight))
 
     def points(self, nodes: Array) -> Array:
@@ -124,7 +124,7 @@ def pressed_face(
 
     With friction its tractions are left out: the pressure is that normal to the object.
     """
-    contact = HarmonicContact(solid.contact, harmonics, np.ones(positions.shape))
+    contact = HarmonicContact(solid, harmonics, np.ones(positions.shape))
     x, length = positions / solid.length, solid.length
     touch = contact.touch(x, body)
     load = (contact.weight * touch.traction)[..., None] * upward(touch.slope)

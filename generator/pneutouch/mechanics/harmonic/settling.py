@@ -110,7 +110,7 @@ class PointSets:
 
     def _force(self, traction: Array) -> Array:
         solid = self._scene.solid
-        return solid.push(solid.contact.force(traction, self._held.slope))
+        return solid.faces.push(solid.contact.force(traction, self._held.slope))
 
 
 _FREE = 5
@@ -149,7 +149,7 @@ class _ContactModel:
 
     def __init__(self, scene: SolidScene, state: SolverState, touch: ContactEvaluation, foreseen: Foreseen | None):
         self._scene, self._state, self._touch = scene, state, touch
-        self._contact, self._push = scene.solid.contact, scene.solid.push
+        self._contact, self._push = scene.solid.contact, scene.solid.faces.push
         self._here = self._contact.linear(touch, np.zeros_like(state.x))
         self._foreseen = foreseen or Foreseen(self._here > 0.0, np.zeros_like(self._here))
         held = replace(touch, traction=self._foreseen.traction)

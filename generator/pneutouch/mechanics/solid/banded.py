@@ -64,6 +64,29 @@ class AssemblyPattern:
         return np.asarray(np.bincount(self._unknown, entries, self.size), dtype=np.float64)
 
 
+@dataclass(frozen=True)
+class FaceSums:
+    """Sums over the faces of a wall: patterns of the edges of the inner and of the outer wall, and of edges of the
+    outer wall with the flange's top, None without a flange."""
+
+    inner: AssemblyPattern
+    outer: AssemblyPattern
+    fold: AssemblyPattern | None = None
+
+    def swell(self, blocks: Array) -> Array:
+        """Sum (size,) of vectors on the edges of the inner wall, (n_edges, 2 n)."""
+        return self.inner.vector([blocks])
+
+    def push(self, blocks: Array) -> Array:
+        """Sum (size,) of forces on the edges of the outer wall, (n_edges, 2 n)."""
+        return self.outer.vector([blocks])
+
+    def folded(self, blocks: Array) -> Array:
+        """Sum (size,) of vectors on edges of the outer wall with the flange's top, (n_edges, 2 n)."""
+        assert self.fold is not None
+        return self.fold.vector([blocks])
+
+
 def _square(table: Index) -> BlockEntries:
     """Entries of square blocks."""
     shape = (*table.shape, table.shape[1])

@@ -6,36 +6,18 @@ Contact of the outer wall with the free top of its own flange: both give, which 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
+from pneutouch.mechanics.solid.banded import FaceSums
 from pneutouch.mechanics.solid.elements import AXIAL, RADIAL, TermState, line_shapes
-from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.mesh import SolidMesh
 from pneutouch.mechanics.solid.object_contact import Contact
 
 _POINTS = 3
 """Quadrature points of an edge, as many as against the plate."""
-
-
-class _Body(Protocol):
-    """Part of a `SolidModel` that its base uses: this file cannot import the model, which imports this file."""
-
-    mesh: SolidMesh
-    length: float
-    rest: Array
-    size: int
-    contact: Contact
-
-    def push(self, blocks: Array) -> Array:
-        """Sum (size,) of vectors on the edges of the outer wall."""
-        ...
-
-    def swell(self, blocks: Array) -> Array:
-        """Sum (size,) of vectors on the edges of the inner wall."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -63,25 +45,19 @@ class BaseContact:
 
     noise = 0.0
 
-    def __init__(self, solid: _Body, base: RigidBase) -> None:
-        length = solid.length
-        self.outer = BaseFace(
-            solid, solid.mesh.outer, base.flange / length, (base.ring / length, base.ring_height / length)
-        )
-        self.inner = BaseFace(solid, solid.mesh.inner, base.opening / length)
-        self._solid = solid
+    def __init__(self, outer: BaseFace, inner: BaseFace, faces: FaceSums) -> None:
+        self.outer, self.inner, self._faces = outer, inner, faces
 
     def at(self, x: Array) -> TermState:
-        """Energy and its derivatives at positions x (n_nodes, 2)."""
-        solid = self._solid
+        """Energy and its derivatives at positions x (n_nodes, 2), or at coefficients of harmonics."""
         outer, inner = self.outer.meet(x), self.inner.meet(x)
-        energy, gradient = 0.0, np.zeros(solid.size)
+        energy, gradient = 0.0, np.zeros(self._faces.outer.size)
         if outer is not None:
             energy += self.outer.energy(outer)
-            gradient = solid.push(self.outer.force(outer))
+            gradient = self._faces.push(self.outer.force(outer))
         if inner is not None:
             energy += self.inner.energy(inner)
-            gradient = gradient + solid.swell(self.inner.force(inner))
+            gradient = gradient + self._faces.swell(self.inner.force(inner))
         return TermState(
             energy,
             gradient,
@@ -118,17 +94,19 @@ class BaseFace:
     """The quadrature points of one face of the wall, and the base that they can meet: flat from ``start`` outward, with
     a ``ring``: radius and height (R0)."""
 
-    def __init__(self, solid: _Body, edges: Index, start: float, ring: tuple[float, float] = (0.0, 0.0)) -> None:
-        self.edges, self.start, self.stiffness = edges, start, solid.contact.stiffness
+    def __init__(
+        self, edges: Index, rest: Array, contact: Contact, start: float, ring: tuple[float, float] = (0.0, 0.0)
+    ) -> None:
+        self.edges, self.start, self.stiffness = edges, start, contact.stiffness
         self._ring, self.high = ring
         x, w = np.polynomial.legendre.leggauss(_POINTS)
         self.shape, slope = line_shapes(x, edges.shape[1])
-        line = solid.rest[edges]
+        line = rest[edges]
         measure = np.hypot(line[..., 0] @ slope.T, line[..., 1] @ slope.T) * w
         self.weight = 2.0 * np.pi * (line[..., 0] @ self.shape.T) * measure
         self._pairs = (self.shape[:, :, None] * self.shape[:, None, :]).reshape(_POINTS, -1)
         # Edges and corners of the base are as round as the longest cell, as the rim of a plate is.
-        self._rim = solid.contact.longest
+        self._rim = contact.longest
 
     def meet(self, nodes: Array) -> BaseMeeting | None:
         """Points below the surface of the base at positions (n_nodes, 2); None if there are none."""
@@ -192,19 +170,6 @@ _ROOT_STEPS = 30
 _ROOT = 1.0e-14
 
 
-class _Flange(Protocol):
-    """Part of a `SolidModel` that its flange uses: this file cannot import the model, which imports this file."""
-
-    mesh: SolidMesh
-    rest: Array
-    size: int
-    contact: Contact
-
-    def folded(self, blocks: Array) -> Array:
-        """Sum (size,) of vectors on the rows of `meeting_nodes`, (n_edges, 2 (3 + n_top))."""
-        ...
-
-
 class _Touch(NamedTuple):
     """Place on the top under each point of the wall, and the traction there, (n_edges, n_points) each."""
 
@@ -240,22 +205,21 @@ class FlangeContact:
 
     noise = 0.0
 
-    def __init__(self, solid: _Flange) -> None:
-        self._solid, self._stiffness = solid, solid.contact.stiffness
-        nodes = meeting_nodes(solid.mesh)
-        self._edges, self._top = nodes[:, :3], nodes[0, 3:]
+    def __init__(self, meeting: Index, rest: Array, contact: Contact, faces: FaceSums) -> None:
+        self._faces, self._stiffness = faces, contact.stiffness
+        self._edges, self._top = meeting[:, :3], meeting[0, 3:]
         x, w = np.polynomial.legendre.leggauss(_FLANGE_POINTS)
         self._shape, slope = line_shapes(x, 3)
-        line = solid.rest[self._edges]
+        line = rest[self._edges]
         measure = np.hypot(line[..., 0] @ slope.T, line[..., 1] @ slope.T) * w
         self._weight = 2.0 * np.pi * (line[..., 0] @ self._shape.T) * measure
         self._spline = cardinal_splines(self._top.size)
 
     def at(self, x: Array) -> TermState:
         """Energy and its derivatives at positions x (n_nodes, 2)."""
-        solid, met = self._solid, self._meet(x)
+        met = self._meet(x)
         if met is None:
-            return TermState(0.0, np.zeros(solid.size))
+            return TermState(0.0, np.zeros(self._faces.outer.size))
         energy = float(np.vdot(self._weight, met.traction**2)) / (2.0 * self._stiffness)
         n, first, second = evaluated(self._spline, met.place)
         r, z = x[self._top].T
@@ -267,7 +231,7 @@ class FlangeContact:
         stiff = np.where(met.traction > 0.0, self._stiffness * self._weight, 0.0)
         blocks = np.einsum("eq,eqi,eqk->eik", stiff, by_gap, by_gap)
         blocks -= np.einsum("eq,eqik->eik", load, self._curvature(tilt, bend, n, first / speed[..., None]))
-        return TermState(energy, solid.folded(-np.einsum("eq,eqi->ei", load, by_gap)), fold_blocks=blocks)
+        return TermState(energy, self._faces.folded(-np.einsum("eq,eqi->ei", load, by_gap)), fold_blocks=blocks)
 
     def load(self, x: Array) -> BaseLoad:
         """Load of the wall on the flange at positions x (n_nodes, 2)."""

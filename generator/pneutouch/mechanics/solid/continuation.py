@@ -64,7 +64,7 @@ def plate_state(scene: SolidScene, state: SolverState, height: float, iterations
         raise ValueError("a state under the plate needs a plate")
     contact = solid.contact
     active = np.where(touch.traction > 0.0, -contact.stiffness, 0.0)
-    tangent = stability(scene, state, solid.push(contact.force(active, touch.slope)))
+    tangent = stability(scene, state, solid.faces.push(contact.force(active, touch.slope)))
     move = solid.expand(tangent.step)
     stiffness = float(np.vdot(contact.weight * active, contact.opening(touch, move, 1.0)))
     rate = -state.filling.rate * float(tangent.step @ state.by_volume)

@@ -125,9 +125,9 @@ def pressure_modes(points: Array, measure: Array, count: int) -> Array:
 @dataclass(frozen=True)
 class TermState:
     """A further part of the total energy at one set of positions: its energy, its gradient (size,), and its second
-    derivative as ``blocks`` of `SolidModel.contact_pattern` (edges of the outer wall) and ``inner_blocks`` of
-    `SolidModel.edge_pattern` (edges of the inner wall), (n_edges, 2 n, 2 n) each, and ``fold_blocks`` of
-    `SolidModel.fold_pattern` (edges of the outer wall with the flange's top); ``around`` by displacements of the edges
+    derivative as ``blocks`` of `SolidModel.faces.outer` (edges of the outer wall) and ``inner_blocks`` of
+    `SolidModel.faces.inner` (edges of the inner wall), (n_edges, 2 n, 2 n) each, and ``fold_blocks`` of
+    `SolidModel.faces.fold` (edges of the outer wall with the flange's top); ``around`` by displacements of the edges
     of the outer wall around the axis, (n_edges, n, n). None if it has none."""
 
     energy: float

@@ -181,7 +181,7 @@ class FrictionTerm:
         force = self.step.force(np.clip(trial, -cap, cap), slope)
         sticking = (cap > 0.0) & (np.abs(trial) <= cap)
         stick, around = self.step.stick(sticking, slope), self.step.around(sticking)
-        return TermState(self.energy(x), self.solid.push(force), stick, around=around)
+        return TermState(self.energy(x), self.solid.faces.push(force), stick, around=around)
 
 
 @dataclass(frozen=True)

@@ -276,7 +276,7 @@ class LinearContact:
         """Gradient (size,) of tractions."""
         slope = self.touch.slope
         across, along = self.solid.contact.force(tractions.normal, slope), self.step.force(tractions.trial, slope)
-        return self.solid.push(across + along)
+        return self.solid.faces.push(across + along)
 
     def blocks(self, status: PointStatus, begun: PointTractions) -> tuple[Array, Array | None]:
         """Stiffness of points that keep a status, symmetric and not; ``begun``: their tractions without a move."""

@@ -163,7 +163,7 @@ class StepSettling:
         if first_round or one_sided is None:
             there = system.solve_definite(push, both)
             if there is None:
-                full = self._solid.contact_pattern.added(self._band, [both])
+                full = self._solid.faces.outer.added(self._band, [both])
                 lift = downhill(self._state, full, self._state.inner + push).lift
                 self._band[0] += lift
                 if lift:
@@ -272,7 +272,7 @@ class FrictionSolver:
         assert state.touch is not None
         points = self.step.at(state.x, state.touch)
         term = self.step.held(self.solid, points)
-        pull = self.solid.push(self.step.force(points.traction, points.slope))
+        pull = self.solid.faces.push(self.step.force(points.traction, points.slope))
         scale = state.scale + float(np.linalg.norm(pull)) + 10.0 * term.noise / RESIDUAL
         energy = state.energy + term.energy(state.x)
         return HeldState(state, state.touch, points, term, energy, state.residual + pull, pull, scale)
@@ -298,7 +298,7 @@ class FrictionSolver:
         """Newton step (size,) of the energy with the largest tractions held: downhill always."""
         stick = here.term.at(here.state.x).blocks
         assert stick is not None
-        band = self.solid.contact_pattern.added(full_tangent(self.scene, here.state), [stick])
+        band = self.solid.faces.outer.added(full_tangent(self.scene, here.state), [stick])
         return downhill(here.state, band, here.residual).step
 
     def reached(self, held: HeldState) -> ContactSystem:
@@ -325,7 +325,7 @@ class FrictionSolver:
             follow, stick = step.rate(sign, slope), np.where(sticking, step.stiffness, 0.0)
             load = contact.force(normal, slope) + step.force(follow * normal - stick * slope / secant, slope)
             both, one_sided = step.stick(sticking, slope), step.slide(points.traction, touch, sign)
-            move = system.whole(system.solve(solid.push(load), both if one_sided is None else both + one_sided))
+            move = system.whole(system.solve(solid.faces.push(load), both if one_sided is None else both + one_sided))
             nodes = solid.expand(move)
             r, z = contact.positions(nodes)
             pressing = normal * (1.0 + slope * r - z)

@@ -28,7 +28,7 @@ class OneSidedBlocks:
         n = table.shape[1]
         i = np.broadcast_to(table[:, :, None], (*table.shape, n)).ravel()
         j = np.broadcast_to(table[:, None, :], (*table.shape, n)).ravel()
-        self._width = width = solid.contact_pattern.width
+        self._width = width = solid.faces.outer.width
         self._entries = np.flatnonzero((i >= 0) & (j >= 0))
         self._places, self._number = np.unique(
             (2 * width + i - j + j * (3 * width + 1))[self._entries], return_inverse=True

@@ -1,15 +1,16 @@
 """The discrete body: energy, forces and stiffness of a wall, in lengths of R0 and stresses of mu."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
 from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
 from pneutouch.mechanics.laws.strain import BY_A, BY_H, BY_J, BY_JH, GRADIENT, HESSIAN, VALUE, Strain
-from pneutouch.mechanics.solid.banded import AssemblyPattern
-from pneutouch.mechanics.solid.base_contact import BaseContact, BaseLoad, FlangeContact, meeting_nodes
+from pneutouch.mechanics.solid.banded import AssemblyPattern, BlockEntries, FaceSums
+from pneutouch.mechanics.solid.base_contact import BaseContact, BaseFace, BaseLoad, FlangeContact, meeting_nodes
 from pneutouch.mechanics.solid.cavity import Cavity
 from pneutouch.mechanics.solid.elements import (
     DEFAULT_SCHEME,
@@ -19,7 +20,6 @@ from pneutouch.mechanics.solid.elements import (
     F_ZZ,
     HOOP,
     IN_PLANE,
-    EnergyTerm,
     IntegrationScheme,
     area_ratio,
     gauss_square,
@@ -77,31 +77,53 @@ class SolidModel:
         self.wall = mesh.wall / mesh.length
         self.rest = mesh.nodes / mesh.length
         self._integration()
-        self.meeting = meeting_nodes(mesh) if base is not None else np.zeros((0, 0), np.intp)
-        self.dofs = _number_dofs(mesh, self.meeting)
+        self._assemble(base)
+        # Rounding leaves this much force in the exact unloaded state; no residual can fall below it.
+        idle, edges = self.forces(self.local(self.rest)), self.dofs[mesh.inner]
+        self.noise = float(np.linalg.norm(self.pattern.vector([idle, np.zeros((len(edges), edges[0].size))])))
+
+    def _assemble(self, base: RigidBase | None) -> None:
+        """Number the unknowns, and build what acts on the faces."""
+        mesh = self.mesh
+        meeting = self.meeting = meeting_nodes(mesh) if base is not None else np.zeros((0, 0), np.intp)
+        self.dofs = _number_dofs(mesh, meeting)
         flat = self.dofs.ravel()
         self.size = int((flat >= 0).sum())
-        tables = [self.dofs[x].reshape(x.shape[0], -1) for x in (mesh.cells, mesh.inner, mesh.outer)]
-        folding = self.dofs[self.meeting].reshape(self.meeting.shape[0], 2 * self.meeting.shape[1])
-        self.pattern = AssemblyPattern(tables[:2], self.size, _half_width(folding))
-        self.fold_pattern = AssemblyPattern([folding], self.size, self.pattern.width) if folding.size else None
-        self.contact_pattern = AssemblyPattern(tables[2:], self.size, self.pattern.width)
-        self.edge_pattern = AssemblyPattern(tables[1:2], self.size, self.pattern.width)
         self._order = np.empty(self.size, dtype=np.intp)
         self._order[flat[flat >= 0]] = np.flatnonzero(flat >= 0)
+        folding = self.dofs[meeting].reshape(meeting.shape[0], 2 * meeting.shape[1])
+        self._patterns(_half_width(folding), folding)
         self.cavity = Cavity(mesh.inner)
-        # Rounding leaves this much force in the exact unloaded state; no residual can fall below it.
-        idle = self.forces(self.local(self.rest))
-        self.noise = float(np.linalg.norm(self.pattern.vector([idle, np.zeros((len(mesh.inner), tables[1].shape[1]))])))
         self.contact = Contact(mesh, self.rest, float(self._relative.max()) * CONTACT_STIFFNESS / self.wall)
-        self.base = None if base is None else BaseContact(self, base)
-        self.fold = None if self.fold_pattern is None else FlangeContact(self)
-        self.supports: tuple[EnergyTerm, ...] = tuple(part for part in (self.base, self.fold) if part is not None)
+        self.base = None if base is None else BaseContact(*self._base_faces(base), self.faces)
+        fold = FlangeContact(meeting, self.rest, self.contact, self.faces) if folding.size else None
+        self.supports: tuple[BaseContact | FlangeContact, ...] = tuple(
+            part for part in (self.base, fold) if part is not None
+        )
+
+    def _patterns(
+        self, width: int = 0, folding: Index | None = None, forms: Mapping[int, BlockEntries] = MappingProxyType({})
+    ) -> None:
+        """Patterns of the cells with the edges of the inner wall, and of the faces; ``folding`` are the unknowns that
+        the contact with a flange couples."""
+        mesh = self.mesh
+        tables = [self.dofs[x].reshape(x.shape[0], -1) for x in (mesh.cells, mesh.inner, mesh.outer)]
+        self.pattern = AssemblyPattern(tables[:2], self.size, width, forms)
+        inner, outer = (AssemblyPattern([table], self.size, self.pattern.width) for table in tables[1:])
+        fold = None
+        if folding is not None and folding.size:
+            fold = AssemblyPattern([folding], self.size, self.pattern.width)
+        self.faces = FaceSums(inner, outer, fold)
+
+    def _base_faces(self, base: RigidBase) -> tuple[BaseFace, BaseFace]:
+        """The outer and the inner face over a base."""
+        flange, opening, *ring = (x / self.length for x in (base.flange, base.opening, base.ring, base.ring_height))
+        outer = BaseFace(self.mesh.outer, self.rest, self.contact, flange, (ring[0], ring[1]))
+        return outer, BaseFace(self.mesh.inner, self.rest, self.contact, opening)
 
     def base_load(self, x: Array) -> BaseLoad:
         """Load of the outer wall on its base and on its own flange at positions x (n_nodes, 2)."""
-        loads = [part.load(x) for part in (self.base, self.fold) if part is not None]
-        return sum(loads, BaseLoad())
+        return sum((part.load(x) for part in self.supports), BaseLoad())
 
     def _integration(self) -> None:
         """Constant operators: strains (`_b`, also as `_tall` and its transpose `_wide`) and tested pressure modes."""
@@ -125,19 +147,6 @@ class SolidModel:
         out = np.zeros(self.rest.size)
         out[self._order] = step
         return out.reshape(-1, 2)
-
-    def swell(self, blocks: Array) -> Array:
-        """Sum (size,) of vectors on the edges of the inner wall, (n_edges, 2 n)."""
-        return self.edge_pattern.vector([blocks])
-
-    def push(self, blocks: Array) -> Array:
-        """Sum (size,) of forces on the edges of the outer wall, (n_edges, 2 n)."""
-        return self.contact_pattern.vector([blocks])
-
-    def folded(self, blocks: Array) -> Array:
-        """Sum (size,) of vectors on edges of the outer wall with the flange's top, (n_edges, 2 n)."""
-        assert self.fold_pattern is not None
-        return self.fold_pattern.vector([blocks])
 
     def local(self, x: Array) -> PointFields:
         """Strains, energy and energy derivatives at the integration points for positions x."""

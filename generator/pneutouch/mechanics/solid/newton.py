@@ -154,9 +154,9 @@ def evaluate(scene: SolidScene, x: Array) -> SolverState | None:
     if filling is None:
         return None
     touch = None if scene.plate is None else solid.contact.touch(x, scene.plate)
-    by_volume = solid.swell(edge_gradient)
+    by_volume = solid.faces.swell(edge_gradient)
     inner = solid.pattern.vector([solid.forces(local), -filling.pressure * edge_gradient])
-    push = 0.0 * inner if touch is None else solid.push(solid.contact.force(touch.traction, touch.slope))
+    push = 0.0 * inner if touch is None else solid.faces.push(solid.contact.force(touch.traction, touch.slope))
     load = abs(filling.pressure) * float(np.linalg.norm(by_volume)) + float(np.linalg.norm(push))
     noise = solid.noise if touch is None else solid.noise + solid.contact.noise
     acting = scene.acting
@@ -190,11 +190,11 @@ def tangent(scene: SolidScene, state: SolverState) -> Array:
     band = solid.pattern.matrix([solid.stiffness(state.local), load])
     for term in state.terms:
         if term.blocks is not None:
-            band = solid.contact_pattern.added(band, [term.blocks])
+            band = solid.faces.outer.added(band, [term.blocks])
         if term.inner_blocks is not None:
-            band = solid.edge_pattern.added(band, [term.inner_blocks])
-        if term.fold_blocks is not None and solid.fold_pattern is not None:
-            band = solid.fold_pattern.added(band, [term.fold_blocks])
+            band = solid.faces.inner.added(band, [term.inner_blocks])
+        if term.fold_blocks is not None and solid.faces.fold is not None:
+            band = solid.faces.fold.added(band, [term.fold_blocks])
     return band
 
 
@@ -206,7 +206,7 @@ def full_tangent(scene: SolidScene, state: SolverState) -> Array:
 
 def with_contact(scene: SolidScene, band: Array, touch: ContactEvaluation, active: Flags) -> Array:
     """`tangent` with the contact stiffness at the ``active`` points."""
-    return scene.solid.contact_pattern.added(band, [scene.solid.contact.hessian(touch, active)])
+    return scene.solid.faces.outer.added(band, [scene.solid.contact.hessian(touch, active)])
 
 
 def direction(scene: SolidScene, state: SolverState) -> NewtonDirection:
@@ -220,7 +220,7 @@ def direction(scene: SolidScene, state: SolverState) -> NewtonDirection:
     band = tangent(scene, state)
     if state.touch is None:
         return downhill(state, band, state.residual)
-    touch, contact, push = state.touch, scene.solid.contact, scene.solid.push
+    touch, contact, push = state.touch, scene.solid.contact, scene.solid.faces.push
     linear = start = contact.linear(touch, np.zeros_like(state.x))
     step, pull = np.zeros_like(state.residual), state.inner
     for _ in range(SETTLING):
