@@ -100,9 +100,9 @@ def wavelets(folder: Path) -> Pair:
 def budgets(folder: Path) -> Pair:
     from tests.mechanics.uncertainty.designs import budget_for, materials
 
+    from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.atlas.respond import respond
     from pneutouch.mechanics.paper_sensor import material_sensor
-    from pneutouch.mechanics.atlas.press import batch_of
 
     batch = batch_of(material_sensor(materials(LIBRARY)["TangoPlus"]), np.linspace(0.0, 0.015, 200).tolist())
     batch = replace(batch, wall_thickness=np.linspace(1.0, 2.0, 200))
@@ -130,6 +130,16 @@ def _one_of_the_solid() -> Callable[[], object]:
     from pneutouch.mechanics import predict
 
     return lambda: predict("", PAPER, [0.012], model="solid")
+
+
+def order_zero(folder: Path) -> Pair:
+    from pneutouch.mechanics.models.choice import model_named
+    from pneutouch.mechanics.paper_sensor import material_sensor
+
+    pressed = material_sensor(LIBRARY.load("materials", "TangoPlus"))
+    pressures = np.array([0.0, 12.0, 22.0]) * KPA
+    harmonic, solid = model_named("harmonic"), model_named("solid")
+    return lambda: harmonic.answer_one(pressed, pressures), lambda: solid.answer_one(pressed, pressures)
 
 
 def atlas_batch(folder: Path) -> Pair:

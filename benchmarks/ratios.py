@@ -36,6 +36,7 @@ RATIOS: dict[str, tuple[Callable[[Path], cases.Pair], float]] = {
     "wavelet transform of 300,000 samples / plain transform": (cases.wavelets, 20.0),
     "budgets of 200 sensors / their responses": (cases.budgets, 40.0),
     "relaxation and two loops / one response": (cases.relaxation_and_loops, 40.0),
+    "harmonic model of order 0 / the solid": (cases.order_zero, 4.0),
     "1,000 responses of the atlas / one of the solid": (cases.atlas_batch, 2.0),
     "one response of the atlas / one of the solid": (cases.atlas_single, 0.1),
     "solid with the check for sway and lobes / without": (cases.sway, 1.3),

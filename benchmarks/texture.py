@@ -14,8 +14,8 @@ import numpy as np
 from benchmarks.store import LIBRARY, store, stored
 from benchmarks.strip import AGILUS, Row, Strip, harmonic
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas.press import batch_of
+from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.results.record import plain
 from pneutouch.texture.scalogram import scalogram
 from pneutouch.texture.scan import scan
