@@ -20,8 +20,7 @@ from pneutouch.mechanics.corrected.figures import under_plate
 from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indenter import ball, cone
-from pneutouch.mechanics.uncertainty import ContactModel
-from pneutouch.mechanics.uncertainty.contact_model import SPREAD
+from pneutouch.mechanics.uncertainty.contact_model import SPREAD, ContactModel
 from pneutouch.results.record import plain as data
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA

@@ -12,22 +12,13 @@ if TYPE_CHECKING:
         DesignSource,
         ResolvedDesign,
         check_scene,
-        known_design,
         load_scene,
         split_calibration,
     )
 
 _HOMES = {
     "library": ("KINDS", "Library", "user_folder"),
-    "scene": (
-        "DEFAULT",
-        "DesignSource",
-        "ResolvedDesign",
-        "check_scene",
-        "known_design",
-        "load_scene",
-        "split_calibration",
-    ),
+    "scene": ("DEFAULT", "DesignSource", "ResolvedDesign", "check_scene", "load_scene", "split_calibration"),
 }
 
 __all__ = [
@@ -37,7 +28,6 @@ __all__ = [
     "Library",
     "ResolvedDesign",
     "check_scene",
-    "known_design",
     "load_scene",
     "split_calibration",
     "user_folder",

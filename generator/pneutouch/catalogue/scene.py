@@ -1,7 +1,4 @@
-"""A scene: a design file with every name in it resolved, and checked against one another.
-
-The design that a campaign names, which must be there.
-"""
+"""A scene: a design file with every name in it resolved, and checked against one another."""
 
 from __future__ import annotations
 
@@ -14,7 +11,6 @@ from pneutouch.catalogue.library import Library
 from pneutouch.catalogue.parts import check_cast_ring, mount_of, named_gauge, tube_of
 from pneutouch.catalogue.printers import cannot_run
 from pneutouch.errors import InputError, shown
-from pneutouch.spec.campaign import CAMPAIGN, Campaign, design_of
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import MaterialKind
 from pneutouch.spec.gauge import Gauge
@@ -295,20 +291,3 @@ def _check_calibration(scene: ResolvedDesign) -> None:
             value=name,
             remedy="calibrate a sensor of this membrane, or take the calibration's resin, radius and wall",
         )
-
-
-def known_design(campaign: Campaign, folder: Path, library: Library) -> str | None:
-    """The design that a campaign names, as a command takes it; None if it names none.
-
-    Raises InputError for one that is not there, with the campaign's file and key.
-    """
-    name = design_of(campaign, folder)
-    if name is not None:
-        try:
-            DesignSource.of(name, library)
-        except InputError as error:
-            # An error on what is in the design's file names that file.
-            if error.file is None:
-                error.file, error.key, error.value = str(folder / CAMPAIGN), "design", campaign.design
-            raise
-    return name

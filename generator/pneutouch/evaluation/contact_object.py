@@ -35,7 +35,7 @@ from pneutouch.parts import Assembly
 from pneutouch.spec.part import ClampedFlange
 
 if TYPE_CHECKING:
-    from pneutouch.mechanics.uncertainty import ContactModel
+    from pneutouch.mechanics.uncertainty.contact_model import ContactModel
 
 
 _AT_ONCE = 1e-6

@@ -130,10 +130,10 @@ class Evaluation:
     @cached_property
     def curves(self) -> tuple[CurveOutcome, ...]:
         """The sensor by every mixing curve of its mix; empty for a resin, and for a calibrated sensor."""
+        if self.scene.calibration is not None or not self.scene.membrane_material.curves:
+            return ()
         from pneutouch.mechanics.mixing_curves import curve_outcomes
 
-        if self.scene.calibration is not None:
-            return ()
         known = (self.scene.membrane_material, self.scene.printer)
         return curve_outcomes(self.sensor, *known, self.prediction, self.rating)
 

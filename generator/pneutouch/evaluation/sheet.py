@@ -60,9 +60,9 @@ _ANGLES = 64
 def pressed_view(prediction: SensorPrediction) -> PressedView | None:
     """The dome at the first driving pressure, pressed to the end of its range; None by a model without a surface."""
     state = prediction.states[0]
-    face = state.face
-    if face is None:
+    if state.face is None:
         return None
+    face = state.face()
     angles = 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES
     rows = face.rows()
     points = face.positions(rows, angles)

@@ -33,7 +33,8 @@ from pneutouch.units import KPA
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.atlas.press import SensorBatch
-    from pneutouch.mechanics.uncertainty import Budget, ContactModel
+    from pneutouch.mechanics.uncertainty import Budget
+    from pneutouch.mechanics.uncertainty.contact_model import ContactModel
 
 
 GAP, STEEP_GAP = 0.2, 0.45
@@ -145,11 +146,13 @@ def known(
     """
     from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.corrected.figures import under_plate
-    from pneutouch.mechanics.uncertainty import ContactModel, budget, model_errors
+    from pneutouch.mechanics.uncertainty import budget, model_errors
 
     contact = None
     anywhere = anywhere and sensor.protocol.other_contact is None
     if sensor.protocol.other_contact is not None:
+        from pneutouch.mechanics.uncertainty.contact_model import ContactModel
+
         spread = None if calibration is None else friction_spread(calibration)
         contact = ContactModel(sensor, tuple(float(p) for p in pressures), states, fitted_spread=spread)
     batch = batch_of(under_plate(sensor), pressures)

@@ -126,7 +126,7 @@ class PressedStates:
 def press(sensor: Sensor, gas: TrappedGas, apex: Array, indentation: Array, closure: str) -> PressedStates:
     """Press the dome, inflated to apex height ``apex`` (mm), by ``indentation`` (mm) with a closure's name."""
     height = apex - indentation
-    model = CLOSURES[closure](sensor, gas, apex, height)
+    model = _BY_NAME[closure](sensor, gas, apex, height)
     zero = np.zeros(np.broadcast_shapes(np.shape(gas.driving_pressure), np.shape(height)))
     rho = bisect(model.residual, zero, zero + sensor.dome.inner_radius)
     cap = pressed_cap(rho, height, sensor.dome.inner_radius)
@@ -188,7 +188,7 @@ class PrintedClosure(_Closure):
         return self.gas.pressure(self.cap(rho).volume) * np.pi * rho**2
 
 
-CLOSURES: dict[str, Callable[..., VariationalClosure | PrintedClosure]] = {
+_BY_NAME: dict[str, Callable[..., VariationalClosure | PrintedClosure]] = {
     "variational": VariationalClosure,
     "printed": PrintedClosure,
 }

@@ -8,8 +8,15 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError, nearest
-from pneutouch.mechanics.membrane_contact import CLOSURES
-from pneutouch.mechanics.models.choice import DEFAULT_TOLERANCE, USUAL, model_named, models_for, remedy, usual_model
+from pneutouch.mechanics.models.choice import (
+    CLOSURES,
+    DEFAULT_TOLERANCE,
+    USUAL,
+    model_named,
+    models_for,
+    remedy,
+    usual_model,
+)
 from pneutouch.mechanics.models.interface import ModelAnswer, SensorModel
 from pneutouch.mechanics.prediction import SensorPrediction
 from pneutouch.mechanics.sensor import IndentationProtocol, ResponseCorrection, Sensor

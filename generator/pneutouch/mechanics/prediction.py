@@ -5,18 +5,23 @@ A record: a sensor in a mix by one of the mixing curves of its pair.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.events import LOBES, SWAY, Event
 from pneutouch.mechanics.limits import LimitPoint, Limits
-from pneutouch.mechanics.off_axis_curve import OffAxisCurve
-from pneutouch.mechanics.pressed_face import PressedFace
 from pneutouch.mechanics.response import Figures
 from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.spec.material import MixByCurve
 from pneutouch.units import KPA
+
+if TYPE_CHECKING:
+    from pneutouch.mechanics.off_axis_curve import OffAxisCurve
+    from pneutouch.mechanics.pressed_face import PressedFace
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +52,8 @@ class WallPath:
 class SensorState:
     """One driving pressure: the inflated dome and its loading curve (arrays of one length, mm, N, MPa).
 
-    ``figures`` hold from first contact to ``range_end`` (mm of indentation).
+    ``figures`` hold from first contact to ``range_end`` (mm of indentation). ``face`` makes the pressed outer wall,
+    to draw.
     """
 
     driving_pressure: float
@@ -66,7 +72,7 @@ class SensorState:
     shapes: tuple[DeformedShape, ...] = ()
     walls: WallPath | None = None
     beyond_axis: OffAxisCurve | None = None
-    face: PressedFace | None = None
+    face: Callable[[], PressedFace] | None = None
 
     def __repr__(self) -> str:
         return f"SensorState({self.driving_pressure / KPA:g} kPa, {len(self.indentation)} points)"
@@ -88,8 +94,12 @@ class SensorState:
             pressure_rise=by_rise * self.pressure_rise,
             figures=None if self.figures is None else self.figures.scaled(by_force, by_rise),
             beyond_axis=None if self.beyond_axis is None else self.beyond_axis.scaled(by_force, by_rise),
-            face=None if self.face is None else self.face.scaled(by_force),
+            face=None if self.face is None else partial(self._scaled_face, by_force),
         )
+
+    def _scaled_face(self, by_force: float) -> PressedFace:
+        assert self.face is not None
+        return self.face().scaled(by_force)
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,8 +19,7 @@ from pneutouch.errors import InputError, nearest, shown
 from pneutouch.evaluation.evaluate import CLAMPS, Evaluation, PredictionOptions, evaluate_scene
 from pneutouch.export.threemf_read import Package
 from pneutouch.formats import check_format, versioned
-from pneutouch.mechanics.membrane_contact import CLOSURES
-from pneutouch.mechanics.models.choice import MODEL_CHOICES
+from pneutouch.mechanics.models.choice import CLOSURES, MODEL_CHOICES
 from pneutouch.output.files import input_hash, versions
 from pneutouch.spec.fields import Table
 from pneutouch.spec.read import validate

@@ -12,8 +12,7 @@ from typing import Any
 
 from pneutouch.evaluation.evaluate import CLAMPS
 from pneutouch.mechanics import MODEL_CHOICES
-from pneutouch.mechanics.membrane_contact import CLOSURES
-from pneutouch.mechanics.models.choice import USUAL
+from pneutouch.mechanics.models.choice import CLOSURES, USUAL
 from pneutouch.schemas.models import Schema, model_schema
 from pneutouch.schemas.pieces import NUMBER, TEXT, DocumentKind, any_of, described_by, items, record
 from pneutouch.spec.over import MAX_VALUES

@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from pneutouch.errors import InputError, nearest, shown
-from pneutouch.spec.fields import EntryError, declaration, entries_of, table_of
+from pneutouch.spec.fields import EntryError, declaration, entries_of, is_one_of_list, table_of
 from pneutouch.spec.values import Quantity
 from pneutouch.wording import counted
 
@@ -189,12 +189,3 @@ def _right(owner: type[BaseModel] | None, path: list[str]) -> str:
     if owner is None or not path or path[-1] not in written:
         return _ANY
     return declaration(owner, written[path[-1]]).right
-
-
-def is_one_of_list(table: type[BaseModel], key: str, value: Any) -> bool:
-    """True if a value is a number or a text, and ``key`` a list of these for which one entry is enough."""
-    if any(getattr(bound, "min_length", 0) > 1 for bound in table.model_fields[key].metadata):
-        return False
-    if isinstance(value, str):
-        return entries_of(table, key) in ("names", "texts")
-    return isinstance(value, float | int) and not isinstance(value, bool) and entries_of(table, key) == "numbers"

@@ -146,3 +146,12 @@ def _kinds(annotation: Any) -> list[Any]:
 
 
 MaterialKind = Literal["elastomer", "rigid"]
+
+
+def is_one_of_list(table: type[BaseModel], key: str, value: Any) -> bool:
+    """True if a value is a number or a text, and ``key`` a list of these for which one entry is enough."""
+    if any(getattr(bound, "min_length", 0) > 1 for bound in table.model_fields[key].metadata):
+        return False
+    if isinstance(value, str):
+        return entries_of(table, key) in ("names", "texts")
+    return isinstance(value, float | int) and not isinstance(value, bool) and entries_of(table, key) == "numbers"

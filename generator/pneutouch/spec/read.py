@@ -12,8 +12,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from pneutouch.errors import InputError, joined, nearest
-from pneutouch.spec.explain import explained, is_one_of_list
-from pneutouch.spec.fields import table_of
+from pneutouch.spec.fields import is_one_of_list, table_of
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.toml_text import toml_content, toml_value, value_text
 
@@ -98,6 +97,9 @@ def validate(model: type[Model], content: dict[str, Any], where: str) -> Model:
     try:
         return model.model_validate(content)
     except ValidationError as error:
+        # The words for what is wrong load where something is.
+        from pneutouch.spec.explain import explained
+
         # What is missing comes last: it may be there under a wrong name.
         details = sorted(error.errors(), key=lambda detail: detail["type"] == "missing")
         problems = [explained(model, detail, where) for detail in details[:_MOST_PROBLEMS]]

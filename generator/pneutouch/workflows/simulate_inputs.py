@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import get_args
 
 from pneutouch.bench.simulate import SimulationTruth
-from pneutouch.catalogue import DesignSource, Library, known_design
+from pneutouch.catalogue import DesignSource, Library
+from pneutouch.catalogue.campaign import known_design
 from pneutouch.catalogue.scene import split_calibration
 from pneutouch.errors import InputError, nearest
 from pneutouch.evaluation.resins import SimulatedResin

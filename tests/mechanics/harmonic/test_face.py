@@ -79,7 +79,7 @@ BESIDE = ("contact.object=ball", "contact.ball_radius_mm=6", "contact.offset_mm=
 def test_the_drawn_pressure_integrates_to_the_contact_force(evaluated, scene: tuple[str, ...], model: str) -> None:
     """Pressure over the drawn triangles, times the height of their area: that of the drawn grid, not of the nodes."""
     face = (
-        evaluated("paper-dome", "pneumatics.driving_pressures_kPa=[0]", *scene, model=model).prediction.states[0].face
+        evaluated("paper-dome", "pneumatics.driving_pressures_kPa=[0]", *scene, model=model).prediction.states[0].face()
     )
     rows, angles = face.rows(), 2.0 * np.pi * np.arange(64) / 64
     corners = _triangles(face.positions(rows, angles))

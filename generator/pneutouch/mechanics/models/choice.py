@@ -20,6 +20,9 @@ for."""
 
 MODEL_CHOICES = (*MODELS, "auto")
 
+CLOSURES = ("variational", "printed")
+"""The closures of the membrane's contact."""
+
 USUAL = "usual"
 """The model if none is named: harmonic for contact off the axis, else the solid."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -247,7 +248,7 @@ def _record(
             _to_end(pressed, end),
             None if pressed.shear is None else _shear_curve(pressed.shear),
         ),
-        face=press.face(pressed, end),
+        face=partial(press.face(pressed, end).scaled, 1.0),
     )
 
 

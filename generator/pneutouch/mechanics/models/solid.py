@@ -4,35 +4,37 @@ Range of the law: stretches of the wall beyond those of its fit are a limit of t
 press.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Protocol
+from functools import partial
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from pneutouch.arrays import Array, distinct, hermite
 from pneutouch.mechanics.events import LOBES, SWAY, Event, range_end
-from pneutouch.mechanics.harmonic.fields import Harmonics
-from pneutouch.mechanics.harmonic.object_contact import pressed_face
-from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.limits import LAW_RANGE, LimitPoint, Limits
 from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION, OBJECT_DISCRETISATION, SENSITIVITY_DISCRETISATION
 from pneutouch.mechanics.models.interface import Answered, ModelAnswer, SensorModel, one_by_one
 from pneutouch.mechanics.models.statements import BODY, NOT_CHECKED, discretised, solid_assumptions
 from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState, WallPath
-from pneutouch.mechanics.pressed_face import PressedFace
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.events import SolidEvent
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
 from pneutouch.mechanics.solid.indenter import Indenter, RigidBase
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch, inflate, state_at
-from pneutouch.mechanics.solid.mesh import dome, nodes_along, object_cells, printed_dome
+from pneutouch.mechanics.solid.mesh import SolidMesh, dome, nodes_along, object_cells, printed_dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe, burst, met
 from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.shape.meridian import arc_share
 from pneutouch.units import KPA
+
+if TYPE_CHECKING:
+    from pneutouch.mechanics.pressed_face import PressedFace
 
 _SUMMARY = (
     f"Discretisation: sensitivity within {SENSITIVITY_DISCRETISATION:.1%}, limit pressure "
@@ -273,6 +275,10 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
     end = min(range_end(happened, test.depth), pressed.path[-1].indentation)
     grid = np.linspace(0.0, end, test.steps + 1)
     force, rise = curve_between(pressed.path, grid)
+    body, last = (
+        first_touch(probe.solid, free, press.body, press.plate_diameter, press.plate_rim).body,
+        _last(pressed, end),
+    )
     return SensorState(
         driving_pressure=pressure,
         apex_inner=free.inner_apex,
@@ -289,7 +295,7 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
         events=tuple(happened),
         shapes=_shapes(probe, free, press, pressed, end),
         walls=_walls(probe.solid, free, press, pressed),
-        face=_face(probe.solid, free, press, pressed, end),
+        face=partial(_face, sensor, probe.solid.mesh, body, last.positions, last.indentation),
     )
 
 
@@ -315,13 +321,17 @@ def _last(pressed: IndentationPath, end: float) -> PressState:
     return max((s for s in pressed.path if s.indentation <= end * (1 + 1e-9)), key=lambda s: s.indentation)
 
 
-def _face(
-    solid: SolidModel, free: FreeState, press: PressSettings, pressed: IndentationPath, end: float
-) -> PressedFace:
-    """The outer wall pressed to the end of the range."""
-    body, last = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim).body, _last(pressed, end)
-    placed = PlacedObject(body.at(body.height - last.indentation / solid.length))
-    return pressed_face(solid, Harmonics(0), last.positions, placed, last.indentation)
+def _face(sensor: Sensor, mesh: SolidMesh, body: Indenter, positions: Array, indentation: float) -> PressedFace:
+    """The outer wall at positions (n_nodes, 2), mm, under an object at first contact that has gone on by an indentation
+    (mm)."""
+    # In space the wall is drawn alone: the solid needs none of it.
+    from pneutouch.mechanics.harmonic.fields import Harmonics
+    from pneutouch.mechanics.harmonic.object_contact import pressed_face
+    from pneutouch.mechanics.harmonic.surface import PlacedObject
+
+    solid = SolidModel(mesh, sensor.wall.hyperelastic, grade=_grade(sensor))
+    placed = PlacedObject(body.at(body.height - indentation / solid.length))
+    return pressed_face(solid, Harmonics(0), positions, placed, indentation)
 
 
 def _shapes(

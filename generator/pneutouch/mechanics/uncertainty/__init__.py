@@ -1,7 +1,6 @@
 """The uncertainty of a prediction: stated sources, their shares, expanded uncertainties with k = 2 (JCGM 100)."""
 
 from pneutouch.mechanics.uncertainty.budget import budget, monte_carlo
-from pneutouch.mechanics.uncertainty.contact_model import ContactModel
 from pneutouch.mechanics.uncertainty.document import GasNotes, document, gas_notes, gas_text, shares, text
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
@@ -10,7 +9,6 @@ from pneutouch.mechanics.uncertainty.sources.model import ModelErrors, measured_
 __all__ = [
     "COVERAGE",
     "Budget",
-    "ContactModel",
     "GasNotes",
     "ModelErrors",
     "UncertaintySource",

@@ -3,15 +3,17 @@
 The same sources sampled through the same atlas: the check of `propagate` (JCGM 101).
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.atlas.figures import FIGURES, log_figures, moved
 from pneutouch.mechanics.atlas.press import SensorBatch
-from pneutouch.mechanics.uncertainty.contact_model import ContactModel, ContactShift
 from pneutouch.mechanics.uncertainty.propagate import Budget, propagate
 from pneutouch.mechanics.uncertainty.source import FIGURE, JOINT, UncertaintySource
 from pneutouch.mechanics.uncertainty.sources import sources
@@ -19,6 +21,9 @@ from pneutouch.mechanics.uncertainty.sources.model import ModelErrors
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
+
+if TYPE_CHECKING:
+    from pneutouch.mechanics.uncertainty.contact_model import ContactModel, ContactShift
 
 
 def budget(

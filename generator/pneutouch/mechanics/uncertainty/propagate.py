@@ -11,20 +11,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cache
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.figures import DEAD, FIGURES, INPUTS, log_figures, moved, neighbourhood, unit_step
 from pneutouch.mechanics.atlas.press import SensorBatch
-from pneutouch.mechanics.uncertainty.contact_model import ContactModel, ContactShift
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
 from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
+
+if TYPE_CHECKING:
+    from pneutouch.mechanics.uncertainty.contact_model import ContactModel, ContactShift
 
 STEP = 0.015
 """Half of the central difference, relative. Below it the noise of tabulated ends of ranges grows (the buckling edge is

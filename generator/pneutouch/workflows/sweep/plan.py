@@ -18,8 +18,7 @@ from pneutouch.catalogue.library import read_given
 from pneutouch.errors import InputError, nearest, shown
 from pneutouch.evaluation.evaluate import CLAMPS
 from pneutouch.mechanics import MODEL_CHOICES
-from pneutouch.mechanics.membrane_contact import CLOSURES
-from pneutouch.mechanics.models.choice import USUAL
+from pneutouch.mechanics.models.choice import CLOSURES, USUAL
 from pneutouch.spec.design import CALIBRATION, DesignFile
 from pneutouch.spec.fields import table_of
 from pneutouch.spec.files import design_inside

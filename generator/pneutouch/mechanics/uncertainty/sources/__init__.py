@@ -1,14 +1,15 @@
 """Every source of uncertainty of n sensors that share a resin and a printer."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pneutouch.arrays import Flags
 from pneutouch.mechanics.atlas.press import SensorBatch
-from pneutouch.mechanics.uncertainty.contact_model import ContactModel
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
-from pneutouch.mechanics.uncertainty.sources.calibrated import calibrated_sources, kept_of_design, kept_of_model
 from pneutouch.mechanics.uncertainty.sources.model import (
     ModelErrors,
     build_sources,
@@ -17,9 +18,12 @@ from pneutouch.mechanics.uncertainty.sources.model import (
     numerical_sources,
 )
 from pneutouch.mechanics.uncertainty.sources.modulus import ageing_sources, modulus_sources
-from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
+
+if TYPE_CHECKING:
+    from pneutouch.mechanics.uncertainty.contact_model import ContactModel
+    from pneutouch.spec.calibration import SensorCalibration
 
 
 def sources(
@@ -43,6 +47,9 @@ def sources(
         source_list += contact_sources(contact, source_list)
     model_error, remaining = model_sources(near, errors), 1.0
     if calibration is not None:
+        # Loaded where a sensor has a calibration.
+        from pneutouch.mechanics.uncertainty.sources.calibrated import calibrated_sources, kept_of_design, kept_of_model
+
         remaining = calibration.remaining_year
         source_list = [*kept_of_design(batch, calibration, source_list), *calibrated_sources(batch, calibration)]
         model_error = kept_of_model(batch, calibration, model_error)

@@ -6,9 +6,12 @@ The uncertainty of the contact: an unknown friction, and the part of another con
 miss.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,11 +22,13 @@ from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.uncertainty.contact_model import ContactModel
 from pneutouch.mechanics.uncertainty.source import FIGURE, Distribution, UncertaintySource, counting
 from pneutouch.spec.material import Material, PaperMeasurements
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
+
+if TYPE_CHECKING:
+    from pneutouch.mechanics.uncertainty.contact_model import ContactModel
 
 UNEXPLAINED = 1.5
 """A resin whose cells are all off by more than this factor is left out of the pool and named: a choice of this program.
