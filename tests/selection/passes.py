@@ -20,7 +20,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.spec.target import Target
 from pneutouch.workflows.build import build
-from pneutouch.workflows.select.document import write_choice
+from pneutouch.workflows.select.search import FoundChoice
 from pneutouch.workflows.select.select import SelectionRun, select
 from tests.catalogue.store import printed_combinations
 from tests.conftest import ROOT
@@ -76,7 +76,8 @@ def _given(fields: dict[str, Any]) -> dict[str, Any]:
 
 def saved(selection: SelectionRun, folder: Path) -> Evaluation:
     """What `check` makes of the file that ``--write`` makes of a selection's best design."""
-    path = write_choice(selection, selection.answer.designs[0], "found", folder, overwrite=True)
+    assignments = selection.assignments(selection.answer.designs[0])
+    path = FoundChoice("1", selection.base, assignments).write("found", folder, overwrite=True)
     return evaluate(str(path), library=LIBRARY)
 
 

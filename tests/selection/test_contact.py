@@ -14,7 +14,7 @@ from pneutouch.results.record import plain as data
 from pneutouch.selection.contact_search import ROUNDS
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.select.charts import tradeoff
-from pneutouch.workflows.select.document import write_choice
+from pneutouch.workflows.select.search import FoundChoice
 from pneutouch.workflows.select.select import SelectionRun, select
 from tests.selection.targets import answer, document, target
 
@@ -36,7 +36,8 @@ def predicted(selection: SelectionRun, folder) -> tuple[float, float, float]:
     """Sensitivity (kPa/N), reach in force (N) and relative expanded uncertainty of the sensitivity of the best design as
     saved, read again and predicted."""
     choice = selection.answer.designs[0]
-    found = evaluate(str(write_choice(selection, choice, "found", folder, overwrite=True)))
+    written = FoundChoice("1", selection.base, selection.assignments(choice)).write("found", folder, overwrite=True)
+    found = evaluate(str(written))
     assert found.prediction.model == "solid"
     pressure = float(choice.pool.pressure[0])
     states = found.prediction.states

@@ -216,9 +216,7 @@ def test_the_words_of_a_target_give_it_to_the_command(content, command, monkeypa
         taken.append(target)
         raise InputError("taken")
 
-    monkeypatch.setattr("pneutouch.workflows.select.processes.select", take)
-    monkeypatch.setattr("pneutouch.workflows.select.processes.select_processes", take)
-    monkeypatch.setattr("pneutouch.workflows.select.graded.select_graded", take)
+    monkeypatch.setattr("pneutouch.workflows.select.search.search", take)
     target = Target.model_validate(content)
     said = command("select", *target_words(target))
     assert taken == [target], said.stderr

@@ -19,6 +19,7 @@ from pneutouch.spec.target import Target
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.select.graded import select_graded
 from pneutouch.workflows.select.graded_document import graded
+from pneutouch.workflows.select.search import FoundChoice
 from tests.conftest import ROOT
 
 FLAT = [
@@ -86,9 +87,7 @@ def test_the_nearest_mix_is_nearer_than_the_resins(short):
 
 
 def test_the_written_grade_is_the_one_found(short, tmp_path):
-    from pneutouch.workflows.select.graded_document import write_graded
-
-    path = write_graded(short, "flat", tmp_path)
+    path = FoundChoice("1", short.base, short.assignments()).write("flat", tmp_path)
     material = tomllib.loads(path.read_text(encoding="utf-8"))["membrane"]["material"]
     best = short.search.best
     assert material == {"from": "TangoPlus", "to": "VeroClear", "fraction": [best.pole, best.rim]}
@@ -233,8 +232,7 @@ def test_a_wall_that_nobody_gave_is_not_blamed_on_the_target(monkeypatch, tmp_pa
 def _rejected(short, monkeypatch):
     """The search of ``short``, whose grade `check` rejects."""
     found = replace(short, search=replace(short.search, met=True), rejected="plate: too small")
-    for place in ("pneutouch.workflows.select.graded.select_graded", "pneutouch.api.search.select_graded"):
-        monkeypatch.setattr(place, lambda *_, **__: found)
+    monkeypatch.setattr("pneutouch.workflows.select.search.select_graded", lambda *_, **__: found)
 
 
 @pytest.mark.parametrize(("plate_mm", "passes", "said"), [(30, True, None), (4, None, "reaches the plate's edge")])

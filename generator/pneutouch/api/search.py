@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from pneutouch.api import show
 from pneutouch.api.design import Design, source_of
 from pneutouch.api.fields import WHERE, changes, named_by_keyword, path_of
-from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
+from pneutouch.catalogue import DesignSource, Library
 from pneutouch.catalogue.library import read_given
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.output.new import new_changed
@@ -28,20 +28,13 @@ from pneutouch.spec.target import Target
 from pneutouch.stopping import temporary_folder
 from pneutouch.wording import counted
 from pneutouch.workflows.select.checks import assigned
-from pneutouch.workflows.select.document import selected
-from pneutouch.workflows.select.graded import select_graded
-from pneutouch.workflows.select.graded_document import graded as graded_record
-from pneutouch.workflows.select.processes import select as run_select
-from pneutouch.workflows.select.processes import select_processes
+from pneutouch.workflows.select.search import FoundChoice, SelectedRecord, search
 
 if TYPE_CHECKING:
     import xarray
 
     from pneutouch.parts import Assembly
 
-
-SelectedRecord = SelectionRecord | GradedRecord | ProcessesRecord
-"""Output of ``select``, by the kind of its target."""
 
 _OnBase = TypeVar("_OnBase", bound=SelectionRecord | GradedRecord)
 
@@ -186,28 +179,16 @@ def select(target: str | Path | None = None, **fields: Any) -> Selection:
         content = override({} if file is None else read_given(file, _REMEDY), changes(Target, named), Target)
         where = WHERE if file is None else str(file)
         goal = validate(Target, {"target": {}, **content} if file is None else content, where)
-        if goal.setting.processes is not None:
-            by_process = select_processes(goal, where, base.library)
-            chosen = [(process, run.base, run.assignments(run.answer.designs[0])) for process, run in by_process.best]
-            found: SelectedRecord = by_process.record
-        elif goal.given.graded:
-            graded = select_graded(goal, where, base.library)
-            chosen = [("1", graded.base, graded.assignments())] if graded.passes else []
-            found = graded_record(graded)
-        else:
-            selection = run_select(goal, where, base.library)
-            ranked = enumerate(selection.answer.designs, start=1)
-            chosen = [(str(rank), selection.base, selection.assignments(choice)) for rank, choice in ranked]
-            found = selected(selection)
-        designs = tuple(_selected(goal, *each) for each in chosen)
-        return Selection(designs, base.named(found))
+        found = search(goal, where, base.library)
+        designs = tuple(_selected(goal, choice) for choice in found.choices)
+        return Selection(designs, base.named(found.record))
 
 
-def _selected(goal: Target, label: str, base: ResolvedDesign, changed: list[str]) -> Design:
+def _selected(goal: Target, choice: FoundChoice) -> Design:
     """The design of a search result: a base with the changes that were found; named after a base that the target
     names."""
-    name = f"{base.name if goal.setting.base else 'selected'}-{label}"
-    return Design.of(DesignSource(name, assigned(base.design, changed, name), WHERE))
+    name = f"{choice.base.name if goal.setting.base else 'selected'}-{choice.label}"
+    return Design.of(DesignSource(name, assigned(choice.base.design, choice.assignments, name), WHERE))
 
 
 def sweep(

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import shlex
 import sys
+import time
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -26,14 +27,15 @@ from pneutouch.cli.app import (
 from pneutouch.cli.complete import percent_of
 from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, with_fields
 from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import DesignPlace, echo, report_next, report_written
-from pneutouch.errors import InputError
+from pneutouch.cli.terminal import echo, notify, report_next, report_written
+from pneutouch.errors import InputError, RuleBrokenError
 from pneutouch.results.record import plain
+from pneutouch.results.selection import GradedRecord
 from pneutouch.spec.target import Target
 from pneutouch.spec.values import plain_numbers
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.select.select import SelectionRun
+    from pneutouch.workflows.select.search import TargetAnswer
 
 
 def _pressures(text: str) -> list[float]:
@@ -136,68 +138,58 @@ def select(
     with reporting(), named_by_flag(given, where, alone=target is None):
         from pneutouch.output.files import check_writable
         from pneutouch.output.new import check_free
+        from pneutouch.workflows.select.graded import GradedSelectionRun
+        from pneutouch.workflows.select.search import search
+        from pneutouch.workflows.select.select import SelectionRun
 
         folder = design_folder(out)
         if write is not None:
             check_free(write, folder, overwrite=overwrite)
         request = _target(target, fields, set_ or [])
-        place = None if write is None else DesignPlace(write, folder, overwrite)
-        if request.setting.processes is not None:
-            from pneutouch.cli.select_text import select_over
-
-            select_over(request, where, place, pick, json=json, charts=charts is not None)
-            return
-        if request.given.graded:
-            _graded(request, where, place, charts=charts is not None, pick=pick != 1, json=json)
-            return
+        _refuse(request, charts=charts is not None, pick=pick != 1)
         if charts is not None:
             check_writable(charts / "chart", key="charts")
-        selection = _run(request, where, None if write is None else pick)
-        _report(selection, pick, place, charts, json=json)
+        begun = time.perf_counter()
+        with bar("") as report:
+            answer = search(request, where, written=None if write is None else pick, progress=report)
+        if isinstance(answer.run, GradedSelectionRun):
+            notify(f"{answer.run.solves} solid solves in {time.perf_counter() - begun:.0f} s")
+        choice = answer.pick(pick) if answer.choices else None
+        path = None if choice is None or write is None else choice.write(write, folder, overwrite=overwrite)
+        if charts is not None and isinstance(answer.run, SelectionRun):
+            from pneutouch.workflows.select.charts import write_charts
+
+            write_charts(answer.run, charts, answer.run.answer.designs[pick - 1] if choice else None)
+        _report(answer, path, json=json)
 
 
-def _run(request: Target, where: str, written: int | None) -> SelectionRun:
-    """The selection, with a bar over its steps on a terminal."""
-    from pneutouch.workflows.select.processes import select as run
-    from pneutouch.workflows.select.select import STEPS
+def _refuse(target: Target, **given: bool) -> None:
+    """Raise InputError for a flag that does not go with the kind of the target."""
+    if target.setting.processes is not None and given["charts"]:
+        raise InputError("--charts cannot be given with --process", remedy="draw them for one `profile`")
+    refused = [f"--{flag}" for flag, is_given in given.items() if is_given]
+    if target.setting.processes is None and target.given.graded and refused:
+        raise InputError(f"{', '.join(refused)} cannot be given with --graded")
 
-    with bar("") as report:
-        return run(request, where, written=written, progress=lambda step: report(STEPS.index(step), len(STEPS), step))
 
-
-def _report(selection: SelectionRun, pick: int, place: DesignPlace | None, charts: Path | None, *, json: bool) -> None:
-    """Save the chosen design and show the designs. Exits 1 if there are none."""
-    from pneutouch.workflows.select import document as shown
-
-    designs, choice, path = selection.answer.designs, None, None
-    if designs:
-        choice = shown.pick(selection, pick)
-        path = None if place is None else shown.write_choice(selection, choice, *place[:2], overwrite=place.overwrite)
-    if charts is not None:
-        from pneutouch.workflows.select.charts import write_charts
-
-        write_charts(selection, charts, choice)
+def _report(answer: TargetAnswer, path: Path | None, *, json: bool) -> None:
+    """Show the answer, and where the design picked was saved. Exits 1 if no design meets the target."""
     if json:
-        print_json({**plain(shown.selected(selection)), "written": None if path is None else str(path)})
+        print_json({**plain(answer.record), "written": None if path is None else str(path)})
     else:
-        from pneutouch.cli.select_text import selection_text
+        from pneutouch.cli.select_text import answer_text
 
-        echo(selection_text(selection))
+        echo(answer_text(answer))
         if path is not None:
             report_written(path)
-        elif designs:
+        elif answer.choices and not isinstance(answer.record, GradedRecord):
             from pneutouch.output.new import free_name
 
             report_next(*sys.argv[1:], "--write", free_name())
-    if not designs:
+    if answer.rejected is not None:
+        raise RuleBrokenError(f"the grade meets the target and is rejected by `check`: {answer.rejected}")
+    if not answer.choices:
         raise typer.Exit(1)
-
-
-def _graded(target: Target, where: str, place: DesignPlace | None, *, json: bool, **others: bool) -> None:
-    """The search for a grade; ``others`` are flags that do not go with it and whether they were given."""
-    from pneutouch.cli.select_text import select_graded
-
-    select_graded(target, where, place, json=json, refused=[flag for flag, given in others.items() if given])
 
 
 def _target(path: Path | None, fields: dict[str, Any], set_: list[str]) -> Target:

@@ -1,40 +1,38 @@
-"""A selection as text for people.
+"""The answer to a target as text for people.
 
-``pneutouch select --process``: the best design of each process.
-
-``pneutouch select --graded``: the search for a grade, with its cost.
+With ``--process`` the best design of each process, with ``--graded`` a grade with its cost.
 """
 
 from __future__ import annotations
 
-import sys
-import time
 from typing import TYPE_CHECKING
 
 import numpy as np
-import typer
 
-from pneutouch.cli.app import print_json
-from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import DesignPlace, echo, notify, report_next, report_written, table_text
-from pneutouch.errors import InputError, RuleBrokenError
-from pneutouch.results.record import plain
+from pneutouch.cli.terminal import table_text
 from pneutouch.rounding import tenths_below
 from pneutouch.selection import Candidate
-from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 from pneutouch.workflows.select.document import dropped_lines, headline, missed_text, remarks, search_notes
+from pneutouch.workflows.select.graded import GradedSelectionRun
+from pneutouch.workflows.select.processes import ProcessSelection
 from pneutouch.workflows.select.select import SelectionRun
 
 if TYPE_CHECKING:
     from pneutouch.selection.graded import GradeTrial
-    from pneutouch.workflows.select.graded import GradedSelectionRun
-    from pneutouch.workflows.select.processes import ProcessSelection
+    from pneutouch.workflows.select.search import TargetAnswer
 
 
 HEAD = ["", "resin", "R0 mm", "t0 mm", "wide mm", "kPa", "S kPa/N", "U (k=2)", "range N", "ends with"]
 HEAD += ["S 0 kPa..rated", "rated kPa", "binds", "solid S"]
 """Columns of the table of designs."""
+
+
+def answer_text(answer: TargetAnswer) -> str:
+    """The answer to a target of any kind."""
+    if isinstance(answer.run, ProcessSelection):
+        return processes_text(answer.run)
+    return graded_text(answer.run) if isinstance(answer.run, GradedSelectionRun) else selection_text(answer.run)
 
 
 def selection_text(selection: SelectionRun) -> str:
@@ -95,34 +93,6 @@ def row_of(selection: SelectionRun, choice: Candidate) -> list[str]:
     ]
 
 
-def select_over(target: Target, where: str, place: DesignPlace | None, pick: int, *, json: bool, charts: bool) -> None:
-    """Search each process, show the best designs and save the one picked. Exits 1 where no process has one."""
-    from pneutouch.workflows.select.document import write_choice
-    from pneutouch.workflows.select.processes import select_processes
-
-    if charts:
-        raise InputError("--charts cannot be given with --process", remedy="draw them for one `profile`")
-    with bar("") as report:
-        selection = select_processes(target, where, progress=report)
-    path = None
-    if selection.best and (place is not None or pick != 1):
-        run = selection.pick(pick)
-        if place is not None:
-            path = write_choice(run, run.answer.designs[0], *place[:2], overwrite=place.overwrite)
-    if json:
-        print_json({**plain(selection.record), "written": None if path is None else str(path)})
-    else:
-        echo(processes_text(selection))
-        if path is not None:
-            report_written(path)
-        elif selection.best:
-            from pneutouch.output.new import free_name
-
-            report_next(*sys.argv[1:], "--write", free_name())
-    if not selection.best:
-        raise typer.Exit(1)
-
-
 def processes_text(selection: ProcessSelection) -> str:
     """A row for the best design of each process, and why others have none."""
     head, rows = processes_table(selection)
@@ -156,35 +126,6 @@ def processes_lines(selection: ProcessSelection) -> list[str]:
             why = "" if nearest is None else f"; the nearest misses {missed_text(run, nearest)} ({nearest.resin.name})"
             lines.append(f"{process}: {headline(run)}{why}")
     return lines + [f"{process}: left out: {why}" for process, why in selection.left_out.items()]
-
-
-def select_graded(target: Target, where: str, place: DesignPlace | None, *, json: bool, refused: list[str]) -> None:
-    """Search, show and save a grade. Exits 1 where none meets the target; ``refused`` are flags that exclude it.
-
-    Raises RuleBrokenError if ``check`` rejects the grade that meets it; nothing is saved then.
-    """
-    from pneutouch.workflows.select import graded_document as shown
-    from pneutouch.workflows.select.graded import select_graded as run
-
-    if refused:
-        raise InputError(f"{', '.join(f'--{flag}' for flag in refused)} cannot be given with --graded")
-    begun = time.perf_counter()
-    with bar("searching grades") as report:
-        selection = run(target, where, progress=lambda trial, done, most: report(done, most))
-    notify(f"{selection.solves} solid solves in {time.perf_counter() - begun:.0f} s")
-    path = None
-    if place is not None and selection.passes:
-        path = shown.write_graded(selection, *place[:2], overwrite=place.overwrite)
-    if json:
-        print_json({**plain(shown.graded(selection)), "written": None if path is None else str(path)})
-    else:
-        echo(graded_text(selection))
-        if path is not None:
-            report_written(path)
-    if selection.rejected is not None:
-        raise RuleBrokenError(f"the grade meets the target and is rejected by `check`: {selection.rejected}")
-    if not selection.search.met:
-        raise typer.Exit(1)
 
 
 def graded_text(selection: GradedSelectionRun) -> str:

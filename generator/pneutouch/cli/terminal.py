@@ -17,7 +17,7 @@ import sys
 import textwrap
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import NamedTuple, TextIO
+from typing import TextIO
 
 from pneutouch.errors import ComputationError
 
@@ -171,14 +171,6 @@ def _folded(head: Sequence[str], rows: Sequence[Sequence[str]], whole: Sequence[
     stream = io.StringIO()
     Console(file=stream, width=columns, no_color=True, highlight=False, legacy_windows=False).print(table)
     return [line.rstrip() for line in stream.getvalue().splitlines()]
-
-
-class DesignPlace(NamedTuple):
-    """Place where a design that was found is to be saved, and whether that replaces a file."""
-
-    name: str
-    folder: Path
-    overwrite: bool
 
 
 def report_next(*words: object, first: str = "") -> None:

@@ -24,9 +24,10 @@ from pneutouch.studio.candidate import CandidateCard, CandidateStates, candidate
 from pneutouch.studio.question import PAGE, Question
 from pneutouch.workflows.select.charts import tradeoff
 from pneutouch.workflows.select.document import dropped_lines, headline, missed_text, remarks, search_notes, selected
-from pneutouch.workflows.select.graded import select_graded
+from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.graded_document import graded
-from pneutouch.workflows.select.processes import select, select_processes
+from pneutouch.workflows.select.processes import ProcessSelection
+from pneutouch.workflows.select.search import search as answer
 from pneutouch.workflows.select.select import STEPS, SelectionRun
 
 if TYPE_CHECKING:
@@ -80,9 +81,8 @@ class PageSelection:
     table: PageTable | None
 
 
-def by_process(target: Target, page: CandidateStates, library: Library, report: Report) -> PageSelection:
-    """Search each process of a target; for one in which no design meets it, the card shows the nearest."""
-    selection = select_processes(target, PAGE, library, progress=report)
+def _by_process(selection: ProcessSelection, page: CandidateStates) -> PageSelection:
+    """The best design of each process; for one in which no design meets the target, the card shows the nearest."""
     row = {process: number for number, (process, _) in enumerate(selection.best, start=1)}
     cards = [_card(process, run, page, row.get(process)) for process, run in selection.runs.items()]
     searched, (head, rows) = len(selection.runs) + len(selection.left_out), processes_table(selection)
@@ -165,17 +165,22 @@ def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> PageSe
     with at_its_fields():
         target = target_of(question, bases)
         page = CandidateStates(question, bases, library, target)
-        if target.setting.processes is not None:
-            return by_process(target, page, library, report)
-        return (
-            _graded(target, page, library, report) if target.given.graded else _selected(target, page, library, report)
-        )
+        charted = target.setting.processes is None and not target.given.graded
+        steps = len(STEPS) + 1
+
+        def progress(done: int, total: int, step: str) -> None:
+            report(done, steps if charted else total, step)
+
+        run = answer(target, PAGE, library, progress=progress).run
+        if isinstance(run, ProcessSelection):
+            return _by_process(run, page)
+        if isinstance(run, GradedSelectionRun):
+            return _graded(run, page)
+        report(len(STEPS), steps, _CHART)
+        return _selected(run, page, library)
 
 
-def _selected(target: Target, page: CandidateStates, library: Library, report: Report) -> PageSelection:
-    total = len(STEPS) + 1
-    run = select(target, PAGE, library, progress=lambda step: report(STEPS.index(step), total, step))
-    report(len(STEPS), total, _CHART)
+def _selected(run: SelectionRun, page: CandidateStates, library: Library) -> PageSelection:
     return PageSelection(
         selection={**plain(selected(run)), "written": None},
         headline=headline(run),
@@ -236,9 +241,8 @@ def _chart(run: SelectionRun, library: Library) -> FrontChart:
     return rounded(chart, _DIGITS)
 
 
-def _graded(target: Target, page: CandidateStates, library: Library, report: Report) -> PageSelection:
+def _graded(run: GradedSelectionRun, page: CandidateStates) -> PageSelection:
     """The search for a grade, with the constant membranes of its size as a table in place of the chart."""
-    run = select_graded(target, PAGE, library, lambda trial, done, most: report(done, most, "searching grades"))
     head, rows = graded_table(run)
     rejected = [] if run.rejected is None else [f"the grade is rejected by the check: {run.rejected}"]
     card = extended(

@@ -1,16 +1,11 @@
-"""A selection as a record and as text; and the chosen design as a file.
-
-A selection in words, for the terminal and the studio.
-"""
+"""A selection as a record, and in words for the terminal and the studio."""
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.errors import InputError
 from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.parts import assemble
 from pneutouch.results.record import extended
@@ -28,7 +23,7 @@ from pneutouch.selection import Candidate, DroppedRequirement
 from pneutouch.selection.choose import missed_percent
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA, ML
-from pneutouch.workflows.select.checks import RejectedDesign, contact_notes, contact_text, write_assigned
+from pneutouch.workflows.select.checks import RejectedDesign, contact_notes, contact_text
 from pneutouch.workflows.select.select import Confirmation, SelectionRun
 
 
@@ -145,21 +140,6 @@ def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:
         rated_kPa = tenths_below(dropped.best.rated / KPA)
         return f"rated {rated_kPa:.1f} kPa, driven at {float(pool.pressure[0]) / KPA:g} kPa"
     return f"{2 * float(pool.radius[0] + pool.wall[0]):.4g} mm instead of {selection.problem.max_diameter:g}"
-
-
-def write_choice(
-    selection: SelectionRun, choice: Candidate, name: str, folder: Path, *, overwrite: bool = False
-) -> Path:
-    """Save a choice as ``folder/name.toml``, a design that ``build`` takes; over a file with ``overwrite`` alone."""
-    return write_assigned(selection.base.design, selection.assignments(choice), name, folder, overwrite=overwrite)
-
-
-def pick(selection: SelectionRun, rank: int) -> Candidate:
-    """The design of a rank, from 1. Raises InputError if there is none."""
-    designs = selection.answer.designs
-    if not 1 <= rank <= len(designs):
-        raise InputError(f"must be from 1 to {len(designs)}", key="pick", value=rank)
-    return designs[rank - 1]
 
 
 _FEW = 9.95

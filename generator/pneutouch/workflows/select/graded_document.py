@@ -1,6 +1,4 @@
-"""A search for a grade as a record, and the grade as a design file."""
-
-from pathlib import Path
+"""A search for a grade as a record, and in words."""
 
 import numpy as np
 
@@ -10,7 +8,6 @@ from pneutouch.results.selection import ConstantMembrane, FoundGrade, GradedReco
 from pneutouch.rounding import tenths_below
 from pneutouch.selection.graded import GradeTrial, shares
 from pneutouch.units import KPA, ML
-from pneutouch.workflows.select.checks import write_assigned
 from pneutouch.workflows.select.graded import GradedSelectionRun
 
 
@@ -103,8 +100,3 @@ def rated_warning(selection: GradedSelectionRun) -> str | None:
         f"{highest / KPA:g} kPa is above the grade's rated pressure of {tenths_below(best.rated / KPA):.1f} kPa: its "
         "modulus follows from an assumed mixing curve; measure it on coupons before driving it so far"
     )
-
-
-def write_graded(selection: GradedSelectionRun, name: str, folder: Path, *, overwrite: bool = False) -> Path:
-    """Save the grade as ``folder/name.toml``, a design that ``build`` takes; over a file with ``overwrite`` alone."""
-    return write_assigned(selection.base.design, selection.assignments(), name, folder, overwrite=overwrite)

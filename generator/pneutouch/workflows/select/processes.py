@@ -153,12 +153,6 @@ class ProcessSelection:
         """Process and answer of each that has a design, in the order given."""
         return [(process, run) for process, run in self.runs.items() if run.answer.designs]
 
-    def pick(self, row: int) -> SelectionRun:
-        """The answer whose best design stands in a row of the table, from 1. Raises InputError if there is none."""
-        if not 1 <= row <= len(self.best):
-            raise InputError(f"must be from 1 to {len(self.best)}", key="pick", value=row)
-        return self.best[row - 1][1]
-
     @property
     def record(self) -> ProcessesRecord:
         """The answers as ``select`` prints them."""
