@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -55,7 +54,6 @@ _INTRO = (
 )
 
 
-@cache
 def _group() -> Any:
     return typer.main.get_command(app)
 
@@ -79,7 +77,7 @@ def section(name: str) -> str:
     options = [each for each in parameters if each.param_type_name == "option"]
     words = ["pneutouch", name, "[OPTIONS]", *map(_usage, arguments)]
     parts = [f"### {name}", plain(" ".join((command.help or "").split()))]
-    parts += [f"```text\n{' '.join(words)}\n```", f"For example `{EXAMPLES[name]}`."]
+    parts += [f"```text\n{' '.join(words)}\n```", *([f"For example `{EXAMPLES[name]}`."] if name in EXAMPLES else [])]
     if arguments:
         rows = [(code(_name(each)), _help(each), _kind(each), _default(each)) for each in arguments]
         parts.append(table(("argument", "meaning", "takes", "default"), rows))

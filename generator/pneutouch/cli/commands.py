@@ -88,7 +88,10 @@ CHANGES = "pneutouch.changes"
 _USAGE_ERROR: Any = typer.BadParameter.__bases__[0]
 """Base of Typer's errors on words: it comes with Typer or from Click, by Typer's version."""
 
-_ENTRIES = {name: entry for group in COMMANDS.values() for name, entry in group.items()}
+
+def _entries() -> dict[str, CommandEntry]:
+    """The commands by name, in the order of the help."""
+    return {name: entry for group in COMMANDS.values() for name, entry in group.items()}
 
 
 class Commands(TyperGroup):
@@ -96,12 +99,12 @@ class Commands(TyperGroup):
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Names in the order of the help."""
-        return list(_ENTRIES)
+        return list(_entries())
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """A command, whose module is imported."""
-        if cmd_name in _ENTRIES and cmd_name not in self.commands:
-            module = import_module(f"pneutouch.cli.{_ENTRIES[cmd_name].module}")
+        if cmd_name in _entries() and cmd_name not in self.commands:
+            module = import_module(f"pneutouch.cli.{_entries()[cmd_name].module}")
             infos = module.app.registered_commands
             (info,) = (one for one in infos if (one.name or one.callback.__name__) == cmd_name)
             self.add_command(get_command_from_info(info, pretty_exceptions_short=True, rich_markup_mode=None))
@@ -110,13 +113,13 @@ class Commands(TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """The command of the first word. An unknown word is an error that names the nearest command."""
-        if args[0] not in _ENTRIES and not args[0].startswith("-") and not ctx.resilient_parsing:
-            raise InputError(f"{args[0]}: no such command.{nearest(args[0], _ENTRIES)}")
+        if args[0] not in _entries() and not args[0].startswith("-") and not ctx.resilient_parsing:
+            raise InputError(f"{args[0]}: no such command.{nearest(args[0], _entries())}")
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """One line a command, by groups, without loading any."""
-        widest = max(map(len, _ENTRIES))
+        widest = max(map(len, _entries()))
         for group, entries in COMMANDS.items():
             with formatter.section(group):
                 formatter.write_dl([(name.ljust(widest), entry.summary) for name, entry in entries.items()])
