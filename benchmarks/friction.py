@@ -13,13 +13,13 @@ from typing import Any, NamedTuple
 from unittest import mock
 
 import numpy as np
+from tests.mechanics.solid.friction_loops import friction_loop
 
 from benchmarks.store import LIBRARY, store
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.response import figures
-from pneutouch.mechanics.solid.friction_loop import friction_loop
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent
 from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import FreeState, inflate, state_at

@@ -26,6 +26,7 @@ def wall_of(design: str, times: float) -> float:
 @pytest.fixture
 def _added(monkeypatch):
     """The text of the command in a module of its own, and its line."""
+
     @app.command("wall-times")
     def wall_times(
         design: DesignArgument,

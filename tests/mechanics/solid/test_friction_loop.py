@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.friction_loop import friction_loop
 from pneutouch.mechanics.solid.indent import PressSettings
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from tests.mechanics.solid.friction_loops import friction_loop
 
 DEPTH = 0.5 * 9.25
 

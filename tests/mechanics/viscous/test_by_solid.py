@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.models.solid import press_settings, solid_probe, solid_states
-from pneutouch.mechanics.solid.friction_loop import friction_loop
 from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.viscous.describe import _Run, loop_by_solid, relaxation_by_solid
 from pneutouch.mechanics.viscous.prony import Prony
 from pneutouch.mechanics.viscous.runs import loop, relaxation
+from tests.mechanics.solid.friction_loops import friction_loop
 from tests.mechanics.viscous.test_follow import SENSOR, A, B
 
 DEPTH, AT_ONCE, FOR_EVER = 4.625, 1e9, 1e-7
