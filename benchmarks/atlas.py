@@ -32,6 +32,7 @@ from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.units import KPA
 
 COUNT, SEED = 500, 2000
@@ -133,7 +134,7 @@ def random_cases(count: int, seed: int) -> list[Case]:
 
 def compare(case: Case) -> Gap | None:
     """Press once by both; None where the range ends nearly at once, in which there is nothing to compare."""
-    solid = SolidModel(dome(1.0, case.wall), neo_hookean(1.0, POISSON), base=RigidBase())
+    solid = SolidModel(dome(Hemisphere(1.0, case.wall)), neo_hookean(1.0, POISSON), base=RigidBase())
     run = inflate(solid, past_limit=1.0)
     assert run.limit is not None
     free = state_at(solid, case.share * run.limit.pressure, run)

@@ -37,7 +37,7 @@ _HALF_TURN = 180.0
 
 def solid_press(sensor: Sensor, friction: float, depth: float, cells: tuple[int, int], steps: int) -> IndentationPath:
     """The solid on the same eight-node cells with reduced integration, its gas shut in at ambient pressure."""
-    mesh = dome(sensor.dome.inner_radius, sensor.dome.wall_thickness, *cells, order=8)
+    mesh = dome(sensor.dome.shape, *cells, order=8)
     solid = SolidModel(mesh, neo_hookean(sensor.wall.shear_modulus, sensor.wall.poisson_ratio))
     settings = PressSettings(depth, steps, 2 * sensor.protocol.plate_radius, friction=friction, gauge_range=np.inf)
     return indent(solid, state_at(solid, 0.0), settings)
@@ -116,7 +116,7 @@ def calculix_held(sensor: Sensor, path: IndentationPath, cells: tuple[int, int],
 
     ``finer`` steps go to one of the path; without ``grips`` the nodes in contact slide.
     """
-    mesh = dome(sensor.dome.inner_radius, sensor.dome.wall_thickness, *cells, order=8)
+    mesh = dome(sensor.dome.shape, *cells, order=8)
     count = finer * (len(path.states) - 1)
     depths = np.interp(np.arange(count + 1) / finer, np.arange(len(path.states)), path.column("indentation"))
     touching = _touching(mesh, path, depths)

@@ -37,7 +37,7 @@ _PLATE = 15.0
 def compared(friction: float, cells: tuple[int, int, int]) -> list[dict[str, float]]:
     """The press by the solid on its default mesh and by CalculiX, one row a depth that CalculiX reaches."""
     wall = neo_hookean(SENSOR.wall.shear_modulus, SENSOR.wall.poisson_ratio)
-    solid = SolidModel(dome(SENSOR.dome.inner_radius, SENSOR.dome.wall_thickness), wall)
+    solid = SolidModel(dome(SENSOR.dome.shape), wall)
     settings = PressSettings(DEPTH, _FINER * STEPS, friction=friction, gauge_range=np.inf)
     states = indent(solid, state_at(solid, 0.0), settings).states[::_FINER]
     depths, forces, pressures = (np.array([getattr(s, name) for s in states]) for name in _COLUMNS)

@@ -22,7 +22,7 @@ _INCREMENTS = "0.2,1.,0.002,0.3"
 
 def calculix_model(sensor: Sensor, arc: int, through: int) -> list[str]:
     """Mesh, material and supports as lines of a deck: nodes ALL, cells WALL, those inside INNER, BASE, AXIS."""
-    mesh = dome(sensor.dome.inner_radius, sensor.dome.wall_thickness, arc=arc, through=through, order=8)
+    mesh = dome(sensor.dome.shape, arc=arc, through=through, order=8)
     nu, mu = sensor.wall.poisson_ratio, sensor.wall.shear_modulus
     bulk = 2 * mu * (1 + nu) / (3 * (1 - 2 * nu))
     other_way = [0, 3, 2, 1, 7, 6, 5, 4]  # CalculiX wants its axisymmetric cells counter-clockwise in (r, z)

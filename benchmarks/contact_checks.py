@@ -31,6 +31,7 @@ from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.selection.contact_search import tried
 from pneutouch.selection.front import ContactFronts, contact_front, place
+from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.spec.read import parse_changes
 from pneutouch.units import KPA
 
@@ -122,7 +123,7 @@ def _seconds(job: Callable[[], object]) -> float:
 def orders(words: list[str]) -> None:
     """Print force, sideways force and pressure rise by order, their changes from M to 2M, and the time over a central
     press of the solid."""
-    solid = SolidModel(dome(RADIUS, WALL), neo_hookean(MODULUS), base=RigidBase())
+    solid = SolidModel(dome(Hemisphere(RADIUS, WALL)), neo_hookean(MODULUS), base=RigidBase())
     free = state_at(solid, 0.0)
     placed = PlacedObject(ball(BALL).scaled(1.0 / RADIUS), OFFSET / RADIUS)
     press = OffAxisPress(solid, free, PRESS, placed, StrainProbe(solid))

@@ -15,6 +15,7 @@ from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.mechanics.solid.inflate import rest_state, state_at
 from pneutouch.mechanics.solid.mesh import SolidMesh, boundary, dome, graded, grid_cells, with_middles
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape.hemisphere import Hemisphere
 
 POISSON = 0.499
 
@@ -125,7 +126,7 @@ def sphere(ratio: float, tau: float, arc: int = 144, through: int = 2) -> Sphere
     """
     young = 2.0 * (1.0 + POISSON)
     bending = np.sqrt(12.0 * (1.0 - POISSON**2))
-    mesh = dome(1.0 - 0.5 * ratio, ratio, arc=arc, through=through, base_ratio=40.0, slides=True)
+    mesh = dome(Hemisphere(1.0 - 0.5 * ratio, ratio), arc=arc, through=through, base_ratio=40.0, slides=True)
     solid = SolidModel(mesh, neo_hookean(1.0, POISSON))
     free = state_at(solid, 4.0 * tau * young * ratio**2 / bending)
     run = indent(solid, free, PressSettings(0.04 * ratio, steps=8, dead_volume=1e9, body=ball(20.0 * ratio)))

@@ -121,7 +121,7 @@ def _climb(sensor: Sensor, mesh: SolidMesh, mixed: bool, count: int) -> float:
 
 def felupe_limit(sensor: Sensor, arc: int, through: int, mixed: bool, count: int | None = None) -> tuple[float, int]:
     """Limit pressure (MPa), and the number of heights it took: ``count``, or the least that Newton follows."""
-    mesh = dome(sensor.dome.inner_radius, sensor.dome.wall_thickness, arc=arc, through=through, order=2 if mixed else 1)
+    mesh = dome(sensor.dome.shape, arc=arc, through=through, order=2 if mixed else 1)
     for n in (count,) if count else _COUNTS:
         try:
             with np.errstate(all="ignore"):

@@ -25,6 +25,7 @@ from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import FreeState, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.units import KPA
 
 RESINS = ("TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985")
@@ -62,7 +63,7 @@ def costs(count: int = RANDOM) -> Iterator[FrictionCost]:
         wall, modulus = (float(np.exp(random.uniform(*np.log(box)))) for box in ((0.05, 0.4), (0.17, 4.0)))
         share = float(random.choice([0.0, random.uniform(0.0, 0.9)]))
         friction = float(random.choice([*random.uniform(0.05, 1.5, 3), np.inf]))
-        solid = SolidModel(dome(RADIUS, wall * RADIUS), neo_hookean(modulus), base=RigidBase())
+        solid = SolidModel(dome(Hemisphere(RADIUS, wall * RADIUS)), neo_hookean(modulus), base=RigidBase())
         inflated = inflate(solid, past_limit=1.0)
         assert inflated.limit is not None
         free = state_at(solid, share * inflated.limit.pressure, inflated)
@@ -86,7 +87,7 @@ def summary(rows: list[FrictionCost]) -> dict[str, float]:
 
 def scene(modulus: float, pressure: float) -> Scene:
     """The paper's dome in a modulus (MPa) at a driving pressure (MPa)."""
-    solid = SolidModel(dome(RADIUS, WALL), neo_hookean(modulus), base=RigidBase())
+    solid = SolidModel(dome(Hemisphere(RADIUS, WALL)), neo_hookean(modulus), base=RigidBase())
     return solid, state_at(solid, pressure)
 
 

@@ -32,10 +32,9 @@ def pressed(mesh: tuple[int | None, int | None], pressure: float, held: str, bas
     """TangoPlus on one mesh at a driving pressure (MPa): cells, processor time, sensitivities to 5.75 mm and to the whole
     depth (None: not reached), and the events on the way; ``held``: "base plane" or "printed"."""
     s, start = PAPER, time.process_time()
-    size = (s.dome.inner_radius, s.dome.wall_thickness)
     printed = held == "printed"
-    body = printed_dome(*size, FLANGE, FLANGE, *mesh) if printed else dome(*size, *mesh)
-    rigid = RigidBase(flange=sum(size) + FLANGE if printed else 0.0) if base else None
+    body = printed_dome(s.dome.shape, FLANGE, FLANGE, *mesh) if printed else dome(s.dome.shape, *mesh)
+    rigid = RigidBase(flange=s.dome.shape.outer_radius + FLANGE if printed else 0.0) if base else None
     solid = SolidModel(body, s.wall.hyperelastic, base=rigid)
     press = PressSettings(
         s.protocol.depth, s.protocol.steps, 2 * s.protocol.plate_radius, s.gas.ambient_pressure, s.gas.dead_volume

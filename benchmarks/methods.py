@@ -52,7 +52,7 @@ class Answer:
 def solid_answer(scene: Scene, arc: int | None, through: int | None, depth: float | None = None) -> Answer:
     """Study 1 to the driving pressure and study 2 in 14 steps, mesh and all; ``depth`` (mm) may stop it short."""
     s = scene.sensor
-    mesh = dome(s.dome.inner_radius, s.dome.wall_thickness, arc=arc, through=through)
+    mesh = dome(s.dome.shape, arc=arc, through=through)
     solid = SolidModel(mesh, s.wall.hyperelastic, base=s.dome.base)
     free = state_at(solid, scene.pressure)
     press = PressSettings(
@@ -86,10 +86,7 @@ def membrane_answer(scene: Scene, closure: str) -> Answer:
 def solid_limit(scene: Scene, arc: int | None, through: int | None) -> float:
     """Limit pressure, MPa; nan where there is none."""
     s = scene.sensor
-    run = inflate(
-        SolidModel(dome(s.dome.inner_radius, s.dome.wall_thickness, arc=arc, through=through), s.wall.hyperelastic),
-        past_limit=1.0,
-    )
+    run = inflate(SolidModel(dome(s.dome.shape, arc=arc, through=through), s.wall.hyperelastic), past_limit=1.0)
     return np.nan if run.limit is None else run.limit.pressure
 
 

@@ -28,6 +28,7 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.object_contact import Plate
 from pneutouch.mechanics.solid.stress import StrainProbe
+from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.units import KPA
 
 FIGURES = ("force_N", "sideways_N", "rise_kPa")
@@ -90,7 +91,7 @@ class OffAxisScene:
     def pressed(self, order: int | None = None, cells: tuple[int, int] | tuple[()] = ()) -> OurPress:
         """The harmonic solid, with another order or other cells along the arc and through the wall."""
         begun = time.process_time()
-        solid = SolidModel(dome(INNER, WALL, *cells), paper(self.modulus).wall.hyperelastic)
+        solid = SolidModel(dome(Hemisphere(INNER, WALL), *cells), paper(self.modulus).wall.hyperelastic)
         settings = PressSettings(self.depth, 2 * self.steps, friction=self.friction, gauge_range=np.inf)
         free, probe = state_at(solid, self.driving), StrainProbe(solid)
         press = OffAxisPress(solid, free, settings, self.surface, probe, self.travel, self.symmetric)

@@ -125,9 +125,7 @@ def curves() -> dict[str, Curve]:
     """Each law's inflation, normalised by its own small-strain modulus."""
     found = {}
     for name, law in LAWS.items():
-        run = inflate(
-            SolidModel(dome(PAPER.dome.inner_radius, PAPER.dome.wall_thickness), law), past_limit=1.5, largest=8.0
-        )
+        run = inflate(SolidModel(dome(PAPER.dome.shape), law), past_limit=1.5, largest=8.0)
         scale = PAPER.dome.inner_radius / (law.mu * PAPER.dome.wall_thickness)
         limit = (
             None if run.limit is None else (run.limit.inner_apex / PAPER.dome.inner_radius, run.limit.pressure * scale)

@@ -53,7 +53,7 @@ def solve(name: str, arc: int, through: int, count: int = 0) -> tuple[float, int
     from pneutouch.mechanics.solid.mesh import dome
     from pneutouch.mechanics.solid.model import SolidModel
 
-    mesh = dome(PAPER.dome.inner_radius, PAPER.dome.wall_thickness, arc=arc, through=through)
+    mesh = dome(PAPER.dome.shape, arc=arc, through=through)
     run = inflate(SolidModel(mesh, PAPER.wall.hyperelastic), past_limit=1.0)
     return (np.nan if run.limit is None else run.limit.pressure), len(run.states)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
+from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.units import GAUGE_LIMIT, KPA, ML, STANDARD_ATMOSPHERE
 
 OGDEN_AGILUS30 = ("ogden", (1.423, -3.68))
@@ -34,7 +35,7 @@ class Scene:
 def sensor(radius: float, wall: float, mu: float, depth_ratio: float, dead_ml: float = 0.0, nu: float = 0.49) -> Sensor:
     """A sensor under a plate wider than itself, at sea level, pressed in 14 steps to a share of its radius."""
     return Sensor(
-        Dome(radius, wall),
+        Dome(Hemisphere(radius, wall)),
         WallMaterial(mu, nu),
         GasCircuit(ambient_pressure=STANDARD_ATMOSPHERE, dead_volume=dead_ml * ML, gauge_limit=GAUGE_LIMIT),
         IndentationProtocol(plate_radius=radius * 15 / 9.25, depth=depth_ratio * radius, steps=14),

@@ -25,6 +25,7 @@ from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, minimise
 from pneutouch.mechanics.solid.second_variation import HarmonicSolid
 from pneutouch.mechanics.solid.sway import unstable_waves
+from pneutouch.shape.hemisphere import Hemisphere
 
 PUBLISHED = 0.8
 """Share of the classical pressure at which a clamped hemisphere buckles (arXiv 2412.15066)."""
@@ -71,7 +72,7 @@ def pressed(solid: SolidModel, run: Inflation, fraction: float, dead: float) -> 
 
 def inflated(ratio: float, mu: float) -> tuple[SolidModel, Inflation]:
     """A dome of a wall ratio and a modulus (MPa), with a base under its wall, inflated to its limit point."""
-    solid = SolidModel(dome(RADIUS, ratio * RADIUS), neo_hookean(mu), base=RigidBase())
+    solid = SolidModel(dome(Hemisphere(RADIUS, ratio * RADIUS)), neo_hookean(mu), base=RigidBase())
     return solid, inflate(solid, past_limit=1.0)
 
 
@@ -95,7 +96,7 @@ def refinement() -> list[dict[str, Any]]:
     for pressure in (0.0, 0.022):
         for base in (None, RigidBase()):
             for cells in ((24, 2), (36, 2), (48, 3)):
-                solid = SolidModel(dome(9.25, 1.5, *cells), neo_hookean(0.17), base=base)
+                solid = SolidModel(dome(Hemisphere(9.25, 1.5), *cells), neo_hookean(0.17), base=base)
                 run = indent(solid, state_at(solid, pressure), PressSettings(6.94, waves=8))
                 events = {event.kind: round(event.indentation, 3) for event in run.events}
                 row = {
@@ -110,7 +111,7 @@ def refinement() -> list[dict[str, Any]]:
 def buckling(ratio: float) -> dict[str, Any]:
     """A clamped hemisphere under outside pressure: share of the classical pressure at which it buckles, and waves."""
     nu = 0.3
-    solid = SolidModel(dome(10.0, 10.0 * ratio, arc=64, through=1), neo_hookean(1.0, nu))
+    solid = SolidModel(dome(Hemisphere(10.0, 10.0 * ratio), arc=64, through=1), neo_hookean(1.0, nu))
     harmonic, waves = HarmonicSolid(solid), tuple(range(1, 25))
     classical = 4.0 * (1.0 + nu) * (ratio / (1.0 + 0.5 * ratio)) ** 2 / np.sqrt(3.0 * (1.0 - nu**2))
     x = solid.rest

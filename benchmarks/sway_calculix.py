@@ -27,6 +27,7 @@ from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate
 from pneutouch.mechanics.solid.object_contact import Plate
 from pneutouch.mechanics.solid.second_variation import HarmonicSolid
+from pneutouch.shape.hemisphere import Hemisphere
 
 RADIUS, WALL, DEPTH = PAPER.dome.inner_radius, PAPER.dome.wall_thickness, 6.66
 SENSOR_DEPTH = 6.94
@@ -41,7 +42,7 @@ SPRING = 300.0
 
 def solid_press(arc: int, through: int) -> tuple[SolidModel, IndentationPath]:
     """The press of the sensor without driving pressure by the solid."""
-    solid = SolidModel(dome(RADIUS, WALL, arc=arc, through=through), PAPER.wall.hyperelastic)
+    solid = SolidModel(dome(Hemisphere(RADIUS, WALL), arc=arc, through=through), PAPER.wall.hyperelastic)
     settings = PressSettings(SENSOR_DEPTH, 35, plate_diameter=None, waves=8)
     return solid, indent(solid, state_at(solid, 0.0), settings)
 

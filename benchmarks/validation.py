@@ -27,6 +27,7 @@ from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape.hemisphere import Hemisphere
 
 SPHERES = ((1.0, 2.0), (10.0, 11.0), (9.25, 10.75), (8.5, 10.0))
 """Inner and outer radii of the thick spheres."""
@@ -72,7 +73,7 @@ def sphere_found(inner: float, outer: float) -> tuple[float, float]:
     """The solid's, on a hemisphere whose base slides, extrapolated to an incompressible wall."""
     found = []
     for nu in (0.4999, 0.49995):
-        solid = SolidModel(dome(inner, outer - inner, arc=24, through=4, slides=True), neo_hookean(1.0, nu))
+        solid = SolidModel(dome(Hemisphere(inner, outer - inner), arc=24, through=4, slides=True), neo_hookean(1.0, nu))
         limit = inflate(solid, past_limit=1.0).limit
         assert limit is not None
         found.append((limit.pressure, limit.inner_apex / inner))
@@ -82,7 +83,9 @@ def sphere_found(inner: float, outer: float) -> tuple[float, float]:
 
 def limit_of(ratio: float, arc: int | None = None, through: int | None = None, nu: float = 0.49) -> tuple[float, float]:
     """P R0/(mu t0) and h/R0 at the limit point of a dome of a wall ratio."""
-    limit = inflate(SolidModel(dome(1.0, ratio, arc=arc, through=through), neo_hookean(1.0, nu)), past_limit=1.0).limit
+    limit = inflate(
+        SolidModel(dome(Hemisphere(1.0, ratio), arc=arc, through=through), neo_hookean(1.0, nu)), past_limit=1.0
+    ).limit
     assert limit is not None
     return limit.pressure / ratio, limit.inner_apex
 
@@ -110,7 +113,7 @@ def pressed_membrane() -> list[list[float]]:
     """State II of the exact membrane: driving pressure (kPa), indentation (mm); then cavity pressure (kPa), force (N) and contact
     radius (mm), each with the relative deviation of the solid."""
     wall = 0.0925
-    solid = SolidModel(dome(9.25, wall, arc=96, through=1), neo_hookean(0.255 / wall, 0.4999))
+    solid = SolidModel(dome(Hemisphere(9.25, wall), arc=96, through=1), neo_hookean(0.255 / wall, 0.4999))
     rows = []
     for driving, table in PRESSED_MEMBRANE.items():
         run = indent(solid, state_at(solid, 1e-3 * driving), PressSettings(5.0, steps=5))
@@ -135,10 +138,10 @@ def refinement() -> dict[str, Any]:
 
 def invariances() -> dict[str, Any]:
     """Change of p/mu by radius (mm) and modulus (MPa), and stored energy against work."""
-    base = inflate(SolidModel(dome(9.25, 1.5), neo_hookean(0.17)))
+    base = inflate(SolidModel(dome(Hemisphere(9.25, 1.5)), neo_hookean(0.17)))
     rows = []
     for radius, mu in ((0.1, 0.17), (1000.0, 0.17), (9.25, 1e-3), (9.25, 1e3)):
-        run = inflate(SolidModel(dome(radius, radius * 1.5 / 9.25), neo_hookean(mu)))
+        run = inflate(SolidModel(dome(Hemisphere(radius, radius * 1.5 / 9.25)), neo_hookean(mu)))
         assert run.limit is not None and base.limit is not None
         rows.append([radius, mu, (run.limit.pressure / mu) / (base.limit.pressure / 0.17) - 1])
     energy = np.array([s.unit.local.energy for s in base.states]) * 0.17 * 9.25**3

@@ -13,10 +13,10 @@ PACKAGE = Path(pneutouch.__file__).parent
 
 LAYERS = [
     {"errors", "formats", "wording", "stopping", "units", "arrays", "rounding", "packing", "tables"},
+    {"shape"},
     {"spec"},
     {"results"},
     {"catalogue"},
-    {"shape"},
     {"body"},
     {"parts", "mechanics"},
     {"printability", "selection", "bench", "texture"},

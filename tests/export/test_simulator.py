@@ -13,6 +13,7 @@ import trimesh
 
 from pneutouch.errors import InputError
 from pneutouch.export.simulator.model import ball_inertia, inertia_of, moving_share
+from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.workflows.export_reader import make_simulator, write_simulator
 
 
@@ -64,7 +65,7 @@ def test_the_inertia_of_parts_adds_up_and_a_part_can_be_taken_away():
 
 
 def test_the_moving_mass_is_a_third_of_a_thin_shell_at_half_its_radius():
-    share = moving_share(0.01, 1e-6, 1000.0)
+    share = moving_share(Hemisphere(10.0, 1e-3), 1000.0)
     assert share.mass == pytest.approx(1000.0 * 2 * np.pi * 0.01**2 * 1e-6 / 3, rel=1e-3)
     assert share.centre[2] == pytest.approx(0.005, rel=1e-3)
 

@@ -18,9 +18,10 @@ from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.results.record import plain as data
+from pneutouch.shape.hemisphere import Hemisphere
 
 SENSOR = Sensor(
-    Dome(9.25, 1.5),
+    Dome(Hemisphere(9.25, 1.5)),
     WallMaterial(0.17, 0.49, break_stretch=2.7),
     GasCircuit(ambient_pressure=0.101325, dead_volume=0.0, gauge_limit=0.1),
     IndentationProtocol(plate_radius=15.0, depth=5.0, steps=14),

@@ -14,11 +14,12 @@ from pneutouch.mechanics import predict as predict_with
 from pneutouch.mechanics.inflation import relative_height
 from pneutouch.mechanics.membrane_contact import TrappedGas, energy, press, pressed_cap
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
+from pneutouch.shape.hemisphere import Hemisphere
 
 predict = partial(predict_with, model="membrane")
 
 PAPER = Sensor(
-    Dome(9.25, 1.5),
+    Dome(Hemisphere(9.25, 1.5)),
     WallMaterial(0.17, 0.49, break_stretch=2.7),
     GasCircuit(ambient_pressure=0.101325, dead_volume=0.0, gauge_limit=0.1),
     IndentationProtocol(plate_radius=15.0, depth=6.9375, steps=14),

@@ -22,12 +22,13 @@ from pneutouch.mechanics.models.interface import ModelAnswer, SensorModel
 from pneutouch.mechanics.predict import contact_words
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.mechanics.solid.indenter import ball
+from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.units import KPA, ML
 
 CENTRAL = ("membrane", "atlas", "solid")
 
 PAPER = Sensor(
-    Dome(9.25, 1.5),
+    Dome(Hemisphere(9.25, 1.5)),
     WallMaterial(0.17, 0.49),
     GasCircuit(ambient_pressure=0.101325, dead_volume=0.0, gauge_limit=0.1),
     IndentationProtocol(plate_radius=15.0, depth=4.5, steps=14),

@@ -64,7 +64,7 @@ def hollow_hemisphere(inner: float, outer: float) -> Meridian:
 def test_hollow_hemisphere_has_its_textbook_volume():
     shell = hollow_hemisphere(9.25, 10.75)
     assert shell.volume() == pytest.approx(2 / 3 * math.pi * (10.75**3 - 9.25**3), rel=1e-14)
-    assert shell.swept("inner") == pytest.approx(2 / 3 * math.pi * 9.25**3, rel=1e-14)
+    assert -sum(piece.swept() for piece in shell.tagged("inner")) == pytest.approx(2 / 3 * math.pi * 9.25**3, rel=1e-14)
 
 
 @pytest.mark.parametrize(

@@ -49,8 +49,7 @@ class OffAxisScene:
     def run(self, order: int = ORDER, finer: int = 1) -> SceneEnd:
         """The press with harmonics to an order, on a mesh refined by a factor."""
         sensor = self.sensor
-        size = (sensor.dome.inner_radius, sensor.dome.wall_thickness)
-        mesh = dome(*size, arc=finer * CELLS, through=finer * THROUGH)
+        mesh = dome(sensor.dome.shape, arc=finer * CELLS, through=finer * THROUGH)
         solid = SolidModel(mesh, sensor.wall.hyperelastic, base=sensor.dome.base)
         inflated = inflate(solid, past_limit=1.0)
         assert inflated.limit is not None

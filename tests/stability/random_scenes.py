@@ -37,6 +37,7 @@ from pneutouch.mechanics.solid.indenter import (
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.spec.material import Material
 
 #: Domes, and presses of each.
@@ -64,7 +65,7 @@ class RandomDome:
 
     def runs(self, finer: int = 1) -> Iterator[PressEnd]:
         """Every press in turn on a mesh refined by a factor."""
-        mesh = dome(RADIUS, self.wall * RADIUS, arc=finer * _CELLS, through=finer)
+        mesh = dome(Hemisphere(RADIUS, self.wall * RADIUS), arc=finer * _CELLS, through=finer)
         solid = SolidModel(mesh, sensors()[self.resin].wall.hyperelastic, base=RigidBase() if self.base else None)
         inflated = inflate(solid, past_limit=1.0)
         assert inflated.limit is not None

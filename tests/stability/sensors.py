@@ -13,6 +13,7 @@ from pneutouch.mechanics.solid.indent import PressSettings
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.spec.material import Material
 from pneutouch.units import ML
 from tests.stability.truth import Study
@@ -35,7 +36,7 @@ def random_sensors(
         sensor = material_sensor(resin)
         assert sensor.wall.break_stretch is not None
         radius, ratio, share = rng.uniform(4.0, 30.0), rng.uniform(*walls), rng.uniform(0.0, 0.8)
-        solid = SolidModel(dome(radius, ratio * radius), sensor.wall.hyperelastic)
+        solid = SolidModel(dome(Hemisphere(radius, ratio * radius)), sensor.wall.hyperelastic)
         run = inflate(solid, past_limit=1.0)
         assert run.limit is not None
         free = state_at(solid, share * run.limit.pressure, run)

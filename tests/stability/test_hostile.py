@@ -17,6 +17,7 @@ from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import UnreachableLoadError
+from pneutouch.shape.hemisphere import Hemisphere
 from tests.stability.truth import ENDS_BRANCH, Study, free_unbalance, other_branch
 
 MU, R0 = 0.17, 9.25
@@ -25,7 +26,7 @@ ENDS_PATH = {*BREAKS_CURVE, "floor"} - {"separation"}
 
 
 def study(*, wall=1.5, law=TANGO, pressure=0.022, depth=0.5 * R0, steps=6, mesh=None, **options):
-    solid = SolidModel(mesh or dome(R0, wall), law)
+    solid = SolidModel(mesh or dome(Hemisphere(R0, wall)), law)
     free = state_at(solid, pressure)
     assert free_unbalance(solid, free) <= 1.0
     return Study.of(solid, free, PressSettings(depth, steps, **options))
@@ -135,7 +136,7 @@ def test_laws_that_are_no_solid_are_refused(law):
         {"law": neo_hookean(MU, 0.4999999)},
         {"law": yeoh(0.085, -0.05, 0.0), "pressure": 0.0},
         {"law": ogden(((1.0, 2.0), (-0.83, 3.0)))},
-        {"mesh": dome(R0, 1.5, arc=200, through=3)},
+        {"mesh": dome(Hemisphere(R0, 1.5), arc=200, through=3)},
         {"pressure": -0.0272},
         {"pressure": 0.0, "wall": 0.02 * R0, "depth": 0.9 * R0},
     ],
@@ -151,7 +152,7 @@ def test_a_hundred_sensors_at_the_edges_of_everything(capsys):
     for _ in range(100):
         radius, mu = 10 ** rng.uniform(-1, 3), 10 ** rng.uniform(-3, 3)
         law = neo_hookean(mu, float(rng.choice([0.3, 0.45, 0.49, 0.499, 0.4999])))
-        solid = SolidModel(dome(radius, radius * float(rng.choice([0.02, 0.05, 0.1, 0.3, 0.7]))), law)
+        solid = SolidModel(dome(Hemisphere(radius, radius * float(rng.choice([0.02, 0.05, 0.1, 0.3, 0.7])))), law)
         run = inflate(solid, past_limit=1.0)
         try:
             free = state_at(solid, float(rng.choice([0.0, 0.5, 0.9, 0.99, 0.9999])) * run.limit.pressure, run)

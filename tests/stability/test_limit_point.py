@@ -17,11 +17,12 @@ from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, UnreachableLoadError
+from pneutouch.shape.hemisphere import Hemisphere
 from tests.stability.plain import load_control, newton
 from tests.stability.truth import free_unbalance
 
 MU = 0.17
-SOLID = SolidModel(dome(9.25, 1.5), neo_hookean(MU))
+SOLID = SolidModel(dome(Hemisphere(9.25, 1.5)), neo_hookean(MU))
 KPA = 1e-3 / MU
 
 

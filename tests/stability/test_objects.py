@@ -10,6 +10,7 @@ from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, ProfileVertex, 
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import arc_cells, dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape.hemisphere import Hemisphere
 
 ENDS = {*BREAKS_CURVE, "floor"} - {"separation"}
 FRICTION = (0.0, 0.0, 0.3, 0.6, 1.5, np.inf)
@@ -33,8 +34,10 @@ def scene(seed):
     random = np.random.default_rng(seed)
     body, wall = draw(random), float(random.uniform(0.05, 0.4))
     least = np.inf if body is None else body.smallest
-    cells = max(arc_cells(wall), int(np.ceil(CELLS_PER_RADIUS * 0.5 * np.pi * (1 + wall) / least)))
-    solid = SolidModel(dome(1.0, wall, arc=cells), neo_hookean(1.0))
+    cells = max(
+        int(arc_cells(0.5 * np.pi, np.array(wall))), int(np.ceil(CELLS_PER_RADIUS * 0.5 * np.pi * (1 + wall) / least))
+    )
+    solid = SolidModel(dome(Hemisphere(1.0, wall), arc=cells), neo_hookean(1.0))
     limit = inflate(solid, past_limit=1.0)
     assert limit.limit is not None
     free = state_at(solid, float(random.uniform(0.0, 0.8)) * limit.limit.pressure, limit)

@@ -16,6 +16,7 @@ from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, minimise
+from pneutouch.shape.hemisphere import Hemisphere
 from tests.stability.plain import active_set, newton
 from tests.stability.truth import Study
 
@@ -23,19 +24,19 @@ R0 = 9.25
 
 
 def study(ratio=1.5 / R0, mu=0.17, pressure=0.0, depth=1.0, steps=1, mesh=None, **options):
-    solid = SolidModel(mesh or dome(R0, ratio * R0), neo_hookean(mu))
+    solid = SolidModel(mesh or dome(Hemisphere(R0, ratio * R0)), neo_hookean(mu))
     return Study.of(solid, state_at(solid, pressure), PressSettings(depth, steps, plate_diameter=None, **options))
 
 
 @pytest.mark.parametrize(("ratio", "pressure"), [(0.04, 0.0), (0.02, 0.3 * 1.5 * 0.17 * 0.02)])
 def test_an_active_set_cycles_and_ours_converges(ratio, pressure):
     # Four-node cells, on which node-wise contact is at its best; the first quarter of a millimetre.
-    ours = study(ratio, pressure=pressure, depth=0.25, mesh=dome(R0, ratio * R0, order=1))
+    ours = study(ratio, pressure=pressure, depth=0.25, mesh=dome(Hemisphere(R0, ratio * R0), order=1))
     scene = ours.scene(0.25)
     fate = active_set(ours.solid, scene.supply, scene.plate.height, ours.free.unit.x)
     assert fate.end == "cycles" and fate.period >= 2
     assert ours.found.complete and ours.unbalance() <= 1.0
-    fine = study(ratio, pressure=pressure, depth=0.25, mesh=dome(R0, ratio * R0, arc=96, through=2))
+    fine = study(ratio, pressure=pressure, depth=0.25, mesh=dome(Hemisphere(R0, ratio * R0), arc=96, through=2))
     assert ours.found.states[-1].force == pytest.approx(fine.found.states[-1].force, rel=0.12)
     nine = study(ratio, pressure=pressure, depth=0.25)
     assert nine.found.states[-1].force == pytest.approx(fine.found.states[-1].force, rel=0.03)
@@ -88,7 +89,7 @@ def test_plate_onto_an_uninflated_dome_with_a_thin_wall():
 def test_the_thin_uninflated_dome_meets_a_refined_mesh():
     depth = 0.5 * R0
     ours = study(0.02, depth=depth, steps=10).found
-    fine = study(0.02, depth=depth, steps=10, mesh=dome(R0, 0.02 * R0, arc=120, through=2)).found
+    fine = study(0.02, depth=depth, steps=10, mesh=dome(Hemisphere(R0, 0.02 * R0), arc=120, through=2)).found
     assert fine.complete
     assert ours.states[-1].force == pytest.approx(fine.states[-1].force, rel=5e-3)
     slopes = [np.polyfit(run.column("force"), run.column("rise"), 1)[0] for run in (ours, fine)]

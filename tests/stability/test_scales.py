@@ -15,6 +15,7 @@ from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene
+from pneutouch.shape.hemisphere import Hemisphere
 from tests.stability.plain import below, newton
 from tests.stability.truth import Study
 
@@ -23,7 +24,7 @@ SIZES = [(0.1, 1e-3), (0.1, 1e3), (9.25, 1e-3), (9.25, 1e3), (1000.0, 1e-3), (10
 
 
 def sensor(radius, mu):
-    return SolidModel(dome(radius, radius * 1.5 / 9.25), neo_hookean(mu))
+    return SolidModel(dome(Hemisphere(radius, radius * 1.5 / 9.25)), neo_hookean(mu))
 
 
 def figures(radius, mu):

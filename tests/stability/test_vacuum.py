@@ -17,11 +17,12 @@ from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, UnreachableLoadError
+from pneutouch.shape.hemisphere import Hemisphere
 from tests.stability.plain import newton
 from tests.stability.truth import Study, free_unbalance
 
 MU, R0 = 0.17, 9.25
-SOLID = SolidModel(dome(R0, 1.5), neo_hookean(MU))
+SOLID = SolidModel(dome(Hemisphere(R0, 1.5)), neo_hookean(MU))
 
 
 def test_plain_newton_falls_off_the_sucked_branch_and_ours_follows_it():
@@ -50,7 +51,7 @@ def test_every_state_on_the_way_down_balances_and_the_limit_is_said():
 @pytest.mark.parametrize("ratio", [0.01, 0.02])
 def test_a_thin_dome_buckles_at_the_classical_load(ratio):
     nu = 0.49
-    solid = SolidModel(dome(1.0, ratio), neo_hookean(1.0, nu))
+    solid = SolidModel(dome(Hemisphere(1.0, ratio)), neo_hookean(1.0, nu))
     with pytest.raises(UnreachableLoadError) as caught:
         state_at(solid, -1.0)
     young, middle = 2.0 * (1.0 + nu), 1.0 + 0.5 * ratio

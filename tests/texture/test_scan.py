@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
+from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.texture.contact import touch, touches
 from pneutouch.texture.scan import Recorder, ScanPath, gain, pressure_amplitude, record, scan
 from pneutouch.texture.separate import BarPattern, amplitudes, noise_amplitude, recommend, separate
@@ -17,7 +18,7 @@ from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate
 from pneutouch.units import GAUGE_LIMIT, KPA, STANDARD_ATMOSPHERE
 
 SENSOR = Sensor(
-    Dome(9.25, 1.5),
+    Dome(Hemisphere(9.25, 1.5)),
     WallMaterial(0.17, 0.49, break_stretch=2.7),
     GasCircuit(ambient_pressure=STANDARD_ATMOSPHERE, dead_volume=0.0, gauge_limit=GAUGE_LIMIT),
     IndentationProtocol(plate_radius=15.0, depth=0.75 * 9.25, steps=14),

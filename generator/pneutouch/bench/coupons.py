@@ -294,6 +294,6 @@ def cavity_measured(context: CouponContext, plug: VolumePlug) -> Mean:
         return Mean(water.value / WATER, water.spread / WATER, water.count)
     scene = context.design()
     (radius, height), accuracy = cavity_size(context), scene.connector_printer.accuracy_mm.nominal
-    drawn_mL = cavity_volume(scene.design.membrane.inner_radius_mm) / ML
+    drawn_mL = cavity_volume(scene.design.membrane.dome) / ML
     # Diameter and height are each uniformly distributed within the accuracy (JCGM 100, 4.3.7).
     return Mean(drawn_mL, drawn_mL * math.hypot(accuracy / radius, accuracy / height) / math.sqrt(3), 1)

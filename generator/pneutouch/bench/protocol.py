@@ -83,9 +83,9 @@ def stairs(depth: float, step: float = STEP) -> tuple[float, ...]:
     return tuple(float(min(step * (k + 1), depth)) for k in range(count))
 
 
-def protocol(kind: RunKind, inner_radius: float) -> RunProtocol:
-    """The paper's protocol of a kind of run with a plate, for a dome of ``inner_radius`` mm."""
-    shallow, deep = SHARE * inner_radius, DEEPEST * inner_radius
+def protocol(kind: RunKind, height: float) -> RunProtocol:
+    """The paper's protocol of a kind of run with a plate, for a dome of a ``height`` inside, mm."""
+    shallow, deep = SHARE * height, DEEPEST * height
     if kind == "steps":
         return RunProtocol(kind, stairs(shallow), HOLD, REST, True)
     if kind == "saturation":

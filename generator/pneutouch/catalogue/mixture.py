@@ -12,6 +12,8 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.catalogue.library import Library
 from pneutouch.errors import InputError, shown
+from pneutouch.shape.dome import DomeShape
+from pneutouch.spec.design import Membrane
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import (
     STIFFEST_ELASTOMER_MPA,
@@ -221,8 +223,11 @@ def _resolved(point: MixingPoint, curve: MixingCurve, library: Library, where: s
     )
 
 
-def mixed_material(grade: Grade, library: Library, *, file: str | None, key: str = "membrane.material") -> Material:
-    """The material of a grade; of one that varies the mean over the dome's wall, with its course ``along`` the arc.
+def mixed_material(
+    grade: Grade, library: Library, *, file: str | None, key: str = "membrane.material", shape: DomeShape | None = None
+) -> Material:
+    """The material of a grade; of one that varies the mean over the wall of a ``shape``, with its course ``along`` the
+    arc; left out, the shape is the usual one.
 
     Raises InputError for resins without a curve, for fractions beyond its last point, and for a mix that is stiffer or
     denser than a membrane may be.
@@ -239,8 +244,8 @@ def mixed_material(grade: Grade, library: Library, *, file: str | None, key: str
             raise InputError(problem, file=file, key=label, value=value, remedy=remedy)
     arc = np.linspace(0.0, 1.0, _STATIONS)
     fraction = ArcProfile(grade.knots, grade.fractions)(arc)
-    # The dome's wall has its area even over the height: the weight of an arc position is the cosine of its latitude.
-    weight = np.sin(0.5 * np.pi * arc)
+    # Rings around the axis, all of one width: their areas go with their radii.
+    weight = (shape or Membrane().dome).points(1.0 - arc, np.array([0.5]))[:, 0, 0]
     share = grade.fractions[0] if grade.is_constant else float(np.average(fraction, weights=weight))
     _check_soft(grade, law, fraction, file, key)
     content = _content(grade, soft, stiff, share)

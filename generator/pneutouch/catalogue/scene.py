@@ -174,7 +174,7 @@ def _membrane_material(design: DesignFile, where: str, library: Library) -> Mate
     if isinstance(chosen, Grade):
         from pneutouch.catalogue.mixture import mixed_material
 
-        return mixed_material(chosen, library, file=where)
+        return mixed_material(chosen, library, file=where, shape=design.membrane.dome)
     material: Material = library.load("materials", chosen, file=where, key="membrane.material")
     return material
 
@@ -282,7 +282,7 @@ def _check_calibration(scene: ResolvedDesign) -> None:
         raise InputError("the calibration named is not there", file=scene.where, key=CALIBRATION, value=name)
     if calibration is None:
         return
-    why = calibration.misfit(membrane.material, membrane.inner_radius_mm, membrane.wall_thickness_mm)
+    why = calibration.misfit(membrane.material, membrane.inner_radius_mm, membrane.wall_thickness_mm, membrane.shape)
     if why is not None:
         raise InputError(
             f"the calibration {why}",

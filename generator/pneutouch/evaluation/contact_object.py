@@ -41,8 +41,8 @@ if TYPE_CHECKING:
 _AT_ONCE = 1e-6
 """Share of R0 within which the contact reaches an edge at first touch."""
 
-_FARTHEST = math.sin(math.radians(60.0))
-"""Offset of a round object that touches a sphere at 60 degrees to the axis, over the distance of their centres."""
+_STEEPEST = math.radians(60.0)
+"""Greatest lean of the dome, off the axis, at which a round object may touch it first."""
 
 _POINTS = 2001
 """Points of the unloaded dome that an object may touch first."""
@@ -131,19 +131,20 @@ def check_object(scene: ResolvedDesign, sensor: Sensor) -> None:
 
 def _check_offset(scene: ResolvedDesign, sensor: Sensor) -> None:
     """Raise InputError for an object so far off the axis that it touches the dome lower than at 60 degrees, or not."""
-    test, dome = sensor.protocol, sensor.dome
+    test, shape = sensor.protocol, sensor.dome.shape
     if not test.offset:
         return
-    reach = dome.inner_radius + dome.wall_thickness
     if test.body is None:
         flat = float(flat_radius(np.array(test.plate_radius), RIM * np.array(test.plate_radius)))
-        steepest = largest = flat * math.cos(test.tilt) - reach * math.sin(test.tilt)
+        steepest = largest = flat * math.cos(test.tilt) - shape.leaning(test.tilt)[0]
         problem = "the plate's edge would touch the dome first"
     else:
-        apart = reach + test.body.smallest
         # A driven dome is higher than the unloaded one, and keeps the object farther from the connector.
-        clear = math.sqrt(max(0.0, apart**2 - (test.depth + test.body.smallest) ** 2))
-        steepest, largest = apart * _FARTHEST, min(apart * _FARTHEST, clear)
+        share = np.linspace(0.0, 1.0, _POINTS)
+        centre = shape.points(share, np.ones(1))[:, 0] + test.body.smallest * shape.normals(share)
+        clear = float(np.interp(test.depth + test.body.smallest, centre[:, 1], centre[:, 0]))
+        steepest = shape.leaning(_STEEPEST)[0] + test.body.smallest * math.sin(_STEEPEST)
+        largest = min(steepest, clear)
         name = scene.design.contact.object
         problem = f"the {name} would touch the dome on a flank steeper than 60 degrees, or beyond it"
     if test.offset > steepest:
@@ -162,7 +163,7 @@ def object_section(sensor: Sensor) -> Array | None:
     body = sensor.protocol.body
     if body is None:
         return None
-    reach = _DRAWN * (sensor.dome.inner_radius + sensor.dome.wall_thickness)
+    reach = _DRAWN * sensor.dome.shape.outer_radius
     half = body.at(_at_rest(body, sensor)[0]).outline(reach)
     section = np.concatenate([half * [-1.0, 1.0], [[np.nan, np.nan]], half])
     section[:, 0] += sensor.protocol.offset
@@ -173,9 +174,8 @@ def _at_rest(body: RigidObject, sensor: Sensor) -> tuple[float, float]:
     """Height of the object at first contact with the unloaded dome, and the distance of that contact from its axis,
     mm."""
     # An object off the axis touches first on its side of the plane of symmetry.
-    angle = np.linspace(0.0, 0.5 * np.pi, _POINTS)
-    outer = sensor.dome.inner_radius + sensor.dome.wall_thickness
-    return first_contact(body, np.abs(outer * np.sin(angle) - sensor.protocol.offset), outer * np.cos(angle))
+    r, z = sensor.dome.shape.points(np.linspace(1.0, 0.0, _POINTS), np.ones(1))[:, 0].T
+    return first_contact(body, np.abs(r - sensor.protocol.offset), z)
 
 
 def check_first_touch(scene: ResolvedDesign, prediction: SensorPrediction) -> None:

@@ -110,6 +110,7 @@ def state_dynamics(
     ]
     if end:
         elements.append(GasVolume(end))
+    # The inflated wall is taken as a cap of a sphere over the base plane.
     radius = assembly.layout.inner_radius
     surface = np.pi * (2.0 * radius**2 + state.apex_inner**2)
     return SensorDynamics(

@@ -109,11 +109,12 @@ def wetted(assembly: Assembly) -> tuple[WettedSurface, ...]:
 
 def _outer_wall(assembly: Assembly) -> Callable[[Array], Flags]:
     """Test of surface points (n, 3): True on the dome's outer wall, which touches the world and must not be matte."""
-    radius, slack = assembly.layout.outer_radius, 2 * assembly.scene.mesh_tolerance
+    face, slack = assembly.layout.shape.outer, 2 * assembly.scene.mesh_tolerance
 
     def on_wall(points: Array) -> Flags:
-        on_sphere: Flags = np.abs(np.linalg.norm(points, axis=1) - radius) <= slack
-        return on_sphere & (points[:, 2] > slack)
+        plane = np.column_stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]])
+        on_face: Flags = np.min([piece.distance(plane) for piece in face], axis=0) <= slack
+        return on_face & (points[:, 2] > slack)
 
     return on_wall
 

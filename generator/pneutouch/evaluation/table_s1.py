@@ -15,6 +15,7 @@ import numpy as np
 from pneutouch.mechanics import Sensor, predict
 from pneutouch.mechanics.paper_sensor import is_paper_sensor, material_sensor
 from pneutouch.results.prediction import SensitivityError
+from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
@@ -73,10 +74,9 @@ def fingerprint(material: Material) -> str:
 def is_near_paper(sensor: Sensor) -> bool:
     """True if a sensor is near enough to the paper's that its error applies."""
     low, high = NEAR_WALL
-    cavity = 2 / 3 * np.pi * sensor.dome.inner_radius**3
-    close = low <= sensor.dome.wall_thickness / sensor.dome.inner_radius <= high
-    known = sensor.protocol.other_contact is None
-    return bool(close and known and sensor.gas.dead_volume <= NEAR_DEAD_VOLUME * cavity and sensor.dome.flange is None)
+    dome, least = sensor.dome, NEAR_DEAD_VOLUME * sensor.dome.shape.cavity_volume
+    close = low <= dome.wall_thickness / dome.inner_radius <= high and no_hemisphere(dome.shape) is None
+    return close and sensor.protocol.other_contact is None and sensor.gas.dead_volume <= least and dome.flange is None
 
 
 def sensitivity_error(material: Material, sensor: Sensor, model: str, closure: str) -> SensitivityError:

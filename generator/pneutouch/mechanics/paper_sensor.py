@@ -13,6 +13,7 @@ import math
 import numpy as np
 
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
+from pneutouch.shape.hemisphere import Hemisphere, no_hemisphere
 from pneutouch.spec.material import Material
 from pneutouch.units import GAUGE_LIMIT, STANDARD_ATMOSPHERE
 
@@ -34,7 +35,7 @@ def is_paper_sensor(sensor: Sensor) -> bool:
         (protocol.depth, PAPER_DEPTH),
         (gas.ambient_pressure, STANDARD_ATMOSPHERE),
     ]
-    if protocol.body is not None or protocol.off_axis is not None:
+    if no_hemisphere(dome.shape) or protocol.body is not None or protocol.off_axis is not None:
         return False
     same = all(math.isclose(value, paper, rel_tol=_SAME) for value, paper in pairs)
     return same and gas.dead_volume <= _SAME * dome.inner_radius**3
@@ -60,7 +61,7 @@ def material_sensor(material: Material) -> Sensor:
     fitted = wall.largest_stretch is not None and law is not None
     modulus = wall.shear_modulus if fitted else wall.hyperelastic.mu
     return Sensor(
-        Dome(PAPER_RADIUS, PAPER_WALL),
+        Dome(Hemisphere(PAPER_RADIUS, PAPER_WALL)),
         dataclasses.replace(wall, shear_modulus=modulus),
         GasCircuit(STANDARD_ATMOSPHERE, dead_volume=0.0, gauge_limit=GAUGE_LIMIT),
         IndentationProtocol(0.5 * PAPER_PLATE, depth=PAPER_DEPTH, steps=14),

@@ -10,6 +10,7 @@ import numpy as np
 
 from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean
 from pneutouch.mechanics.solid.indenter import RigidBase, RigidObject
+from pneutouch.shape.dome import DomeShape
 
 _PLANE = RigidBase()
 
@@ -20,10 +21,19 @@ class Dome:
     without it the wall is clamped at the base plane, as in the paper. ``base`` is the body that the wall can lie down
     on next to its clamp, and inside; without it the wall passes through."""
 
-    inner_radius: float
-    wall_thickness: float
+    shape: DomeShape
     flange: tuple[float, float] | None = None
     base: RigidBase | None = _PLANE
+
+    @property
+    def inner_radius(self) -> float:
+        """Radius of the inner face at the base plane."""
+        return self.shape.inner_radius
+
+    @property
+    def wall_thickness(self) -> float:
+        """Thickness of the wall."""
+        return self.shape.wall_thickness
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,10 +153,13 @@ class Sensor:
     correction: ResponseCorrection = ResponseCorrection()
 
     def replace(self, **changes: Any) -> Sensor:
-        """The sensor with other values of fields of its parts, for example ``replace(depth=5.0, steps=10)``.
+        """The sensor with other values of fields of its parts and shape, such as ``replace(depth=5.0, steps=10)``.
 
         Raises TypeError for a name that no part has.
         """
+        shape = changes.get("shape", self.dome.shape)
+        sizes = {field: changes.pop(field) for field in shape.__dataclass_fields__ if field in changes}
+        changes["shape"] = dataclasses.replace(shape, **sizes)
         parts = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
         for name, part in parts.items():
             new = {field: changes.pop(field) for field in part.__dataclass_fields__ if field in changes}

@@ -15,7 +15,7 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.air_path import glue_volume, internal_volume
 from pneutouch.parts.connector import rigid_solids
 from pneutouch.parts.layout import Layout, lay_out
-from pneutouch.parts.membrane import INNER_WALL, membrane_solid
+from pneutouch.parts.membrane import membrane_solid
 from pneutouch.parts.mount import SEAT
 from pneutouch.parts.space import check_space
 from pneutouch.spec.part import ClampedFlange, OnePiece
@@ -91,7 +91,7 @@ class Assembly:
     @cached_property
     def cavity_volume(self) -> float:
         """Volume under the unloaded dome down to the base plane, mm3."""
-        return self.solids[0].meridian.swept(INNER_WALL)
+        return self.layout.shape.cavity_volume
 
     @property
     def seat_area(self) -> float:

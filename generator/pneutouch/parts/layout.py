@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.cast_ring import RingSize, ring_size
 from pneutouch.parts.port import PortShape, port_shape
+from pneutouch.shape.dome import DomeShape
 from pneutouch.spec.part import BoltCircle, CastRing, ClampedFlange, OnePiece, RobotFlange, Sleeve
 
 HEAD_GAP = 0.5
@@ -36,8 +37,7 @@ class Layout:
     ``ring`` is what the flange is cast around, None without one.
     """
 
-    inner_radius: float
-    wall: float
+    shape: DomeShape
     flange_width: float
     flange_thickness: float
     clearance: float
@@ -55,9 +55,19 @@ class Layout:
     ring: RingSize | None = None
 
     @property
+    def inner_radius(self) -> float:
+        """Inner radius of the dome at the base plane."""
+        return self.shape.inner_radius
+
+    @property
+    def wall(self) -> float:
+        """Wall of the dome."""
+        return self.shape.wall_thickness
+
+    @property
     def outer_radius(self) -> float:
-        """Outer radius of the dome."""
-        return self.inner_radius + self.wall
+        """Outer radius of the dome at the base plane."""
+        return self.shape.outer_radius
 
     @property
     def flange_radius(self) -> float:
@@ -104,26 +114,23 @@ class Layout:
 
 def lay_out(scene: ResolvedDesign) -> Layout:
     """Derive the layout of a scene from membrane, seat, mount, port and the printers' fits; `check_space` judges it."""
-    membrane = scene.design.membrane
-    port = port_shape(scene.port, scene.tube, scene.hole_undersize)
-    return lay_out_dome(scene, port, membrane.inner_radius_mm, membrane.wall_thickness_mm)
+    return lay_out_dome(scene, port_shape(scene.port, scene.tube, scene.hole_undersize), scene.design.membrane.dome)
 
 
-def lay_out_dome(scene: ResolvedDesign, port: PortShape, inner_radius: float, wall: float) -> Layout:
-    """The layout of a scene around a dome of another size, mm."""
+def lay_out_dome(scene: ResolvedDesign, port: PortShape, shape: DomeShape) -> Layout:
+    """The layout of a scene around a dome of another shape or size."""
     seat, mount = scene.seat, scene.mount
-    flange, deep = _flange(scene, wall)
-    clearance = 0.0 if isinstance(seat, OnePiece) else scene.fit_clearance
-    inside = None if not isinstance(seat, CastRing) else ring_size(scene, seat, inner_radius + wall + flange, deep)
-    groove = (inner_radius + wall + flange if inside is None else inside.collar_radius) + clearance
+    flange, deep = _flange(scene, shape.wall_thickness)
+    clearance, edge = 0.0 if isinstance(seat, OnePiece) else scene.fit_clearance, shape.outer_radius + flange
+    inside = None if not isinstance(seat, CastRing) else ring_size(scene, seat, edge, deep)
+    groove = (edge if inside is None else inside.collar_radius) + clearance
     ring = _ring_radius(scene, groove, flange)
     bolts = _bolt_circle(scene, ring)
     thickness = _plate_thickness(scene, port)
     low = -deep - thickness
     side = mount.port_side == "side"
     return Layout(
-        inner_radius=inner_radius,
-        wall=wall,
+        shape=shape,
         flange_width=flange,
         flange_thickness=deep,
         clearance=clearance,
@@ -134,7 +141,7 @@ def lay_out_dome(scene: ResolvedDesign, port: PortShape, inner_radius: float, wa
         under=low - mount.boss_height if isinstance(mount, RobotFlange) else low,
         bolt_circle_radius=bolts,
         channel_radius=_channel_radius(scene, port),
-        opening_radius=inner_radius - seat.lip_wall_mm if isinstance(seat, OnePiece) else 0.0,
+        opening_radius=shape.inner_radius - seat.lip_wall_mm if isinstance(seat, OnePiece) else 0.0,
         port=port,
         port_axis=low + _port_height(scene, port) if side else None,
         flange_draft=_flange_draft(scene, deep),

@@ -1,14 +1,10 @@
-"""The membrane: a hemisphere with a clamped rim and a flange, open at its base so that it can be cleaned."""
-
-import math
+"""The membrane: a dome with a clamped rim and a flange, open at its base so that it can be cleaned."""
 
 from pneutouch.body import Solid
 from pneutouch.parts.layout import Layout
-from pneutouch.shape.meridian import Arc, Line, Meridian
+from pneutouch.shape.meridian import Line, Meridian
 from pneutouch.spec.material import Material
 
-INNER_WALL = "inner wall"
-OUTER_WALL = "outer wall"
 HELD = "held"
 """Faces of the flange that the connector holds: the mechanics clamps them."""
 
@@ -24,12 +20,12 @@ def membrane_meridian(layout: Layout) -> Meridian:
     edge = draft if layout.ring is None else 0.0
     return Meridian(
         (
-            Arc((0.0, 0.0), inner, math.pi / 2, 0.0, INNER_WALL),
+            *(piece.reverse() for piece in reversed(layout.shape.inner)),
             Line((inner, 0.0), (inner + draft, low), HELD),
             Line((inner + draft, low), (flange, low), HELD),
             Line((flange, low), (flange - edge, 0.0), HELD),
             Line((flange - edge, 0.0), (outer, 0.0), "flange top"),
-            Arc((0.0, 0.0), outer, 0.0, math.pi / 2, OUTER_WALL),
+            *layout.shape.outer,
         )
     )
 

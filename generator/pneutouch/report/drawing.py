@@ -63,7 +63,7 @@ class _Section:
         sleeve = mount.sleeve_length if isinstance(mount, Sleeve) else 0.0
         self.bottom = min(layout.lowest, layout.plate_low - sleeve)
         self.side = layout.plate_radius + (layout.port.length if layout.port_axis is not None else 0.0)
-        self.unit = max(layout.plate_radius / 22, (layout.outer_radius - self.bottom) / 26)
+        self.unit = max(layout.plate_radius / 22, (layout.shape.outer_height - self.bottom) / 26)
         self.left, self.right = -layout.plate_radius - 4 * self.unit, self.side + 4 * self.unit
         self.low = self.bottom - 4 * self.unit
         soft = assembly.scene.printer.accuracy_mm.nominal
@@ -73,13 +73,13 @@ class _Section:
     def draw(self, body: Array | None = None) -> None:
         """Draw the section with its dimensions, and ``body`` as in `section_drawing`."""
         draw_section(self.ax, self.assembly)
-        axis = [self.bottom - 2 * self.unit, self.layout.outer_radius + 2 * self.unit]
+        axis = [self.bottom - 2 * self.unit, self.layout.shape.outer_height + 2 * self.unit]
         self.ax.plot([0, 0], axis, color=MUTED, lw=THIN, ls=CENTRE)
         self._heights()
         self._widths()
         self._leaders()
         xs = (self.left - 21 * self.unit, self.right + 13 * self.unit)
-        high = self.layout.outer_radius + 5 * self.unit
+        high = self.layout.shape.outer_height + 5 * self.unit
         if body is not None:
             high += _OBJECT * self.layout.outer_radius
             self._body(body, high)
@@ -93,7 +93,8 @@ class _Section:
 
     def _heights(self) -> None:
         layout, ax, right, plate = self.layout, self.ax, self.right, self.layout.plate_radius
-        vertical(ax, right, 0, layout.outer_radius, 0.02 * plate, f"{layout.outer_radius:.2f} {self.soft}")
+        top = layout.shape.outer_height
+        vertical(ax, right, 0, top, 0.02 * plate, f"{top:.2f} {self.soft}")
         thick = layout.plate_high - layout.plate_low
         vertical(ax, right, layout.plate_low, layout.plate_high, plate, f"{thick:.2f} {self.rigid}")
         if self.bottom < layout.plate_low:
@@ -102,8 +103,8 @@ class _Section:
         flange = layout.flange_thickness
         vertical(ax, self.left, layout.plate_high, 0, -layout.flange_radius, f"{flange:.2f} {self.soft}")
         outside = self.left - 14 * self.unit
-        whole = layout.outer_radius - self.bottom
-        vertical(ax, outside, self.bottom, layout.outer_radius, self.left, f"({whole:.2f})")
+        whole = top - self.bottom
+        vertical(ax, outside, self.bottom, top, self.left, f"({whole:.2f})")
 
     def _widths(self) -> None:
         layout, ax, low = self.layout, self.ax, self.low

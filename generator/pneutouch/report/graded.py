@@ -15,6 +15,7 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.sheet_data import ComparedMembrane, SheetData
 from pneutouch.report.pictures import GRADE_COLOURS, greatest_share
 from pneutouch.report.style import ACCENT, BOLD, INK, LINES, MUTED, Label, figure, label_ends, note, svg
+from pneutouch.shape.dome import DomeShape
 from pneutouch.spec.material import ArcGrading, Material
 from pneutouch.units import KPA
 
@@ -34,9 +35,9 @@ def grade_figures(material: Material, scene: ResolvedDesign) -> dict[str, str]:
     ``material`` must be graded.
     """
     assert material.along is not None
-    membrane, stiff, along = scene.design.membrane, material.base_resins[-1], material.along
+    stiff, along = material.base_resins[-1], material.along
     with figure(_SIZE[0], 1.15 * _SIZE[1]) as drawn:
-        _section(drawn.add_subplot(), along, membrane.inner_radius_mm, membrane.wall_thickness_mm, stiff)
+        _section(drawn.add_subplot(), along, scene.design.membrane.dome, stiff)
         section = svg(drawn)
     mean = material.shear_modulus_MPa
     return {
@@ -61,13 +62,12 @@ def _along(along: ArcGrading, values: Array, label: str, mean: float | None = No
         return svg(drawn)
 
 
-def _section(ax: Axes, along: ArcGrading, inner: float, wall: float, stiff: str) -> None:
+def _section(ax: Axes, along: ArcGrading, shape: DomeShape, stiff: str) -> None:
     from matplotlib.collections import PolyCollection
     from matplotlib.colors import LinearSegmentedColormap
 
     edges = np.linspace(0.0, 1.0, _CELLS + 1)
-    angle = 0.5 * np.pi * edges
-    low, high = (r * np.stack([np.sin(angle), np.cos(angle)], axis=1) for r in (inner, inner + wall))
+    low, high = np.moveaxis(shape.points(1.0 - edges, np.array([0.0, 1.0])), 1, 0)
     cells = np.stack([low[:-1], low[1:], high[1:], high[:-1]], axis=1)
     share = 100 * np.interp(0.5 * (edges[1:] + edges[:-1]), along.arc, along.stiff_fraction)
     shades = LinearSegmentedColormap.from_list("stiff", GRADE_COLOURS)
@@ -79,8 +79,8 @@ def _section(ax: Axes, along: ArcGrading, inner: float, wall: float, stiff: str)
         ax.add_collection(wall_cells)
         for line in (low, high):
             ax.plot(side * line[:, 0], line[:, 1], color=INK, lw=0.8)
-        ax.plot(side * np.array([inner, inner + wall]), [0, 0], color=INK, lw=0.8)
-    reach = 1.06 * (inner + wall)
+        ax.plot(side * np.array([shape.inner_radius, shape.outer_radius]), [0, 0], color=INK, lw=0.8)
+    reach = 1.06 * max(shape.outer_radius, shape.outer_height)
     ax.set(
         xlim=(-reach, reach), ylim=(-0.06 * reach, reach), aspect="equal", xlabel="radius  (mm)", ylabel="height  (mm)"
     )

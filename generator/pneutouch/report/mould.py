@@ -129,8 +129,8 @@ def _labels(ax: Axes, size: MouldSize) -> None:
     shape, wide = size.shape, 0.5 * size.pitch + size.margin
     low, high, foot = -size.cap_high, -size.base_low, -size.foot_low
     step, outer = (high - low) / 6, size.seat(size.foot_low)
-    edge, dome = 0.5 * (size.bore.start[0] + size.seat_radius), size.faces.outer.radius
-    wall = 0.5 * (size.faces.inner.radius + dome)
+    edge = 0.5 * (size.bore.start[0] + size.seat_radius)
+    wall = -0.5 * np.sum(size.faces.halfway, axis=0)
     right = [
         (f"pour channel Ø{shape.sprue_diameter:g}, with funnel", (size.channel_radius, foot - 0.1 * size.foot)),
         (f"base, {shape.wall:g} thick", (0.5 * (size.window + outer), foot + 0.5 * shape.wall)),
@@ -142,8 +142,8 @@ def _labels(ax: Axes, size: MouldSize) -> None:
     left = [
         ("window: silicone runs over here", (-0.6 * size.window, foot + 0.3 * shape.wall)),
         (f"vents Ø{shape.vent_diameter:g}, {size.gates - 1} of them", (-size.channel_radius, foot - 0.2 * size.foot)),
-        ("core with its foot", (-0.6 * size.faces.inner.radius, 0.1 * low)),
-        ("silicone", (-0.7071 * wall, -0.7071 * wall)),
+        ("core with its foot", (-0.6 * size.faces.radius, 0.1 * low)),
+        ("silicone", (wall[0], wall[1])),
     ]
     if size.insert is not None:
         collar = 0.5 * (size.insert.flange_radius + size.insert.collar_radius)

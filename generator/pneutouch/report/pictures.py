@@ -21,7 +21,7 @@ from pneutouch.evaluation.sheet_data import PressedView
 from pneutouch.export.scene import TILT_DEG, ShadedBody, cut_open, shaded, shaded_glb, view_data
 from pneutouch.parts import Assembly
 from pneutouch.report.style import ACCENT, INK, figure, svg
-from pneutouch.shape.meridian import arc_share
+from pneutouch.shape.dome import DomeShape
 from pneutouch.spec.material import ArcGrading
 
 if TYPE_CHECKING:
@@ -300,10 +300,10 @@ def shown(assembly: Assembly, pixels: int) -> tuple[ShadedBody, ...]:
     """The bodies of an assembly for a view ``pixels`` wide: meshes within an eighth of a pixel."""
     extent = max(float(np.ptp(body.vertices, axis=0).max()) for body in assembly.bodies)
     tolerance = max(assembly.scene.mesh_tolerance, extent / pixels / 8)
-    grading = assembly.scene.membrane_material.along
+    grading, shape = assembly.scene.membrane_material.along, assembly.layout.shape
     bodies = [cut_open(solid.mesh(tolerance)) for solid in assembly.solids]
     return tuple(
-        shaded(body, grade_colours(grading, body.vertices) if grading and body.role == "membrane" else None)
+        shaded(body, grade_colours(grading, shape, body.vertices) if grading and body.role == "membrane" else None)
         for body in bodies
     )
 
@@ -313,10 +313,10 @@ def greatest_share(grading: ArcGrading) -> float:
     return max(*grading.stiff_fraction, 0.01)
 
 
-def grade_colours(grading: ArcGrading, points: Array) -> Array:
-    """Colours (n, 3) of points (n, 3) of the wall, mm in the design frame."""
+def grade_colours(grading: ArcGrading, shape: DomeShape, points: Array) -> Array:
+    """Colours (n, 3) of points (n, 3) of the wall of a shape, mm in the design frame."""
     light, dark = (np.array(list(bytes.fromhex(colour[1:]))) / 255 for colour in GRADE_COLOURS)
-    arc = arc_share(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
+    arc = shape.arc_share(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
     share = np.interp(arc, grading.arc, grading.stiff_fraction)[:, None] / greatest_share(grading)
     colours: Array = light + share * (dark - light)
     return colours

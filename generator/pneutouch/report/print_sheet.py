@@ -189,7 +189,7 @@ def code_table(scene: ResolvedDesign) -> list[list[str]]:
 def _fields(scene: ResolvedDesign) -> list[tuple[str, str]]:
     membrane = scene.design.membrane
     return [
-        ("PNT", "pneumatic touch sensor, hemispherical"),
+        ("PNT", f"pneumatic touch sensor, {membrane.dome.adjective}"),
         (f"R{100 * membrane.inner_radius_mm:04.0f}", f"inner radius {membrane.inner_radius_mm:g} mm"),
         (f"T{100 * membrane.wall_thickness_mm:03.0f}", f"wall {membrane.wall_thickness_mm:g} mm"),
         (scene.membrane_material.code, scene.membrane_material.label),

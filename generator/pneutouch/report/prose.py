@@ -114,10 +114,10 @@ def description(scene: ResolvedDesign) -> str:
     """One paragraph on the sensor and the way it works."""
     membrane = scene.design.membrane
     return (
-        f"A soft hemispherical membrane ({membrane.inner_radius_mm:g} mm inner radius, {membrane.wall_thickness_mm:g} "
-        f"mm wall, {scene.membrane_material.label}) closes an air cavity on a rigid connector "
-        f"({scene.connector_material.label}). Pressing the dome raises the pressure of the trapped air, and the "
-        "pressure reads the force. Stiffness and sensitivity are set offline by the resin and online by the driving "
+        f"A soft {membrane.dome.adjective} membrane ({membrane.inner_radius_mm:g} mm inner radius, "
+        f"{membrane.wall_thickness_mm:g} mm wall, {scene.membrane_material.label}) closes an air cavity on a rigid "
+        f"connector ({scene.connector_material.label}). Pressing the dome raises the pressure of the trapped air, and "
+        "the pressure reads the force. Stiffness and sensitivity are set offline by the resin and online by the driving "
         "pressure."
     )
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +21,7 @@ from pneutouch.parts import Assembly
 from pneutouch.parts.cast_ring import RING
 from pneutouch.report.pictures import grade_colours
 from pneutouch.report.style import INK, MUTED, figure, svg
+from pneutouch.shape.dome import DomeShape
 from pneutouch.spec.part import Barb, Luer, PushIn, Thread
 
 if TYPE_CHECKING:
@@ -104,6 +104,8 @@ _THICK = 0.9
 _TOLERANCE = 5e-3
 _WEDGES = 60
 """Wedges of one colour on each side of a graded wall."""
+_BEYOND = 0.1
+"""Share of the wall by which wedges reach beyond both faces."""
 _HATCHES = {"membrane": "////////", "connector": "\\\\\\\\", "ring": "----", "plug": "||||"}
 
 
@@ -119,7 +121,7 @@ def draw_section(ax: Axes, assembly: Assembly) -> None:
             continue
         if grading is not None and solid.role == "membrane":
             shape = _shape(loops)
-            _graded(ax, PathPatch(shape, transform=ax.transData), grading, assembly.layout.outer_radius)
+            _graded(ax, PathPatch(shape, transform=ax.transData), grading, assembly.layout.shape)
             ax.add_patch(PathPatch(shape, facecolor="none", edgecolor=INK, lw=_THICK, joinstyle="miter"))
         else:
             draw_loops(ax, loops, solid.role)
@@ -146,18 +148,19 @@ def _shape(loops: Sequence[Array]) -> Path:
     return Path.make_compound_path(*(Path(np.vstack([loop, loop[:1]]), closed=True) for loop in loops))
 
 
-def _graded(ax: Axes, wall: PathPatch, grading: ArcGrading, radius: float) -> None:
-    """Wedges from the axis outwards in the colours of the grade, cut to the wall; below the base that of the rim."""
+def _graded(ax: Axes, wall: PathPatch, grading: ArcGrading, shape: DomeShape) -> None:
+    """Wedges from face to face in the colours of the grade, cut to the wall; below the base that of the rim."""
     from matplotlib.collections import PolyCollection
 
-    edges = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 2 * _WEDGES + 1)
-    rim = 2 * radius * np.stack([np.sin(edges), np.cos(edges)], axis=1)
-    wedges = [np.array([(0.0, 0.0), a, b]) for a, b in pairwise(rim)]
-    below = 2 * radius * np.array([(-1.0, 0.0), (1.0, 0.0), (1.0, -1.0), (-1.0, -1.0)])
-    middles = 0.5 * (edges[1:] + edges[:-1])
-    points = np.stack([np.sin(middles), 0 * middles, np.cos(middles)], axis=1)
-    colours = grade_colours(grading, np.vstack([points, (1.0, 0.0, 0.0)]))
-    cells = PolyCollection([*wedges, below], facecolors=colours, edgecolors="face", lw=0.2)
+    arc = np.linspace(0.0, 1.0, _WEDGES + 1)
+    # The chords of a wedge must not cut into the wall.
+    low, high = np.moveaxis(shape.points(arc, np.array([-_BEYOND, 1.0 + _BEYOND])), 1, 0)
+    wedges = np.stack([low[:-1], low[1:], high[1:], high[:-1]], axis=1)
+    below = 2 * shape.outer_radius * np.array([(-1.0, 0.0), (1.0, 0.0), (1.0, -1.0), (-1.0, -1.0)])
+    middles = shape.points(0.5 * (arc[1:] + arc[:-1]), np.array([0.5]))[:, 0] @ np.array([[1.0, 0, 0], [0, 0, 1.0]])
+    colours = grade_colours(grading, shape, np.vstack([middles, middles, (shape.inner_radius, 0.0, 0.0)]))
+    sides = [*wedges, *(wedges * [-1.0, 1.0])]
+    cells = PolyCollection([*sides, below], facecolors=colours, edgecolors="face", lw=0.2)
     # The axes are scaled by the outlines alone.
     ax.add_collection(cells, autolim=False)
     cells.set_clip_path(wall)

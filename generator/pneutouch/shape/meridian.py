@@ -2,8 +2,6 @@
 
 Exact pieces of a meridian: straight lines and circular arcs in the (r, z) plane, lengths in mm.
 
-Place of a point of the wall on the arc of the dome.
-
 Inside and outside of a closed outline of arcs and lines, exactly: where a level crosses it.
 
 A piece counts at its lower end and not at its upper one, and a point on a crossing lies beyond it. Two outlines that
@@ -19,6 +17,8 @@ area of its arc. The greatest error falls to two thirds, so fewer chords meet th
 
 Draw an outline corner by corner: a start, then for each face its tag and where it ends.
 """
+
+from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
@@ -45,6 +45,24 @@ class Line:
         """Length in mm."""
         return math.dist(self.start, self.end)
 
+    def along(self, share: Array) -> Array:
+        """Points (n, 2) at shares (n,) of the length, the first end at 0."""
+        return np.asarray(np.outer(1.0 - share, self.start) + np.outer(share, self.end))
+
+    def normals(self, share: Array) -> Array:
+        """Unit normals (n, 2) at shares (n,) of the length, to the right of the direction."""
+        (r0, z0), (r1, z1) = self.start, self.end
+        return np.broadcast_to(np.array([z1 - z0, r0 - r1]) / self.length, (share.size, 2))
+
+    def share(self, points: Array) -> Array:
+        """Shares (n,) of the length, 0 to 1, nearest to (n, 2) points in the (r, z) plane."""
+        along = np.asarray(self.end) - np.asarray(self.start)
+        return np.asarray(np.clip((points - np.asarray(self.start)) @ along / (along @ along), 0.0, 1.0))
+
+    def reverse(self) -> Line:
+        """The piece from its end to its start."""
+        return Line(self.end, self.start, self.tag)
+
     def swept(self) -> float:
         """The integral of pi r^2 dz along the piece, mm3 (a truncated cone, signed by direction)."""
         (r0, z0), (r1, z1) = self.start, self.end
@@ -58,8 +76,7 @@ class Line:
         """Distances, shape (n,), of (n, 2) points in the (r, z) plane from the piece."""
         start = np.asarray(self.start)
         along = np.asarray(self.end) - start
-        share = np.clip((points - start) @ along / (along @ along), 0.0, 1.0)
-        gap: Array = np.linalg.norm(points - start - share[:, None] * along, axis=1)
+        gap: Array = np.linalg.norm(points - start - self.share(points)[:, None] * along, axis=1)
         return gap
 
     def bounds(self) -> tuple[float, float, float, float]:
@@ -103,6 +120,28 @@ class Arc:
         """Length in mm."""
         return self.radius * abs(self.last - self.first)
 
+    def along(self, share: Array) -> Array:
+        """Points (n, 2) at shares (n,) of the length, the first end at 0."""
+        return np.asarray(np.asarray(self.centre) + self.radius * self._outward(share))
+
+    def normals(self, share: Array) -> Array:
+        """Unit normals (n, 2) at shares (n,) of the length, to the right of the direction."""
+        return np.asarray(math.copysign(1.0, self.last - self.first) * self._outward(share))
+
+    def share(self, points: Array) -> Array:
+        """Shares (n,) of the length, 0 to 1, nearest to (n, 2) points in the (r, z) plane."""
+        r, z = (points - np.asarray(self.centre)).T
+        turn = np.mod(np.arctan2(z, r) - self.first + np.pi, 2 * np.pi) - np.pi
+        return np.asarray(np.clip(turn / (self.last - self.first), 0.0, 1.0))
+
+    def _outward(self, share: Array) -> Array:
+        angle = self.first + share * (self.last - self.first)
+        return np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+    def reverse(self) -> Arc:
+        """The piece from its end to its start."""
+        return Arc(self.centre, self.radius, self.last, self.first, self.tag)
+
     def swept(self) -> float:
         """The integral of pi r^2 dz along the piece, mm3 (closed form, signed by direction)."""
 
@@ -142,11 +181,6 @@ class Arc:
 
 
 Segment = Line | Arc
-
-
-def arc_share(radius: Array, height: Array) -> Array:
-    """Arc position of points (r, z), arrays of one shape: 0 at the pole, 1 at the rim and in the flange below it."""
-    return np.asarray(np.clip(np.arctan2(radius, np.maximum(height, 0.0)) / (0.5 * np.pi), 0.0, 1.0))
 
 
 _ON_AXIS = 1e-9
@@ -256,10 +290,6 @@ class Meridian:
     def volume(self) -> float:
         """Exact volume of the solid of revolution, mm3 (Green's theorem: the integral of pi r^2 dz)."""
         return sum(piece.swept() for piece in self.pieces)
-
-    def swept(self, tag: str) -> float:
-        """Volume between the axis and the faces with ``tag``, mm3, for either direction of the faces."""
-        return abs(sum(piece.swept() for piece in self.tagged(tag)))
 
     def tagged(self, tag: str) -> list[Segment]:
         """The pieces with a tag, in order."""

@@ -68,6 +68,7 @@ class CalibratedDesign(Table):
     material: ResinOrMix = Field(description="Resin of the membrane.")
     inner_radius_mm: float = Field(ge=1, le=100, description="Inner radius as designed.")
     wall_thickness_mm: float = Field(ge=0.05, le=50, description="Wall as designed.")
+    shape: str = Field(default="hemisphere", min_length=1, max_length=100, description="Shape of the dome.")
     dead_volume_mL: float = Field(ge=0, le=1000, description="Dead volume as designed.")
 
 
@@ -190,15 +191,17 @@ class SensorCalibration(Table):
         """Share of the first year that lay before the sensor when it was measured."""
         return max(0.0, 1.0 - self.source.age_days / 365.0)
 
-    def misfit(self, material: object, inner_radius_mm: float, wall_thickness_mm: float) -> str | None:
+    def misfit(self, material: object, inner_radius_mm: float, wall_thickness_mm: float, shape: str) -> str | None:
         """Reason why the calibration does not hold for a membrane, or None if it does.
 
-        Another resin has another modulus. Another radius or wall is another print, whose deviations from its drawing
-        are its own, and the model's error was found at this shape alone.
+        Another resin has another modulus. Another shape, radius or wall is another print, whose deviations from its
+        drawing are its own, and the model's error was found at this one alone.
         """
         made = self.design
         if material != made.material:
             return f"was made with a membrane of {_named(made.material)}, this one is of {_named(material)}"
+        if shape != made.shape:
+            return f"was made with a membrane of the shape {made.shape}, this one is a {shape}"
         for name, here, there in (
             ("inner radius", inner_radius_mm, made.inner_radius_mm),
             ("wall", wall_thickness_mm, made.wall_thickness_mm),

@@ -7,15 +7,18 @@ from __future__ import annotations
 
 import datetime
 import math
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from pneutouch.errors import shown
 from pneutouch.spec.contact import ContactTable
-from pneutouch.spec.fields import EntryError, FieldsError, Table, declaration, name, number, numbers
+from pneutouch.spec.fields import EntryError, FieldsError, OneOf, SparseTable, Table, declaration, name, number, numbers
 from pneutouch.spec.grade import ResinOrMix
 from pneutouch.spec.part import PerforatedRing
+
+if TYPE_CHECKING:
+    from pneutouch.shape.dome import DomeShape
 
 MOST_CAVITIES = 16
 
@@ -83,9 +86,19 @@ class DocumentHead(Table):
     )
 
 
-class Membrane(Table):
+def _shapes() -> list[str]:
+    # The shapes load NumPy, which a list of names does not need.
+    from pneutouch.shape import SHAPES
+
+    return list(SHAPES)
+
+
+class Membrane(SparseTable):
     """[membrane]: the soft dome (paper, section 2-B)."""
 
+    left_out = ("shape",)
+
+    shape: Annotated[str, OneOf(_shapes)] = Field(default="hemisphere", description="Shape of the unloaded dome.")
     inner_radius_mm: float = number(9.25, unit="mm", low=1, high=100, help="Inner radius R0 of the unloaded dome.")
     wall_thickness_mm: float = number(1.5, unit="mm", low=0.05, high=50, help="Wall thickness t0 of the unloaded dome.")
     material: ResinOrMix = Field(
@@ -105,9 +118,18 @@ class Membrane(Table):
             )
         return self
 
+    @property
+    def dome(self) -> DomeShape:
+        """The unloaded dome."""
+        from pneutouch.shape import SHAPES
 
-class Connector(Table):
+        return SHAPES[self.shape](self.inner_radius_mm, self.wall_thickness_mm)
+
+
+class Connector(SparseTable):
     """[connector]: the rigid body that closes the cavity and carries the tube."""
+
+    left_out = ("glue",)
 
     material: str = name("ABS", registry="materials", help="Material of the connector.")
     port: str = name("barb-4x2.5", registry="ports", help="Pneumatic port.")
@@ -127,16 +149,11 @@ class Connector(Table):
         "silicone-adhesive for a cast flange, epoxy for a cast ring, else the maker's choice.",
     )
 
-    @model_serializer(mode="wrap")
-    def _without_no_glue(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        content: dict[str, Any] = handler(self)
-        if content.get("glue") is None:
-            content.pop("glue", None)
-        return content
 
-
-class Pneumatics(Table):
+class Pneumatics(SparseTable):
     """[pneumatics]: the air."""
+
+    left_out = ("gauge",)
 
     driving_pressures_kPa: Annotated[list[float], _within(0, 1000, "kPa")] = numbers(
         [0.0, 5.0, 12.0, 22.0],
@@ -171,13 +188,6 @@ class Pneumatics(Table):
         help="Total gas volume behind the cavity; left out: computed from connector and tube.",
     )
 
-    @model_serializer(mode="wrap")
-    def _without_no_gauge(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        content: dict[str, Any] = handler(self)
-        if content.get("gauge") is None:
-            content.pop("gauge", None)
-        return content
-
 
 class Indentation(Table):
     """[indentation]: how the sensor is pressed (paper, section 3-B)."""
@@ -187,7 +197,7 @@ class Indentation(Table):
         unit="mm",
         low=0.01,
         high=200,
-        help="Plate travel after first contact; left out: three quarters of the inner radius.",
+        help="Plate travel after first contact; left out: three quarters of the dome's height inside.",
     )
     steps: int = number(14, unit="", low=2, high=1000, help="Number of equal plate steps.")
     checked_waves: int = number(
@@ -220,8 +230,10 @@ NO_CALIBRATION = "none"
 """Stands for no calibration, over one that the design file names."""
 
 
-class DesignFile(Table):
+class DesignFile(SparseTable):
     """A whole design file."""
+
+    left_out = (CALIBRATION, "mould", "cast_ring")
 
     calibration: str | None = Field(
         default=None,
@@ -263,18 +275,6 @@ class DesignFile(Table):
             )
         return {**content, "indentation": {**tables[0], "plate_diameter_mm": new}}
 
-    @model_serializer(mode="wrap")
-    def _without_no_calibration(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        content: dict[str, Any] = handler(self)
-        if content.get(CALIBRATION) is None:
-            content.pop(CALIBRATION, None)
-        # Most designs are printed: one that states nothing of a mould or a ring reads as before there were any.
-        if self.mould == Mould():
-            content.pop("mould", None)
-        if self.cast_ring == PerforatedRing():
-            content.pop("cast_ring", None)
-        return content
-
     @property
     def calibration_name(self) -> str | None:
         """Name of the calibration, None without one."""
@@ -282,16 +282,17 @@ class DesignFile(Table):
 
     @property
     def depth_mm(self) -> float:
-        """Plate travel: as given, else three quarters of R0 (paper, section 3-B)."""
+        """Plate travel: as given, else three quarters of the dome's height inside, as of R0 (paper, section 3-B)."""
         given = self.indentation.depth_mm
-        return 0.75 * self.membrane.inner_radius_mm if given is None else given
+        return 0.75 * self.membrane.dome.height if given is None else given
 
     @model_validator(mode="after")
     def _depth_inside_dome(self) -> DesignFile:
-        if self.depth_mm > 0.95 * self.membrane.inner_radius_mm:
+        given = self.indentation.depth_mm
+        if given is not None and given > 0.95 * (height := self.membrane.dome.height):
             raise FieldsError(
-                f"indentation.depth_mm = {self.depth_mm:g} must be at most 0.95 of "
-                f"membrane.inner_radius_mm = {self.membrane.inner_radius_mm:g}: the plate would reach the seat",
+                f"indentation.depth_mm = {given:g} must be at most 0.95 of the dome's height inside, {height:g} mm "
+                f"(membrane.inner_radius_mm = {self.membrane.inner_radius_mm:g}): the plate would reach the seat",
                 "membrane.inner_radius_mm",
                 "indentation.depth_mm",
             )

@@ -6,17 +6,62 @@ declaration; nothing repeats it.
 
 import types
 import typing
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, JsonValue
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    JsonValue,
+    SerializerFunctionWrapHandler,
+    model_serializer,
+)
 from pydantic.fields import FieldInfo
+from pydantic_core import CoreSchema, PydanticCustomError
+from pydantic_core.core_schema import no_info_after_validator_function
 
 
 class Table(BaseModel):
     """Base of every TOML table: no unknown keys, no silent conversions, no infinities, immutable."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False, defer_build=True)
+
+
+class SparseTable(Table):
+    """A table whose dumps leave keys out at their default: what is hashed reads as before there were these keys."""
+
+    left_out: ClassVar[tuple[str, ...]] = ()
+
+    @model_serializer(mode="wrap")
+    def _without_defaults(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        fields = type(self).model_fields
+        usual = {key for key in self.left_out if getattr(self, key) == fields[key].get_default()}
+        return {key: value for key, value in handler(self).items() if key not in usual}
+
+
+@dataclass(frozen=True, slots=True)
+class OneOf:
+    """Annotation of a text that is one of ``names``: those of a table in the code, read whenever they are asked for."""
+
+    names: Callable[[], Iterable[str]]
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """Refuse another text as a literal is refused."""
+        return no_info_after_validator_function(self._checked, handler(source))
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """The schema with the names."""
+        return {**handler(core), "enum": list(self.names())}
+
+    def _checked(self, value: str) -> str:
+        known = [f"'{name}'" for name in self.names()]
+        if f"'{value}'" not in known:
+            raise PydanticCustomError("literal_error", "not one of {expected}", {"expected": " or ".join(known)})
+        return value
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +75,7 @@ class Declaration:
     default: Any
     help: str
     registry: str | None
+    one_of: OneOf | None = None
 
     @property
     def right(self) -> str:
@@ -91,6 +137,7 @@ def declaration(model: type[BaseModel], key: str) -> Declaration:
         default=info.get_default(call_default_factory=True),
         help=info.description or "",
         registry=entry("registry"),
+        one_of=next((known for known in info.metadata if isinstance(known, OneOf)), None),
     )
 
 

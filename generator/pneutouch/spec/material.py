@@ -11,9 +11,9 @@ import math
 from itertools import pairwise
 from typing import Any, Literal
 
-from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
+from pydantic import Field, model_validator
 
-from pneutouch.spec.fields import MaterialKind, Table
+from pneutouch.spec.fields import MaterialKind, SparseTable, Table
 from pneutouch.spec.values import Quantity
 
 SHRINKAGE_PERCENT = (0.0, 10.0)
@@ -98,8 +98,10 @@ class PaperMeasurements(Table):
     )
 
 
-class HyperelasticLaw(Table):
+class HyperelasticLaw(SparseTable):
     """A law of the material's own, where the neo-Hookean one with its shear modulus is not enough."""
+
+    left_out = ("largest_stretch", "misfit_percent")
 
     name: str = Field(description="neo-hookean, mooney-rivlin, yeoh or ogden.")
     constants: list[float] = Field(min_length=1, max_length=6, description="MPa; Ogden: mu, alpha, mu, alpha ...")
@@ -114,13 +116,6 @@ class HyperelasticLaw(Table):
         "strain is 10 % or more.",
     )
     source: str = Field(min_length=8, description="Table, page, DOI or fit that the constants are from.")
-
-    @model_serializer(mode="wrap")
-    def _without_no_fit(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        # What a result follows from is hashed: a law that was not fitted here reads as before.
-        content: dict[str, Any] = handler(self)
-        fit = ("largest_stretch", "misfit_percent")
-        return {key: value for key, value in content.items() if key not in fit or value is not None}
 
 
 _MIX_SUM = 1e-6
@@ -227,8 +222,10 @@ _POSITIVE = {
 """Quantities that are more than 0, and the most that each may be."""
 
 
-class Material(Table):
+class Material(SparseTable):
     """One cured material. A digital material is identified by its code together with its base resins."""
+
+    left_out = ("casting", "curves")
 
     title: str = Field(description="Common name.")
     code: str = Field(description="Short form for part numbers.")
@@ -316,12 +313,6 @@ class Material(Table):
             if problem is not None:
                 raise ValueError(f"shear_modulus_MPa.{key}: {problem}")
         return self
-
-    @model_serializer(mode="wrap")
-    def _without_what_it_has_not(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        # What a result follows from is hashed: a resin that is neither cast nor a mix reads as before there were these.
-        content: dict[str, Any] = handler(self)
-        return {key: value for key, value in content.items() if key not in ("casting", "curves") or value}
 
     @property
     def is_cast(self) -> bool:

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, SerializerFunctionWrapHandler, field_validator, model_serializer, model_validator
+from pydantic import Field, field_validator, model_validator
 
-from pneutouch.spec.fields import FieldsError, Table, number
+from pneutouch.spec.fields import FieldsError, SparseTable, Table, number
 from pneutouch.spec.printer import Process
 
 Names = Annotated[list[str], Field(min_length=1, max_length=50)]
@@ -149,12 +149,10 @@ class Given(Table):
         return self
 
 
-_LEFT_OUT = ("gauge", "processes")
-"""Keys of a setting that a document has where they are given alone."""
-
-
-class Setting(Table):
+class Setting(SparseTable):
     """[setting]: the design that gives everything else: connector, tube, plate, ambient pressure, printer."""
+
+    left_out = ("gauge", "processes")
 
     base: str | None = Field(
         default=None,
@@ -203,11 +201,6 @@ class Setting(Table):
                 "processes",
             )
         return self
-
-    @model_serializer(mode="wrap")
-    def _without_what_is_not_given(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        content: dict[str, Any] = handler(self)
-        return {key: value for key, value in content.items() if value is not None or key not in _LEFT_OUT}
 
 
 class Weights(Table):

@@ -134,6 +134,10 @@ def design_template(title: str, values: Mapping[str, Any] | None = None, note: s
 def _entry(entry: Declaration, default: Any) -> list[str]:
     bounds = "" if entry.low is None else f" From {entry.low:g} to {entry.high:g} {entry.unit}".rstrip() + "."
     names = f" One of the {entry.registry}: see pneutouch list." if entry.registry else ""
+    names += f" One of: {', '.join(entry.one_of.names())}." if entry.one_of else ""
     comment = textwrap.wrap(f"{entry.help}{bounds}{names}", width=96)
     value = f"# {entry.key} =" if default is None else f"{entry.key} = {value_text(default)}"
+    if entry.one_of and default == entry.default:
+        # As in a dump, where the usual one is left out.
+        value = f"# {value}"
     return [*(f"# {line}" for line in comment), value]

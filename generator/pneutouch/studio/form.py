@@ -170,7 +170,7 @@ def _kind(kinds: list[Any], declared: Declaration) -> str:
         for kind in kinds
     ):
         return "names"
-    if declared.registry or any(typing.get_origin(kind) is typing.Literal for kind in kinds):
+    if declared.registry or declared.one_of or any(typing.get_origin(kind) is typing.Literal for kind in kinds):
         return "choice"
     if bool in kinds:
         return "flag"
@@ -185,7 +185,7 @@ def _options(name: str, kinds: list[Any], declared: Declaration, library: Librar
         if typing.get_origin(kind) is typing.Literal:
             return [{"name": str(each), "title": ""} for each in typing.get_args(kind)]
     if declared.registry is None:
-        return []
+        return [{"name": each, "title": ""} for each in (declared.one_of.names() if declared.one_of else ())]
     if declared.registry == "materials":
         return _materials(_KIND_OF_MATERIAL.get(name), library)
     registry = declared.registry

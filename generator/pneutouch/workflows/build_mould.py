@@ -73,9 +73,9 @@ def exploded(mould: MouldAssembly) -> tuple[Body, ...]:
     """The parts of the mould apart along the axis, in the order in which they close, all coordinates positive."""
     size = mould.size
     lifts = {
-        "mould-cap": _APART * (size.faces.outer.radius - size.low + size.foot),
-        "mould-ring": _APART * size.faces.outer.radius,
-        RING: 0.6 * _APART * size.faces.outer.radius,
+        "mould-cap": _APART * (size.faces.high - size.low + size.foot),
+        "mould-ring": _APART * size.faces.high,
+        RING: 0.6 * _APART * size.faces.high,
         "mould-core": 0.0,
         "mould-base": -_APART * (size.foot + size.shape.wall),
     }

@@ -62,7 +62,8 @@ def plan_voxels(
     bodies = []
     for solid in solids:
         table_name = "membrane" if solid.name == "membrane" else "connector"
-        mixed = blend(solid.material, str(names[table_name]), library, f"{scene.where}: {table_name}.material")
+        where = f"{scene.where}: {table_name}.material"
+        mixed = blend(solid.material, str(names[table_name]), library, where, assembly.layout.shape)
         bodies.append(VoxelBody(solid, mixed))
     grid = raster(
         [body.inside for body in bodies],

@@ -168,9 +168,8 @@ def make_simulator(evaluation: Evaluation, kind: str) -> SimulatorResult:
 
 def _simulated(evaluation: Evaluation) -> SimulatedSensor:
     assembly, membrane = evaluation.assembly, evaluation.scene.membrane_material
-    layout = assembly.layout
-    dome = (layout.inner_radius, layout.wall, membrane.density_g_per_cm3.nominal)
-    return simulated_sensor(evaluation.scene.name, assembly.bodies, assembly.solids, dome, press_tables(evaluation))
+    dome = assembly.layout.shape, membrane.density_g_per_cm3.nominal
+    return simulated_sensor(evaluation.scene.name, assembly.bodies, assembly.solids, *dome, press_tables(evaluation))
 
 
 def press_tables(evaluation: Evaluation, steps: int = STEPS) -> tuple[PressTable, ...]:

@@ -261,7 +261,7 @@ def plated_tests(subject: SimulatedResin, rated_kPa: float) -> Tests:
         "saturation": tuple(sorted({SATURATION[0], top_kPa})),
         "relaxation": tuple(sorted({0.0, driving_kPa[-1]})),
     }
-    return {kind: (protocol(kind, subject.sensor.dome.inner_radius), at) for kind, at in pressures_kPa.items()}
+    return {kind: (protocol(kind, subject.sensor.dome.shape.height), at) for kind, at in pressures_kPa.items()}
 
 
 def _times(kind: str) -> int:

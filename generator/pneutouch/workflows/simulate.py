@@ -205,7 +205,7 @@ def campaign_toml(campaign: Campaign, comment: str) -> bytes:
 
 def _depth(subject: SimulatedResin, options: SimulationOptions) -> float:
     """The deepest plate travel of the chosen kinds, mm."""
-    reach = subject.sensor.dome.inner_radius
+    reach = subject.sensor.dome.shape.height
     kinds = [kind for kind in options.kinds if kind in PRESSED] or ["steps"]
     return max(max(subject.truth.protocol(kind, reach, np.inf).depths) for kind in kinds)
 
@@ -240,7 +240,7 @@ def _specimen(
         shear_modulus_MPa=sensor.wall.hyperelastic.mu,
         pressures={
             f"{pressure_kPa:g}": {
-                **specimen_figures(curve, subject.truth, sensor.dome.inner_radius, options.rate),
+                **specimen_figures(curve, subject.truth, sensor.dome.shape.height, options.rate),
                 "range_end_mm": curve.reach,
                 "range_ends_by": None if curve.ends is None else curve.ends[0],
             }
@@ -264,7 +264,7 @@ def _specimen(
 def _note_end(
     run: CampaignRun, subject: SimulatedResin, reach: float, ends: tuple[str, float] | None, truth: _Truth
 ) -> None:
-    deepest = max(subject.truth.protocol(run.kind, subject.sensor.dome.inner_radius, np.inf).depths)
+    deepest = max(subject.truth.protocol(run.kind, subject.sensor.dome.shape.height, np.inf).depths)
     if ends is not None and deepest > reach * (1 + 1e-9):
         truth.notes.append(f"{run.label}: stops at {reach:.2f} mm instead of {deepest:.2f} mm, before {ends[0]}")
 
@@ -288,7 +288,7 @@ def _columns(
     if run.kind == "leak":
         still = simulate_leak(curve.driving, LEAK_SECONDS, truth.rig, options.rate, rng)
         return {"time_s": still.time, "pressure_kPa": still.pressure / KPA}
-    protocol = truth.protocol(run.kind, sensor.dome.inner_radius, curve.reach)
+    protocol = truth.protocol(run.kind, sensor.dome.shape.height, curve.reach)
     record: RecordSamples = simulate_run(
         curve, protocol, truth.rig, options.rate, rng, wall=truth.wall, scatter=truth.scatter
     )

@@ -11,11 +11,12 @@ from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
+from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.spec.campaign import CampaignRun
 from pneutouch.units import KPA
 
 DESIGNED = Sensor(
-    Dome(9.25, 1.5),
+    Dome(Hemisphere(9.25, 1.5)),
     WallMaterial(0.17, 0.49),
     GasCircuit(ambient_pressure=0.101325, dead_volume=1000.0, gauge_limit=0.1),
     IndentationProtocol(plate_radius=15.0, depth=6.5, steps=13),

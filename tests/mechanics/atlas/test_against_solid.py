@@ -22,6 +22,7 @@ from pneutouch.mechanics.solid.inflate import at_volume, inflate
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe
+from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 
 # Radius mm, wall/R0, mu MPa, dead volume/R0^3, depth/R0, driving pressure kPa, gauge limit MPa, break stretch.
@@ -45,7 +46,7 @@ def sensor(name: str) -> Sensor:
     """One of the sensors under a plate that is wide enough for any contact."""
     radius, wall, mu, dead, depth, _, gauge, tear = SENSORS[name]
     return Sensor(
-        Dome(radius, wall * radius),
+        Dome(Hemisphere(radius, wall * radius)),
         WallMaterial(mu, 0.49, break_stretch=tear),
         GasCircuit(ambient_pressure=STANDARD_ATMOSPHERE, dead_volume=dead * radius**3, gauge_limit=gauge),
         IndentationProtocol(plate_radius=3.0 * radius, depth=depth * radius, steps=14),
@@ -84,7 +85,7 @@ def test_the_fixed_sensors_meet_every_end_but_the_edge():
 
 @pytest.mark.parametrize("wall", [0.065, 0.1622, 0.33])
 def test_free_inflation_to_the_limit_point_is_the_solids(wall):
-    solid = SolidModel(dome(1.0, wall), neo_hookean(1.0, 0.49), base=RigidBase())
+    solid = SolidModel(dome(Hemisphere(1.0, wall)), neo_hookean(1.0, 0.49), base=RigidBase())
     run, probe = inflate(solid, past_limit=1.2), StrainProbe(solid)
     assert run.limit is not None
     nu = np.array([0.02, 0.1, 0.3, 0.6, 0.8, 0.9, 0.95, 0.98, 1.0])

@@ -13,6 +13,7 @@ from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape.hemisphere import Hemisphere
 
 pytestmark = pytest.mark.slow
 
@@ -23,7 +24,9 @@ THIN_DEEP_AND_WITHOUT_PRESSURE = [
 
 
 def force(case: Case, arc: int | None, through: int | None) -> np.ndarray:
-    solid = SolidModel(dome(1.0, case.wall, arc=arc, through=through), neo_hookean(1.0, 0.49), base=RigidBase())
+    solid = SolidModel(
+        dome(Hemisphere(1.0, case.wall), arc=arc, through=through), neo_hookean(1.0, 0.49), base=RigidBase()
+    )
     run = inflate(solid, past_limit=1.0)
     press = PressSettings(case.depth, 14, None, case.ambient, case.dead, np.inf, np.inf)
     return curve_between(indent(solid, state_at(solid, 0.0, run), press).path, np.linspace(0.0, case.depth, 15))[0]

@@ -19,6 +19,7 @@ from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
 from pneutouch.mechanics.solid.mesh import END, START, dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe
+from pneutouch.shape.hemisphere import Hemisphere
 
 RADIUS, DEPTH = 9.25, 3.0
 SCENES: dict[str, tuple[RigidObject | None, float, float]] = {
@@ -30,7 +31,7 @@ SCENES: dict[str, tuple[RigidObject | None, float, float]] = {
 
 @cache
 def _dome() -> tuple[SolidModel, FreeState]:
-    solid = SolidModel(dome(RADIUS, 1.5, arc=8, through=1), neo_hookean(0.27), base=RigidBase())
+    solid = SolidModel(dome(Hemisphere(RADIUS, 1.5), arc=8, through=1), neo_hookean(0.27), base=RigidBase())
     return solid, state_at(solid, 0.005)
 
 

@@ -23,6 +23,7 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, evaluate, tangent
 from pneutouch.mechanics.solid.stress import StrainProbe
+from pneutouch.shape.hemisphere import Hemisphere
 
 RADIUS = 9.25
 BALL = ball(8.0)
@@ -30,7 +31,7 @@ BALL = ball(8.0)
 
 @cache
 def _dome() -> tuple[SolidModel, FreeState]:
-    solid = SolidModel(dome(RADIUS, 1.5, arc=8, through=1), neo_hookean(0.27), base=RigidBase())
+    solid = SolidModel(dome(Hemisphere(RADIUS, 1.5), arc=8, through=1), neo_hookean(0.27), base=RigidBase())
     return solid, state_at(solid, 0.005)
 
 

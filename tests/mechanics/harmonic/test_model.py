@@ -10,6 +10,7 @@ from pneutouch.mechanics.solid.banded import solve_definite
 from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape.hemisphere import Hemisphere
 
 LAWS = {
     "neo-hookean": neo_hookean(0.27),
@@ -20,7 +21,7 @@ LAWS = {
 
 
 def _solid(law: Hyperelastic = LAWS["neo-hookean"], arc: int = 6) -> SolidModel:
-    return SolidModel(dome(9.25, 1.5, arc=arc, through=1), law, base=RigidBase())
+    return SolidModel(dome(Hemisphere(9.25, 1.5), arc=arc, through=1), law, base=RigidBase())
 
 
 def _inflated(solid: SolidModel) -> Array:
@@ -119,6 +120,6 @@ def test_the_wall_at_rest_is_stable() -> None:
 def test_a_wall_on_its_flange_is_refused() -> None:
     from pneutouch.mechanics.solid.mesh import printed_dome
 
-    mesh = printed_dome(9.25, 1.5, 3.0, 1.5, arc=8, through=1)
+    mesh = printed_dome(Hemisphere(9.25, 1.5), 3.0, 1.5, arc=8, through=1)
     with pytest.raises(ValueError, match="flange"):
         HarmonicModel(SolidModel(mesh, LAWS["neo-hookean"], base=RigidBase(flange=13.75)), 1)

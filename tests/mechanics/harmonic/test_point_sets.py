@@ -17,6 +17,7 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, SolverState, evaluate, tangent
 from pneutouch.mechanics.solid.object_contact import ContactEvaluation
+from pneutouch.shape.hemisphere import Hemisphere
 
 RADIUS = 9.25
 
@@ -39,7 +40,7 @@ class Pressed:
 
 @cache
 def _pressed() -> Pressed:
-    solid = SolidModel(dome(RADIUS, 1.5, arc=8, through=1), neo_hookean(0.27))
+    solid = SolidModel(dome(Hemisphere(RADIUS, 1.5), arc=8, through=1), neo_hookean(0.27))
     free = state_at(solid, 0.005)
     model = HarmonicModel(solid, 2)
     gas = shut_in(solid, free, PressSettings(depth=1.0, steps=1))

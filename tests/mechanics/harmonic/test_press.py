@@ -18,6 +18,7 @@ from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene
 from pneutouch.mechanics.solid.object_contact import Plate
 from pneutouch.mechanics.solid.stress import StrainProbe
+from pneutouch.shape.hemisphere import Hemisphere
 from tests.mechanics.solid.derivatives import assert_derivatives
 
 RADIUS = 9.25
@@ -26,7 +27,7 @@ BALL = ball(8.0)
 
 @cache
 def _dome() -> tuple[SolidModel, FreeState]:
-    solid = SolidModel(dome(RADIUS, 1.5, arc=8, through=1), neo_hookean(0.27), base=RigidBase())
+    solid = SolidModel(dome(Hemisphere(RADIUS, 1.5), arc=8, through=1), neo_hookean(0.27), base=RigidBase())
     return solid, state_at(solid, 0.005)
 
 

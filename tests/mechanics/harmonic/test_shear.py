@@ -23,13 +23,14 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure
 from pneutouch.mechanics.solid.stress import StrainProbe
+from pneutouch.shape.hemisphere import Hemisphere
 
 RADIUS, DEPTH, ORDER = 9.25, 2.0, 2
 
 
 @cache
 def _dome() -> tuple[SolidModel, FreeState]:
-    solid = SolidModel(dome(RADIUS, 1.5, arc=8, through=1), neo_hookean(0.27), base=RigidBase())
+    solid = SolidModel(dome(Hemisphere(RADIUS, 1.5), arc=8, through=1), neo_hookean(0.27), base=RigidBase())
     return solid, state_at(solid, 0.005)
 
 

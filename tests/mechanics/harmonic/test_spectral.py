@@ -13,6 +13,7 @@ from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, minimise
+from pneutouch.shape.hemisphere import Hemisphere
 
 ANGLES = np.arange(256) * 2.0 * np.pi / 256
 
@@ -42,7 +43,7 @@ class _SidewaysLoad:
 
 
 def test_a_smooth_load_settles_a_hundredfold_from_two_to_eight_harmonics() -> None:
-    solid = SolidModel(dome(9.25, 1.5, arc=6, through=1), neo_hookean(0.27))
+    solid = SolidModel(dome(Hemisphere(9.25, 1.5), arc=6, through=1), neo_hookean(0.27))
     free = state_at(solid, 0.005)
     gas = shut_in(solid, free, PressSettings(depth=1.0, steps=1))
     figures = {}

@@ -12,6 +12,7 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.object_contact import Plate
 from pneutouch.mechanics.solid.stress import StrainProbe
+from pneutouch.shape.hemisphere import Hemisphere
 
 R0, OUTER, OFFSET = 9.25, 10.75, 0.01
 DEPTH, STEPS = 6.94, 140
@@ -19,7 +20,7 @@ DEPTH, STEPS = 6.94, 140
 
 @pytest.mark.slow
 def test_a_plate_that_touches_0_01_mm_off_the_axis_shows_the_sway_of_the_check_of_modes() -> None:
-    solid = SolidModel(dome(R0, OUTER - R0), neo_hookean(0.17))
+    solid = SolidModel(dome(Hemisphere(R0, OUTER - R0)), neo_hookean(0.17))
     free = state_at(solid, 0.0)
     checked = indent(solid, free, PressSettings(DEPTH, 14, waves=8))
     (sway,) = (event.indentation for event in checked.events if event.kind == "sway")

@@ -17,6 +17,7 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, minimise
 from pneutouch.mechanics.solid.stress import StrainProbe
+from pneutouch.shape.hemisphere import Hemisphere
 
 RADIUS = 9.25
 ORDER = 2
@@ -24,7 +25,7 @@ ORDER = 2
 
 @cache
 def _dome() -> tuple[SolidModel, FreeState]:
-    solid = SolidModel(dome(RADIUS, 1.5, arc=8, through=1), neo_hookean(0.27), base=RigidBase())
+    solid = SolidModel(dome(Hemisphere(RADIUS, 1.5), arc=8, through=1), neo_hookean(0.27), base=RigidBase())
     return solid, state_at(solid, 0.005)
 
 

@@ -15,6 +15,7 @@ from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonResult, SolidScene, evaluate, minimise
 from pneutouch.mechanics.solid.object_contact import Plate
 from pneutouch.mechanics.solid.second_variation import HarmonicSolid
+from pneutouch.shape.hemisphere import Hemisphere
 from tests.mechanics.solid.derivatives import assert_derivatives
 
 DEPTH = 0.75 * 9.25
@@ -25,7 +26,7 @@ FLAT = RigidBase()
 
 
 def paper(arc=None, through=None, base=FLAT):
-    return SolidModel(dome(9.25, 1.5, arc, through), neo_hookean(0.17), base=base)
+    return SolidModel(dome(Hemisphere(9.25, 1.5), arc, through), neo_hookean(0.17), base=base)
 
 
 def press(solid, pressure=0.0, depth=DEPTH, **options):
@@ -34,7 +35,7 @@ def press(solid, pressure=0.0, depth=DEPTH, **options):
 
 def _sunk(base, arc=12):
     """A solid whose mesh begins below the plane z = 0, so that both faces of it are in the base."""
-    mesh = dome(9.25, 1.5, arc, 1)
+    mesh = dome(Hemisphere(9.25, 1.5), arc, 1)
     return SolidModel(replace(mesh, nodes=mesh.nodes - [0.0, 2.5]), neo_hookean(0.17), base=base)
 
 
@@ -82,7 +83,7 @@ def test_the_opening_and_the_flange_leave_the_wall_free():
 
 def test_a_wall_pressed_on_its_base_equals_the_same_wall_pressed_by_a_plate():
     """Turned over, the plate is the base: the dome above it has the mirrored shape, energy and force."""
-    mesh, height = dome(1.0, 0.162, 16, 2), 1.16
+    mesh, height = dome(Hemisphere(1.0, 0.162), 16, 2), 1.16
     upright = SolidModel(mesh, neo_hookean(1.0))
     above, below = upright.rest, np.array([0.0, height]) + upright.rest * [1.0, -1.0]
     while height > 0.8:
@@ -115,7 +116,7 @@ def test_a_ring_holds_the_wall_that_bulges_out():
     """A thin wall in a ring that opens at 45 degrees from 11 mm to a height of 2.5 mm."""
     found = {}
     for base in (RigidBase(), RigidBase(ring=11.0, ring_height=2.5)):
-        solid = SolidModel(dome(9.25, 0.6), neo_hookean(0.17), base=base)
+        solid = SolidModel(dome(Hemisphere(9.25, 0.6)), neo_hookean(0.17), base=base)
         run = press(solid, 0.0)
         r, z = solid.contact.outline(run.states[-1].positions)
         found[base.ring] = (np.where(z < 2.0, r - 11.0 - z, -np.inf).max(), run)
@@ -139,7 +140,7 @@ def test_the_inner_wall_rests_on_the_base_inside(opening):
     """A dome that is emptied caves in until its middle lies on the base; over an opening it sinks in there."""
 
     def emptied(base):
-        solid = SolidModel(dome(1.0, 0.1, 16, 1), neo_hookean(1.0), base=base)
+        solid = SolidModel(dome(Hemisphere(1.0, 0.1), 16, 1), neo_hookean(1.0), base=base)
         x = solid.rest
         for share in np.arange(0.98, 0.37, -0.04):
             found = minimise(SolidScene(solid, Liquid(share * solid.cavity.volume(solid.rest), 30.0), None), x, 100)

@@ -11,6 +11,7 @@ from pneutouch.mechanics.solid.mesh import dome, printed_dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
 from pneutouch.mechanics.solid.object_contact import Plate
+from pneutouch.shape.hemisphere import Hemisphere
 from tests.mechanics.solid.derivatives import assert_derivatives, dense
 
 
@@ -37,7 +38,7 @@ class Springs:
 @pytest.mark.parametrize("order", [1, 2, 8])
 @pytest.mark.parametrize("law", [neo_hookean(0.17), ogden(((0.1, 1.3), (0.07, 4.0)))])
 def test_residual_and_tangent_are_derivatives_of_the_energy(order, law, terms):
-    solid = SolidModel(dome(9.25, 1.5, arc=8, order=order), law)
+    solid = SolidModel(dome(Hemisphere(9.25, 1.5), arc=8, order=order), law)
     rng = np.random.default_rng(0)
     x = solid.rest + solid.expand(2e-3 * rng.normal(size=solid.size))
     scene = SolidScene(
@@ -47,14 +48,14 @@ def test_residual_and_tangent_are_derivatives_of_the_energy(order, law, terms):
 
 
 def test_cavity_volume_is_exact_and_converges_to_the_hemisphere():
-    mesh = dome(2.0, 0.3, arc=40, order=1)
+    mesh = dome(Hemisphere(2.0, 0.3), arc=40, order=1)
     line = mesh.nodes[np.append(mesh.inner[:, 0], mesh.inner[-1, 1])]
     r, z = line.T
     frusta = np.pi / 3 * np.diff(z) * (r[1:] ** 2 + r[1:] * r[:-1] + r[:-1] ** 2)
     assert Cavity(mesh.inner).volume(mesh.nodes) == pytest.approx(frusta.sum(), rel=1e-13)
     errors = []
     for arc in (8, 16):
-        mesh = dome(1.0, 0.1, arc=arc)
+        mesh = dome(Hemisphere(1.0, 0.1), arc=arc)
         errors.append(abs(Cavity(mesh.inner).volume(mesh.nodes) - 2 * np.pi / 3))
     assert errors[1] < 1e-5 and np.log2(errors[0] / errors[1]) > 3.8
 
@@ -80,7 +81,7 @@ def test_inertia_of_band_plus_rank_one():
 
 
 def test_unloaded_dome_is_in_equilibrium_and_stable():
-    solid = SolidModel(dome(9.25, 1.5), neo_hookean(0.17))
+    solid = SolidModel(dome(Hemisphere(9.25, 1.5)), neo_hookean(0.17))
     v0 = solid.cavity.volume(solid.rest)
     state = evaluate(SolidScene(solid, Liquid(v0, 30.0), None), solid.rest)
     assert np.abs(state.residual).max() < 1e-12
@@ -88,12 +89,12 @@ def test_unloaded_dome_is_in_equilibrium_and_stable():
 
 
 def test_bands_stay_narrow():
-    assert SolidModel(dome(9.25, 1.5), neo_hookean(0.17)).pattern.width == 25
-    assert SolidModel(printed_dome(9.25, 1.5, 2.25, 2.25), neo_hookean(0.17)).pattern.width <= 45
+    assert SolidModel(dome(Hemisphere(9.25, 1.5)), neo_hookean(0.17)).pattern.width == 25
+    assert SolidModel(printed_dome(Hemisphere(9.25, 1.5), 2.25, 2.25), neo_hookean(0.17)).pattern.width <= 45
 
 
 def test_inverted_cells_are_refused():
-    mesh = dome(1.0, 0.2, arc=4)
+    mesh = dome(Hemisphere(1.0, 0.2), arc=4)
     nodes = mesh.nodes.copy()
     nodes[mesh.cells[0, 0]], nodes[mesh.cells[0, 1]] = nodes[mesh.cells[0, 1]].copy(), nodes[mesh.cells[0, 0]].copy()
     bad = type(mesh)(**{**mesh.__dict__, "nodes": nodes})
@@ -102,6 +103,6 @@ def test_inverted_cells_are_refused():
 
 
 def test_broken_boundary_lines_are_refused():
-    mesh = dome(1.0, 0.2, arc=4)
+    mesh = dome(Hemisphere(1.0, 0.2), arc=4)
     with pytest.raises(ValueError, match="one line"):
         type(mesh)(**{**mesh.__dict__, "inner": mesh.inner[::-1]})

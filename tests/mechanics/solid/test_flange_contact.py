@@ -13,13 +13,14 @@ from pneutouch.mechanics.solid.mesh import dome, printed_dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
 from pneutouch.mechanics.solid.second_variation import HarmonicSolid
+from pneutouch.shape.hemisphere import Hemisphere
 from tests.mechanics.solid.derivatives import assert_derivatives
 
 DEPTH = 0.75 * 9.25
 
 
 def printed(arc=None, through=None, base=RigidBase(flange=13.0)):  # noqa: B008
-    return SolidModel(printed_dome(9.25, 1.5, 2.25, 2.25, arc, through), neo_hookean(0.17), base=base)
+    return SolidModel(printed_dome(Hemisphere(9.25, 1.5), 2.25, 2.25, arc, through), neo_hookean(0.17), base=base)
 
 
 def test_splines_meet_their_nodes_with_steady_tangents_and_go_straight_on():
@@ -40,12 +41,12 @@ def test_splines_meet_their_nodes_with_steady_tangents_and_go_straight_on():
 
 
 def test_the_top_runs_from_the_foot_of_the_wall_to_the_rim():
-    mesh = printed_dome(9.25, 1.5, 2.25, 2.25)
+    mesh = printed_dome(Hemisphere(9.25, 1.5), 2.25, 2.25)
     top = mesh.nodes[top_nodes(mesh)]
     assert (top[:, 1] == 0.0).all() and (np.diff(top[:, 0]) > 0.0).all()
     assert top[0] == pytest.approx([10.75, 0.0]) and top[-1] == pytest.approx([13.0, 0.0])
     assert top_nodes(mesh)[0] == mesh.outer[0, 0]
-    assert meeting_nodes(mesh).shape[0] > 1 and meeting_nodes(dome(9.25, 1.5)).shape[0] == 0
+    assert meeting_nodes(mesh).shape[0] > 1 and meeting_nodes(dome(Hemisphere(9.25, 1.5))).shape[0] == 0
 
 
 @pytest.fixture(name="pressed_in")

@@ -23,13 +23,14 @@ from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
 from pneutouch.mechanics.solid.object_contact import Plate
 from pneutouch.mechanics.solid.second_variation import HarmonicSolid
+from pneutouch.shape.hemisphere import Hemisphere
 from tests.mechanics.solid.derivatives import dense
 
 DEPTH = 0.5 * 9.25
 
 
 def coarse(mu=0.17, wall=1.5):
-    return SolidModel(dome(9.25, wall, arc=12, through=1), neo_hookean(mu))
+    return SolidModel(dome(Hemisphere(9.25, wall), arc=12, through=1), neo_hookean(mu))
 
 
 def press(friction, mu=0.17, pressure=0.0, **options):
@@ -217,7 +218,7 @@ def test_too_few_leading_unknowns_or_indefinite_ones_are_kept():
 def test_points_at_the_edge_of_the_contact_settle(friction, mu, wall, share, dead):
     """Presses in which points come and go in turn where every round goes to its end: no step fails and is cut, and none
     takes half of the Newton steps that it may."""
-    solid = SolidModel(dome(9.25, 9.25 * wall), neo_hookean(mu))
+    solid = SolidModel(dome(Hemisphere(9.25, 9.25 * wall)), neo_hookean(mu))
     run = inflate(solid, past_limit=1.0)
     free = state_at(solid, share * run.limit.pressure, run)
     press = PressSettings(0.6 * 9.25, friction=friction, dead_volume=dead, gauge_range=np.inf)

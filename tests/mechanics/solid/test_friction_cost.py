@@ -13,6 +13,7 @@ from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape.hemisphere import Hemisphere
 
 RADIUS, STEPS = 9.25, 14
 
@@ -35,7 +36,7 @@ def cost(solid: SolidModel, free: FreeState, friction: float) -> tuple[int, int]
 def test_friction_takes_hardly_more_newton_steps(friction, mu, wall):
     """Presses that took up to twice as many where steps next to a solution were cut by the energy of held tractions, and
     twice the states where a suspect step was approached by bisection alone."""
-    solid = SolidModel(dome(RADIUS, RADIUS * wall), neo_hookean(mu), base=RigidBase())
+    solid = SolidModel(dome(Hemisphere(RADIUS, RADIUS * wall)), neo_hookean(mu), base=RigidBase())
     free = state_at(solid, 0.0)
     without, states = cost(solid, free, 0.0)
     rough, rough_states = cost(solid, free, friction)

@@ -11,6 +11,7 @@ from pneutouch.mechanics.solid.indent import follower_of, indent
 from pneutouch.mechanics.solid.inflate import first_touch, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape.hemisphere import Hemisphere
 from tests.stability.random_scenes import RADIUS, random_dome, sensors
 
 #: Kinds of an end by a jump.
@@ -23,7 +24,9 @@ ENDED = [(13, 3), (17, 0), (27, 2)]
 def gripped():
     """A round object grips a thin wall; one of three points that hold it is let go within the first 1.8 mm."""
     scene = random_dome(17)
-    solid = SolidModel(dome(RADIUS, scene.wall * RADIUS, arc=24, through=1), sensors()[scene.resin].wall.hyperelastic)
+    solid = SolidModel(
+        dome(Hemisphere(RADIUS, scene.wall * RADIUS), arc=24, through=1), sensors()[scene.resin].wall.hyperelastic
+    )
     (share, press), inflated = scene.presses[0], inflate(solid, past_limit=1.0)
     return solid, state_at(solid, share * inflated.limit.pressure, inflated), press
 

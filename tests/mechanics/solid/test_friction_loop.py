@@ -8,13 +8,14 @@ from pneutouch.mechanics.solid.indent import PressSettings
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape.hemisphere import Hemisphere
 from tests.mechanics.solid.friction_loops import friction_loop
 
 DEPTH = 0.5 * 9.25
 
 
 def loop(friction, mu=0.91, pressure=0.0, steps=14, arc=12, **options):
-    solid = SolidModel(dome(9.25, 1.5, arc=arc, through=1), neo_hookean(mu))
+    solid = SolidModel(dome(Hemisphere(9.25, 1.5), arc=arc, through=1), neo_hookean(mu))
     return friction_loop(solid, state_at(solid, pressure), PressSettings(DEPTH, steps, friction=friction, **options))
 
 
@@ -43,7 +44,7 @@ def test_a_plate_that_grips_loses_next_to_nothing():
 
 
 def test_a_press_that_jumps_is_released_from_where_it_stopped():
-    solid = SolidModel(dome(9.25, 1.5), neo_hookean(4.0))
+    solid = SolidModel(dome(Hemisphere(9.25, 1.5)), neo_hookean(4.0))
     stopped = friction_loop(solid, state_at(solid, 0.0), PressSettings(0.75 * 9.25, friction=0.3))
     assert "snap" in stopped.ended
     assert 5.0 < stopped.loading.indentation[-1] < 6.2

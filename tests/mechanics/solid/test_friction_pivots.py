@@ -13,6 +13,7 @@ from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape.hemisphere import Hemisphere
 
 N, SIZE, RADIUS = 8, 12, 9.25
 
@@ -78,7 +79,7 @@ def test_the_answer_solves_the_model(held):
 
 def test_a_thin_wall_is_settled_in_fewer_rounds_to_the_same_forces():
     """A wall of 0.07 R0 with a coefficient of 0.72, whose points bear next to nothing inside the contact."""
-    solid = SolidModel(dome(RADIUS, 0.07 * RADIUS), neo_hookean(1.08), base=RigidBase())
+    solid = SolidModel(dome(Hemisphere(RADIUS, 0.07 * RADIUS)), neo_hookean(1.08), base=RigidBase())
     free, press = state_at(solid, 0.0), PressSettings(0.3 * RADIUS, 7, friction=0.72, gauge_range=np.inf)
     rounds, forces = [], []
     for in_pieces in (True, False):

@@ -24,7 +24,7 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene
 from pneutouch.mechanics.solid.object_contact import Plate
-from pneutouch.shape.meridian import arc_share
+from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.spec.grade import Grade
 from pneutouch.units import KPA
 from tests.mechanics.solid.derivatives import assert_derivatives
@@ -49,11 +49,15 @@ def moduli(one: Sensor) -> np.ndarray:
 
 def solid_of(modulus: np.ndarray) -> SolidModel:
     """The paper's dome with moduli at `PLACES`."""
-    return SolidModel(dome(9.25, 1.5), neo_hookean(1.0), grade=lambda r, z: np.interp(arc_share(r, z), PLACES, modulus))
+    return SolidModel(
+        dome(Hemisphere(9.25, 1.5)),
+        neo_hookean(1.0),
+        grade=lambda r, z: np.interp(Hemisphere(9.25, 1.5).arc_share(r, z), PLACES, modulus),
+    )
 
 
 def smooth(r, z):
-    return 1.0 + 4.0 * arc_share(r, z) ** 2
+    return 1.0 + 4.0 * Hemisphere(9.25, 1.5).arc_share(r, z) ** 2
 
 
 # ------------------------------------------------------------------------------------------- the solid itself
@@ -86,7 +90,11 @@ def test_only_the_product_of_modulus_and_grade_counts():
 
 
 def test_residual_and_tangent_are_derivatives_of_the_graded_energy():
-    solid = SolidModel(dome(9.25, 1.5, arc=8), neo_hookean(0.17), grade=lambda r, z: np.exp(3.4 * arc_share(r, z)))
+    solid = SolidModel(
+        dome(Hemisphere(9.25, 1.5), arc=8),
+        neo_hookean(0.17),
+        grade=lambda r, z: np.exp(3.4 * Hemisphere(9.25, 1.5).arc_share(r, z)),
+    )
     rng = np.random.default_rng(7)
     x = solid.rest + solid.expand(2e-3 * rng.normal(size=solid.size))
     scene = SolidScene(solid, Gas.filled(0.1, 2.1, 0.6, 0.2), Plate(1.1, 0.3, 0.1))
@@ -107,7 +115,7 @@ def test_a_sphere_graded_through_its_wall_has_the_exact_limit_point():
     exact = max(pressure(inner) for inner in np.linspace(1.5, 2.6, 441))
     found = []
     for nu in (0.4999, 0.49995):
-        mesh = dome(1.0, 1.0, arc=24, through=6, slides=True)
+        mesh = dome(Hemisphere(1.0, 1.0), arc=24, through=6, slides=True)
         solid = SolidModel(mesh, neo_hookean(1.0, nu), grade=lambda r, z: 3.0 - np.hypot(r, z))
         found.append(inflate(solid, past_limit=1.0).limit.pressure)
     assert 2 * found[1] - found[0] == pytest.approx(exact, rel=2e-5)
@@ -115,13 +123,15 @@ def test_a_sphere_graded_through_its_wall_has_the_exact_limit_point():
 
 def test_a_rim_made_rigid_is_a_cap_clamped_higher():
     """Cells below 30 degrees latitude c times as stiff: what is left of their give falls as 1/c."""
-    mesh = dome(9.25, 1.5, arc=24)
-    held = np.unique(mesh.cells[arc_share(*mesh.nodes[mesh.cells].mean(axis=1).T) > 2 / 3])
+    mesh = dome(Hemisphere(9.25, 1.5), arc=24)
+    held = np.unique(mesh.cells[Hemisphere(9.25, 1.5).arc_share(*mesh.nodes[mesh.cells].mean(axis=1).T) > 2 / 3])
     cap = inflate(SolidModel(replace(mesh, clamped=held), neo_hookean(0.2)), past_limit=1.0).limit
     off = []
     for contrast in (30.0, 300.0, 3000.0):
         step = SolidModel(
-            mesh, neo_hookean(0.2), grade=lambda r, z, c=contrast: np.where(arc_share(r, z) > 2 / 3, c, 1.0)
+            mesh,
+            neo_hookean(0.2),
+            grade=lambda r, z, c=contrast: np.where(Hemisphere(9.25, 1.5).arc_share(r, z) > 2 / 3, c, 1.0),
         )
         off.append(inflate(step, past_limit=1.0).limit.pressure / cap.pressure - 1.0)
     assert np.abs(off[2]) < 1e-3
@@ -132,7 +142,7 @@ def test_a_rim_made_rigid_is_a_cap_clamped_higher():
 def test_a_smooth_grade_converges_as_fast_as_an_even_wall():
     def height(arc):
         solid = SolidModel(
-            dome(1.0, 0.5, arc=arc, through=max(arc // 6, 1), slides=True), neo_hookean(1.0), grade=smooth
+            dome(Hemisphere(1.0, 0.5), arc=arc, through=max(arc // 6, 1), slides=True), neo_hookean(1.0), grade=smooth
         )
         return state_at(solid, 0.6).inner_apex
 
@@ -147,16 +157,16 @@ def test_a_smooth_grade_converges_as_fast_as_an_even_wall():
 def test_the_default_mesh_is_within_its_stated_error(fractions):
     one, pressures = sensor(*fractions), np.array([0.0, 0.022])
     fine = SolidModel(
-        dome(9.25, 1.5, arc=96, through=4),
+        dome(Hemisphere(9.25, 1.5), arc=96, through=4),
         one.wall.hyperelastic,
-        grade=lambda r, z: np.interp(arc_share(r, z), *one.wall.grade),
+        grade=lambda r, z: np.interp(Hemisphere(9.25, 1.5).arc_share(r, z), *one.wall.grade),
     )
     run, found = inflate(fine, past_limit=1.0), solid_result(one, pressures, past_limit=1.0)
     assert found.limits.limit_point == pytest.approx(run.limit.pressure, rel=2e-3)
     for pressure, state in zip(pressures, found.states, strict=True):
         end = min(state.range_end, 5.0)
         steps = PressSettings(end, 14)
-        coarse = SolidModel(dome(9.25, 1.5), one.wall.hyperelastic, grade=fine.grade)
+        coarse = SolidModel(dome(Hemisphere(9.25, 1.5)), one.wall.hyperelastic, grade=fine.grade)
         here = indent(coarse, state_at(coarse, pressure), steps).figures()
         there = indent(fine, state_at(fine, pressure, run), steps).figures()
         assert here.sensitivity_kPa_per_N == pytest.approx(there.sensitivity_kPa_per_N, rel=0.01)

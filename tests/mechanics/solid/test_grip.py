@@ -17,6 +17,7 @@ from pneutouch.mechanics.solid.mesh import SolidMesh, boundary, dome, grid_cells
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, minimise
 from pneutouch.mechanics.solid.object_contact import Plate
+from pneutouch.shape.hemisphere import Hemisphere
 
 COLUMNS, ROWS = 12, 4
 
@@ -133,7 +134,7 @@ def press(follower: PathFollower, steps: int) -> tuple[Array, Array]:
 
 @pytest.mark.parametrize(("mu", "pressure"), [(0.91, 0.0), (0.17, 0.01)])
 def test_grip_holds_every_point_where_it_first_touched(mu, pressure):
-    solid = SolidModel(dome(9.25, 1.5, arc=16, through=1), neo_hookean(mu))
+    solid = SolidModel(dome(Hemisphere(9.25, 1.5), arc=16, through=1), neo_hookean(mu))
     free = state_at(solid, pressure).unit
     gas = Gas.filled(pressure / mu, free.volume, 0.101325 / mu, 0.0)
     plate = Plate(float(free.x[solid.mesh.outer_apex, 1]), np.inf, 0.1)

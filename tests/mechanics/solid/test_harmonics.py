@@ -16,6 +16,7 @@ from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
 from pneutouch.mechanics.solid.object_contact import Plate
 from pneutouch.mechanics.solid.second_variation import HarmonicSolid, shear_moduli
+from pneutouch.shape.hemisphere import Hemisphere
 
 LAWS = [neo_hookean(0.3), mooney_rivlin(0.1, 0.05), yeoh(0.15, 0.02, 0.003), ogden(((0.25, 1.7), (0.05, -2.0)))]
 
@@ -133,7 +134,7 @@ def form(family, places, n, field):
 @pytest.fixture(scope="module", params=range(len(LAWS)), ids=lambda k: LAWS[k].convention)
 def bent(request):
     """A small dome of each law at a pressure under a plate with a rim, in no equilibrium, and a random field."""
-    solid = SolidModel(dome(9.25, 2.0, arc=4, through=1), LAWS[request.param])
+    solid = SolidModel(dome(Hemisphere(9.25, 2.0), arc=4, through=1), LAWS[request.param])
     rng = np.random.default_rng(3)
     x = solid.rest * [1.05, 0.9] + 0.01 * rng.standard_normal(solid.rest.shape)
     x[solid.mesh.axis, 0] = 0.0
@@ -195,7 +196,7 @@ def test_a_displacement_across_the_axis_costs_nothing_and_a_rotation_nothing_at_
 
 
 def test_one_wave_has_a_displacement_across_the_axis_and_more_waves_have_none():
-    solid = SolidModel(dome(9.25, 1.5, arc=6, through=1), neo_hookean(0.17))
+    solid = SolidModel(dome(Hemisphere(9.25, 1.5), arc=6, through=1), neo_hookean(0.17))
     harmonic, state = HarmonicSolid(solid), state_at(solid, 0.01).unit
     together = harmonic.bands(state, (1, 2, 3))
     for n, band in together.items():

@@ -8,6 +8,7 @@ from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome, printed_dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape.hemisphere import Hemisphere
 
 MODULI = (0.17, 0.27, 0.55, 0.91, 1.64, 4.00, 5.33)
 TABLE_S1 = {
@@ -17,7 +18,7 @@ TABLE_S1 = {
 
 
 def press(mu=0.17, pressure=0.022, depth=0.5 * 9.25, mesh=None, **options):
-    solid = SolidModel(mesh or dome(9.25, 1.5), neo_hookean(mu))
+    solid = SolidModel(mesh or dome(Hemisphere(9.25, 1.5)), neo_hookean(mu))
     return indent(solid, state_at(solid, pressure), PressSettings(depth, **options))
 
 
@@ -41,7 +42,7 @@ def test_axial_balance_of_the_thin_membrane():
     # Exact pressed membrane by shooting (mu t0 held, wall thinned): p_II, F, rho at 22 and 35 kPa
     thin = 9.25 * 0.01
     mu = 0.17 * 1.5 / thin
-    solid = SolidModel(dome(9.25, thin, arc=96, through=1), neo_hookean(mu, 0.4999))
+    solid = SolidModel(dome(Hemisphere(9.25, thin), arc=96, through=1), neo_hookean(mu, 0.4999))
     table = {
         0.022: {2.0: (25.37169, 1.46845, 4.2922), 4.0: (36.03323, 5.43614, 6.9298), 5.0: (46.71956, 9.48173, 8.0375)},
         0.035: {2.0: (38.90945, 1.87926, 3.9209), 4.0: (48.47384, 6.23693, 6.3997), 5.0: (56.72326, 10.02554, 7.5006)},
@@ -65,7 +66,7 @@ def test_step_size_does_not_matter():
 def test_scale_invariance():
     base = press()
     length, stress = 1000 / 9.25, 1e3 / 0.17
-    solid = SolidModel(dome(1000.0, 1.5 * length), neo_hookean(1e3))
+    solid = SolidModel(dome(Hemisphere(1000.0, 1.5 * length)), neo_hookean(1e3))
     run = indent(
         solid,
         state_at(solid, 0.022 * stress),
@@ -80,7 +81,11 @@ def test_scale_invariance():
 def test_sensitivity_is_within_one_per_cent_of_a_refined_mesh():
     for mu, pressure in ((0.17, 0.0), (0.17, 0.022), (0.91, 0.0), (4.0, 0.022)):
         coarse = press(mu, pressure, steps=10).figures().sensitivity_kPa_per_N
-        fine = press(mu, pressure, steps=10, mesh=dome(9.25, 1.5, arc=72, through=3)).figures().sensitivity_kPa_per_N
+        fine = (
+            press(mu, pressure, steps=10, mesh=dome(Hemisphere(9.25, 1.5), arc=72, through=3))
+            .figures()
+            .sensitivity_kPa_per_N
+        )
         assert coarse == pytest.approx(fine, rel=0.01)
 
 
@@ -138,15 +143,15 @@ def test_small_plate_reaches_its_rim():
 
 
 def test_the_printed_rim_gives_a_little_and_a_stiff_hold_gives_the_clamped_base():
-    clamped, printed = press(), press(mesh=printed_dome(9.25, 1.5, 2.25, 2.25))
+    clamped, printed = press(), press(mesh=printed_dome(Hemisphere(9.25, 1.5), 2.25, 2.25))
     assert printed.complete
     assert 0.9 * clamped.states[-1].force < printed.states[-1].force < clamped.states[-1].force
-    held = press(mesh=printed_dome(9.25, 1.5, 0.02, 0.02))
+    held = press(mesh=printed_dome(Hemisphere(9.25, 1.5), 0.02, 0.02))
     assert held.states[-1].force == pytest.approx(clamped.states[-1].force, rel=0.01)
 
 
 def test_the_printed_mesh_has_the_wall_and_the_flange_and_one_line_of_wetted_wall():
-    mesh = printed_dome(9.25, 1.5, 2.25, 2.5)
+    mesh = printed_dome(Hemisphere(9.25, 1.5), 2.25, 2.5)
     corners = mesh.nodes[mesh.cells[:, :4]]
     x, y = corners[..., 0], corners[..., 1]
     area = 0.5 * np.abs(np.sum(x * np.roll(y, -1, 1) - np.roll(x, -1, 1) * y, axis=1)).sum()
@@ -167,7 +172,9 @@ def test_random_sensors_all_end_well():
     rng = np.random.default_rng(7)
     for _ in range(25):
         inner = float(rng.choice([5.0, 9.25, 15.0, 30.0]))
-        solid = SolidModel(dome(inner, inner * rng.uniform(0.05, 0.4)), neo_hookean(float(rng.choice(MODULI))))
+        solid = SolidModel(
+            dome(Hemisphere(inner, inner * rng.uniform(0.05, 0.4))), neo_hookean(float(rng.choice(MODULI)))
+        )
         free = inflate(solid, past_limit=1.0)
         start = state_at(solid, float(rng.uniform(0, 0.8)) * free.limit.pressure, free)
         run = indent(
@@ -179,12 +186,12 @@ def test_random_sensors_all_end_well():
 
 @pytest.mark.parametrize("ratio", [0.02, 0.5])
 def test_thin_and_thick_walls(ratio):
-    assert press(depth=0.4 * 9.25, pressure=0.3 * 0.17 * ratio, mesh=dome(9.25, 9.25 * ratio)).complete
+    assert press(depth=0.4 * 9.25, pressure=0.3 * 0.17 * ratio, mesh=dome(Hemisphere(9.25, 9.25 * ratio))).complete
 
 
 def test_an_unstable_start_is_said():
     # past the limit point a large dead volume is nearly a regulated pressure, which cannot hold the dome
-    solid = SolidModel(dome(9.25, 1.5), neo_hookean(0.17))
+    solid = SolidModel(dome(Hemisphere(9.25, 1.5)), neo_hookean(0.17))
     past = inflate(solid).states[-1]
     assert not past.stable
     assert indent(solid, past, PressSettings(2.0, dead_volume=1e6)).events[-1].kind == "unstable"
@@ -203,13 +210,16 @@ def test_levels_passed_from_the_start_are_reported_at_zero():
 
 
 def test_a_refined_mesh_finds_the_fold_at_the_clamp():
-    run = press(0.17, 0.0, depth=0.7 * 9.25, mesh=dome(9.25, 1.5, arc=72, through=3))
+    run = press(0.17, 0.0, depth=0.7 * 9.25, mesh=dome(Hemisphere(9.25, 1.5), arc=72, through=3))
     assert run.events[-1].kind == "clamp_fold" and not run.complete
     assert run.figures().sensitivity_kPa_per_N == pytest.approx(2.64, rel=0.01)
 
 
 def test_contact_radius_and_snap_depth_hold_under_refinement():
-    coarse, fine = press(4.0, 0.0, depth=0.75 * 9.25), press(4.0, 0.0, depth=0.75 * 9.25, mesh=dome(9.25, 1.5, 72, 3))
+    coarse, fine = (
+        press(4.0, 0.0, depth=0.75 * 9.25),
+        press(4.0, 0.0, depth=0.75 * 9.25, mesh=dome(Hemisphere(9.25, 1.5), 72, 3)),
+    )
     n = min(len(coarse.states), len(fine.states))
     off = coarse.column("contact_radius")[1:n] - fine.column("contact_radius")[1:n]
     assert np.abs(off).max() < 0.25 * 1.5 and np.sqrt((off**2).mean()) < 0.1

@@ -11,9 +11,10 @@ from pneutouch.mechanics.solid.indenter import STEEPEST, ObjectShapeError, Profi
 from pneutouch.mechanics.solid.inflate import first_touch, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.shape.hemisphere import Hemisphere
 
 SIZE = st.floats(0.3, 30.0)
-DOME = SolidModel(dome(9.25, 1.5), neo_hookean(0.17))
+DOME = SolidModel(dome(Hemisphere(9.25, 1.5)), neo_hookean(0.17))
 
 
 @st.composite
@@ -156,7 +157,7 @@ def test_the_stiffness_of_the_contact_does_not_count_on_the_steepest_flank():
     """A gap measured vertically is stiffer by 1 + slope^2 on a flank: nothing of it shows at 60 degrees."""
     body, runs = cone(np.pi / 6, 1.0), []
     for factor in (1.0, 0.1):
-        solid = SolidModel(dome(9.25, 1.5, arc=48), neo_hookean(0.17))
+        solid = SolidModel(dome(Hemisphere(9.25, 1.5), arc=48), neo_hookean(0.17))
         solid.contact.stiffness *= factor
         runs.append(indent(solid, state_at(solid, 0.022), PressSettings(5.0, steps=5, body=body)))
     stiff, soft = runs

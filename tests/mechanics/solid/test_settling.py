@@ -10,6 +10,7 @@ from pneutouch.mechanics.solid.inflate import first_touch, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import direction, evaluate, full_tangent
+from pneutouch.shape.hemisphere import Hemisphere
 
 RATIO = 0.09  # wall over radius: where sets of touching points took turns for ever, and line searches failed
 
@@ -17,7 +18,7 @@ RATIO = 0.09  # wall over radius: where sets of touching points took turns for e
 @pytest.fixture(scope="module")
 def pressed():
     """A thin wall pressed from 12 kPa to three quarters of its radius, at full steps."""
-    solid = SolidModel(dome(9.5, 9.5 * RATIO), neo_hookean(0.55))
+    solid = SolidModel(dome(Hemisphere(9.5, 9.5 * RATIO)), neo_hookean(0.55))
     press = PressSettings(0.75 * 9.5)
     touch = first_touch(solid, state_at(solid, 0.012), None, 30.0)
     follower = follower_of(solid, state_at(solid, 0.012), press, touch)
@@ -63,7 +64,7 @@ def banded_product(band, x):
 @pytest.mark.parametrize("seed", range(5))
 def test_the_least_along_a_move_is_that_of_a_fine_search(seed):
     generator = np.random.default_rng(seed)
-    contact = SolidModel(dome(9.25, 1.5, 24, 1), neo_hookean(1.0)).contact
+    contact = SolidModel(dome(Hemisphere(9.25, 1.5), 24, 1), neo_hookean(1.0)).contact
     here, there = generator.normal(size=(2, *contact.weight.shape)) * 0.01 * contact.stiffness
     share = np.linspace(0.0, 1.0, 20001)
     pushed = np.maximum(here[..., None] * (1.0 - share) + there[..., None] * share, 0.0)
@@ -75,6 +76,6 @@ def test_the_least_along_a_move_is_that_of_a_fine_search(seed):
 
 
 def test_a_plate_far_above_leaves_the_whole_move():
-    contact = SolidModel(dome(9.25, 1.5, 24, 1), neo_hookean(1.0)).contact
+    contact = SolidModel(dome(Hemisphere(9.25, 1.5), 24, 1), neo_hookean(1.0)).contact
     free = -np.ones_like(contact.weight) * contact.stiffness
     assert contact.least_share(free, 0.5 * free, -1.0, 0.0) == 1.0

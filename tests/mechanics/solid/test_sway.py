@@ -12,12 +12,13 @@ from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonResult, SolidScene, evaluate, minimise
 from pneutouch.mechanics.solid.second_variation import HarmonicSolid
 from pneutouch.mechanics.solid.sway import free_loss, softest_mode, unstable_waves
+from pneutouch.shape.hemisphere import Hemisphere
 
 R0, DEPTH = 9.25, 6.94
 
 
 def pressed(pressure=0.0, arc=24, through=2, steps=14, **options):
-    solid = SolidModel(dome(R0, 1.5, arc=arc, through=through), neo_hookean(0.17))
+    solid = SolidModel(dome(Hemisphere(R0, 1.5), arc=arc, through=through), neo_hookean(0.17))
     return indent(solid, state_at(solid, pressure), PressSettings(DEPTH, steps, **{"waves": 8, **options}))
 
 
@@ -49,7 +50,7 @@ def test_the_check_changes_nothing_else():
 
 
 def test_the_dome_sways_as_a_whole_and_its_top_most():
-    solid = SolidModel(dome(R0, 1.5), neo_hookean(0.17))
+    solid = SolidModel(dome(Hemisphere(R0, 1.5)), neo_hookean(0.17))
     run = indent(solid, state_at(solid, 0.0), PressSettings(DEPTH, 10))
     scene = SolidScene(solid, Regulator(run.states[-1].pressure / solid.mu), None)
     mode = softest_mode(HarmonicSolid(solid), evaluate(scene, run.states[-1].positions / R0), 1)[1]
@@ -75,7 +76,7 @@ def solved(scene):
 def test_a_sphere_under_outside_pressure_buckles_at_one_pressure_for_all_even_waves():
     # Its buckling mode is a spherical harmonic of even degree (the base is a plane of symmetry), and the critical
     # pressure depends on the degree alone. The classical pressure is that of an infinitely thin shell.
-    solid = SolidModel(dome(10.0, 0.2, arc=48, through=1, slides=True), neo_hookean(1.0, 0.3))
+    solid = SolidModel(dome(Hemisphere(10.0, 0.2), arc=48, through=1, slides=True), neo_hookean(1.0, 0.3))
     even, harmonic = (2, 4, 6, 8, 10), HarmonicSolid(solid)
     # Newton's method finds no unstable state: the sphere, which only shrinks, is extrapolated by a parabola in pressure.
     half, full = (solved(under(solid, share)).x for share in (0.4, 0.8))
@@ -87,7 +88,7 @@ def test_a_sphere_under_outside_pressure_buckles_at_one_pressure_for_all_even_wa
 
 def test_a_clamped_hemisphere_under_outside_pressure_buckles_in_lobes_at_its_clamp():
     # 0.8 of the classical pressure, at the boundary (arXiv 2412.15066).
-    solid = SolidModel(dome(10.0, 0.2, arc=48, through=1), neo_hookean(1.0, 0.3))
+    solid = SolidModel(dome(Hemisphere(10.0, 0.2), arc=48, through=1), neo_hookean(1.0, 0.3))
     waves, harmonic = tuple(range(1, 17)), HarmonicSolid(solid)
     assert unstable_waves(harmonic, solved(under(solid, 0.80)), waves) == ()
     state = solved(under(solid, 0.83))
@@ -98,7 +99,7 @@ def test_a_clamped_hemisphere_under_outside_pressure_buckles_in_lobes_at_its_cla
 
 
 def test_a_dome_under_vacuum_takes_lobes_before_it_buckles_as_a_body_of_revolution():
-    solid = SolidModel(dome(10.0, 0.3, arc=40, through=1), neo_hookean(1.0, 0.3))
+    solid = SolidModel(dome(Hemisphere(10.0, 0.3), arc=40, through=1), neo_hookean(1.0, 0.3))
     mean = 0.03 / 1.015
     classical = 4.0 * 1.3 * mean**2 / np.sqrt(3.0 * (1.0 - 0.3**2))
     emptied = inflate(solid, to_pressure=-0.86 * classical)

@@ -15,12 +15,13 @@ from pneutouch.mechanics.atlas.table import AtlasPoint, shipped
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.mechanics.viscous.prony import Prony
 from pneutouch.mechanics.viscous.runs import follow
+from pneutouch.shape.hemisphere import Hemisphere
 from tests.mechanics.viscous.closed import after_ramp, loop_energy
 
 A = Prony((0.1450, 0.1534, 0.1084), (0.1139, 2.528, 51.19))
 B = Prony((0.45, 0.26, 0.10), (0.047, 0.97, 18.0))
 SENSOR = Sensor(
-    Dome(9.25, 1.5),
+    Dome(Hemisphere(9.25, 1.5)),
     WallMaterial(0.206, 0.49),
     GasCircuit(ambient_pressure=0.101325, dead_volume=0.0, gauge_limit=np.inf),
     IndentationProtocol(plate_radius=15.0, depth=4.625, steps=14),

@@ -58,9 +58,9 @@ class SimulationTruth:
     rest: float | None = None
     specimens: int = SPECIMENS
 
-    def protocol(self, kind: str, inner_radius: float, reach: float) -> RunProtocol:
+    def protocol(self, kind: str, height: float, reach: float) -> RunProtocol:
         """The protocol of a kind as it is simulated: its rests shortened to ``rest``, no depth beyond the range."""
-        reduced = within(protocol(cast(RunKind, kind), inner_radius), reach)
+        reduced = within(protocol(cast(RunKind, kind), height), reach)
         return reduced if self.rest is None else reduced.quicker(min(self.rest, reduced.rest))
 
 
@@ -85,33 +85,31 @@ def loading(curve: PressCurve, steps: RunProtocol, wall: WallMemory) -> tuple[Ar
     return tuple(np.concatenate([[0.0], x]) for x in (depths, force, rise))  # type: ignore[return-value]
 
 
-def specimen_figures(
-    curve: PressCurve, truth: SimulationTruth, inner_radius: float, rate: float
-) -> dict[str, float | None]:
+def specimen_figures(curve: PressCurve, truth: SimulationTruth, height: float, rate: float) -> dict[str, float | None]:
     """Figures of one specimen at one driving pressure without noise, by key.
 
     Relaxation is as the rig reads it, its drift in it. Drift is the rig's alone: the wall's recovery after a press is
     not in it."""
-    steps = truth.protocol("steps", inner_radius, curve.reach)
+    steps = truth.protocol("steps", height, curve.reach)
     depth, force, rise = loading(curve, steps, truth.wall)
     loading_figures = _by_key(lines(depth, force, rise / KPA))
-    deep = loading(curve, truth.protocol("saturation", inner_radius, curve.reach), truth.wall)
+    deep = loading(curve, truth.protocol("saturation", height, curve.reach), truth.wall)
     saturation = figures(deep[0], deep[1], deep[2] / KPA)
     noise = truth.rig.noise(rate)
     return {
         **loading_figures,
         "saturation_force_N": None if saturation is None else saturation.saturation_force,
-        **loop_figures(curve, truth, inner_radius),
-        **relaxation_figures(curve, truth, inner_radius),
+        **loop_figures(curve, truth, height),
+        **relaxation_figures(curve, truth, height),
         "noise_force_N": noise[0],
         "noise_pressure_kPa": noise[1] / KPA,
         "drift_pressure_kPa_per_min": MINUTE * truth.rig.drift(curve.driving) / KPA,
     }
 
 
-def loop_figures(curve: PressCurve, truth: SimulationTruth, inner_radius: float) -> dict[str, float]:
+def loop_figures(curve: PressCurve, truth: SimulationTruth, height: float) -> dict[str, float]:
     """Hysteresis of the noise-free loop, percent, mean over its cycles; the rise counts from before each."""
-    loop = truth.protocol("loop", inner_radius, curve.reach)
+    loop = truth.protocol("loop", height, curve.reach)
     quiet = ScatterModel.none()
     record = simulate_run(
         curve, loop, RigModel.perfect(), _LOOP_RATE, np.random.default_rng(0), wall=truth.wall, scatter=quiet
@@ -129,14 +127,14 @@ def loop_figures(curve: PressCurve, truth: SimulationTruth, inner_radius: float)
     return {"hysteresis_width_percent": 100 * float(width), "hysteresis_area_percent": 100 * float(area)}
 
 
-def relaxation_figures(curve: PressCurve, truth: SimulationTruth, inner_radius: float) -> dict[str, float]:
+def relaxation_figures(curve: PressCurve, truth: SimulationTruth, height: float) -> dict[str, float]:
     """Loss from 1 s into the hold to its end, and its slope over log10 of time, over the value at 1 s; percent.
 
     As the rig reads it: what its zero and the gas drift in that time is in it.
 
     The slope is the least-squares line through instants even in log time; a loss counts as positive.
     """
-    test = truth.protocol("relaxation", inner_radius, curve.reach)
+    test = truth.protocol("relaxation", height, curve.reach)
     depth = np.array(test.depths[:1])
     force, rise = (float(x[0]) for x in curve.at(depth))
     step = depth[0] / test.speed / 2000
@@ -164,8 +162,8 @@ def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float
     own figure over the atlas's, so that they belong to the model behind the records. Outside the atlas, the figures are
     the nominal sensor's and there is no spread but the runs'."""
     sensor, curve = pressed.sensor, pressed.curves[k]
-    nominal = specimen_figures(curve, truth, sensor.dome.inner_radius, rate)
-    steps = truth.protocol("steps", sensor.dome.inner_radius, curve.reach)
+    nominal = specimen_figures(curve, truth, sensor.dome.shape.height, rate)
+    steps = truth.protocol("steps", sensor.dome.shape.height, curve.reach)
     drawn = _drawn(sensor, curve.driving, steps, truth, seed)
     if drawn is None:
         return Population(

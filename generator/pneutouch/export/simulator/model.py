@@ -5,13 +5,15 @@ Mass, centre and inertia of bodies, by their meshes and their exact volumes.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
+from pneutouch.shape.dome import DomeShape
+from pneutouch.shape.meridian import Segment
 
 _KG, _M = 1e-3, 1e-3
 
@@ -78,6 +80,9 @@ TIME_STEP = 0.002
 INERTIA_SHARE = 0.5
 """Inertia of the joint in greatest stiffness times time step squared. An explicit spring is stable from 0.25 on."""
 
+_GAUSS = 24
+"""Points of Gauss along a piece of a face: exact to rounding on a quarter circle."""
+
 DAMPING_SHARE = 0.2
 """Damping of the joint in time step times greatest stiffness. Our choice: the wall's own damping is not known."""
 
@@ -129,7 +134,7 @@ class SimulatedSensor:
         bodies: Print meshes, mm, in the frame of the base plane: z outwards along the axis of the dome.
         inertia: Of all bodies together.
         moving: The share of it that moves with the apex; see `moving_share`.
-        radius: Outer radius of the unloaded dome, m.
+        radius: Height of the unloaded dome outside, that of the sphere that stands for it, m.
         rear: Height of the rearmost face, m: below the base plane.
         tables: One a driving pressure, rising.
     """
@@ -157,30 +162,42 @@ def simulated_sensor(
     name: str,
     bodies: tuple[Body, ...],
     solids: tuple[Solid, ...],
-    dome: tuple[float, float, float],
+    shape: DomeShape,
+    density: float,
     tables: tuple[PressTable, ...],
 ) -> SimulatedSensor:
-    """A sensor of bodies; ``dome`` is inner radius and wall in mm, and the density of the wall in g/cm3."""
-    inner, wall, density = dome
+    """A sensor of bodies, its dome of a shape and a density in g/cm3."""
     rear = 1e-3 * min(float(body.bounds[0, 2]) for body in bodies)
     return SimulatedSensor(
         name,
         bodies,
         inertia_of(bodies, solids),
-        moving_share(1e-3 * inner, 1e-3 * wall, 1e3 * density),
-        1e-3 * (inner + wall),
+        moving_share(shape, 1e3 * density),
+        1e-3 * shape.outer_height,
         rear,
         tables,
     )
 
 
-def moving_share(inner: float, wall: float, density: float) -> RigidInertia:
-    """The mass that moves with the apex: a third of the wall's (m, kg/m3).
+def moving_share(shape: DomeShape, density: float) -> RigidInertia:
+    """The mass that moves with the apex (kg/m3), at the centroid of the wall.
 
-    A wall whose points move in proportion to their height z has the kinetic energy of the mass of z2/h2, and over a
-    hemispherical shell z is evenly spread (Archimedes): 1/3. It sits at the centroid of the shell.
+    A wall whose points move in proportion to their height z has the kinetic energy of the mass of z2/h2: over a
+    hemisphere z is evenly spread (Archimedes), and that is a third of the wall's.
     """
-    outer = inner + wall
-    mass = density * 2.0 / 3.0 * np.pi * (outer**3 - inner**3)
-    height = 3.0 / 8.0 * (outer**4 - inner**4) / (outer**3 - inner**3)
-    return ball_inertia(mass / 3.0, np.array([0.0, 0.0, height]), 0.5 * outer)
+    (_, _, under), (area, square, over) = _moments(shape.inner), _moments(shape.outer)
+    volume = sum(piece.swept() for piece in shape.outer) - shape.cavity_volume
+    mass = density * _M**3 * volume * square / area / shape.outer_height**2
+    return ball_inertia(mass, _M * np.array([0.0, 0.0, (over - under) / volume]), 0.5 * _M * shape.outer_radius)
+
+
+def _moments(face: Sequence[Segment]) -> tuple[float, float, float]:
+    """Area of a face (mm2), the integral of z2 over it (mm4), and that of z over the space within (mm4)."""
+    at, weight = np.polynomial.legendre.leggauss(_GAUSS)
+    area, square, within = 0.0, 0.0, 0.0
+    for piece in face:
+        share = 0.5 * (1.0 + at)
+        (r, z), rise = piece.along(share).T, piece.normals(share)[:, 0]
+        ring = np.pi * r * weight * piece.length
+        area, square, within = area + ring.sum(), square + ring @ z**2, within + 0.5 * ring @ (r * z * rise)
+    return float(area), float(square), float(within)

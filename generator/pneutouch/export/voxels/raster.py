@@ -16,7 +16,7 @@ from pneutouch.body import Solid
 from pneutouch.body.section import SolidSection, Window
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError, shown
-from pneutouch.shape.meridian import arc_share
+from pneutouch.shape.dome import DomeShape
 from pneutouch.spec.material import Material
 from pneutouch.spec.mixing import MixingCurve
 from pneutouch.units import UM
@@ -110,8 +110,9 @@ class ResinBlend:
     assumed: str = ""
 
 
-def blend(material: Material, name: str, library: Library, where: str) -> ResinBlend:
-    """The blend of a material; ``name`` is its own in the catalogue, ``where`` the file and key that request it.
+def blend(material: Material, name: str, library: Library, where: str, shape: DomeShape) -> ResinBlend:
+    """The blend of a material; ``name`` is its own in the catalogue, ``where`` the file and key that request it,
+    ``shape`` that of the dome along whose arc a graded material varies.
 
     A digital material of the catalogue has no published mix: its fraction is taken from the mixing curve that it is a
     point of. Raises InputError if there is none, and for more than two resins.
@@ -122,9 +123,8 @@ def blend(material: Material, name: str, library: Library, where: str) -> ResinB
     if len(resins) > 2:
         raise InputError(f"{where} = {shown(name)}: mixed from {len(resins)} resins; voxels are mixed from two at most")
     if material.along is not None:
-        along = material.along
-        stations, fractions = np.array(along.arc), np.array(along.stiff_fraction)
-        return ResinBlend(resins, lambda r, z: np.interp(arc_share(r, z), stations, fractions), float(fractions.max()))
+        arc, fractions = np.array(material.along.arc), np.array(material.along.stiff_fraction)
+        return ResinBlend(resins, lambda r, z: np.interp(shape.arc_share(r, z), arc, fractions), float(fractions.max()))
     if material.mix is not None:
         stiff = material.mix.fractions[resins[1]]
         return ResinBlend(resins, _even(stiff), stiff)

@@ -14,6 +14,7 @@ from pneutouch.mechanics.anywhere.table import RECIPE, ContactPlaces, DomeCondit
 from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.shape.hemisphere import no_hemisphere
 
 _SLACK = 1e-9
 
@@ -48,6 +49,7 @@ def outside(sensor: Sensor, domes: DomeConditions) -> str | None:
         (wall.grade is not None, "the wall is graded along its arc"),
         (wall.law is not None, "the resin has a law of its own, not the neo-Hookean one"),
         (wall.poisson_ratio != RECIPE.poisson_ratio, f"Poisson ratio {wall.poisson_ratio:g}, not 0.49"),
+        (no_hemisphere(dome.shape) is not None, str(no_hemisphere(dome.shape))),
         (dome.flange is not None, "the flange is held as printed, not the base plane"),
         (dome.base is None, "the wall passes through its base plane"),
     ]

@@ -14,7 +14,7 @@ import numpy as np
 from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasPoint, AtlasSlices
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.mesh import longest_outer_edge
+from pneutouch.mechanics.solid.mesh import arc_cells
 from pneutouch.mechanics.solid.object_contact import flat_radius, rim_radius
 
 _NEWTON = 8
@@ -65,6 +65,11 @@ class SensorBatch:
         """Radius over which the plate is flat, in R0."""
         radius = self.plate_radius / self.inner_radius
         return flat_radius(radius, rim_radius(radius, longest_outer_edge(self.wall_ratio)))
+
+
+def longest_outer_edge(wall_ratio: Array) -> Array:
+    """Chord of the outer edges of a hemisphere's default mesh, in R0, for wall ratios of any shape."""
+    return np.asarray(2.0 * (1.0 + wall_ratio) * np.sin(0.25 * np.pi / arc_cells(0.5 * np.pi, wall_ratio)))
 
 
 class PressTrack(NamedTuple):

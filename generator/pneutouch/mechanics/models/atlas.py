@@ -33,6 +33,7 @@ from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor, WallMaterial
 from pneutouch.mechanics.solid.events import CREASE, DETAIL, PathPoint, crossing
 from pneutouch.results.prediction import ErrorEstimate
+from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.units import KPA
 
 _BULGE, _RING_FROM, _RING_ROUND = 0.0107, 0.6, 0.04
@@ -65,6 +66,7 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
         (wall.grade is not None, "the wall is graded along its arc"),
         (wall.law is not None, "the resin has a law of its own, not the neo-Hookean one"),
         (wall.poisson_ratio != nu, f"Poisson ratio {wall.poisson_ratio:g}, not {nu:g}"),
+        (no_hemisphere(dome.shape) is not None, str(no_hemisphere(dome.shape))),
         (dome.flange is not None, "the flange is held as printed, not the base plane"),
         (dome.base is None, "the wall passes through its base plane"),
         (not inside, f"wall {ratio:.3g} R0, not {recipe.thinnest:g} to {recipe.thickest:g}"),

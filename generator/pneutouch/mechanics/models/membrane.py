@@ -22,6 +22,7 @@ from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorSt
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.results.prediction import ErrorEstimate
+from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.units import KPA
 
 _ASSUMPTIONS = (
@@ -44,9 +45,9 @@ class MembraneTheory(SensorModel):
     correctable = False
 
     def covers(self, sensor: Sensor) -> str | None:
-        """Reason why a sensor is none of the theory: another contact or a graded wall."""
+        """Reason why a sensor is none of the theory: another contact or shape, or a graded wall."""
         graded = None if sensor.wall.grade is None else "the wall is graded along its arc"
-        return sensor.protocol.other_contact or graded
+        return sensor.protocol.other_contact or no_hemisphere(sensor.dome.shape) or graded
 
     def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
         """Answers in closed form; a fitted law and a flange are not part of it."""

@@ -30,7 +30,6 @@ from pneutouch.mechanics.solid.mesh import SolidMesh, dome, nodes_along, object_
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe, burst, met
 from pneutouch.results.prediction import ErrorEstimate
-from pneutouch.shape.meridian import arc_share
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
@@ -182,9 +181,8 @@ def solid_states(sensor: Sensor, driving_pressures: Array) -> tuple[SensorState,
 
 def solid_probe(sensor: Sensor, cells: int | None = None) -> StrainProbe:
     """The sensor's wall as the solid takes it, and the probe of its strains."""
-    size = (sensor.dome.inner_radius, sensor.dome.wall_thickness)
-    cells = cells or object_cells(sensor)
-    mesh = dome(*size, arc=cells) if sensor.dome.flange is None else printed_dome(*size, *sensor.dome.flange, arc=cells)
+    shape, flange, cells = sensor.dome.shape, sensor.dome.flange, cells or object_cells(sensor)
+    mesh = dome(shape, arc=cells) if flange is None else printed_dome(shape, *flange, arc=cells)
     return StrainProbe(SolidModel(mesh, sensor.wall.hyperelastic, grade=_grade(sensor), base=_base(sensor)))
 
 
@@ -193,7 +191,7 @@ def _base(sensor: Sensor) -> RigidBase | None:
     dome = sensor.dome
     if dome.base is None or dome.flange is None:
         return dome.base
-    return replace(dome.base, flange=dome.inner_radius + dome.wall_thickness + dome.flange[0])
+    return replace(dome.base, flange=dome.shape.outer_radius + dome.flange[0])
 
 
 def _grade(sensor: Sensor) -> Callable[[Array, Array], Array] | None:
@@ -201,7 +199,7 @@ def _grade(sensor: Sensor) -> Callable[[Array, Array], Array] | None:
     if sensor.wall.grade is None:
         return None
     arc, relative = np.array(sensor.wall.grade[0]), np.array(sensor.wall.grade[1])
-    return lambda radius, height: np.interp(arc_share(radius, height), arc, relative)
+    return lambda radius, height: np.interp(sensor.dome.shape.arc_share(radius, height), arc, relative)
 
 
 def _limit_point(sensor: Sensor, run: Inflation) -> LimitPoint | None:

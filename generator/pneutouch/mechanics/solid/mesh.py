@@ -12,6 +12,7 @@ import numpy as np
 from pneutouch.arrays import Array, Index, distinct
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS
+from pneutouch.shape.dome import DomeShape
 
 #: Walls up to this share of R0 need one cell across (S within 0.2 % of a refined mesh), thicker ones two. The
 #: atlas begins above it, so that one family of meshes serves all of its box.
@@ -37,7 +38,7 @@ class SolidMesh:
     clamped: nodes with both displacements zero.
     axis:    nodes on r = 0, whose radial displacement is zero.
     sliding: nodes whose vertical displacement alone is zero (a symmetry plane).
-    length, wall: inner radius and wall thickness, the scales of lengths and of contact.
+    length, wall: scale of the shape and wall thickness, the scales of lengths and of contact.
     flange: (n_edges, 3) edges of a flange's free top, from the foot of the outer wall to the rim; none without one.
     """
 
@@ -124,45 +125,48 @@ def with_middles(points: Array) -> Array:
     return out
 
 
-def arc_cells(wall_ratio: float) -> int:
-    """Cells along the arc that keep S within half a per cent: three to the bending length sqrt(R0 t0), 24 to 48."""
-    return int(np.clip(np.ceil(_TO_BENDING_LENGTH * 0.5 * np.pi / np.sqrt(wall_ratio)), *_ARC_CELLS))
+def arc_cells(arc: float, wall_ratio: Array) -> Array:
+    """Cells along an arc that keep S within half a per cent: three to the bending length, 24 to 48.
+
+    ``arc`` is the length of the inner face over the shape's scale, ``wall_ratio``, of any shape, the wall over it; the
+    bending length is the root of the ratio.
+    """
+    return np.asarray(np.clip(np.ceil(_TO_BENDING_LENGTH * arc / np.sqrt(wall_ratio)), *_ARC_CELLS))
 
 
-def longest_outer_edge(wall_ratio: Array) -> Array:
-    """Chord of the outer edges of the default mesh, in R0, for wall ratios of any shape."""
-    cells = np.clip(np.ceil(_TO_BENDING_LENGTH * 0.5 * np.pi / np.sqrt(wall_ratio)), *_ARC_CELLS)
-    return 2.0 * (1.0 + wall_ratio) * np.sin(0.25 * np.pi / cells)
+def _cells(shape: DomeShape, arc: int | None, through: int | None) -> tuple[int, int]:
+    """Cells along the arc and across the wall: those asked for, else the default of a shape."""
+    ratio = shape.wall_thickness / shape.scale
+    along = int(arc_cells(shape.arcs[0] / shape.scale, np.array(ratio)))
+    return arc or along, through or cells_across(ratio)
 
 
 def cells_across(wall_ratio: float) -> int:
-    """Cells through the wall: one for walls to 0.055 R0, else two."""
+    """Cells through a wall of a ratio to the shape's scale: one to 0.055, else two."""
     return 1 if wall_ratio <= _THIN else 2
 
 
 def dome(
-    inner_radius: float,
-    wall: float,
+    shape: DomeShape,
     arc: int | None = None,
     through: int | None = None,
     order: int = 2,
     base_ratio: float = 1.0,
     slides: bool = False,
 ) -> SolidMesh:
-    """Hemispherical wall on the plane z = 0, `arc` cells from base to apex and `through` across the wall.
+    """Wall of a shape on the plane z = 0, `arc` cells from base to apex and `through` across the wall.
 
-    arc None takes `arc_cells`; through None takes one cell for walls to 0.055 R0, else two.  order: 2 for
+    Its nodes lie on both faces of the shape and, within, on the straight lines that lead from face to face.
+    arc None takes `arc_cells`; through None takes one cell for walls to 0.055 of the scale, else two.  order: 2 for
     nine-node, 8 for eight-node, 1 for four-node cells.  base_ratio < 1 makes cells shorter towards the base.
     slides: the base face moves freely in r (a symmetry plane), for tests against the sphere.
     """
-    if not (np.isfinite([inner_radius, wall]).all() and inner_radius > 0.0 and wall > 0.0):
-        raise ValueError(f"inner_radius {inner_radius} and wall {wall} must be positive and finite")
-    arc = arc or arc_cells(wall / inner_radius)
-    through = through or cells_across(wall / inner_radius)
-    angle = 0.5 * np.pi * with_middles(graded(arc, base_ratio))
-    radius = inner_radius + wall * with_middles(np.linspace(0.0, 1.0, through + 1))
-    grid = np.stack([np.cos(angle)[:, None] * radius, np.sin(angle)[:, None] * radius], axis=-1)
-    mesh = _from_grid(grid, arc, through, order, (inner_radius, wall))
+    size = shape.inner_radius, shape.wall_thickness
+    if not (np.isfinite(size).all() and min(size) > 0.0):
+        raise ValueError("inner_radius {} and wall_thickness {} must be positive and finite".format(*size))
+    arc, through = _cells(shape, arc, through)
+    grid = shape.points(with_middles(graded(arc, base_ratio)), with_middles(np.linspace(0.0, 1.0, through + 1)))
+    mesh = _from_grid(grid, arc, through, order, (shape.scale, shape.wall_thickness))
     if not slides:
         return mesh
     return replace(mesh, clamped=mesh.sliding, sliding=mesh.clamped)
@@ -180,24 +184,19 @@ _COINCIDE = 1e-9
 
 
 def printed_dome(
-    inner_radius: float,
-    wall: float,
-    flange_width: float,
-    flange_thickness: float,
-    arc: int | None = None,
-    through: int | None = None,
+    shape: DomeShape, flange_width: float, flange_thickness: float, arc: int | None = None, through: int | None = None
 ) -> SolidMesh:
     """A dome whose rim goes on below z = 0 as a flange (mm), clamped on its inside, underside and outside.
 
     The flange's top stays free, as in the connector's groove, so the foot of the wall gives a little. Nine-node
     cells; ``arc`` and ``through`` as for ``dome``.
     """
-    n, m = arc or arc_cells(wall / inner_radius), through or cells_across(wall / inner_radius)
-    outer, rim = inner_radius + wall, inner_radius + wall + flange_width
-    across = with_middles(np.linspace(inner_radius, outer, m + 1))
-    angle = 0.5 * np.pi * with_middles(graded(n, 1.0))
-    cap = np.stack([np.cos(angle)[:, None] * across, np.sin(angle)[:, None] * across], axis=-1)
+    n, m = _cells(shape, arc, through)
+    wall, outer = shape.wall_thickness, shape.outer_radius
+    rim = outer + flange_width
+    cap = shape.points(with_middles(graded(n, 1.0)), with_middles(np.linspace(0.0, 1.0, m + 1)))
     cap[-1, :, 0] = 0.0
+    across = cap[0, :, 0]
     deep, wide = (max(2, round(_CELLS_PER_WALL * size / wall)) for size in (flange_thickness, flange_width))
     down = with_middles(np.linspace(-flange_thickness, 0.0, 1 + deep))
     out = with_middles(np.linspace(outer, rim, 1 + wide))
@@ -208,7 +207,7 @@ def printed_dome(
     high = np.flatnonzero((np.abs(z) <= _COINCIDE * wall) & (r >= outer - _COINCIDE * wall))
     high = high[np.argsort(r[high])]
     top = np.stack([high[:-2:2], high[2::2], high[1:-1:2]], axis=1).astype(np.intp)
-    faces = (r <= inner_radius + _COINCIDE) | (z <= _COINCIDE - flange_thickness) | (r >= rim - _COINCIDE)
+    faces = (r <= shape.inner_radius + _COINCIDE) | (z <= _COINCIDE - flange_thickness) | (r >= rim - _COINCIDE)
     return SolidMesh(
         nodes,
         cells,
@@ -217,7 +216,7 @@ def printed_dome(
         clamped=np.flatnonzero((z <= _COINCIDE) & faces).astype(np.intp),
         axis=first[np.arange(height) + 2 * n * height],
         sliding=np.zeros(0, np.intp),
-        length=inner_radius,
+        length=shape.scale,
         wall=wall,
         flange=top,
     )
@@ -249,7 +248,6 @@ def object_cells(sensor: Sensor) -> int | None:
     """Cells along the arc that follow the object pressing a sensor; None if the default does, as for a plate."""
     if sensor.protocol.body is None:
         return None
-    dome, smallest = sensor.dome, sensor.protocol.body.smallest
-    arc = 0.5 * np.pi * (dome.inner_radius + dome.wall_thickness)
-    cells = int(np.ceil(CELLS_PER_RADIUS * arc / smallest))
-    return cells if cells > arc_cells(dome.wall_thickness / dome.inner_radius) else None
+    shape, smallest = sensor.dome.shape, sensor.protocol.body.smallest
+    cells = int(np.ceil(CELLS_PER_RADIUS * shape.arcs[1] / smallest))
+    return cells if cells > _cells(shape, None, None)[0] else None

@@ -194,7 +194,8 @@ LOOP_SPEEDS = (0.5, 5.0)
 """mm/s: our choice, a slow and a quick hand."""
 
 DEPTH_SHARE = 0.5
-"""Depth over R0: our choice, the paper's relaxation test gives none. Deeper, stiff resins pressed fast buckle."""
+"""Depth over the dome's height inside: our choice, the paper's relaxation test gives none. Deeper, stiff resins pressed
+fast buckle."""
 
 _KERNEL = "one relaxation for all stresses of the resin, that of small strain; no temperature dependence"
 
@@ -255,8 +256,8 @@ def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[flo
 
 
 def chosen_depth(sensor: Sensor, range_ends: Sequence[float]) -> float:
-    """Depth of the runs in mm: a share of R0, within the range of every state."""
-    return float(min(DEPTH_SHARE * sensor.dome.inner_radius, sensor.protocol.depth, *range_ends))
+    """Depth of the runs in mm: a share of the height, within the range of every state."""
+    return float(min(DEPTH_SHARE * sensor.dome.shape.height, sensor.protocol.depth, *range_ends))
 
 
 def ageing_shift(sensor: Sensor, material: Material, driving_pressures: Sequence[float]) -> tuple[float, Array]:

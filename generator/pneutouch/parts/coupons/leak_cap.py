@@ -14,7 +14,7 @@ TEST_PRESSURE = 20.0
 """kPa, near the highest driving pressure of the paper's sensor."""
 
 _LEAST_DISC, _DISC_SHARE = 3.0, 1 / 3
-"""The disc in mm, and over R0: a clamped ABS disc then takes up less than 1e-4 of the hemisphere's volume at 100 kPa
+"""The disc in mm, and over R0: a clamped ABS disc then takes up less than 1e-4 of a hemisphere's volume at 100 kPa
 (Kirchhoff plate, E = 2.4 GPa)."""
 
 

@@ -10,6 +10,7 @@ from pneutouch.body import Solid
 from pneutouch.errors import InputError
 from pneutouch.parts.coupons.coupon import BALANCE, PRESSURE, ROLE, Coupon, CouponContext, Nominal
 from pneutouch.parts.coupons.leak_cap import cap, rim_radius
+from pneutouch.shape.dome import DomeShape
 from pneutouch.units import ML
 
 WATER = 0.9982
@@ -22,14 +23,13 @@ _SERIES = (5.0, 2.0, 1.0)
 """Round volumes within a decade."""
 
 
-def cavity_volume(inner_radius: float) -> float:
-    """The greatest volume of the series 1, 2, 5 that the unloaded dome of a radius (mm) also holds, mm3.
+def cavity_volume(shape: DomeShape) -> float:
+    """The greatest volume of the series 1, 2, 5 that the unloaded dome of a shape also holds, mm3.
 
     A volume near the sensor's own makes the two pressures differ clearly; 1 mL for the paper's sensor.
     """
-    dome = 2 / 3 * math.pi * inner_radius**3
-    decade = 10.0 ** math.floor(math.log10(dome))
-    return next(step * decade for step in _SERIES if step * decade <= dome)
+    decade = 10.0 ** math.floor(math.log10(shape.cavity_volume))
+    return next(step * decade for step in _SERIES if step * decade <= shape.cavity_volume)
 
 
 def cavity_size(context: CouponContext) -> tuple[float, float]:
@@ -45,7 +45,7 @@ def cavity_size(context: CouponContext) -> tuple[float, float]:
             file=scene.where,
             remedy="leave it out with `only`, or take a finer printer",
         )
-    return radius, cavity_volume(layout.inner_radius) / (math.pi * radius**2)
+    return radius, cavity_volume(layout.shape) / (math.pi * radius**2)
 
 
 def draw(context: CouponContext) -> tuple[Solid, ...]:
@@ -57,7 +57,7 @@ def draw(context: CouponContext) -> tuple[Solid, ...]:
 
 def nominals(context: CouponContext) -> tuple[Nominal, ...]:
     """The pressure after the same push of air as over the cap, and the cavity's volume by weighed water."""
-    volume_mL = cavity_volume(context.design().design.membrane.inner_radius_mm) / ML
+    volume_mL = cavity_volume(context.design().design.membrane.dome) / ML
     return (Nominal("pressure_kPa", None, "kPa", PRESSURE), Nominal("water_g", WATER * volume_mL, "g", BALANCE))
 
 

@@ -10,7 +10,7 @@ Stretch that a cured membrane needs to leave its core.
 import math
 from dataclasses import dataclass
 
-from pneutouch.parts.mould.size import MouldSize
+from pneutouch.parts.mould.size import CavityFaces, MouldSize
 from pneutouch.shape.meridian import Meridian
 
 GRAVITY = 9.80665
@@ -39,7 +39,7 @@ def filling(size: MouldSize, viscosity_Pa_s: float, density_g_per_cm3: float) ->
     weight = density_g_per_cm3 * 1e3 * GRAVITY
     head = weight * (size.foot + size.shape.wall) * 1e-3
     rise = weight * (0.5e-3 * size.shape.vent_diameter) ** 2 / (3 * viscosity_Pa_s)
-    height = (size.faces.outer.radius - size.foot_low) * 1e-3
+    height = (size.faces.high - size.foot_low) * 1e-3
     return MouldFilling(volume * resistance / head, volume * resistance / (SYRINGE_KPA * 1e3), height / rise)
 
 
@@ -54,10 +54,10 @@ def _channel(size: MouldSize) -> float:
 
 def _wall(size: MouldSize) -> float:
     """Resistance of the wall from the flange to the pole, mm-3."""
-    inner, outer = size.faces.inner.radius, size.faces.outer.radius
-    middle = 0.5 * (inner + outer)
-    length, width = 0.5 * math.pi * middle, 2 * math.pi * middle * math.sin(0.25 * math.pi)
-    return 12 * length / (width * (outer - inner) ** 3)
+    faces = size.faces
+    inner, outer = faces.halfway
+    length = 0.5 * sum(piece.length for piece in (*faces.inner, *faces.outer))
+    return 12 * length / (math.pi * (inner[0] + outer[0]) * math.dist(inner, outer) ** 3)
 
 
 PEEL_STRETCH = 1.5
@@ -93,7 +93,8 @@ def release_of(membrane: Meridian, size: MouldSize) -> Release:
     It is an upper bound: the whole core is taken to pass the smallest opening, wherever that is.
     """
     # The opening is bounded by the faces below the dome: its rim and what lies within the flange.
-    opening = 2 * min(min(piece.start[0], piece.end[0]) for piece in membrane.pieces[1:3])
+    cured = CavityFaces.of(membrane, 1.0)
+    opening = 2 * min(min(piece.start[0], piece.end[0]) for piece in (cured.rim, cured.underside))
     rim = size.faces.rim
-    core = 2 * max(size.faces.inner.radius, rim.start[0], rim.end[0])
+    core = 2 * max(rim.start[0], rim.end[0], *(piece.bounds()[1] for piece in size.faces.inner))
     return Release(opening, core)

@@ -145,7 +145,7 @@ def core(size: MouldSize, material: Material) -> Solid:
         Line((size.seat(bottom) - clearance, bottom), (size.seat(low) - clearance, low), "cone"),
         Line((size.seat(low) - clearance, low), rim.end, "foot"),
         Line(rim.end, rim.start, "rim"),
-        Arc(faces.inner.centre, faces.inner.radius, faces.inner.last, faces.inner.first, "inner wall"),
+        *(piece.reverse() for piece in reversed(faces.inner)),
     )
     drills = zip(channels(size, _PAST), channels(size), strict=True)
     cuts = tuple(Feature(drill, filled.volume()) for drill, filled in drills)
@@ -172,7 +172,7 @@ def pocket_meridian(size: MouldSize, past: float) -> Meridian:
             Line((size.seat(low), low), corner.start, "cone"),
             corner,
             Line(corner.end, faces.top.end, "face"),
-            faces.outer,
+            *faces.outer,
         )
     )
 
@@ -263,6 +263,6 @@ def _corner(radius: float, fillet: float) -> Arc:
 def _handle(size: MouldSize) -> tuple[Bore, ...]:
     """A blind hole in the foot for a screw by which the core is drawn; none where the core is too small for it."""
     radius = 0.5 * (SCREW.core_diameter + size.shape.hole_undersize)
-    if size.faces.inner.radius < 3 * radius:
+    if size.faces.radius < 3 * radius:
         return ()
     return (Bore(0.0, 0.0, radius, size.foot_low, size.foot_low + min(_HANDLE_DEPTH, size.foot), closed="high"),)

@@ -23,8 +23,11 @@ peeled out of the open side.
 import math
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from pneutouch.body import Feature, Prism, Solid, Turned
 from pneutouch.parts.cast_ring import RingSize
+from pneutouch.shape.dome import INNER_WALL, OUTER_WALL
 from pneutouch.shape.meridian import Arc, Line, Meridian, Point, Segment
 from pneutouch.spec.material import Material
 
@@ -75,20 +78,21 @@ class MouldShape:
 class CavityFaces:
     """The faces of the membrane that each part of the mould forms, as the meridian of the membrane orders them."""
 
-    inner: Arc
+    inner: tuple[Segment, ...]
     rim: Line
     underside: Line
     edge: Line
     top: Line
-    outer: Arc
+    outer: tuple[Segment, ...]
 
     @staticmethod
     def of(membrane: Meridian, factor: float) -> "CavityFaces":
         """The faces of a membrane's meridian, every length times ``factor``."""
-        inner, rim, underside, edge, top, outer = (scaled(piece, factor) for piece in membrane.pieces)
-        assert isinstance(inner, Arc) and isinstance(outer, Arc)
-        assert isinstance(rim, Line) and isinstance(underside, Line) and isinstance(edge, Line)
-        assert isinstance(top, Line)
+        inner, outer = (
+            tuple(scaled(piece, factor) for piece in membrane.tagged(tag)) for tag in (INNER_WALL, OUTER_WALL)
+        )
+        pieces = (scaled(piece, factor) for piece in membrane.pieces if piece.tag not in (INNER_WALL, OUTER_WALL))
+        rim, underside, edge, top = (piece for piece in pieces if isinstance(piece, Line))
         return CavityFaces(inner, rim, underside, edge, top, outer)
 
     def keeping(self, underside: Line, edge: Line) -> "CavityFaces":
@@ -106,7 +110,24 @@ class CavityFaces:
     @property
     def meridian(self) -> Meridian:
         """The outline of the cavity, which the silicone and the web of a ring within the flange fill."""
-        return Meridian((self.inner, self.rim, self.underside, self.edge, self.top, self.outer))
+        return Meridian((*self.inner, self.rim, self.underside, self.edge, self.top, *self.outer))
+
+    @property
+    def high(self) -> float:
+        """Height of the pole outside."""
+        return self.outer[-1].end[1]
+
+    @property
+    def radius(self) -> float:
+        """Radius of the core at the base plane."""
+        return self.rim.start[0]
+
+    @property
+    def halfway(self) -> tuple[Point, Point]:
+        """Points of the inner and the outer face half way along their middle pieces."""
+        pieces = self.inner[(len(self.inner) - 1) // 2], self.outer[len(self.outer) // 2]
+        one, other = (piece.along(np.array([0.5]))[0].tolist() for piece in pieces)
+        return (one[0], one[1]), (other[0], other[1])
 
 
 def scaled(piece: Segment, factor: float) -> Segment:
@@ -175,7 +196,7 @@ class MouldSize:
     @property
     def cap_high(self) -> float:
         """Upper face of the cap."""
-        return self.faces.outer.radius + self.shape.wall
+        return self.faces.high + self.shape.wall
 
     @property
     def base_low(self) -> float:

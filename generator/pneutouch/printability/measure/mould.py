@@ -80,7 +80,7 @@ def cavity_match(size: MouldSize, closed: Sequence[Body], tolerance: float) -> C
 
     plugs = [_manifold(tool, tolerance) for tool in channels(size)]
     whole = Manifold.batch_boolean([*(body.manifold() for body in closed), *plugs], OpType.Add)
-    reach, low, high = size.faces.edge.start[0] + _REACH, size.low - 1e-3, size.faces.outer.radius + 1e-3
+    reach, low, high = size.faces.edge.start[0] + _REACH, size.low - 1e-3, size.faces.high + 1e-3
     window = Manifold.cylinder(high - low, reach, reach, _SIDES).translate((0.0, 0.0, low))
     void = window - whole
     membrane = silicone(size, closed[0].material).mesh(tolerance).manifold()

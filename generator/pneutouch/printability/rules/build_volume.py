@@ -91,10 +91,14 @@ def check_layers(view: PrintView) -> list[Finding]:
     ]
     ends = [end for step in missed for end in step.printed(wall)]
     read = _sensitivities(context.sensor, context.prediction.states[-1].driving_pressure, min(ends), max(ends))
-    best, radius = _advised(wall, layer, pixel), context.sensor.dome.inner_radius + 0.5 * wall
+    best, shape = _advised(wall, layer, pixel), context.sensor.dome.shape
     counts = f"{best / layer.size:.0f} layers and {best / pixel.size:.1f} pixels"
     fix = part.item.hints.get("layers", f"draw the wall {best:.3f} mm thick: {counts}")
-    at = (0.0, 0.0, radius) if missed[0].place == "pole" else (radius, 0.0, 0.0)
+    at = (
+        (0.0, 0.0, shape.height + 0.5 * wall)
+        if missed[0].place == "pole"
+        else (shape.inner_radius + 0.5 * wall, 0.0, 0.0)
+    )
     excess = Excess(missed[0].off(wall), _OFF, missed[0].unit)
     text = f"the wall is {', and '.join(clauses)}{read}"
     return [Finding("layers", "note", part.name, text, fix, _SOURCE, at, excess)]

@@ -1,7 +1,5 @@
 """A liquid silicone in a thin wall: whether it fills it in its pot life, what bubbles stay, what inhibits it."""
 
-import math
-
 import numpy as np
 
 from pneutouch.printability.view import PrintPart, PrintView, SensorContext
@@ -107,7 +105,7 @@ def _filling_min(part: PrintPart, context: SensorContext, casting: Casting) -> f
     """Time to run along the wall from rim to pole, min."""
     assert casting.mixed_viscosity_Pa_s is not None
     dome = context.sensor.dome
-    arc, wall = 0.5e-3 * math.pi * dome.inner_radius, 1e-3 * dome.wall_thickness
+    arc, wall = 1e-3 * dome.shape.arcs[0], 1e-3 * dome.wall_thickness
     speed = _weight(part) * wall**2 / (12 * casting.mixed_viscosity_Pa_s.nominal)
     return arc / speed / 60
 
@@ -115,12 +113,12 @@ def _filling_min(part: PrintPart, context: SensorContext, casting: Casting) -> f
 def _bubble(part: PrintPart, context: SensorContext, casting: Casting) -> float:
     """Diameter of the largest bubble that does not rise by the dome's height in the pot life that is left, mm."""
     assert casting.mixed_viscosity_Pa_s is not None
-    dome, seconds = context.sensor.dome, 60 * max(_left_min(casting), 1.0)
-    speed = 1e-3 * (dome.inner_radius + dome.wall_thickness) / seconds
+    seconds = 60 * max(_left_min(casting), 1.0)
+    speed = 1e-3 * context.sensor.dome.shape.outer_height / seconds
     radius = np.sqrt(4.5 * casting.mixed_viscosity_Pa_s.nominal * speed / _weight(part))
     return float(2e3 * radius)
 
 
 def _pole(context: SensorContext) -> tuple[float, float, float]:
-    dome = context.sensor.dome
-    return (0.0, 0.0, dome.inner_radius + 0.5 * dome.wall_thickness)
+    shape = context.sensor.dome.shape
+    return (0.0, 0.0, 0.5 * (shape.height + shape.outer_height))

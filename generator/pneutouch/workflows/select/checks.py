@@ -66,7 +66,10 @@ def connector_fit(scene: ResolvedDesign) -> Callable[[Array, Array], ConnectorFi
     port = port_shape(scene.port, scene.tube, scene.hole_undersize)
 
     def fit(radius: Array, wall: Array) -> ConnectorFit:
-        layouts = [lay_out_dome(scene, port, *size) for size in zip(radius.tolist(), wall.tolist(), strict=True)]
+        layouts = [
+            lay_out_dome(scene, port, replace(scene.design.membrane.dome, inner_radius=r, wall_thickness=t))
+            for r, t in zip(radius.tolist(), wall.tolist(), strict=True)
+        ]
         margins = [space_margin(scene, layout) for layout in layouts]
         return ConnectorFit(np.array(margins), np.array([2.0 * layout.plate_radius for layout in layouts]))
 

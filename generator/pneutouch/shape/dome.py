@@ -1,0 +1,122 @@
+"""The form of a dome at rest: two faces over one base plane, from which all that depends on the form follows."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import ClassVar
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.shape.meridian import Point, Segment
+
+INNER_WALL = "inner wall"
+OUTER_WALL = "outer wall"
+"""Tags of the pieces of both faces."""
+
+
+@dataclass(frozen=True, slots=True)
+class DomeShape(ABC):
+    """A dome over the base plane z = 0, lengths in mm.
+
+    A base class and no protocol: a shape states its faces, and shares with all others what is derived from them. Each
+    face is a chain of pieces from the base to the pole. Those of one number are opposite each other: straight lines
+    across the wall lead from a share of one to the same share of the other. More sizes of a shape are more fields.
+    ``inner_radius`` is that of the inner face at the base, ``key`` the name in a design file, ``adjective`` the shape
+    in words.
+    """
+
+    inner_radius: float
+    wall_thickness: float
+    key: ClassVar[str]
+    adjective: ClassVar[str]
+
+    @property
+    @abstractmethod
+    def inner(self) -> tuple[Segment, ...]:
+        """Pieces of the wetted face, tagged `INNER_WALL`."""
+
+    @property
+    @abstractmethod
+    def outer(self) -> tuple[Segment, ...]:
+        """Pieces of the face that is pressed, tagged `OUTER_WALL`."""
+
+    @property
+    def scale(self) -> float:
+        """Length by which the wall's mechanics scales: what the solid's numbers without unit are relative to."""
+        return self.inner_radius
+
+    @property
+    def outer_radius(self) -> float:
+        """Radius of the outer face at the base plane."""
+        return self.outer[0].start[0]
+
+    @property
+    def height(self) -> float:
+        """Height of the pole inside."""
+        return self.inner[-1].end[1]
+
+    @property
+    def outer_height(self) -> float:
+        """Height of the pole outside."""
+        return self.outer[-1].end[1]
+
+    @property
+    def cavity_volume(self) -> float:
+        """Volume under the inner face down to the base plane, mm3."""
+        return sum(piece.swept() for piece in self.inner)
+
+    @property
+    def arcs(self) -> tuple[float, float]:
+        """Lengths of the inner and the outer face from base to pole."""
+        return sum(piece.length for piece in self.inner), sum(piece.length for piece in self.outer)
+
+    def points(self, share: Array, depth: Array) -> Array:
+        """Points (n, m, 2), r and z, of the wall.
+
+        ``share`` (n,) goes from the base (0) to the pole (1), ``depth`` (m,) from the inner face (0) to the outer (1).
+        """
+        inner, outer = (self._of_face(face, share)[:, None] for face in (self.inner, self.outer))
+        return np.asarray((1.0 - depth[:, None]) * inner + depth[:, None] * outer)
+
+    def normals(self, share: Array) -> Array:
+        """Unit normals (n, 2) of the outer face, outwards, at shares (n,) from the base to the pole."""
+        return self._of_face(self.outer, share, normals=True)
+
+    def leaning(self, lean: float) -> Point:
+        """Point of the outer face whose normal leans by an angle (rad) off the axis; the nearest that it has."""
+        # Between the places the lean is straight, and so exact on an arc.
+        share = np.linspace(1.0, 0.0, 2001)
+        normal = self.normals(share)
+        place = np.interp(lean, np.arctan2(normal[:, 0], normal[:, 1]), share)
+        ((r, z),) = self._of_face(self.outer, np.array([place])).tolist()
+        return r, z
+
+    def arc_share(self, radius: Array, height: Array) -> Array:
+        """Arc position of points (r, z), arrays of one shape: 0 at the pole, 1 at the rim and in the flange below it.
+
+        The position is that of the nearest point of the outer face.
+        """
+        points = np.stack([np.ravel(radius), np.maximum(np.ravel(height), 0.0)], axis=1)
+        stops, gaps = self._stops, [piece.distance(points) for piece in self.outer]
+        shares = [a + (b - a) * piece.share(points) for piece, (a, b) in zip(self.outer, pairwise(stops), strict=True)]
+        nearest = np.take_along_axis(np.array(shares), np.argmin(gaps, axis=0)[None], axis=0)
+        return 1.0 - nearest.reshape(np.shape(radius))
+
+    @property
+    def _stops(self) -> Array:
+        """Shares of the wall's middle at which the pieces meet, from 0 to 1."""
+        lengths = [inner.length + outer.length for inner, outer in zip(self.inner, self.outer, strict=True)]
+        return np.concatenate([[0.0], np.cumsum(lengths) / np.sum(lengths)])
+
+    def _of_face(self, face: tuple[Segment, ...], share: Array, normals: bool = False) -> Array:
+        """Points of a face, or its normals, (n, 2) at shares (n,) of the wall."""
+        stops, values = self._stops, np.empty((share.size, 2))
+        piece_at = np.clip(np.searchsorted(stops, share, side="right") - 1, 0, len(face) - 1)
+        for k, piece in enumerate(face):
+            at = piece_at == k
+            within = (share[at] - stops[k]) / (stops[k + 1] - stops[k])
+            values[at] = piece.normals(within) if normals else piece.along(within)
+        return values
