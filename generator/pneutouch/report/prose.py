@@ -117,8 +117,8 @@ def description(scene: ResolvedDesign) -> str:
         f"A soft {membrane.dome.adjective} membrane ({membrane.inner_radius_mm:g} mm inner radius, "
         f"{membrane.wall_thickness_mm:g} mm wall, {scene.membrane_material.label}) closes an air cavity on a rigid "
         f"connector ({scene.connector_material.label}). Pressing the dome raises the pressure of the trapped air, and "
-        "the pressure reads the force. Stiffness and sensitivity are set offline by the resin and online by the driving "
-        "pressure."
+        "the pressure reads the force. Stiffness and sensitivity are set offline by the resin and online by the "
+        "driving pressure."
     )
 
 

@@ -1,0 +1,67 @@
+"""Shapes that the program does not ship: a hemisphere under another name, a spherical cap and a thimble."""
+
+from __future__ import annotations
+
+import math
+
+from pneutouch.shape.dome import INNER_WALL, OUTER_WALL, DomeShape
+from pneutouch.shape.meridian import Arc, Line
+
+
+class HalfBall(DomeShape):
+    """A hemisphere, but not the one that closed forms and tables cover."""
+
+    key, adjective = "half-ball", "half-round"
+
+    @property
+    def inner(self):
+        return (Arc((0.0, 0.0), self.inner_radius, 0.0, 0.5 * math.pi, INNER_WALL),)
+
+    @property
+    def outer(self):
+        return (Arc((0.0, 0.0), self.inner_radius + self.wall_thickness, 0.0, 0.5 * math.pi, OUTER_WALL),)
+
+
+class HalfHighCap(DomeShape):
+    """A cap of a sphere, half as high as its base is wide, of an even wall."""
+
+    key, adjective = "half-high-cap", "shallow"
+
+    @property
+    def sphere(self):
+        """Radius of the inner sphere: (R^2 + h^2) / 2h of a cap of radius R and height h = R/2."""
+        return 1.25 * self.inner_radius
+
+    def _arc(self, radius, tag):
+        centre = self.height_of_centre
+        return (Arc((0.0, centre), radius, math.asin(-centre / radius), 0.5 * math.pi, tag),)
+
+    @property
+    def height_of_centre(self):
+        return 0.5 * self.inner_radius - self.sphere
+
+    @property
+    def inner(self):
+        return self._arc(self.sphere, INNER_WALL)
+
+    @property
+    def outer(self):
+        return self._arc(self.sphere + self.wall_thickness, OUTER_WALL)
+
+
+class Thimble(DomeShape):
+    """A half ball on a cylinder as high as it is wide: faces of two pieces."""
+
+    key, adjective = "thimble", "thimble-shaped"
+
+    def _face(self, radius, tag):
+        high = 2.0 * self.inner_radius
+        return Line((radius, 0.0), (radius, high), tag), Arc((0.0, high), radius, 0.0, 0.5 * math.pi, tag)
+
+    @property
+    def inner(self):
+        return self._face(self.inner_radius, INNER_WALL)
+
+    @property
+    def outer(self):
+        return self._face(self.inner_radius + self.wall_thickness, OUTER_WALL)
