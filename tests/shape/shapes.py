@@ -5,21 +5,14 @@ from __future__ import annotations
 import math
 
 from pneutouch.shape.dome import INNER_WALL, OUTER_WALL, DomeShape
+from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.shape.meridian import Arc, Line
 
 
-class HalfBall(DomeShape):
+class HalfBall(Hemisphere):
     """A hemisphere, but not the one that closed forms and tables cover."""
 
     key, adjective = "half-ball", "half-round"
-
-    @property
-    def inner(self):
-        return (Arc((0.0, 0.0), self.inner_radius, 0.0, 0.5 * math.pi, INNER_WALL),)
-
-    @property
-    def outer(self):
-        return (Arc((0.0, 0.0), self.inner_radius + self.wall_thickness, 0.0, 0.5 * math.pi, OUTER_WALL),)
 
 
 class HalfHighCap(DomeShape):

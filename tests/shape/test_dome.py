@@ -14,6 +14,7 @@ from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome, nodes_along, printed_dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.shape import SHAPES
+from pneutouch.shape.dome import DomeShape
 from pneutouch.shape.hemisphere import Hemisphere, no_hemisphere
 from pneutouch.shape.meridian import Line, Meridian, sample
 from tests.shape.shapes import HalfBall, HalfHighCap, Thimble
@@ -108,9 +109,11 @@ def test_arc_positions_run_from_the_pole_to_the_rim_and_stay_there_below(shape):
     assert shape.arc_share(np.zeros(1), np.array([shape.height])) == pytest.approx(0.0, abs=1e-12)
 
 
-def test_the_arc_position_on_a_hemisphere_is_its_polar_angle():
-    r, z = np.random.default_rng(3).uniform(0.1, 11.0, (2, 40, 5))
-    assert Hemisphere(*SIZE).arc_share(r, z) == pytest.approx(np.arctan2(r, z) / (0.5 * np.pi), abs=1e-14)
+def test_the_wall_of_a_hemisphere_in_polar_form_is_that_between_its_faces():
+    shape, share, depth = Hemisphere(*SIZE), np.linspace(0.0, 1.0, 31), np.linspace(0.0, 1.0, 5)
+    assert shape.points(share, depth) == pytest.approx(DomeShape.points(shape, share, depth), abs=1e-14)
+    r, z = np.moveaxis(shape.points(share, depth), -1, 0)
+    assert shape.arc_share(r, z) == pytest.approx(DomeShape.arc_share(shape, r, z), abs=1e-14)
 
 
 def test_only_the_hemisphere_itself_is_one():

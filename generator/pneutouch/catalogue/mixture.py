@@ -244,8 +244,7 @@ def mixed_material(
             raise InputError(problem, file=file, key=label, value=value, remedy=remedy)
     arc = np.linspace(0.0, 1.0, _STATIONS)
     fraction = ArcProfile(grade.knots, grade.fractions)(arc)
-    # Rings around the axis, all of one width: their areas go with their radii.
-    weight = (shape or Membrane().dome).points(1.0 - arc, np.array([0.5]))[:, 0, 0]
+    weight = (shape or Membrane().dome).weights(arc)
     share = grade.fractions[0] if grade.is_constant else float(np.average(fraction, weights=weight))
     _check_soft(grade, law, fraction, file, key)
     content = _content(grade, soft, stiff, share)

@@ -2,6 +2,9 @@
 
 import math
 
+import numpy as np
+
+from pneutouch.arrays import Array
 from pneutouch.shape.dome import INNER_WALL, OUTER_WALL, DomeShape
 from pneutouch.shape.meridian import Arc
 
@@ -9,12 +12,10 @@ _QUARTER = 0.5 * math.pi
 
 
 class Hemisphere(DomeShape):
-    """Two half spheres about one centre in the base plane."""
+    """Two half spheres about one centre in the base plane; the wall in polar coordinates, which is exact and quick."""
 
     __slots__ = ()
-
-    key = "hemisphere"
-    adjective = "hemispherical"
+    key, adjective = "hemisphere", "hemispherical"
 
     @property
     def inner(self) -> tuple[Arc, ...]:
@@ -25,6 +26,19 @@ class Hemisphere(DomeShape):
     def outer(self) -> tuple[Arc, ...]:
         """The outer half sphere."""
         return (Arc((0.0, 0.0), self.inner_radius + self.wall_thickness, 0.0, _QUARTER, OUTER_WALL),)
+
+    def points(self, share: Array, depth: Array) -> Array:
+        """Points (n, m, 2) of the wall."""
+        angle, radius = _QUARTER * share[:, None], self.inner_radius + self.wall_thickness * depth
+        return np.stack([np.cos(angle) * radius, np.sin(angle) * radius], axis=-1)
+
+    def arc_share(self, radius: Array, height: Array) -> Array:
+        """Arc position of points: the angle off the axis."""
+        return np.asarray(np.clip(np.arctan2(radius, np.maximum(height, 0.0)) / _QUARTER, 0.0, 1.0))
+
+    def weights(self, arc: Array) -> Array:
+        """Weights of arc positions: the wall has its area even over the height."""
+        return np.asarray(np.sin(_QUARTER * arc))
 
 
 def no_hemisphere(shape: DomeShape) -> str | None:
