@@ -1,4 +1,4 @@
-"""Layout of the sensor: the radii and heights that the bodies and the drawing share.
+"""Layout of the sensor: the radii and heights that the bodies and the drawing share, and the membrane in it.
 
 The base plane is z = 0 and the dome points up. The membrane's rim goes on below the base plane as a
 flange; the seat holds it there, so the dome is clamped at z = 0.
@@ -14,10 +14,13 @@ flange; the seat holds it there, so the dome is clamped at z = 0.
 import math
 from dataclasses import dataclass
 
+from pneutouch.body import Solid
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.cast_ring import RingSize, ring_size
 from pneutouch.parts.port import PortShape, port_shape
 from pneutouch.shape.dome import DomeShape
+from pneutouch.shape.meridian import Line, Meridian
+from pneutouch.spec.material import Material
 from pneutouch.spec.part import BoltCircle, CastRing, ClampedFlange, OnePiece, RobotFlange, Sleeve
 
 HEAD_GAP = 0.5
@@ -244,3 +247,36 @@ def _channel_radius(scene: ResolvedDesign, port: PortShape) -> float:
     """The seat's channel; wider than a passage that crosses it, for two equal cylinders meet in a point."""
     channel = 0.5 * scene.seat.channel_diameter_mm
     return max(channel, port.passage + 0.25) if scene.mount.port_side == "side" else max(channel, port.passage)
+
+
+HELD = "held"
+"""Faces of the flange that the connector holds: the mechanics clamps them."""
+
+
+def membrane_meridian(layout: Layout) -> Meridian:
+    """Meridian from the pole inside, round the flange, back to the pole outside.
+
+    A cast flange opens downwards inside and out by its draft, so that it leaves core and ring; one that is cast around
+    a ring keeps its collar, upright outside. The meridian is then the outline of the silicone with the web in it.
+    """
+    inner, outer, flange = layout.inner_radius, layout.outer_radius, layout.flange_radius
+    low, draft = -layout.flange_thickness, layout.flange_draft
+    edge = draft if layout.ring is None else 0.0
+    return Meridian(
+        (
+            *(piece.reverse() for piece in reversed(layout.shape.inner)),
+            Line((inner, 0.0), (inner + draft, low), HELD),
+            Line((inner + draft, low), (flange, low), HELD),
+            Line((flange, low), (flange - edge, 0.0), HELD),
+            Line((flange - edge, 0.0), (outer, 0.0), "flange top"),
+            *layout.shape.outer,
+        )
+    )
+
+
+def membrane_solid(layout: Layout, material: Material) -> Solid:
+    """The membrane, without the volume that a ring takes of its flange."""
+    outline = membrane_meridian(layout)
+    if layout.ring is not None:
+        return layout.ring.enclosed("membrane", material, outline)
+    return Solid("membrane", "membrane", material, outline)

@@ -142,7 +142,7 @@ def _labels(ax: Axes, size: MouldSize) -> None:
     left = [
         ("window: silicone runs over here", (-0.6 * size.window, foot + 0.3 * shape.wall)),
         (f"vents Ø{shape.vent_diameter:g}, {size.gates - 1} of them", (-size.channel_radius, foot - 0.2 * size.foot)),
-        ("core with its foot", (-0.6 * size.faces.radius, 0.1 * low)),
+        ("core with its foot", (-0.6 * size.faces.rim.start[0], 0.1 * low)),
         ("silicone", (wall[0], wall[1])),
     ]
     if size.insert is not None:

@@ -263,6 +263,6 @@ def _corner(radius: float, fillet: float) -> Arc:
 def _handle(size: MouldSize) -> tuple[Bore, ...]:
     """A blind hole in the foot for a screw by which the core is drawn; none where the core is too small for it."""
     radius = 0.5 * (SCREW.core_diameter + size.shape.hole_undersize)
-    if size.faces.radius < 3 * radius:
+    if size.faces.rim.start[0] < 3 * radius:
         return ()
     return (Bore(0.0, 0.0, radius, size.foot_low, size.foot_low + min(_HANDLE_DEPTH, size.foot), closed="high"),)

@@ -88,11 +88,10 @@ class CavityFaces:
     @staticmethod
     def of(membrane: Meridian, factor: float) -> "CavityFaces":
         """The faces of a membrane's meridian, every length times ``factor``."""
-        inner, outer = (
-            tuple(scaled(piece, factor) for piece in membrane.tagged(tag)) for tag in (INNER_WALL, OUTER_WALL)
-        )
-        pieces = (scaled(piece, factor) for piece in membrane.pieces if piece.tag not in (INNER_WALL, OUTER_WALL))
-        rim, underside, edge, top = (piece for piece in pieces if isinstance(piece, Line))
+        whole = Meridian(tuple(scaled(piece, factor) for piece in membrane.pieces))
+        inner, outer = (tuple(whole.tagged(tag)) for tag in (INNER_WALL, OUTER_WALL))
+        flange = whole.pieces[len(inner) : -len(outer)]
+        rim, underside, edge, top = (piece for piece in flange if isinstance(piece, Line))
         return CavityFaces(inner, rim, underside, edge, top, outer)
 
     def keeping(self, underside: Line, edge: Line) -> "CavityFaces":
@@ -116,11 +115,6 @@ class CavityFaces:
     def high(self) -> float:
         """Height of the pole outside."""
         return self.outer[-1].end[1]
-
-    @property
-    def radius(self) -> float:
-        """Radius of the core at the base plane."""
-        return self.rim.start[0]
 
     @property
     def halfway(self) -> tuple[Point, Point]:
