@@ -44,9 +44,7 @@ class OneOf:
         """Refuse another text as a literal is refused."""
         return no_info_after_validator_function(self._checked, handler(source))
 
-    def __get_pydantic_json_schema__(
-        self, core: CoreSchema, handler: Callable[[CoreSchema], JsonValue]
-    ) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: Any) -> dict[str, Any]:
         """The schema with the names."""
         return {**handler(core), "enum": list(self.names())}
 

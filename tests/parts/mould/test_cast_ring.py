@@ -119,8 +119,8 @@ def test_the_ring_keeps_its_size_and_what_it_holds_while_the_dome_shrinks():
     assembly = made(mould__shrinkage_percent=2.0)
     size, layout = assembly.mould.size, assembly.layout
     assert size.insert == layout.ring and assembly.mould.insert == assembly.solid("ring")
-    assert size.faces.inner.radius * 0.98 == pytest.approx(layout.inner_radius, rel=1e-12)
-    assert size.faces.outer.radius * 0.98 == pytest.approx(layout.outer_radius, rel=1e-12)
+    assert size.faces.rim.start[0] * 0.98 == pytest.approx(layout.inner_radius, rel=1e-12)
+    assert size.faces.high * 0.98 == pytest.approx(layout.outer_radius, rel=1e-12)
     assert (size.low, size.faces.edge.start[0]) == (layout.plate_high, layout.flange_radius)
     unshrunk = made(mould__shrinkage_percent=0.0)
     assert unshrunk.mould.size.cavity_volume == pytest.approx(unshrunk.solids[0].volume, rel=1e-12)

@@ -56,7 +56,7 @@ def test_the_membrane_of_a_mould_is_the_one_of_the_design():
     made = mould(mould__shrinkage_percent=2.0)
     designed = membrane_meridian(lay_out(made.scene))
     assert made.size.faces.meridian.volume() * 0.98**3 == pytest.approx(designed.volume(), rel=1e-12)
-    shrunk = made.size.faces.inner.radius * 0.98, made.size.faces.outer.radius * 0.98
+    shrunk = made.size.faces.rim.start[0] * 0.98, made.size.faces.high * 0.98
     assert shrunk == pytest.approx((9.25, 10.75), rel=1e-12)
 
 
@@ -135,11 +135,11 @@ def test_an_undercut_and_an_overlap_are_seen():
     places = undercuts(replace(size, faces=lean), [wrong], made.tolerance)
     assert {place.part for place in places} == {"mould-ring"}
     # A core with a bulge under its dome, as a neck would need.
-    inner = size.faces.inner
+    (inner,) = size.faces.inner
     low = -math.atan2(0.5, inner.radius)
     bulged = Arc((0.0, 0.5), math.hypot(inner.radius, 0.5), math.pi / 2, low, inner.tag)
-    body = core(replace(size, faces=replace(size.faces, inner=bulged)), made.material).mesh(made.tolerance)
-    assert undercuts(replace(size, faces=replace(size.faces, inner=bulged)), [body], made.tolerance)
+    body = core(replace(size, faces=replace(size.faces, inner=(bulged,))), made.material).mesh(made.tolerance)
+    assert undercuts(replace(size, faces=replace(size.faces, inner=(bulged,))), [body], made.tolerance)
     moved: list[Body] = [made.bodies[0], made.bodies[1].moved(np.array([0.0, 0.0, 0.1]))]
     assert set(overlaps(moved)) == {("mould-cap", "mould-ring")}
 
