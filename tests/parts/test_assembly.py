@@ -110,7 +110,7 @@ def test_fit_clearance_follows_the_print_profiles():
 
 def test_cavity_and_internal_volume_are_exact():
     assembly = assemble(load_scene("long-tube", None, LIBRARY))
-    assert assembly.cavity_volume == pytest.approx(2 / 3 * math.pi * 9.25**3, rel=1e-12)
+    assert assembly.layout.shape.cavity_volume == pytest.approx(2 / 3 * math.pi * 9.25**3, rel=1e-12)
     layout, port = assembly.layout, assembly.scene.port
     channel = math.pi * layout.channel_radius**2 * -layout.plate_low
     bore = math.pi * (0.5 * port.bore_diameter) ** 2 * (port.stem_length + port.barb_length)

@@ -16,9 +16,11 @@ from pneutouch.printability.measure.mould import cavity_match
 from pneutouch.schemas import schema_of
 from pneutouch.shape import SHAPES
 from pneutouch.shape.hemisphere import Hemisphere
+from pneutouch.spec.calibration import CalibratedDesign, SensorCalibration
 from pneutouch.spec.design import DesignFile, Membrane
 from pneutouch.spec.read import validate
 from pneutouch.workflows.build import build
+from pneutouch.workflows.select.base import check_central
 from tests.shape.shapes import HalfBall, HalfHighCap, Thimble
 
 ADDED = (HalfBall, HalfHighCap, Thimble)
@@ -132,7 +134,7 @@ def test_other_shapes_are_drawn_solved_and_pressed(kind):
     shape, assembly, (state,) = kind(9.25, 1.5), evaluation.assembly, evaluation.prediction.states
     assert (state.apex_inner, state.apex_outer) == pytest.approx((shape.height, shape.outer_height))
     assert state.cavity_volume == pytest.approx(shape.cavity_volume, rel=1e-5)
-    assert assembly.cavity_volume == shape.cavity_volume
+    assert assembly.layout.shape.cavity_volume == shape.cavity_volume
     assert assembly.bodies[0].volume == pytest.approx(assembly.solids[0].volume, rel=1e-3)
     assert assembly.bodies[0].bounds[1, 2] == pytest.approx(shape.outer_height, abs=0.02)
     assert evaluation.sensor.protocol.depth == pytest.approx(0.75 * shape.height)
@@ -156,3 +158,20 @@ def test_the_moving_mass_goes_with_the_square_of_the_height():
         assert share.mass == pytest.approx(1000.0 * 1e-9 * volume / 3.0, rel=1e-4)
         assert 1e3 * share.centre[2] == pytest.approx(0.5 * shape.height, rel=1e-4)
         assert arc > shape.height
+
+
+def test_no_search_is_made_in_a_shape_that_the_atlas_does_not_cover():
+    scene = load_scene("paper-dome", {SHAPE: "half-ball"})
+    with pytest.raises(InputError) as caught:
+        check_central(scene)
+    assert (caught.value.key, caught.value.value, caught.value.file) == (SHAPE, "half-ball", scene.where)
+    check_central(load_scene("paper-dome"))
+
+
+def test_a_calibration_of_one_shape_is_not_taken_for_another():
+    made = CalibratedDesign(
+        name="x", material="TangoPlus", inner_radius_mm=9.25, wall_thickness_mm=1.5, dead_volume_mL=0.0
+    )
+    calibration = SensorCalibration.model_construct(design=made)
+    assert calibration.misfit("TangoPlus", 9.25, 1.5, "hemisphere") is None
+    assert "half-ball" in str(calibration.misfit("TangoPlus", 9.25, 1.5, "half-ball"))

@@ -87,11 +87,6 @@ class Assembly:
         """Greatest distance in mm of a body's mesh from its exact surface, measured on dense points."""
         return float(self.solid(body.name).distance(body.surface_points()).max())
 
-    @cached_property
-    def cavity_volume(self) -> float:
-        """Volume under the unloaded dome down to the base plane, mm3."""
-        return self.layout.shape.cavity_volume
-
     @property
     def seat_area(self) -> float:
         """Area in mm2 of the faces that membrane and connector share; 0 where the flange is clamped."""

@@ -20,6 +20,7 @@ from pneutouch.mechanics.models.atlas import resin_outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.selection.mixes import levels
 from pneutouch.selection.problem import CandidateResin
+from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.spec.design import CALIBRATION, DesignFile
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
@@ -178,8 +179,13 @@ def _base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
 
 
 def check_central(scene: ResolvedDesign) -> None:
-    """Raise InputError for contact off the axis, with which no search is made."""
-    contact = scene.design.contact
+    """Raise InputError for contact off the axis and for other shapes, with which no search is made."""
+    contact, membrane = scene.design.contact, scene.design.membrane
+    why = no_hemisphere(membrane.dome)
+    if why is not None:
+        raise InputError(
+            f"the atlas finds designs: {why}", file=scene.where, key="membrane.shape", value=membrane.shape
+        )
     if not contact.off_axis:
         return
     key, value = next(iter(contact.off_axis.items()))
