@@ -131,8 +131,9 @@ def test_one_response_one_prediction(both):
 def test_a_batch_has_every_number_of_the_sensor():
     batch = batch_of(SENSOR, PRESSURES)
     assert len(batch) == 3 and batch.driving_pressure.tolist() == PRESSURES.tolist()
+    parts = asdict(SENSOR)
     shared = [f.name for f in fields(batch) if f.name != "driving_pressure"]
-    numbers = {name: value for part in asdict(SENSOR).values() for name, value in part.items()}
+    numbers = {name: value for part in (*parts.values(), parts["dome"]["shape"]) for name, value in part.items()}
     assert all((getattr(batch, name) == numbers[name]).all() for name in shared)
 
 

@@ -20,6 +20,7 @@ from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, SolverState, minimise, stability
 from pneutouch.mechanics.solid.object_contact import Plate
 from pneutouch.mechanics.solid.stress import StrainProbe
+from pneutouch.shape.hemisphere import Hemisphere
 
 _HOLDS = (1.0e3, 1.0e2, 1.0e4)
 """Stiffnesses in mu/R0^3 that hold the volume, tried in turn; the state keeps the volume it really has."""
@@ -90,7 +91,9 @@ class AtlasSampler:
 
     def __init__(self, wall_ratio: float, recipe: AtlasRecipe) -> None:
         self.recipe = recipe
-        self.solid = SolidModel(dome(1.0, wall_ratio), neo_hookean(1.0, recipe.poisson_ratio), base=RigidBase())
+        self.solid = SolidModel(
+            dome(Hemisphere(1.0, wall_ratio)), neo_hookean(1.0, recipe.poisson_ratio), base=RigidBase()
+        )
         self.probe = StrainProbe(self.solid)
         self.run = run = inflate(self.solid, past_limit=1.2)
         if run.limit is None:

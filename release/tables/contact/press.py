@@ -20,6 +20,7 @@ from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch,
 from pneutouch.mechanics.solid.mesh import arc_cells, dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe
+from pneutouch.shape.hemisphere import Hemisphere
 
 _AMBIENT = 0.05
 """Least ambient pressure in mu; a softer gas is one with more volume behind the cavity."""
@@ -47,7 +48,7 @@ class ReadingCurve(NamedTuple):
 
 @lru_cache(maxsize=8)
 def _inflated(wall: float, cells: int, poisson_ratio: float) -> tuple[StrainProbe, Inflation]:
-    solid = SolidModel(dome(1.0, wall, arc=cells), neo_hookean(1.0, poisson_ratio), base=RigidBase())
+    solid = SolidModel(dome(Hemisphere(1.0, wall), arc=cells), neo_hookean(1.0, poisson_ratio), base=RigidBase())
     run = inflate(solid, past_limit=1.02)
     if run.limit is None:
         raise ComputationError(f"t0/R0 = {wall:g}: no limit point: {run.why_no_limit}")
@@ -56,7 +57,10 @@ def _inflated(wall: float, cells: int, poisson_ratio: float) -> tuple[StrainProb
 
 def central_cells(wall: float, curvature: float) -> int:
     """Cells along the arc of the solid by default, for an object of a curvature, R0 over its radius."""
-    return max(arc_cells(wall), int(np.ceil(CELLS_PER_RADIUS * 0.5 * np.pi * (1.0 + wall) * curvature)))
+    return max(
+        int(arc_cells(0.5 * np.pi, np.array(wall))),
+        int(np.ceil(CELLS_PER_RADIUS * 0.5 * np.pi * (1.0 + wall) * curvature)),
+    )
 
 
 def pressed(
