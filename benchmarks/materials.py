@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.store import LIBRARY, store
-from pneutouch.bench.tensile.fit import LawForm
+from pneutouch.bench.tensile.law_fit import LawForm
 from pneutouch.errors import BeyondLimitError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.limits import Limits

@@ -18,8 +18,8 @@ from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.results.record import plain
 from pneutouch.texture.scalogram import scalogram
-from pneutouch.texture.scan import scan
 from pneutouch.texture.separate import BarPattern, amplitudes, noise_amplitude, recommend
+from pneutouch.texture.sliding import scan
 from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate, amplitude
 from pneutouch.units import KPA
 from pneutouch.workflows.scan import ScanOptions, run_scan

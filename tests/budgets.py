@@ -9,6 +9,7 @@ import ast
 import re
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -103,6 +104,12 @@ def loaded_lines() -> int:
     return lines_of(loaded())
 
 
+def files_of_one_name() -> int:
+    """Greatest number of files of the package that have one name."""
+    names = Counter(path.name for path in sources(PACKAGE) if path.name != "__init__.py")
+    return max(names.values())
+
+
 _WORDING = re.compile(r"""assert .*["'][^"']* [^"']*["'] (not )?in |match=r?["'][^"']* """)
 
 
@@ -124,6 +131,7 @@ BUDGETS = (
     Budget("lines in these", loaded_lines, 22_500, 18_000),
     Budget("classes that hold a sensitivity, solver to sheet", classes_with_a_sensitivity, 11, 5),
     Budget(f"files with the key {KEY}", files_with_the_key, 72, 30),
+    Budget("files of one name", files_of_one_name, 4, 3),
     Budget("lines of tests that assert wording", wording_lines, 690, 600),
 )
 

@@ -22,7 +22,7 @@ from pneutouch.evaluation.comparison import (
 from pneutouch.evaluation.uncertainty import known
 from pneutouch.mechanics.atlas.figures import DEAD, FIGURES, INPUTS, log_figures, moved
 from pneutouch.mechanics.uncertainty.source import FIGURE
-from pneutouch.mechanics.uncertainty.sources.model import MODEL_CORRELATION, table_s1_errors
+from pneutouch.mechanics.uncertainty.sources.model_error import MODEL_CORRELATION, table_s1_errors
 from pneutouch.results.record import plain as data
 from pneutouch.spec.material import Material
 

@@ -44,7 +44,7 @@ def read_target(path: Path) -> object:
 
 
 def read_sweep(path: Path) -> object:
-    from pneutouch.workflows.sweep.plan import plan_of_file
+    from pneutouch.workflows.sweep.grid import plan_of_file
 
     return plan_of_file(path)
 

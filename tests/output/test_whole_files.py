@@ -11,7 +11,7 @@ import pytest
 from pneutouch.errors import InputError
 from pneutouch.output.files import create_file, replace_file, replace_files
 from pneutouch.output.new import new_design, new_from, write_design
-from pneutouch.workflows.calibrate.files import SavedCalibration, save
+from pneutouch.workflows.calibrate.calibration_files import SavedCalibration, save
 from pneutouch.workflows.coupons import MeasuredProfile, write_profiles
 from tests.running import files_of_at_most
 

@@ -19,7 +19,7 @@ from pneutouch.spec.target import Target
 from pneutouch.spec.tasks import TaskFile
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.spec.tray import Tray
-from pneutouch.workflows.sweep.plan import plan_of_file
+from pneutouch.workflows.sweep.grid import plan_of_file
 from tests.conftest import ROOT
 from tests.evaluation.calibrated import CONTENT
 from tests.stability.fuzz.cases import RESULTS

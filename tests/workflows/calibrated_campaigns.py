@@ -9,14 +9,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pneutouch.bench.calibrate.model import FLOOR
+from pneutouch.bench.calibrate.fitted_atlas import FLOOR
 from pneutouch.bench.simulate import ModelDeviation, ScatterModel, SimulationTruth
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.models.accuracy import NUMERICAL
 from pneutouch.mechanics.uncertainty.sources.calibrated import FORCE_GAUGE
-from pneutouch.mechanics.uncertainty.sources.model import GAUGE
+from pneutouch.mechanics.uncertainty.sources.model_error import GAUGE
 from pneutouch.spec.read import assignments
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.calibrate.calibrate import CalibrationOptions, run_calibration

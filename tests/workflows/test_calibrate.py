@@ -20,7 +20,7 @@ from pneutouch.results.record import plain
 from pneutouch.spec.campaign import Campaign, CampaignRun
 from pneutouch.units import KPA
 from pneutouch.workflows.calibrate.calibrate import with_further_tests
-from pneutouch.workflows.calibrate.files import (
+from pneutouch.workflows.calibrate.calibration_files import (
     CampaignSource,
     calibration_content,
     check_place,

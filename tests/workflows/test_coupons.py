@@ -15,7 +15,7 @@ from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.parts.coupons import COUPONS
 from pneutouch.spec.coupon import CouponResults
-from pneutouch.workflows.coupons.build import build_coupons, lay
+from pneutouch.workflows.coupons.make import build_coupons, lay
 from pneutouch.workflows.coupons.order import CouponOptions, order, results_template
 from tests.conftest import ROOT
 from tests.export.threemf_files import read_strictly

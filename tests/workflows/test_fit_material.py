@@ -8,7 +8,7 @@ import tomllib
 import numpy as np
 import pytest
 
-from pneutouch.bench.tensile.fit import tension
+from pneutouch.bench.tensile.law_fit import tension
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.mechanics.paper_sensor import material_sensor

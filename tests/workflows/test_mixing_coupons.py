@@ -18,7 +18,7 @@ from pneutouch.mechanics.paper_sensor import shore_a
 from pneutouch.spec.coupon import read_results
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.toml_text import toml_text
-from pneutouch.workflows.coupons.build import build_coupons, lay
+from pneutouch.workflows.coupons.make import build_coupons, lay
 from pneutouch.workflows.coupons.order import FRACTIONS, CouponOptions, order, results_template
 from pneutouch.workflows.coupons.results import enter_results
 from tests.conftest import ROOT

@@ -17,7 +17,7 @@ from pneutouch.parts.mould import mould_of
 from pneutouch.report.mould import mould_rows, mould_section
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.build_mould import exploded, mould_files, mould_record
-from pneutouch.workflows.coupons.build import build_coupons
+from pneutouch.workflows.coupons.make import build_coupons
 from pneutouch.workflows.coupons.order import CouponOptions
 
 

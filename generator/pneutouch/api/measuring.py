@@ -42,7 +42,7 @@ def scan(
     ``speed_mm_per_s`` None: the specimen's. ``noise_kPa`` is rms of a sample, None: a step of the recorder. ``data``
     are measured signals (CSV). Raises InputError if the scan cannot be.
     """
-    from pneutouch.texture.scan import NOISE
+    from pneutouch.texture.sliding import NOISE
     from pneutouch.workflows.scan import ScanOptions, run_scan
     from pneutouch.workflows.scanned import scanned, write_scan
 

@@ -79,7 +79,7 @@ def coupons(
         if results is not None:
             _enter(results, out, given, json)
             return
-        from pneutouch.workflows.coupons.build import RESULTS, SHEET, build_coupons
+        from pneutouch.workflows.coupons.make import RESULTS, SHEET, build_coupons
 
         order = _options(given)
         with bar("making coupons"):

@@ -105,7 +105,7 @@ def _options(
 ) -> ScanOptions:
     from pneutouch.errors import InputError
     from pneutouch.spec.values import plain_number
-    from pneutouch.texture.scan import NOISE
+    from pneutouch.texture.sliding import NOISE
     from pneutouch.units import KPA
     from pneutouch.workflows.scan import ScanOptions
 

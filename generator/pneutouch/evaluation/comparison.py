@@ -20,7 +20,7 @@ from pneutouch.arrays import Array
 from pneutouch.bench.figures import line_figures
 from pneutouch.errors import InputError
 from pneutouch.mechanics.response import figures
-from pneutouch.mechanics.uncertainty.sources.model import MODEL, MODEL_CORRELATION
+from pneutouch.mechanics.uncertainty.sources.model_error import MODEL, MODEL_CORRELATION
 from pneutouch.results.comparison import (
     ColumnRecord,
     ComparedCurve,

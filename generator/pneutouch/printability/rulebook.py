@@ -13,7 +13,7 @@ from pneutouch.printability.rules import (
     build_volume,
     casting,
     cleaning,
-    driving,
+    driving_pressure,
     faces,
     feature_sizes,
     joints,
@@ -47,7 +47,7 @@ RULES: dict[str, Rule] = {
     "bubbles": casting.bubbles,
     "inhibition": casting.inhibition,
     "glue": joints.check_glue,
-    "driving": driving.check_driving,
+    "driving": driving_pressure.check_driving,
     "mixing curve": resins.check_mixing_curve,
     "freedom": joints.check_freedom,
 }
@@ -57,7 +57,7 @@ def check(subject: PrintSubject, sensor_context: SensorContext | None = None) ->
     """All findings, errors first.
 
     Bodies whose mesh bounds no solid get the findings that need none: mesh, envelope and resins. Rules on the sensor's
-    working (driving, layers, mixing curve) and on casting report nothing without ``sensor_context``.
+    working (driving_pressure, layers, mixing curve) and on casting report nothing without ``sensor_context``.
     """
     view = PrintView(subject, sensor_context)
     return sorted((finding for rule in RULES.values() for finding in rule(view)), key=lambda finding: finding.rank)

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.bench.tensile.choose import MISFIT, NEO_HOOKEAN, LawChoice, choose_law
-from pneutouch.bench.tensile.fit import LawFit, difference
+from pneutouch.bench.tensile.law_fit import LawFit, difference
 from pneutouch.bench.tensile.puck import fit_puck
 from pneutouch.bench.tensile.read import read_tension
 from pneutouch.catalogue import Library, user_folder

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.bench.tensile.choose import LawChoice
-from pneutouch.bench.tensile.fit import LawFit
+from pneutouch.bench.tensile.law_fit import LawFit
 from pneutouch.bench.tensile.puck import PuckFit, PuckSize
 from pneutouch.bench.tensile.read import SpecimenSize
 from pneutouch.catalogue import KINDS, Library

@@ -21,8 +21,8 @@ from pneutouch.spec.read import Changes
 from pneutouch.spec.specimen import Bars
 from pneutouch.texture.contact import PreloadContact, touch
 from pneutouch.texture.detect import Detection, detect, least_duration
-from pneutouch.texture.scan import CONTROLS, NOISE, PRELOAD, Recorder, ScanPath, TextureScan, scan
 from pneutouch.texture.signal import Signal, read_signal
+from pneutouch.texture.sliding import CONTROLS, NOISE, PRELOAD, Recorder, ScanPath, TextureScan, scan
 from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate
 from pneutouch.units import KPA
 from pneutouch.workflows.specimen import ResolvedSpecimen, draw, load_specimen
@@ -99,7 +99,7 @@ def run_scan(
 ) -> ScanRun:
     """Scan a specimen with a sensor, both by name or path; ``changes`` are of the design.
 
-    Raises InputError if that is impossible: see `texture.contact`, `texture.scan`, `texture.detect`.
+    Raises InputError if that is impossible: see `texture.contact`, `texture.sliding`, `texture.detect`.
     """
     library = library or Library.default()
     check_options(options)

@@ -16,9 +16,9 @@ from pneutouch.results.scan import BarsRecord, ScanRecord, SignalRecord, Simulat
 from pneutouch.rounding import rounded
 from pneutouch.texture.detect import Detection
 from pneutouch.texture.scalogram import scalogram
-from pneutouch.texture.scan import NOISE, RATE, STEP, pressure_amplitude
 from pneutouch.texture.separate import noise_amplitude
 from pneutouch.texture.signal import Signal, decimated
+from pneutouch.texture.sliding import NOISE, RATE, STEP, pressure_amplitude
 from pneutouch.texture.substrate import FIRST_ZERO, BarRow, patch_filter
 from pneutouch.units import KPA
 from pneutouch.workflows.scan import AnalysedSignal, ScanRun

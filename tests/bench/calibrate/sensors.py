@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pneutouch.bench.calibrate import Injection, Observations, parameters
-from pneutouch.bench.calibrate.model import injected
+from pneutouch.bench.calibrate.fitted_atlas import injected
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond

@@ -10,7 +10,7 @@ import numpy as np
 
 from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.calibrate import CalibrationFit, CalibrationParameters, Observations, fit
-from pneutouch.bench.calibrate.model import FLOOR, _shape
+from pneutouch.bench.calibrate.fitted_atlas import FLOOR, _shape
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET_PRIOR
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.record import MeasuredCurve

@@ -9,8 +9,8 @@ import pytest
 from scipy.stats import norm
 
 from pneutouch.bench.calibrate import USUAL, Observations, fit, parameters
+from pneutouch.bench.calibrate.fitted_atlas import FLOOR, shared_of
 from pneutouch.bench.calibrate.intervals import _half
-from pneutouch.bench.calibrate.model import FLOOR, shared_of
 from pneutouch.bench.calibrate.observations import points_of
 from pneutouch.bench.calibrate.parameters import WALL
 from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, other

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.calibrate import NAMES, Observations, fit
+from pneutouch.bench.calibrate.fitted_atlas import FLOOR
 from pneutouch.bench.calibrate.goodness import misses, residuals
-from pneutouch.bench.calibrate.model import FLOOR
 from pneutouch.bench.calibrate.notes import gain_shifts
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET, USUAL, WALL
 from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, exact, injections, other

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.calibrate import Observations, fit
+from pneutouch.bench.calibrate.fitted_atlas import FittedContact
 from pneutouch.bench.calibrate.goodness import misses
 from pneutouch.bench.calibrate.identify import identify
-from pneutouch.bench.calibrate.model import FittedContact
 from pneutouch.bench.calibrate.parameters import FRICTION, MODULUS, NAMES, USUAL, parse_names
 from pneutouch.catalogue import load_scene
 from pneutouch.errors import InputError
@@ -16,7 +16,7 @@ from pneutouch.mechanics.corrected.figures import GRIPS
 from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.units import KPA
-from pneutouch.workflows.calibrate.files import CampaignSource, savable
+from pneutouch.workflows.calibrate.calibration_files import CampaignSource, savable
 from pneutouch.workflows.calibrate.fit import calibrate
 from tests.bench.calibrate.sensors import chosen, disturbed
 

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pneutouch.bench.calibrate.model import injected
+from pneutouch.bench.calibrate.fitted_atlas import injected
 from pneutouch.bench.calibrate.other_states import _volume
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.paper_sensor import material_sensor

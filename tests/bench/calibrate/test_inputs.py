@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.calibrate import Injection, Observations, fit
-from pneutouch.bench.calibrate.model import TRAVEL, shared_of
+from pneutouch.bench.calibrate.fitted_atlas import TRAVEL, shared_of
 from pneutouch.bench.calibrate.observations import points_of
 from pneutouch.bench.calibrate.parameters import parse_names
 from pneutouch.bench.record import MeasuredCurve, MeasuredIndentation

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pneutouch.bench.tensile.choose import FORMS, MISFIT, choose_law, instability, reached_stretch
-from pneutouch.bench.tensile.fit import LawForm, TensionCurve, fit_law, tension
+from pneutouch.bench.tensile.law_fit import LawForm, TensionCurve, fit_law, tension
 from pneutouch.errors import InputError
 from pneutouch.mechanics.laws import hyperelastic
 from pneutouch.mechanics.laws.hyperelastic import first_invariant, same_invariant

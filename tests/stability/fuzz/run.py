@@ -42,7 +42,7 @@ LEFT_OUT = (
     "pneutouch.workflows.compare._parts",
     "pneutouch.workflows.characterize.campaign.answers",
     "pneutouch.report.measured.sheet.measured_datasheet",
-    "pneutouch.workflows.coupons.build.lay",
+    "pneutouch.workflows.coupons.make.lay",
     "pneutouch.workflows.export_reader.reader_grid",
     "pneutouch.workflows.respond.run_respond",
     "pneutouch.workflows.scan.draw",

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
+from pneutouch.bench.calibrate.fitted_atlas import FLOOR, AtlasModel, FittedContact, SharedUnknowns, shared_of, sizes_of
 from pneutouch.bench.calibrate.intervals import Covariance, covariance, factor, half_widths
-from pneutouch.bench.calibrate.model import FLOOR, AtlasModel, FittedContact, SharedUnknowns, shared_of, sizes_of
 from pneutouch.bench.calibrate.observations import ObservationPoints, Observations, points_of
 from pneutouch.bench.calibrate.parameters import MODULUS, NAMES, CalibrationParameters
 from pneutouch.bench.calibrate.solve import LeastSquaresProblem, LeastSquaresSolution, solve

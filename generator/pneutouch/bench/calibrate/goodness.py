@@ -15,7 +15,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.bench.calibrate.fit import CalibrationFit
-from pneutouch.bench.calibrate.model import FLOOR, LARGEST
+from pneutouch.bench.calibrate.fitted_atlas import FLOOR, LARGEST
 from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.results.calibration import MissRecord

@@ -7,7 +7,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.fit import CalibrationFit
-from pneutouch.bench.calibrate.model import free_pressure, shared_of
+from pneutouch.bench.calibrate.fitted_atlas import free_pressure, shared_of
 from pneutouch.bench.calibrate.observations import ATLAS_FORCE, ATLAS_PRESSURE, READING, ObservationPoints
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, NAMES, WALL
 from pneutouch.bench.protocol import REPETITIONS, SHARE

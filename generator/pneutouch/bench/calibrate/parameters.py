@@ -14,7 +14,7 @@ from pneutouch.mechanics.corrected.figures import GRIPS
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.contact_model import SPREAD
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
-from pneutouch.mechanics.uncertainty.sources.model import build_sources
+from pneutouch.mechanics.uncertainty.sources.model_error import build_sources
 from pneutouch.mechanics.uncertainty.sources.modulus import modulus_sources
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer

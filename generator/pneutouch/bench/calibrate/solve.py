@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.bench.calibrate.model import AtlasModel
+from pneutouch.bench.calibrate.fitted_atlas import AtlasModel
 from pneutouch.bench.calibrate.parameters import CalibrationParameters
 from pneutouch.errors import ComputationError
 

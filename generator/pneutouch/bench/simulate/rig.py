@@ -14,7 +14,7 @@ from pneutouch.arrays import Array
 from pneutouch.bench.simulate.scatter import parameter
 from pneutouch.errors import InputError
 from pneutouch.mechanics.gauge_reading import GaugeReading
-from pneutouch.texture.scan import NOISE, STEP
+from pneutouch.texture.sliding import NOISE, STEP
 from pneutouch.units import GAUGE_LIMIT, KPA
 
 MINUTE = 60.0
@@ -34,7 +34,7 @@ class RigModel:
         NOISE, "MPa rms", "white noise of a sample before the filter: one step of the recorder"
     )
     pressure_step: float = parameter(
-        STEP, "MPa", "step of the recorder, 16 bits over +-10 V at 50 kPa/V (see texture.scan)"
+        STEP, "MPa", "step of the recorder, 16 bits over +-10 V at 50 kPa/V (see texture.sliding)"
     )
     cutoff: float = parameter(30.0, "Hz", "first-order low pass on force and pressure alike: our choice")
     force_range: float = parameter(40.0, "N", "ATI SI-40-2, where its reading stops")

@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.tensile.fit import LawFit, LawForm, TensionCurve, fit_law, joined_points, tension_basis
+from pneutouch.bench.tensile.law_fit import LawFit, LawForm, TensionCurve, fit_law, joined_points, tension_basis
 from pneutouch.errors import InputError
 from pneutouch.mechanics.laws import Hyperelastic, hyperelastic
 from pneutouch.mechanics.laws.hyperelastic import first_invariant

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.tensile.fit import LawForm, TensionCurve, fit_law
+from pneutouch.bench.tensile.law_fit import LawForm, TensionCurve, fit_law
 from pneutouch.errors import InputError
 from pneutouch.spec.material import STIFFEST_ELASTOMER_MPA
 from pneutouch.tables.layout import TableLayout

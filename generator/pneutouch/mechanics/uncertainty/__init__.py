@@ -4,7 +4,7 @@ from pneutouch.mechanics.uncertainty.budget import budget, monte_carlo
 from pneutouch.mechanics.uncertainty.document import GasNotes, document, gas_notes, gas_text, shares, text
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
-from pneutouch.mechanics.uncertainty.sources.model import ModelErrors, measured_errors, model_errors
+from pneutouch.mechanics.uncertainty.sources.model_error import ModelErrors, measured_errors, model_errors
 
 __all__ = [
     "COVERAGE",

@@ -17,7 +17,7 @@ from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.propagate import Budget, propagate
 from pneutouch.mechanics.uncertainty.source import FIGURE, JOINT, UncertaintySource
 from pneutouch.mechanics.uncertainty.sources import sources
-from pneutouch.mechanics.uncertainty.sources.model import ModelErrors
+from pneutouch.mechanics.uncertainty.sources.model_error import ModelErrors
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer

@@ -15,7 +15,7 @@ from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.line.air import ADIABATIC, REFERENCE_TEMPERATURE
 from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
-from pneutouch.mechanics.uncertainty.sources.model import FRICTION, PLACE
+from pneutouch.mechanics.uncertainty.sources.model_error import FRICTION, PLACE
 from pneutouch.mechanics.uncertainty.sources.modulus import AGEING
 from pneutouch.results.uncertainty import FigureRecord, IntervalRecord, UncertaintyRecord
 from pneutouch.units import KPA

@@ -20,7 +20,7 @@ from pneutouch.mechanics.atlas.figures import DEAD, FIGURES, INPUTS, log_figures
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
 from pneutouch.mechanics.uncertainty.sources import sources
-from pneutouch.mechanics.uncertainty.sources.model import ModelErrors
+from pneutouch.mechanics.uncertainty.sources.model_error import ModelErrors
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer

@@ -25,7 +25,7 @@ from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.campaign import CAMPAIGN
 from pneutouch.spec.design import CALIBRATION
 from pneutouch.spec.read import parse_changes
-from pneutouch.workflows.calibrate.files import (
+from pneutouch.workflows.calibrate.calibration_files import (
     CampaignSource,
     check_place,
     check_unlike,

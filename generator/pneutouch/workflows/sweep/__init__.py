@@ -1,6 +1,6 @@
 """Many designs to one dataset: planned, computed in pieces that survive a kill, written whole or not at all."""
 
 from pneutouch.workflows.sweep.execute import SweepResult, sweep
-from pneutouch.workflows.sweep.plan import SweepAxis, SweepPlan, plan_of_file, plan_of_flags, plan_of_grid
+from pneutouch.workflows.sweep.grid import SweepAxis, SweepPlan, plan_of_file, plan_of_flags, plan_of_grid
 
 __all__ = ["SweepAxis", "SweepPlan", "SweepResult", "plan_of_file", "plan_of_flags", "plan_of_grid", "sweep"]

@@ -25,8 +25,8 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.files import check_plain, oversized
 from pneutouch.tables.csv_table import csv_bytes
+from pneutouch.workflows.sweep.grid import PRESSURES, SweepPlan, takes_words
 from pneutouch.workflows.sweep.journal import check_output
-from pneutouch.workflows.sweep.plan import PRESSURES, SweepPlan, takes_words
 from pneutouch.workflows.sweep.variables import POINT, STATE, SweepVariable
 from pneutouch.workflows.sweep.work import Record, SweepStudy
 

@@ -10,8 +10,8 @@ from pneutouch.catalogue import Library
 from pneutouch.errors import ComputationError, InputError, joined
 from pneutouch.stopping import uninterrupted
 from pneutouch.workflows.sweep.dataset import dataset, netcdf, stored_dataset, stored_fingerprint
+from pneutouch.workflows.sweep.grid import SweepPlan
 from pneutouch.workflows.sweep.journal import Journal, WorkFolder
-from pneutouch.workflows.sweep.plan import SweepPlan
 from pneutouch.workflows.sweep.work import Record, SweepStudy, chunks, study, unpack
 from pneutouch.workflows.sweep.workers import cores, in_pool, in_process, on_cluster
 

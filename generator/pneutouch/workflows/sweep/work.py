@@ -24,7 +24,7 @@ from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.units import KPA
-from pneutouch.workflows.sweep.plan import PRESSURES, Settings, SweepPlan
+from pneutouch.workflows.sweep.grid import PRESSURES, Settings, SweepPlan
 from pneutouch.workflows.sweep.variables import point_values, state_values
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from pneutouch.arrays import Flags
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
-from pneutouch.mechanics.uncertainty.sources.model import (
+from pneutouch.mechanics.uncertainty.sources.model_error import (
     ModelErrors,
     build_sources,
     contact_sources,

@@ -10,7 +10,7 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.source import FIGURE, JOINT, Distribution, UncertaintySource, counting
-from pneutouch.mechanics.uncertainty.sources.model import CORRECTION, FRICTION, GAUGE, MODEL_CORRELATION
+from pneutouch.mechanics.uncertainty.sources.model_error import CORRECTION, FRICTION, GAUGE, MODEL_CORRELATION
 from pneutouch.spec.calibration import CalibratedResponse, SensorCalibration
 from pneutouch.units import KPA, ML
 

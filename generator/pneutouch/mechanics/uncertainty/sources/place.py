@@ -14,7 +14,7 @@ from pneutouch.mechanics.atlas.figures import SENSITIVITY
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import AtlasResponse, respond
 from pneutouch.mechanics.uncertainty.source import FIGURE, UncertaintySource, counting
-from pneutouch.mechanics.uncertainty.sources.model import PLACE
+from pneutouch.mechanics.uncertainty.sources.model_error import PLACE
 
 _ORIGIN = (
     f"assumed (Type B, JCGM 100, 4.3.7): a ball of {SMALLEST_BALL:g} R0 radius or more, its curvature even, its axis "
