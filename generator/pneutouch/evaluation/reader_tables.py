@@ -15,6 +15,7 @@ from pneutouch.arrays import Array
 from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, ReaderGrid
 from pneutouch.evaluation.uncertainty import known, unknown
 from pneutouch.export.reader.reading import NOISES, UNSTEADY
+from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.predict import contact_words
 from pneutouch.results.reader import (
     ForceTable,
@@ -30,7 +31,6 @@ from pneutouch.units import KPA, ML
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.evaluate import Evaluation
-    from pneutouch.mechanics.atlas.press import SensorBatch
 
 
 UNCERTAINTY_COLUMNS = 11

@@ -137,7 +137,7 @@ class AtlasSampler:
         solid, touch, contact = self.solid, state.touch, self.solid.contact
         assert touch is not None
         active = np.where(touch.traction > 0.0, -contact.stiffness, 0.0)
-        answer = stability(scene, state, solid.push(contact.force(active, touch.slope)))
+        answer = stability(scene, state, solid.faces.push(contact.force(active, touch.slope)))
         stiffness = 1.0 / float(state.by_volume @ answer.soft)
         by_volume, drift = solid.expand(answer.soft) * stiffness, float(state.by_volume @ answer.step)
         # The hold lets the volume drift as the plate moves; here the derivatives are at a fixed volume.
