@@ -22,6 +22,7 @@ from pneutouch.workflows.compare_measured import manifest_of, measured_columns
 from pneutouch.workflows.driving.pressures import read_leak
 from pneutouch.workflows.sweep.dataset import stored_dataset, stored_fingerprint
 from tests.conftest import ROOT
+from tests.refusals import refused
 
 NAMES = st.sampled_from(sorted(FORMATS))
 
@@ -118,11 +119,11 @@ def test_a_folder_with_a_later_manifest_is_neither_read_nor_replaced(read, tmp_p
     read(folder)
     after = before.replace(format_of("manifest"), later("manifest"))
     (folder / "manifest.json").write_text(after)
-    with pytest.raises(InputError, match=r"manifest\.json: format = .*: of a later version"):
+    with refused("format", "pneutouch/manifest/2"):
         read(folder)
     assert sha256((folder / "manifest.json").read_bytes()).digest() == sha256(after.encode()).digest()
     (folder / "manifest.json").write_text(before.replace(f'  "format": "{format_of("manifest")}",\n', ""))
-    with pytest.raises(InputError, match=r"manifest\.json: .*format"):
+    with refused("format"):
         read(folder)
 
 
@@ -132,7 +133,7 @@ def test_a_dataset_of_a_later_version_is_refused(read, tmp_path):
 
     path = tmp_path / "walls.nc"
     xarray.Dataset(attrs={"format": later("dataset"), "input_hash": "0"}).to_netcdf(path, engine="scipy")
-    with pytest.raises(InputError, match=r"walls\.nc: format = .*: of a later version"):
+    with refused("format", "pneutouch/dataset/2"):
         read(path)
 
 

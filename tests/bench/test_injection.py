@@ -13,6 +13,7 @@ from pneutouch.bench.source import identify
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Column, ColumnMap
 from pneutouch.units import KPA, ML
+from tests.refusals import refused
 
 AMBIENT = 101.325 * KPA
 COLUMNS = ColumnMap()
@@ -67,7 +68,7 @@ def test_tables_that_cannot_be(tmp_path, volume, pressure, words):
 
 
 def test_a_missing_column_is_named(tmp_path):
-    with pytest.raises(InputError, match=r"column volume_mL: missing .*no column of volume"):
+    with refused("column volume_mL"):
         read_injection(identify(table(tmp_path, [0, 1, 2], [0, 1, 2], "Mass_g,pressure_kPa"), COLUMNS, INJECTION))
 
 
@@ -127,7 +128,7 @@ def test_the_last_row_of_a_typed_table_counts(tmp_path, end):
     volume, pressure = read_injection(identify(path, COLUMNS, INJECTION))
     assert volume == pytest.approx(np.array([0, 0.1, 0.2, 0.5]) * ML) and pressure[-1] == pytest.approx(19.5 * KPA)
     path.write_text("volume_mL,pressure_kPa\n0,0\n0.1,4\n0.2,8\n0.5,")
-    with pytest.raises(InputError, match="row 5: the file ends within this row"):
+    with refused("row 5"):
         read_injection(identify(path, COLUMNS, INJECTION))
 
 

@@ -19,6 +19,7 @@ from pneutouch.spec.material import Material, Mix
 from pneutouch.spec.read import validate
 from tests.conftest import ROOT
 from tests.export.threemf_files import MODEL, read_strictly
+from tests.refusals import refused
 
 SPACE = {
     "": "http://schemas.microsoft.com/3dmanufacturing/core/2015/02",
@@ -159,7 +160,7 @@ def test_fractions_that_add_up_to_one_are_taken(parts):
 def test_fractions_that_do_not_are_refused(parts, off):
     fractions = {f"resin {k}": part / sum(parts) for k, part in enumerate(parts)}
     fractions["resin 0"] += off
-    with pytest.raises(InputError, match="must add up to 1"):
+    with refused("mix"):
         mixed(**fractions)
 
 
@@ -185,7 +186,7 @@ def test_a_wrong_mix_is_refused_with_the_file_and_what_would_be_right(fractions,
 
 
 def test_a_mix_without_a_source_is_refused():
-    with pytest.raises(InputError, match=r"mix\.source: missing"):
+    with refused("mix.source"):
         material(mix={"fractions": {"TangoPlus": 0.5, "VeroClear": 0.5}})
 
 

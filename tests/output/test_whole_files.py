@@ -13,6 +13,7 @@ from pneutouch.output.files import create_file, replace_file, replace_files
 from pneutouch.output.new import new_design, new_from, write_design
 from pneutouch.workflows.calibrate.calibration_files import SavedCalibration, save
 from pneutouch.workflows.coupons import MeasuredProfile, write_profiles
+from tests.refusals import refused
 from tests.running import files_of_at_most
 
 
@@ -57,7 +58,7 @@ def test_a_new_file_never_replaces_one(tmp_path):
     for name in ("mine", "link"):
         with pytest.raises(InputError, match="there is such a file already"):
             create_file(tmp_path / f"{name}.toml", b"x")
-    with pytest.raises(InputError, match=r"mine\.toml is not a folder"):
+    with refused("out"):
         create_file(tmp_path / "mine.toml/other.toml", b"x")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["link.toml", "mine.toml"]
     assert (tmp_path / "mine.toml").read_text() == "mine"

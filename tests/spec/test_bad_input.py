@@ -16,6 +16,7 @@ from pneutouch.evaluation import evaluate
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
 from pneutouch.spec.read import parse_changes, validate
+from tests.refusals import refused
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -144,7 +145,7 @@ def test_a_folder_a_missing_file_and_a_binary_file_are_named(tmp_path):
     for path, word in ((folder, "folder"), (tmp_path / "none.toml", "no such file"), (binary, "UTF-8")):
         with pytest.raises(InputError, match=word):
             evaluate(str(path), library=library)
-    with pytest.raises(InputError, match="Did you mean paper-dome"):
+    with refused("design", "paper-doom"):
         evaluate("paper-doom", library=library)
 
 

@@ -8,6 +8,7 @@ from pneutouch.errors import InputError
 from pneutouch.spec.material import HyperelasticLaw, Material
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import validate
+from tests.refusals import refused
 
 
 def content(library, kind, name):
@@ -51,7 +52,7 @@ def test_figures_in_another_unit_are_refused(library, keys, problem):
 def test_a_rigid_or_mixed_material_is_not_cast(library):
     casting = content(library, "materials", "DragonSkin20")["casting"]
     for name in ("ABS", "FLX9950"):
-        with pytest.raises(InputError, match="an elastomer with one base resin"):
+        with refused(""):
             validate(Material, {**content(library, "materials", name), "casting": casting}, "mine.toml")
 
 

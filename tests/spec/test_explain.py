@@ -13,6 +13,7 @@ from pneutouch.spec.read import read_toml, validate
 from pneutouch.spec.target import Target
 from pneutouch.spec.tray import Tray
 from tests.conftest import ROOT
+from tests.refusals import refused
 
 
 @pytest.mark.parametrize(
@@ -132,9 +133,9 @@ def test_a_refusal_is_a_whole_sentence(model, content, said):
 
 def test_too_many_values_are_refused_by_their_greatest_number():
     content = {"entry": [{"design": "x", "over": {"membrane.wall_thickness_mm": [1.0] * 200}}]}
-    with pytest.raises(InputError, match=r": must be a list with at most 50 entries$"):
+    with refused("entry[0].over.membrane.wall_thickness_mm"):
         validate(Tray, content, "a.toml")
-    with pytest.raises(InputError, match=r": must be a list with at most 100 entries: What changes the base"):
+    with refused("setting.assignments"):
         validate(Target, {**SENSITIVE, "setting": {"assignments": ["a.b=1"] * 101}}, "a.toml")
 
 

@@ -11,6 +11,7 @@ from pneutouch.spec.files import design_inside, inside, read_bytes
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_value
 from pneutouch.spec.values import file_name, name_of, plain_name
+from tests.refusals import refused
 
 
 @pytest.mark.parametrize("name", ["a.csv", "runs/a.csv", "runs/../a.csv", "not-there.csv"])
@@ -49,7 +50,7 @@ def test_a_design_is_a_name_of_the_catalogue_or_a_path_inside(tmp_path):
     assert design_inside(tmp_path, "mine.toml", file="x.toml", key="design") == str(tmp_path / "mine.toml")
     for name in ("../mine.toml", "/etc/passwd", "../paper-dome", "..\\mine.toml"):
         if name != "..\\mine.toml":
-            with pytest.raises(InputError, match="leads out"):
+            with refused("design"):
                 design_inside(tmp_path, name, file="x.toml", key="design")
 
 
@@ -98,7 +99,7 @@ def test_a_name(name):
     ["", ".", "..", ".hidden", "-x", "_x", "a/b", "a\\b", "a\nb", "a b", "a\x1b", "x" * 101, "字" * 70, "a\udc80"],
 )
 def test_no_name(name, tmp_path):
-    with pytest.raises(InputError, match="use letters, digits"):
+    with refused("name"):
         plain_name(name, key="name")
 
 

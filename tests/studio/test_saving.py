@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.conftest import ROOT
+from tests.refusals import refused
 from tests.studio.test_guard import ASK
 
 WALL = {"membrane.wall_thickness_mm": "1.4", "pneumatics.driving_pressures_kPa": "[0, 12]"}
@@ -124,13 +125,12 @@ def test_links_and_folders_are_not_followed(home, client):
 
 
 def test_a_design_that_is_open_from_elsewhere_keeps_its_name(home):
-    from pneutouch.errors import InputError
     from pneutouch.studio.saving import save_design
 
     (home / "mine.toml").write_text("[membrane]\nwall_thickness_mm = 1\n")
     bases = {"mine": str(home / "mine.toml")}
     request = {"question": {"base": "mine", "values": WALL}, "name": "mine"}
-    with pytest.raises(InputError, match="is open by this name; give another name"):
+    with refused("name", "mine"):
         save_design(request, bases)
     assert save_design({**request, "name": "other"}, bases)["name"] == "other"
     assert files(home) == {"mine.toml", "designs/other.toml"}

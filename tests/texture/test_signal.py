@@ -7,6 +7,7 @@ import pytest
 
 from pneutouch.errors import InputError
 from pneutouch.texture.signal import RecordColumns, read_signal, signal
+from tests.refusals import refused
 
 GOOD = "time_s,pressure_kPa,force_N\n" + "".join(f"{0.1 * k:.1f},{1 + 0.01 * k},0\n" for k in range(10))
 
@@ -58,7 +59,7 @@ def test_files_that_are_none(tmp_path):
             read_signal(path)
     binary = tmp_path / "x.csv"
     binary.write_bytes(b"time_s,pressure_kPa\n\xff\x81")
-    with pytest.raises(InputError, match="not UTF-8"):
+    with refused("row 2"):
         read_signal(binary)
 
 

@@ -19,6 +19,7 @@ from pneutouch.workflows.coupons.make import build_coupons, lay
 from pneutouch.workflows.coupons.order import CouponOptions, order, results_template
 from tests.conftest import ROOT
 from tests.export.threemf_files import read_strictly
+from tests.refusals import refused
 
 LIBRARY = Library((ROOT,))
 WHOLE = CouponOptions(materials=("TangoPlus", "FLX9960"), design="paper-dome")
@@ -51,7 +52,7 @@ def test_readings_in_the_folder_are_not_lost(tmp_path):
     path = Path(build_coupons(asked, tmp_path, LIBRARY).folder) / "results.toml"
     build_coupons(asked, tmp_path, LIBRARY)
     path.write_text(path.read_text().replace("mass_g = []", "mass_g = [1.1, 1.1]"))
-    with pytest.raises(InputError, match="has been filled in"):
+    with refused("out"):
         build_coupons(asked, tmp_path, LIBRARY)
     assert "1.1" in path.read_text()
 

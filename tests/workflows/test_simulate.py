@@ -21,6 +21,7 @@ from pneutouch.workflows import simulate as simulation
 from pneutouch.workflows.plan import make_plan, write_plan
 from pneutouch.workflows.simulate import simulate
 from pneutouch.workflows.simulate_inputs import KINDS, SimulationOptions
+from tests.refusals import refused
 
 R0 = 9.25
 ASKED = SimulationOptions(
@@ -241,7 +242,7 @@ def test_volumes_are_stated_of_an_injection_alone(planned, library, tmp_path):
     folder = tmp_path / "spoilt"
     folder.mkdir()
     (folder / "campaign.toml").write_text(content.replace('kind = "leak"', 'kind = "leak"\nvolumes_mL = [1, 2, 3]', 1))
-    with pytest.raises(InputError, match=r"volumes_mL: given to a run of kind leak; must be left out"):
+    with refused("runs[0]"):
         simulate(str(folder), tmp_path / "out", None, QUICK, library)
 
 
@@ -273,5 +274,5 @@ def test_a_campaign_of_a_copied_design_finds_it_in_its_own_folder(tmp_path):
         (tmp_path / "campaign.toml").write_text(toml_text({"design": named, "runs": [run]}))
         assert design_of(*campaign_of(tmp_path)) == found
     (tmp_path / "campaign.toml").write_text(toml_text({"design": "../dome.toml@mine", "runs": [run]}))
-    with pytest.raises(InputError, match="leads out of the folder"):
+    with refused("design", "../dome.toml"):
         design_of(*campaign_of(tmp_path))

@@ -14,6 +14,7 @@ from pneutouch.errors import InputError
 from pneutouch.workflows.sweep import sweep
 from pneutouch.workflows.sweep import workers as module
 from pneutouch.workflows.sweep.execute import ComputeResources
+from tests.refusals import refused
 from tests.workflows.sweep.conftest import PATIENCE, ended, held, journal_lines, resumed, small
 
 
@@ -145,5 +146,5 @@ def test_a_cluster_without_workers_or_with_others_is_an_input_error(cluster, lib
 
 def test_dask_that_is_not_installed_is_named(library, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(InputError, match=r"pip install pneutouch\[cluster\]"):
+    with refused("scheduler", "tcp://127.0.0.1:1"):
         sweep(small(), tmp_path / "x.nc", ComputeResources(scheduler="tcp://127.0.0.1:1"), library=library)

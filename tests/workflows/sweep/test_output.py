@@ -6,6 +6,7 @@ import pytest
 
 from pneutouch.errors import InputError
 from pneutouch.workflows.sweep import sweep
+from tests.refusals import refused
 from tests.workflows.sweep.conftest import ALONE, ended, held, names, resumed, six, small
 
 
@@ -14,7 +15,7 @@ def test_a_finished_dataset_is_kept_and_no_other_is_overwritten(library, tmp_pat
     sweep(small(), out, ALONE, library=library)
     content, changed = out.read_bytes(), out.stat().st_mtime_ns
     assert sweep(small(), out, ALONE, library=library).computed == 0
-    with pytest.raises(InputError, match="dataset of another sweep"):
+    with refused("out"):
         sweep(six(), out, ALONE, library=library)
     assert (out.read_bytes(), out.stat().st_mtime_ns) == (content, changed)
     assert sweep(small(), out, ALONE, library=library, fresh=True).computed == 3
@@ -30,7 +31,7 @@ def test_a_file_that_is_no_whole_dataset_is_refused_and_left(library, tmp_path):
     for content in (b"", b"my notes", whole[:40], whole[: len(whole) // 2], whole[:-9]):
         out.write_bytes(content)
         for fresh in (False, True):
-            with pytest.raises(InputError, match=r"sweep\.nc: not a dataset that pneutouch sweep wrote, or damaged"):
+            with pytest.raises(InputError, match=r"sweep\.nc"):
                 sweep(small(), out, ALONE, library=library, fresh=fresh)
         assert out.read_bytes() == content
         assert names(tmp_path) == ["sweep.nc"]
@@ -73,6 +74,6 @@ def test_a_lock_file_of_a_dead_process_holds_nobody(library, tmp_path):
 def test_a_folder_of_another_program_is_left_alone(library, tmp_path):
     (tmp_path / "sweep.nc.parts").mkdir()
     (tmp_path / "sweep.nc.parts/thesis.tex").write_text("mine")
-    with pytest.raises(InputError, match=r"holds thesis\.tex"):
+    with refused("out"):
         sweep(small(), tmp_path / "sweep.nc", ALONE, library=library)
     assert names(tmp_path / "sweep.nc.parts") == ["thesis.tex"]
