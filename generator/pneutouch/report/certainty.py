@@ -3,10 +3,12 @@
 Shares of the sources of uncertainty in the variance of a sensitivity, as bars.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorPrediction
+from pneutouch.report.blocks import Block, Columns, Items, Plot, Table, Text, section
 from pneutouch.report.style import ACCENT, BOLD, INK, MUTED, figure, svg
 from pneutouch.results.uncertainty import SourceRecord, UncertaintyRecord
 from pneutouch.units import KPA
@@ -52,22 +54,26 @@ def shares(covered: dict[str, UncertaintyRecord]) -> dict[str, dict[str, float]]
     return {label: dict(document.known[SENSITIVITY].shares) for label, document in covered.items()}
 
 
-def uncertainty_section(sheet: SheetData) -> dict[str, Any]:
-    """Everything in the section; every leaf is text or a flag."""
-    documents = sheet.uncertainty
+def uncertainty_section(sheet: SheetData, plots: Sequence[Plot]) -> list[Block]:
+    """Everything in the section; ``plots`` are its charts."""
+    documents, model = sheet.uncertainty, Table(model_rows(sheet))
     covered = ends(sheet.prediction, documents)
-    why = next((document.unknown for document in documents if document.unknown is not None), None)
-    last = list(covered.values())[-1] if covered else UncertaintyRecord()
-    return {
-        "known": bool(covered),
-        "why": why or "no interval of the sensitivity can be given: the atlas has no state at these driving pressures",
-        "summary": _summary(covered),
-        "head": ["Figure", "Unit", *(cell for label in covered for cell in (f"at {label}", "k = 2"))],
-        "figures": _figures(covered),
-        "sources": [_source(source) for source in last.sources or () if source.standard_uncertainty > 0],
-        "notes": [_plain(f"{note}.") for note in last.notes or ()],
-        "model": _model_rows(sheet),
-    }
+    if not covered:
+        why = next((document.unknown for document in documents if document.unknown is not None), None)
+        why = why or "no interval of the sensitivity can be given: the atlas has no state at these driving pressures"
+        return section("Uncertainty", Text(f"No interval is given: {why}."), model)
+    last = list(covered.values())[-1]
+    head = ["Figure", "Unit", *(cell for label in covered for cell in (f"at {label}", "k = 2"))]
+    figures = Table(_figures(covered), head, numeric=range(2, len(head)), small=True)
+    sources = [_source(source) for source in last.sources or () if source.standard_uncertainty > 0]
+    return section(
+        "Uncertainty",
+        Items(_summary(covered)),
+        Columns(((figures,), (model,)), (3, 2)),
+        *plots,
+        Table(sources, ("Source", "Standard\nuncertainty", "Of", "Basis", "Where from"), numeric=(1,)),
+        Items([_plain(f"{note}.") for note in last.notes or ()]),
+    )
 
 
 def _summary(covered: dict[str, UncertaintyRecord]) -> list[str]:
@@ -111,7 +117,7 @@ def _source(source: SourceRecord) -> list[str]:
     return [source.name, value, acts_on, "known" if source.known else "assumed", _plain(source.origin)]
 
 
-def _model_rows(sheet: SheetData) -> list[list[str]]:
+def model_rows(sheet: SheetData) -> list[list[str]]:
     """The model of the figures, its numerical error, and why it was chosen."""
     prediction, error = sheet.prediction, sheet.numerical_error
     exact = f"within {error:.1%} in sensitivity"
@@ -151,28 +157,26 @@ def ranked(shares: list[dict[str, float]]) -> dict[str, list[float]]:
     return rows_of
 
 
+def uncertainty_shares(sheet: SheetData) -> Plot | None:
+    """Bars of the shares of the sources in the variance; None without an interval."""
+    covered = ends(sheet.prediction, sheet.uncertainty)
+    words = "What makes the sensitivity uncertain: shares of its variance. The longest bar is what to measure first."
+    return Plot(share_bars(shares(covered)), words, mm=_WIDTH) if covered else None
+
+
 def share_bars(shares: dict[str, dict[str, float]]) -> str:
     """Bars of the variance shares (source to share) at one or two driving pressures, by label, as SVG."""
     rows = ranked(list(shares.values()))
-    fills = (ACCENT, "white")
     with figure(_WIDTH, 11 + 3.9 * len(rows) * max(1.4, len(shares))) as drawn:
         ax = drawn.add_subplot()
         for row, values in enumerate(rows.values()):
             for k, (value, label) in enumerate(zip(values, shares, strict=True)):
                 height = row + (k - 0.5 * (len(shares) - 1)) * _THICK
-                ax.barh(height, 100 * value, _THICK, lw=0.6, color=fills[k], ec=INK)
+                ax.barh(height, 100 * value, _THICK, lw=0.6, color=(ACCENT, "white")[k], ec=INK)
                 text = f"{100 * value:.0f} %" if value >= 0.005 else "< 1 %"
-                style = {"color": INK, **BOLD} if row == 0 else {"color": MUTED}
-                text_of = f"{text}  at {label}" if row == 0 else text
-                ax.annotate(
-                    text_of,
-                    (100 * value, height),
-                    xytext=(3, -0.3),
-                    textcoords="offset points",
-                    va="center",
-                    fontsize=6.5,
-                    **style,
-                )
+                place: dict[str, Any] = {"xytext": (3, -0.3), "textcoords": "offset points", "va": "center"}
+                place |= {"color": INK, **BOLD} if row == 0 else {"color": MUTED}
+                ax.annotate(f"{text}  at {label}" if row == 0 else text, (100 * value, height), fontsize=6.5, **place)
         ax.set_yticks(range(len(rows)), list(rows))
         ax.invert_yaxis()
         ax.grid(False, axis="y")

@@ -1,26 +1,20 @@
-"""Temperature, speed, humidity and ageing: calculated or quoted, never guessed.
+"""Rows of a datasheet: temperature, speed, humidity and ageing, the gauge, contact off the axis, and mixing curves.
 
-The gauge on a datasheet: its range, and the smallest force that it detects.
-
-Speed of the sensor's reading, in rows of a datasheet.
-
-The datasheet's rows on contact off the axis: sideways force, moment, and the harmonics that the answer took.
-
-The table of a datasheet that sets a mix by its pair's mixing curves side by side.
+Calculated or quoted, never guessed.
 """
 
 from collections.abc import Sequence
-from typing import Any
-
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import CurveOutcome, SensorState
+from pneutouch.report.blocks import Block, Items, Table, Text, section
 from pneutouch.rounding import tenths_below
 from pneutouch.units import KPA
 
 NOT_TESTED = "not tested"
+DASH = "–"
 
 
 def environment(sheet: SheetData) -> list[list[str]]:
@@ -41,8 +35,7 @@ def _air(sheet: SheetData) -> list[list[str]]:
     at = " and ".join(f"{states[k].driving_pressure / KPA:g}" for k in ends) + " kPa"
 
     def values(numbers: Array, form: str, unit: str) -> str:
-        texts = [format(float(numbers[k]), form) if np.isfinite(numbers[k]) else "–" for k in ends]
-        return " and ".join(texts) + f" {unit}"
+        return _values([float(numbers[k]) for k in ends], form, unit)
 
     rigid = values(1 / gas.wall_give, ".1f", "times")
     drift = f"ideal gas in the yielding dome at {at}, 20 °C; a rigid cavity would show {rigid} as much"
@@ -101,27 +94,15 @@ def detection(sheet: SheetData) -> list[list[str]]:
     at = " and ".join(f"{one.driving_pressure_kPa:g}" for one in ends) + " kPa"
     if reading.threshold_kPa is None:
         return [["Smallest force detected", "not known", f"{reading.limited_by} ({reading.title})"]]
-    warming = [one.warming_that_reads_as_smallest_force_K for one in ends]
+    warming = _values([one.warming_that_reads_as_smallest_force_K for one in ends], ".2g", "K")
+    smallest = _values([one.smallest_force_N for one in ends], ".2g", "N")
+    touched = _values([one.smallest_force_at_first_contact_N for one in ends], ".2g", "N")
     band = "" if reading.rate_Hz is None else f", to {reading.rate_Hz / 2:g} Hz"
+    basis = f"{reading.criterion}{band}, at {at}; limited by {reading.limited_by} ({reading.title})"
     return [
-        [
-            "Smallest force detected",
-            _both([one.smallest_force_N for one in ends], "N"),
-            f"{reading.criterion}{band}, at {at}; limited by {reading.limited_by} ({reading.title})",
-        ],
-        [
-            "at first contact",
-            _both([one.smallest_force_at_first_contact_N for one in ends], "N"),
-            f"warming by {_both(warming, 'K')} reads as much as the row above",
-        ],
+        ["Smallest force detected", smallest, basis],
+        ["at first contact", touched, f"warming by {warming} reads as much as the row above"],
     ]
-
-
-def _both(values: list[float | None], unit: str) -> str:
-    return " and ".join("–" if value is None else f"{value:.2g}" for value in values) + f" {unit}"
-
-
-_DASH = "–"
 
 
 def speed_rows(sheet: SheetData) -> list[list[str]]:
@@ -133,8 +114,8 @@ def speed_rows(sheet: SheetData) -> list[list[str]]:
     ends = [states[0], states[-1]] if len(states) > 1 else [states[0]]
     rate_Hz = sheet.speed.gauge_rate_Hz
     gauge = "" if rate_Hz is None else f"; the gauge reads {rate_Hz:g} times a second"
-    bands = ", ".join(dict.fromkeys(state.bandwidth_limited_by or _DASH for state in ends))
-    narrow = ", ".join(dict.fromkeys(state.within_5_percent_limited_by or _DASH for state in ends))
+    bands = ", ".join(dict.fromkeys(state.bandwidth_limited_by or DASH for state in ends))
+    narrow = ", ".join(dict.fromkeys(state.within_5_percent_limited_by or DASH for state in ends))
     resonances_Hz = _values([state.first_resonance_Hz for state in ends], ".3g", "Hz")
     bandwidths_Hz = _values([state.bandwidth_3_dB_Hz for state in ends], ".3g", "Hz")
     after = _values([state.delay_ms for state in ends], ".2g", "ms")
@@ -148,11 +129,12 @@ def speed_rows(sheet: SheetData) -> list[list[str]]:
 
 
 def _values(numbers: Sequence[float | None], form: str, unit: str) -> str:
-    texts = [_DASH if number is None else format(number, form) for number in numbers]
+    """Numbers side by side with their unit; a dash for one that is not known."""
+    texts = [DASH if number is None or not np.isfinite(number) else format(number, form) for number in numbers]
     return f"{' and '.join(texts)} {unit}"
 
 
-OFF_AXIS = (
+_OFF_AXIS = (
     "Driving\nkPa",
     "Indentation\nmm",
     "Force\nN",
@@ -161,16 +143,15 @@ OFF_AXIS = (
     "Harmonics\nto order",
     "Last change\n%",
 )
-"""Columns of the table of contact off the axis."""
 
-CAPTION = (
+_OFF_AXIS_NOTE = (
     "At the end of the range, of the dome on the object: the sideways force in the plane of symmetry, positive towards "
     "the offset or the side on which a plate rises; the moment about the centre of the base plane. The last raise of "
     "the harmonics changed sensitivity, force or pressure rise by the last change at most; the sideways force settles "
     "later than these."
 )
 
-SHEAR = (
+_SHEAR = (
     "Driving\nkPa",
     "Moved to\nmm",
     "Force\nN",
@@ -180,16 +161,26 @@ SHEAR = (
     "Greatest sideways force\nN",
     "Slips throughout from\nmm",
 )
-"""Columns of the table of an object that moves sideways after pressing."""
 
-SHEAR_CAPTION = (
+_SHEAR_NOTE = (
     "The object moves sideways at the depth that it was pressed to. At the end of that travel, of the dome on the "
     "object: force, sideways force and moment as above, and the pressure rise; the sideways force where it is greatest "
     "against the travel; the first computed travel at which every point of the contact slides."
 )
 
 
-def off_axis_rows(states: tuple[SensorState, ...]) -> list[list[str]]:
+def off_axis(states: tuple[SensorState, ...]) -> list[Block]:
+    """Tables of contact off the axis, and of an object that moves sideways after pressing; nothing without them."""
+    blocks: list[Block] = []
+    tables = (_off_axis_rows(states), _OFF_AXIS, _OFF_AXIS_NOTE), (shear_rows(states), _SHEAR, _SHEAR_NOTE)
+    for rows, head, words in tables:
+        if rows:
+            columns = range(len(head))
+            blocks += [Table(rows, head, numeric=columns, turned=True), Text(words, "muted")]
+    return blocks
+
+
+def _off_axis_rows(states: tuple[SensorState, ...]) -> list[list[str]]:
     """One row a driving pressure that was pressed off the axis."""
     rows = []
     for state in states:
@@ -199,17 +190,8 @@ def off_axis_rows(states: tuple[SensorState, ...]) -> list[list[str]]:
         end = min(state.range_end, float(state.indentation[-1]))
         curves = (state.force, beyond.sideways, beyond.moment)
         force, sideways, moment = (float(np.interp(end, state.indentation, curve)) for curve in curves)
-        rows.append(
-            [
-                f"{state.driving_pressure / KPA:g}",
-                f"{end:.2f}",
-                f"{force:.3f}",
-                f"{sideways:.3f}",
-                f"{moment:.2f}",
-                f"{beyond.order}",
-                f"{100.0 * beyond.last_change:.2g}",
-            ]
-        )
+        figures = f"{end:.2f}", f"{force:.3f}", f"{sideways:.3f}", f"{moment:.2f}", f"{beyond.order}"
+        rows.append([f"{state.driving_pressure / KPA:g}", *figures, f"{100.0 * beyond.last_change:.2g}"])
     return rows
 
 
@@ -234,8 +216,6 @@ def shear_rows(states: tuple[SensorState, ...]) -> list[list[str]]:
     return rows
 
 
-DASH = "–"
-
 _CAPTION = (
     "The fraction of the stiff resin is printed exactly; its modulus is assumed. The published characterizations of "
     "such mixes differ, and none is of these two resins: each column predicts this design if its curve is true "
@@ -247,27 +227,21 @@ _BEYOND = (
 )
 
 
-def curves_section(sheet: SheetData) -> dict[str, Any]:
-    """Head, rows and lines of the table: a row a figure, a column a curve, the softest first."""
-    if not sheet.curves:
-        return {"known": False, "head": [], "rows": [], "lines": []}
-    head = ["Figure", *(f"{one.by_curve.curve}: {one.by_curve.place}" for one in sheet.curves), "Unit"]
-    rows = [
-        _row("Mean shear modulus", "MPa", [f"{one.by_curve.shear_modulus_MPa.nominal:.2f}" for one in sheet.curves])
-    ]
+def mixing_section(sheet: SheetData) -> list[Block]:
+    """The table by every mixing curve: a row a figure, a column a curve, the softest first."""
+    curves = sheet.curves
+    head = ["Figure", *(f"{one.by_curve.curve}: {one.by_curve.place}" for one in curves), "Unit"]
+    rows = [["Mean shear modulus", *(f"{one.by_curve.shear_modulus_MPa.nominal:.2f}" for one in curves), "MPa"]]
     for k, state in enumerate(sheet.prediction.states):
         at = f"at {state.driving_pressure / KPA:g} kPa"
-        states = [one.states[k] if k < len(one.states) else None for one in sheet.curves]
-        rows.append(_row(f"Sensitivity {at}", "kPa/N", [_sensitivity(one) for one in states]))
-        rows.append(_row(f"Force range {at}", "N", [_range(one) for one in states]))
-    rows.append(_row("Rated pressure", "kPa", [_rated(one) for one in sheet.curves]))
-    beyond = ", ".join(one.by_curve.curve for one in sheet.curves if one.by_curve.beyond)
+        states = [one.states[k] if k < len(one.states) else None for one in curves]
+        rows.append([f"Sensitivity {at}", *map(_sensitivity, states), "kPa/N"])
+        rows.append([f"Force range {at}", *map(_range, states), "N"])
+    rows.append(["Rated pressure", *map(_rated, curves), "kPa"])
+    beyond = ", ".join(one.by_curve.curve for one in curves if one.by_curve.beyond)
     lines = [_CAPTION, *([_BEYOND.format(curves=beyond)] if beyond else [])]
-    return {"known": True, "head": head, "rows": rows, "lines": lines}
-
-
-def _row(name: str, unit: str, values: list[str]) -> list[str]:
-    return [name, *values, unit]
+    blocks = (Table(rows, head, numeric=range(1, len(head) - 1)), Items(lines)) if curves else ()
+    return section("By every mixing curve", *blocks)
 
 
 def _sensitivity(state: SensorState | None) -> str:

@@ -1,19 +1,35 @@
-"""The datasheet: one HTML page and one PDF from the same content and the same figures."""
+"""The datasheet: its sections in order, and the table of its charts."""
 
-import base64
+from collections.abc import Callable
 
-from pneutouch.evaluation.sheet_data import ContactChart, SheetData
+from pneutouch import __version__
+from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.export.scene import view_data
-from pneutouch.report import curves, pages
-from pneutouch.report.anywhere import contact_figures
-from pneutouch.report.certainty import ends, share_bars, shares
+from pneutouch.report import conditions, curves, graded, print_sheet, prose, sheet_charts, sheet_tables
+from pneutouch.report.anywhere import contact_section
+from pneutouch.report.blocks import Block, Columns, Items, Plot, Plots, Sheet, Table, Text, Tiles, View, section
+from pneutouch.report.certainty import uncertainty_section, uncertainty_shares
 from pneutouch.report.drawing import section_drawing
-from pneutouch.report.graded import CAPTIONS, graded_figures
-from pneutouch.report.mould import CAPTION as MOULD_CAPTION
-from pneutouch.report.mould import mould_rows, mould_section
-from pneutouch.report.pictures import caption, picture, pressed_figure, shown
-from pneutouch.report.sheet import content_of
-from pneutouch.report.tradeoff import tradeoff_chart, tuning_chart
+from pneutouch.report.mould import mould_section_blocks
+from pneutouch.report.pages import set_sheet
+from pneutouch.report.pictures import picture, pressed_blocks, shown
+from pneutouch.report.relaxation import viscous_section
+
+CHARTS: tuple[tuple[str, Callable[[SheetData], Plot | None]], ...] = (
+    ("performance", sheet_charts.sensitivity),
+    ("performance", sheet_charts.inflation),
+    ("performance", sheet_charts.response),
+    ("performance", sheet_charts.indentation),
+    ("performance", sheet_charts.tuning),
+    ("performance", sheet_charts.tradeoff),
+    ("graded", graded.grade_section),
+    ("graded", graded.grade_share),
+    ("graded", graded.grade_modulus),
+    ("graded", graded.graded_sensitivity),
+    ("graded", graded.graded_response),
+    ("uncertainty", uncertainty_shares),
+)
+"""Section and function of every chart, in the order of the sheet: a chart without data is left out."""
 
 _PIXELS = (900, 640)
 """Width and height of the picture."""
@@ -21,60 +37,141 @@ _PIXELS = (900, 640)
 
 def datasheet(sheet: SheetData) -> dict[str, bytes]:
     """``datasheet.html``, with the 3D view and, where that cannot be drawn, a picture; and ``datasheet.pdf``."""
-    figures = _figures(sheet)
-    viscous = curves.section(sheet.viscous, curves.ageing_line(sheet))
-    content = {**content_of(sheet), "viscous": viscous}
-    content["captions"] |= CAPTIONS
-    content["captions"]["sensitivity"] = (
-        "Sensitivity over driving pressure for each resin in this geometry, this design picked out; "
-        f"{curves.drawn_by(sheet.resin_curves)}."
+    return set_sheet(described(sheet), "datasheet")
+
+
+def described(sheet: SheetData) -> Sheet:
+    """The whole sheet, its charts drawn."""
+    document = sheet.scene.design.document
+    date = document.date.isoformat() if document.date else "undated"
+    number, tool, status = print_sheet.part_number(sheet.scene), f"pneutouch {__version__}", prose.status(sheet.scene)
+    facts = ("Part number", number), ("Revision", f"{document.revision}, {date}"), ("Made by", tool)
+    return Sheet(
+        title=document.title,
+        subtitle="Pneumatic touch sensor with tunable stiffness",
+        name=f"{number} – {document.title}",
+        facts=(*facts, ("Input", sheet.input_hash)),
+        tool=tool,
+        foot=f"{tool}, input {sheet.input_hash}. {status}",
+        date=document.date,
+        blocks=(
+            Text(status, "status"),
+            *(Text(line, "warning") for line in sheet_tables.warnings(sheet)),
+            *_first(sheet),
+            *_performance(sheet),
+            *contact_section(sheet.contact),
+            *section("Graded membrane", Plots(_charts("graded", sheet))),
+            *conditions.mixing_section(sheet),
+            *uncertainty_section(sheet, _charts("uncertainty", sheet)),
+            *viscous_section(sheet),
+            *_conditions(sheet),
+            *_making(sheet),
+            *_use(sheet, date),
+        ),
     )
-    bodies = shown(sheet.assembly, _PIXELS[0])
-    images = {"picture.png": picture(bodies, *_PIXELS)}
-    more = {"view": view_data(bodies), "picture": _base64(images["picture.png"]), "pressed_view": ""}
-    if sheet.pressed is not None:
-        drawn = pressed_figure(sheet.pressed)
-        figures["pressure-scale"] = drawn.scale
-        images["pressed.png"] = drawn.image
-        more |= {"pressed_view": drawn.data, "pressed_picture": _base64(drawn.image)}
-        content["captions"]["pressed"] = caption(sheet.pressed)
-    mould = sheet.assembly.mould
-    content["mould"] = [] if mould is None else mould_rows(mould)
-    if mould is not None:
-        figures["mould"], content["captions"]["mould"] = mould_section(mould), MOULD_CAPTION
-    content["figures"] = sorted(figures)
-    return {
-        "datasheet.html": pages.html("datasheet.html.j2", content, figures, **more).encode(),
-        "datasheet.pdf": pages.pdf("datasheet.typ", content, figures, sheet.scene.design.document.date, images),
-    }
 
 
-def _base64(image: bytes) -> str:
-    return base64.b64encode(image).decode()
+def _charts(name: str, sheet: SheetData) -> list[Plot]:
+    """The charts of a section."""
+    drawn = (draw(sheet) for place, draw in CHARTS if place == name)
+    return [plot for plot in drawn if plot is not None]
 
 
-def _figures(sheet: SheetData) -> dict[str, str]:
-    """The figures as SVG by name; those without data are left out."""
-    prediction, chosen = sheet.prediction, sheet.scene.membrane_material.title
-    figures = {
-        **section_drawing(sheet.assembly, sheet.object_section),
-        "inflation": curves.inflation(prediction),
-        "sensitivity": curves.sensitivities(sheet.resin_curves, prediction, chosen, sheet.published_kPa_per_N),
-        "response": curves.response(prediction),
-        "indentation": curves.indentation(prediction),
-    }
-    covered = ends(prediction, sheet.uncertainty)
-    if covered:
-        figures["shares"] = share_bars(shares(covered))
-    if sheet.tradeoff is not None:
-        figures["tradeoff"] = tradeoff_chart(sheet.tradeoff, curves.SIZE)
-    if sheet.tuning is not None:
-        figures["tuning"] = tuning_chart(sheet.tuning, curves.SIZE)
-    if prediction.states[0].shapes:
-        figures |= {f"shape-{k + 1}": text for k, text in enumerate(curves.shapes(prediction))}
-    if isinstance(sheet.contact, ContactChart):
-        figures |= contact_figures(sheet.contact)
-    if sheet.viscous_curves is not None:
-        figures["held"] = curves.held_chart(sheet.viscous_curves, curves.SIZE)
-        figures["loop"] = curves.loop_chart(sheet.viscous_curves, curves.SIZE)
-    return figures | graded_figures(sheet)
+def _first(sheet: SheetData) -> list[Block]:
+    """Description, picture and the figures that count."""
+    bodies, scene = shown(sheet.assembly, _PIXELS[0]), sheet.scene
+    grade = "" if scene.membrane_material.along is None else " The darker the membrane, the more of the stiff resin."
+    words = "The sensor, cut open, from above and in front"
+    view = View("view", view_data(bodies), picture(bodies, *_PIXELS), words, f"The sensor, cut open.{grade}")
+    said = Text(prose.description(scene)), Text(prose.limits_of_use(scene), "muted")
+    return [Columns((said, (view,))), Tiles(sheet_tables.key_figures(sheet))]
+
+
+def _performance(sheet: SheetData) -> list[Block]:
+    errors = [f"Model error. {line}" for line in sheet.prediction.error_estimate.summary]
+    return section(
+        "Performance",
+        sheet_tables.performance(sheet),
+        Text(prose.PERFORMANCE, "muted"),
+        *conditions.off_axis(sheet.prediction.states),
+        Items(errors),
+        Plots(_charts("performance", sheet)),
+        Text(sheet_charts.no_tradeoff(sheet), "muted"),
+        _shapes(sheet),
+        *([] if sheet.pressed is None else pressed_blocks(sheet.pressed)),
+    )
+
+
+def _shapes(sheet: SheetData) -> Block:
+    """Half sections of the deformed wall, or why there are none."""
+    state = sheet.prediction.states[0]
+    if state.shapes:
+        words = "Half sections of the deformed wall, shaded by the greatest principal stretch; thin outlines at rest."
+        return Plots([Plot(text) for text in curves.shapes(sheet.prediction)], caption=words)
+    if state.beyond_axis is not None:
+        return Text("No half sections are drawn: off the axis they do not show the deformed wall.", "muted")
+    words = "The deformed wall and the contact pressure on it are drawn by the solid alone: build with model solid."
+    return Text(words, "muted")
+
+
+def _conditions(sheet: SheetData) -> list[Block]:
+    surroundings = Table([*conditions.detection(sheet), *conditions.environment(sheet)])
+    speed = section("Speed of reading", Table(conditions.speed_rows(sheet)))
+    return [
+        Columns(
+            (
+                [
+                    *section("Absolute maximum ratings", Table(sheet_tables.ratings(sheet), numeric=(1,))),
+                    *section("What limits the driving pressure", sheet_tables.limits(sheet)),
+                    *([Text(sheet_tables.rating_note(sheet))] if sheet.rating.remedy is not None else []),
+                ],
+                section("Operating conditions", Table(sheet_tables.operating(sheet), numeric=(1,))),
+            )
+        ),
+        Columns((section("Environment", surroundings), speed)) if speed else Columns((section("Environment", surroundings),), (1,)),
+    ]
+
+
+def _making(sheet: SheetData) -> list[Block]:
+    """Drawing, mould, and how the sensor is made."""
+    words = "Lengths in mm; tolerances are the stated accuracies of the printers; bracketed sizes are for reference"
+    body = sheet.object_section
+    held = "; dashed above the dome: the object that presses it, at first contact" if body is not None else ""
+    drawings = [Plot(text) for text in section_drawing(sheet.assembly, body).values()]
+    bodies = ("Body", "Material", "Volume, mass", "Machine, mode, layer", "Support")
+    findings = [[f.severity, f.rule, f.message, f.fix] for f in sheet.findings]
+    return [
+        *section("Mechanical drawing", Plots(drawings, (112, 68), f"{words}{held}.")),
+        *([] if sheet.assembly.mould is None else mould_section_blocks(sheet.assembly.mould)),
+        *section(
+            print_sheet.making_title(sheet.pour),
+            Table(print_sheet.body_rows(sheet), bodies),
+            Items(print_sheet.making(sheet.scene, sheet.pour), numbered=True),
+        ),
+        *section(
+            "Findings of the print rules", Table(findings, ("Severity", "Rule", "Finding", "Remedy"))
+        ),
+    ]
+
+
+def _use(sheet: SheetData, date: str) -> list[Block]:
+    """Reliability, ordering, measuring and handling; then what the figures rest on."""
+    untested = Table([[what, conditions.NOT_TESTED] for what in prose.RELIABILITY])
+    revisions = Table([[sheet.scene.design.document.revision, date, "As predicted; first issue of this revision."]])
+    return [
+        Columns(
+            (
+                [*section("Reliability", untested), *section("Revisions", revisions)],
+                section("Ordering code", Table(print_sheet.code_table(sheet.scene))),
+            )
+        ),
+        Columns(
+            (
+                section("How to measure it", Items(prose.method(sheet.scene), numbered=True)),
+                section("Handling", Items(prose.HANDLING)),
+            )
+        ),
+        *section("Assumptions of the prediction", Items(sheet.prediction.assumptions)),
+        *section("Definitions", Table(prose.DEFINITIONS)),
+        *section("Sources of the resin's numbers", Table(sheet_tables.sources(sheet))),
+    ]

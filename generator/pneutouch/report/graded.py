@@ -1,65 +1,73 @@
-"""Pictures of a graded membrane: how its two resins are laid out, and its effect compared with constant mixes.
-
-Additions to a datasheet for a graded membrane: two pictures, and the constant mixes it is compared with.
-"""
+"""Charts of a graded membrane on its datasheet: how its resins are laid out, and its effect beside constant mixes."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.sheet_data import ComparedMembrane, SheetData
+from pneutouch.report.blocks import Plot
+from pneutouch.report.chart import SIZE, Chart, Line, Note, Panel, drawn_svg
+from pneutouch.report.curves import predicted_press, rises, sensitivities
 from pneutouch.report.pictures import GRADE_COLOURS, greatest_share
-from pneutouch.report.style import ACCENT, BOLD, INK, LINES, MUTED, Label, figure, label_ends, note, svg
+from pneutouch.report.style import ACCENT, INK, LINES, figure, svg
 from pneutouch.shape.dome import DomeShape
-from pneutouch.spec.material import ArcGrading, Material
+from pneutouch.spec.material import ArcGrading
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-
 _CELLS = 90
 """Cells along the arc of the shaded section; one more would not be seen."""
-_SIZE = (86.0, 62.0)
-"""Width and height of a picture in mm: two in a row on A4."""
 
 
-def grade_figures(material: Material, scene: ResolvedDesign) -> dict[str, str]:
-    """Half section of the dome shaded by the stiff resin's fraction, and fraction and modulus along the arc, as SVG.
+def grade_section(sheet: SheetData) -> Plot | None:
+    """Half sections of the dome shaded by the stiff resin's fraction."""
+    material = sheet.scene.membrane_material
+    if material.along is None:
+        return None
+    with figure(SIZE[0], 1.15 * SIZE[1]) as drawn:
+        ax = drawn.add_subplot()
+        _section(ax, material.along, sheet.scene.design.membrane.dome, material.base_resins[-1])
+        return Plot(svg(drawn), "Half sections of the wall: the stiff resin's share, laid droplet by droplet.")
 
-    ``material`` must be graded.
-    """
-    assert material.along is not None
-    stiff, along = material.base_resins[-1], material.along
-    with figure(_SIZE[0], 1.15 * _SIZE[1]) as drawn:
-        _section(drawn.add_subplot(), along, scene.design.membrane.dome, stiff)
-        section = svg(drawn)
-    mean = material.shear_modulus_MPa
-    return {
-        "grade-section": section,
-        "grade-share": _along(along, 100 * np.array(along.stiff_fraction), f"{stiff}  (% of the volume)"),
-        "grade-modulus": _along(
-            along, np.array(along.shear_modulus_MPa), "shear modulus  (MPa)", None if mean is None else mean.nominal
-        ),
-    }
+
+def grade_share(sheet: SheetData) -> Plot | None:
+    """Share of the stiff resin along the arc."""
+    material = sheet.scene.membrane_material
+    if material.along is None:
+        return None
+    words = (
+        "Share of the stiff resin along the arc from the pole to the rim. The mixing curve behind it is assumed, see "
+        "the sources."
+    )
+    share, label = 100 * np.array(material.along.stiff_fraction), f"{material.base_resins[-1]}  (% of the volume)"
+    return Plot(_along(material.along, share, label), words)
+
+
+def grade_modulus(sheet: SheetData) -> Plot | None:
+    """Modulus along the arc, and its mean."""
+    material = sheet.scene.membrane_material
+    if material.along is None:
+        return None
+    mean = None if material.shear_modulus_MPa is None else material.shear_modulus_MPa.nominal
+    modulus = np.array(material.along.shear_modulus_MPa)
+    return Plot(_along(material.along, modulus, "shear modulus  (MPa)", mean), "Modulus along the arc, and its mean.")
 
 
 def _along(along: ArcGrading, values: Array, label: str, mean: float | None = None) -> str:
     """A value along the arc from the pole to the rim."""
-    with figure(_SIZE[0], 0.75 * _SIZE[1]) as drawn:
-        ax = drawn.add_subplot()
-        ax.plot(along.arc, values, color=ACCENT, lw=1.8)
-        if mean is not None:
-            ax.axhline(mean, color=INK, lw=0.8, ls=LINES[1])
-            note(ax, f"mean {mean:.2f} MPa", (0.5, mean))
-        ax.set(ylabel=label, ylim=(0, 1.08 * float(values.max()) or 1.0))
-        ax.set(xlim=(0, 1), xticks=[0, 0.5, 1], xticklabels=["pole", "arc", "rim"])
-        return svg(drawn)
+    lines, notes = [Line(along.arc, values, tone=ACCENT, width=1.8)], []
+    if mean is not None:
+        lines.append(Line((0, 1), (mean, mean), width=0.8, dashes=LINES[1]))
+        notes.append(Note(f"mean {mean:.2f} MPa", (0.5, mean)))
+    top = (0, 1.08 * float(values.max()) or 1.0)
+    panel = Panel("arc from the pole (0) to the rim (1)", label, tuple(lines), tuple(notes), xlim=(0, 1), ylim=top)
+    return drawn_svg(Chart((panel,), (SIZE[0], 0.75 * SIZE[1])))
 
 
 def _section(ax: Axes, along: ArcGrading, shape: DomeShape, stiff: str) -> None:
@@ -90,71 +98,35 @@ def _section(ax: Axes, along: ArcGrading, shape: DomeShape, stiff: str) -> None:
     scale.outline.set_linewidth(0.5)
 
 
-def graded_against_constant(graded: ComparedMembrane, constants: Sequence[ComparedMembrane]) -> dict[str, str]:
-    """Sensitivity over driving pressure, and pressure rise over force at the highest, graded and constant, as SVG."""
-    charts = {}
-    for name, draw in (("graded-sensitivity", _sensitivities), ("graded-response", _rises)):
-        with figure(*_SIZE) as drawn:
-            draw(drawn.add_subplot(), graded, constants)
-            charts[name] = svg(drawn)
-    return charts
-
-
-def _looks(
-    graded: ComparedMembrane, constants: Sequence[ComparedMembrane]
-) -> list[tuple[ComparedMembrane, dict[str, object], dict[str, object]]]:
-    """Every membrane with the look of its line and of its label, the graded one last and on top."""
-    lines = [
-        (one, {"color": INK, "lw": 0.9, "ls": LINES[1 + k % 4]}, {"fontsize": 6.5, "color": MUTED})
-        for k, one in enumerate(constants)
-    ]
-    return [*lines, (graded, {"color": ACCENT, "lw": 2.0, "zorder": 4}, {"fontsize": 6.5, "color": INK, **BOLD})]
-
-
-def _sensitivities(ax: Axes, graded: ComparedMembrane, constants: Sequence[ComparedMembrane]) -> None:
-    ends: list[Label] = []
-    for one, line, look in _looks(graded, constants):
-        points = [
-            (s.driving_pressure / KPA, s.figures.sensitivity_kPa_per_N) for s in one.states if s.figures is not None
-        ]
-        if not points:
-            continue
-        x, y = np.array(points).T
-        ax.plot(x, y, marker="o", ms=3, mfc="white", **line)  # type: ignore[arg-type]
-        ends.append((float(x[-1]), float(y[-1]), one.label, dict(look)))
-    ax.set(xlabel="driving pressure  (kPa)", ylabel="sensitivity  (kPa/N)", ylim=(0, None), xlim=(0, None))
-    label_ends(ax, ends)
-
-
-def _rises(ax: Axes, graded: ComparedMembrane, constants: Sequence[ComparedMembrane]) -> None:
-    ends: list[Label] = []
-    for one, line, look in _looks(graded, constants):
-        state = one.states[-1]
-        keep = state.indentation <= state.range_end * (1 + 1e-9)
-        force, rise_kPa = state.force[keep], state.pressure_rise[keep] / KPA
-        ax.plot(force, rise_kPa, **line)  # type: ignore[arg-type]
-        ends.append((float(force[-1]), float(rise_kPa[-1]), one.label, dict(look)))
-    at = graded.states[-1].driving_pressure / KPA
-    ax.set(xlabel=f"contact force at {at:g} kPa  (N)", ylabel="pressure rise  (kPa)", ylim=(0, None), xlim=(0, None))
-    label_ends(ax, ends)
-
-
-CAPTIONS = {
-    "grade-section": "Half sections of the wall: the stiff resin's share, laid droplet by droplet.",
-    "grade-share": "Share of the stiff resin along the arc from the pole to the rim. The mixing curve behind it is "
-    "assumed, see the sources.",
-    "grade-modulus": "Modulus along the arc, and its mean.",
-    "graded-sensitivity": "The graded membrane against constant ones of its size, all by the solid: as stiff "
-    "throughout as at its softest, on average and at its stiffest. Sensitivity over driving pressure.",
-    "graded-response": "The same membranes: response at the highest driving pressure.",
-}
-
-
-def graded_figures(sheet: SheetData) -> dict[str, str]:
-    """The figures that `CAPTIONS` names as SVG for a graded membrane; nothing for any other."""
+def graded_sensitivity(sheet: SheetData) -> Plot | None:
+    """Sensitivity over driving pressure, graded and constant."""
     if sheet.scene.membrane_material.along is None:
-        return {}
-    return {
-        **grade_figures(sheet.scene.membrane_material, sheet.scene),
-        **graded_against_constant(ComparedMembrane("graded", sheet.prediction.states), sheet.constants),
-    }
+        return None
+    lines = []
+    for one, look in _compared(sheet):
+        figures = [(s.driving_pressure / KPA, s.figures.sensitivity_kPa_per_N) for s in one.states if s.figures]
+        x, y = np.array(figures).reshape(-1, 2).T
+        lines.append(replace(look, x=x, y=y, marker="o", size=3))
+    words = (
+        "The graded membrane against constant ones of its size, all by the solid: as stiff throughout as at its "
+        "softest, on average and at its stiffest. Sensitivity over driving pressure."
+    )
+    return Plot(drawn_svg(sensitivities(lines)), words)
+
+
+def graded_response(sheet: SheetData) -> Plot | None:
+    """Pressure rise over force at the highest driving pressure, graded and constant."""
+    if sheet.scene.membrane_material.along is None:
+        return None
+    panel = rises([predicted_press(one.states[-1], look) for one, look in _compared(sheet)])
+    at = f"contact force at {sheet.prediction.states[-1].driving_pressure / KPA:g} kPa  (N)"
+    words = "The same membranes: response at the highest driving pressure."
+    return Plot(drawn_svg(replace(panel, x=at)), words)
+
+
+def _compared(sheet: SheetData) -> list[tuple[ComparedMembrane, Line]]:
+    """Every membrane with its look, the graded one last and on top."""
+    looks = [Line(end=one.label, width=0.9, dashes=LINES[1 + k % 4]) for k, one in enumerate(sheet.constants)]
+    graded = ComparedMembrane("graded", sheet.prediction.states)
+    picked = Line(end=graded.label, tone=ACCENT, width=2.0, picked=True, over=4)
+    return [*zip(sheet.constants, looks, strict=True), (graded, picked)]

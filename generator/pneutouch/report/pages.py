@@ -1,15 +1,21 @@
-"""A page and a PDF from the same content and the same figures: Jinja sets the one, Typst the other."""
+"""A sheet as a page and as a PDF: Jinja writes the page and the source of the PDF, which Typst sets."""
+
+from __future__ import annotations
 
 import base64
 import datetime
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pneutouch.parts.lettering.glyphs import FONTS
+from pneutouch.report.blocks import Sheet, View, found
 from pneutouch.stopping import temporary_folder
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
 
 TEMPLATES = Path(__file__).parent / "templates"
 
@@ -17,29 +23,30 @@ _UNDATED = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC)
 """Creation time in the PDF of an undated sheet: the clock must not change the bytes."""
 
 
-def html(template: str, content: Mapping[str, Any], figures: Mapping[str, str], **more: str) -> str:
-    """A page that needs nothing from outside: fonts and figures (SVG by name) stand in it. ``more`` are further
-    values."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+def set_sheet(sheet: Sheet, name: str) -> dict[str, bytes]:
+    """``NAME.html`` and ``NAME.pdf``; the same sheet gives the same bytes."""
+    return {f"{name}.html": html(sheet).encode(), f"{name}.pdf": pdf(sheet)}
+
+
+def html(sheet: Sheet) -> str:
+    """A page that needs nothing from outside: fonts, figures and pictures stand in it."""
     from markupsafe import Markup
 
-    environment = Environment(
-        loader=FileSystemLoader(TEMPLATES),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    fonts = {
-        name: base64.b64encode((FONTS / f"Inter-{name}.otf").read_bytes()).decode() for name in ("Regular", "SemiBold")
-    }
-    safe = {name: Markup(text) for name, text in _without_repeats(figures).items()}  # our own SVG
-    return environment.get_template(template).render(sheet=content, figures=safe, fonts=fonts, **more)
-
-
-def _without_repeats(figures: Mapping[str, str]) -> dict[str, str]:
-    """Figures for one page: definitions that several share, letters above all, stand in the first alone."""
     seen: set[str] = set()
+
+    def encoded(data: bytes) -> str:
+        return base64.b64encode(data).decode()
+
+    def figure(text: str) -> Markup:
+        """Our own SVG, without what a figure before it has defined."""
+        return Markup(without_repeats(text, seen))
+
+    fonts = {name: encoded((FONTS / f"Inter-{name}.otf").read_bytes()) for name in ("Regular", "SemiBold")}
+    return _filled("sheet.html.j2", sheet, None, figure=figure, encoded=encoded, fonts=fonts, turns=bool(found(sheet.blocks, View)))
+
+
+def without_repeats(text: str, seen: set[str]) -> str:
+    """A figure without the definitions in ``seen``, letters above all, which then holds its own too."""
 
     def once(match: re.Match[str]) -> str:
         if match[0] in seen:
@@ -47,7 +54,7 @@ def _without_repeats(figures: Mapping[str, str]) -> dict[str, str]:
         seen.add(match[0])
         return match[0]
 
-    return {name: _DEFINITION.sub(once, _GROUP.sub("<g>", text)) for name, text in figures.items()}
+    return _DEFINITION.sub(once, _GROUP.sub("<g>", text))
 
 
 _DEFINITION = re.compile(r'<(path|clipPath|pattern) id="[^"]+"(?:[^>]*/>|.*?</\1>)', re.DOTALL)
@@ -55,27 +62,55 @@ _GROUP = re.compile(r'<g id="[^"]+">')
 """Groups are named alike in every figure, and nothing refers to them."""
 
 
-def pdf(
-    template: str,
-    content: Mapping[str, Any],
-    figures: Mapping[str, str],
-    date: datetime.date | None = None,
-    images: Mapping[str, bytes] | None = None,
-) -> bytes:
-    """Set a PDF with Typst, a compiler in one wheel: no system packages, no system fonts.
+def source(sheet: Sheet) -> dict[str, bytes]:
+    """Files that the PDF is set from: ``sheet.typ``, and the figures and pictures that it names."""
+    from markupsafe import Markup
 
-    ``content`` becomes sheet.json, ``figures`` SVG files, ``images`` files of their own names next to the template.
-    """
+    files: dict[str, bytes] = {}
+
+    def stored(data: str | bytes) -> str:
+        """Name of a new file that holds a figure or a picture."""
+        name = f"figure-{len(files) + 1}.{'svg' if isinstance(data, str) else 'png'}"
+        files[name] = data.encode() if isinstance(data, str) else data
+        return name
+
+    def literal(value: Any) -> Any:
+        """Text as a string of Typst: nothing that somebody wrote is read as its code."""
+        if isinstance(value, Markup | int | float):
+            return value
+        text = "".join(letter if letter >= " " or letter == "\n" else " " for letter in str(value))
+        return Markup(json.dumps(text, ensure_ascii=False))
+
+    text = _filled("sheet.typ.j2", sheet, literal, stored=stored)
+    return {"sheet.typ": text.encode(), **files}
+
+
+def pdf(sheet: Sheet) -> bytes:
+    """Set a PDF with Typst, a compiler in one wheel: no system packages, no system fonts."""
     import typst
 
+    date = sheet.date
     created = datetime.datetime(date.year, date.month, date.day, tzinfo=datetime.UTC) if date else _UNDATED
     with temporary_folder() as root:
-        (root / template).write_bytes((TEMPLATES / template).read_bytes())
-        (root / "sheet.json").write_text(json.dumps(content), encoding="utf-8")
-        for name, image in (images or {}).items():
-            (root / name).write_bytes(image)
-        for name, text in figures.items():
-            (root / f"{name}.svg").write_text(text, encoding="utf-8")
+        for name, data in source(sheet).items():
+            (root / name).write_bytes(data)
         return bytes(
-            typst.compile(root / template, root=root, font_paths=[FONTS], ignore_system_fonts=True, timestamp=created)
+            typst.compile(
+                root / "sheet.typ", root=root, font_paths=[FONTS], ignore_system_fonts=True, timestamp=created
+            )
         )
+
+
+def _filled(template: str, sheet: Sheet, finalize: Callable[[Any], Any] | None, **more: Any) -> str:
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    environment = Environment(
+        loader=FileSystemLoader(TEMPLATES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        finalize=finalize,
+    )
+    environment.filters["kind"] = lambda block: type(block).__name__
+    return environment.get_template(template).render(sheet=sheet, **more)

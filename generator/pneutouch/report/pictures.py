@@ -12,7 +12,7 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from pneutouch.arrays import Array, Index
 from pneutouch.evaluation.sheet_data import PressedView
 from pneutouch.export.scene import TILT_DEG, ShadedBody, cut_open, shaded, shaded_glb, view_data
 from pneutouch.parts import Assembly
+from pneutouch.report.blocks import Block, Columns, Text, View
 from pneutouch.report.style import ACCENT, INK, figure, svg
 from pneutouch.shape.dome import DomeShape
 from pneutouch.spec.material import ArcGrading
@@ -175,24 +176,18 @@ def pressed_files(view: PressedView, name: str) -> dict[str, bytes]:
     return {f"{name}-pressed.glb": shaded_glb(bodies), f"{name}-pressed.png": _with_scale(view, _image(bodies))}
 
 
-class PressedFigure(NamedTuple):
-    """Data of the 3D view (JSON), the picture in its place (PNG), and the scale of the pressure (SVG)."""
-
-    data: str
-    image: bytes
-    scale: str
-
-
-def pressed_figure(view: PressedView) -> PressedFigure:
-    """Picture of the pressed dome as a page shows it."""
+def pressed_blocks(view: PressedView) -> list[Block]:
+    """The pressed dome on a sheet: the 3D view over its scale, and its caption beside it."""
     bodies = _bodies(view)
     with figure(86, 13) as drawn:
         _scale(drawn, drawn.add_subplot(), view)
         scale = svg(drawn)
-    return PressedFigure(view_data(bodies, PRESSED_TILT_DEG), png(_image(bodies), _COLOURS), scale)
+    words = "The pressed dome from above and in front, its contact pressure in colour"
+    shown = View("pressed", view_data(bodies, PRESSED_TILT_DEG), png(_image(bodies), _COLOURS), words, scale=scale)
+    return [Columns(((shown,), (Text(pressed_caption(view), "muted"),)))]
 
 
-def caption(view: PressedView) -> str:
+def pressed_caption(view: PressedView) -> str:
     """Caption of the picture."""
     moved = f" and moved {view.travel:g} mm sideways" if view.travel else ""
     return (

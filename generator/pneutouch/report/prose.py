@@ -32,6 +32,11 @@ HANDLING = (
     "Clean with water and mild soap. Keep from solvents, sunlight and sharp edges.",
 )
 
+PERFORMANCE = (
+    "Predicted by one model; k = 2: the interval that holds the sensitivity of a printed sensor, see Uncertainty. "
+    "Published: measurement of the paper on a sensor of these dimensions and this resin, where there is one."
+)
+
 DEFINITIONS = (
     [
         "Sensitivity S",
@@ -50,64 +55,12 @@ DEFINITIONS = (
     ["Limit point", "greatest driving pressure of the inflation curve; beyond it the dome snaps"],
 )
 
-CAPTIONS = {
-    "performance": "Predicted by one model; k = 2: the interval that holds the sensitivity of a printed sensor, see "
-    "Uncertainty. Published: measurement of the paper on a sensor of these dimensions and this resin, where there is "
-    "one.",
-    "inflation": "Inflation: driving pressure over apex height; dashed beyond the limit point.",
-    "response": "Response: pressure rise over contact force at each driving pressure, with the fitted lines.",
-    "indentation": "Contact force over indentation at each driving pressure.",
-    "shares": "What makes the sensitivity uncertain: shares of its variance. The longest bar is what to measure first.",
-}
-"""Captions that are the same on every sheet."""
-
-GRADE = "The darker the membrane, the more of the stiff resin."
-
-SHAPES = "Half sections of the deformed wall, shaded by the greatest principal stretch; thin outlines at rest."
-NO_SHAPES = "The deformed wall and the contact pressure on it are drawn by the solid alone: build with model solid."
-NO_SHAPES_OFF_AXIS = "No half sections are drawn: off the axis they do not show the deformed wall."
-
-
-def tuning(other_contact: bool) -> str:
-    """Caption of the tuning chart; the solid's ratio makes the atlas's plate without friction any other contact."""
-    ratio = " times the solid's ratio of this contact to a plate without friction" if other_contact else ""
-    return (
-        "Tuning: sensitivity of this design from no driving pressure to its rated one (its highest stated one where "
-        f"that is above), by the atlas{ratio}, with its k = 2 interval (grey); circles: the predicted states."
-    )
-
-
-def drawing(has_object: bool) -> str:
-    """Caption of the mechanical drawing; ``has_object`` where an object that is no plate is drawn into it."""
-    text = "Lengths in mm; tolerances are the stated accuracies of the printers; bracketed sizes are for reference"
-    return f"{text}; dashed above the dome: the object that presses it, at first contact." if has_object else f"{text}."
-
-
 def front_error(errors: tuple[float, float]) -> str:
     """Median and greatest relative differences of fronts from the solid, in words."""
     if not all(map(isfinite, errors)):
         return "not checked by it"
     median, greatest = errors
     return f"half of the places checked within {100 * median:.1f} % of it, all within {100 * greatest:.1f} %"
-
-
-def tradeoff(
-    driving_pressure_kPa: float, dead_volume_mL: float, note: str = "", errors: tuple[float, float] | None = None
-) -> str:
-    """Caption of the trade-off chart; kPa and mL; ``note`` belongs next to the dead volume. ``errors``: those
-    of `front_error` where the solid corrects the lines."""
-    idealised = f" ({note})" if note else ""
-    model = "by the atlas; no line crosses a limit"
-    if errors is not None:
-        model = (
-            "under this design's contact, by the atlas corrected by the solid at five to nine places of each line, "
-            f"{front_error(errors)}; limits as under a plate without friction"
-        )
-    return (
-        f"Trade-off at {driving_pressure_kPa:g} kPa: the greatest force range that goes with each sensitivity, one "
-        "line for each resin of this printer with the sensitivities it reaches, wall and radius free to 60 mm, "
-        f"{dead_volume_mL:.3g} mL dead volume{idealised}, {model}."
-    )
 
 
 def description(scene: ResolvedDesign) -> str:

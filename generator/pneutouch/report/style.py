@@ -135,19 +135,21 @@ def note(ax: Axes, text: str, at: tuple[float, float], side: tuple[float, float]
     label.set_in_layout(False)
 
 
-def legend_above(ax: Axes, columns: int = 4) -> None:
-    """The legend of the axes above them, where no curve runs, in rows of ``columns`` entries."""
-    handles, labels = ax.get_legend_handles_labels()
-    if not handles:
+def legend_above(*axes: Axes, columns: int = 4) -> None:
+    """The legend of axes of one figure above them, where no curve runs, in rows of ``columns`` entries."""
+    entries: dict[str, Any] = {}
+    for ax in axes:
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, handle)
+    if not entries:
         return
-    columns = min(columns, len(handles))
+    columns = min(columns, len(entries))
     # matplotlib fills columns: taken in this order the entries read row by row.
-    order = [k for column in range(columns) for k in range(column, len(handles), columns)]
+    words = [word for k in range(columns) for word in list(entries)[k::columns]]
     look: dict[str, Any] = {"handlelength": 2.6, "handletextpad": 0.4, "columnspacing": 1.4, "borderpad": 0.1}
-    entries = [handles[k] for k in order], [labels[k] for k in order]
-    drawn = ax.get_figure(root=True)
+    drawn = axes[0].get_figure(root=True)
     assert drawn is not None
-    drawn.legend(*entries, loc="outside upper left", ncols=columns, **look)
+    drawn.legend([entries[word] for word in words], words, loc="outside upper left", ncols=columns, **look)
 
 
 def halo() -> list[AbstractPathEffect]:

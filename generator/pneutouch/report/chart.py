@@ -1,0 +1,288 @@
+"""A chart as a record, and the one function that draws it: curves, points, bands and notes in one or more panels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from pneutouch.arrays import Array
+from pneutouch.report.style import (
+    BOLD,
+    FAINT,
+    INK,
+    LINES,
+    MUTED,
+    Label,
+    band,
+    figure,
+    label_corner,
+    label_ends,
+    legend_above,
+    note,
+    plain_ticks,
+    svg,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+SIZE = (86.0, 62.0)
+"""Width and height of a chart in mm: two in a row on A4, and readable on a phone."""
+
+WIDE = 180.0
+"""Width of a chart over the whole row of A4, mm."""
+
+Values = Array | Sequence[float]
+Limits = tuple[float | None, float | None]
+
+
+@dataclass(frozen=True)
+class Line:
+    """A curve or a set of points; one without points is an entry of the legend alone.
+
+    Attributes:
+        x: Places, (n,).
+        y: Values there, (n,).
+        label: Entry of the legend; empty for none.
+        end: Text written right of the axes at its last point, or in the corner for its first.
+        tone: Colour.
+        dashes: Pattern of the line; empty for points alone.
+        width: Of the line, points.
+        marker: Shape of the points; empty for a line alone.
+        size: Of the points.
+        filled: False for open points.
+        every: Points of the curve to one that is marked.
+        picked: True for the curve that the chart is about: its ``end`` is bold.
+        low: Lower end of its band, (n,); None without one.
+        high: Upper end.
+        hatch: Number of the hatch of the band; None for a plain one.
+        over: Order in which curves lie over one another.
+    """
+
+    x: Values = ()
+    y: Values = ()
+    label: str = ""
+    end: str = ""
+    tone: str = INK
+    dashes: Any = LINES[0]
+    width: float = 1.2
+    marker: str = ""
+    size: float = 3.2
+    filled: bool = False
+    every: int = 1
+    picked: bool = False
+    low: Values | None = None
+    high: Values | None = None
+    hatch: int | None = None
+    over: float = 3.0
+
+
+@dataclass(frozen=True)
+class Note:
+    """A small text near a point of the data, on the side (right, up) of it where there is room."""
+
+    text: str
+    at: tuple[float, float]
+    side: tuple[float, float] = (0.0, 1.0)
+    tone: str = INK
+    bold: bool = False
+
+
+@dataclass(frozen=True)
+class Span:
+    """A shaded stretch of an axis over all of the other, or a hatched one."""
+
+    low: float
+    high: float
+    axis: str = "x"
+    tone: str = FAINT
+    hatched: bool = False
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes.
+
+    Attributes:
+        x: Quantity and unit of the horizontal axis.
+        y: Of the vertical one.
+        lines: What is drawn; labels of several panels stand in one legend.
+        notes: Texts near points.
+        title: Above the panel.
+        xlim: Ends of the axis; None where the data say.
+        ylim: Of the vertical one.
+        log: The axes that are logarithmic: ``x``, ``y`` or ``xy``.
+        zero: The axes with a line at nothing: ``x``, ``y`` or both.
+        rows: Names of the rows of a chart of rows, from above; they stand at 0, 1, 2, ...
+        columns: Names of columns in the same way.
+        ticks: Places of the numbers of the horizontal axis, where they are to be these.
+        spans: Shaded stretches.
+        corner: True for the ends' texts in the upper right corner, each with a line to its curve's start.
+        equal: True for one scale on both axes.
+    """
+
+    x: str = ""
+    y: str = ""
+    lines: tuple[Line, ...] = ()
+    notes: tuple[Note, ...] = ()
+    title: str = ""
+    xlim: Limits | None = None
+    ylim: Limits | None = None
+    log: str = ""
+    zero: str = ""
+    rows: tuple[str, ...] = ()
+    columns: tuple[str, ...] = ()
+    ticks: tuple[float, ...] = ()
+    spans: tuple[Span, ...] = ()
+    corner: bool = False
+    equal: bool = False
+
+
+@dataclass(frozen=True)
+class Chart:
+    """Panels in rows of ``across``; ``x`` and ``y`` are axes that all of them have, ``size`` is in mm, ``shared`` names
+    the axes with the same ends, ``heights`` are those of the rows to one another, ``keys`` the columns of the legend."""
+
+    panels: tuple[Panel, ...]
+    size: tuple[float, float] = SIZE
+    across: int = 1
+    x: str = ""
+    y: str = ""
+    shared: str = ""
+    heights: tuple[float, ...] | None = None
+    keys: int = 4
+
+
+def drawn_svg(chart: Chart | Panel) -> str:
+    """A chart, or a panel of the usual size, as SVG."""
+    if isinstance(chart, Panel):
+        chart = Chart((chart,))
+    down = -(-len(chart.panels) // chart.across)
+    with figure(*chart.size) as drawn:
+        grid = drawn.subplots(
+            down,
+            chart.across,
+            squeeze=False,
+            sharex="all" if "x" in chart.shared else False,
+            sharey="all" if "y" in chart.shared else False,
+            height_ratios=chart.heights,
+        )
+        axes = list(grid.flat)
+        for ax in axes[len(chart.panels) :]:
+            ax.remove()
+        for ax, panel in zip(axes, chart.panels, strict=False):
+            draw_panel(ax, panel)
+        if chart.x or chart.y:
+            drawn.supxlabel(chart.x, fontsize=7.5)
+            drawn.supylabel(chart.y, fontsize=7.5)
+        drawn.align_ylabels(axes[: len(chart.panels)])
+        legend_above(*axes[: len(chart.panels)], columns=chart.keys)
+        return svg(drawn)
+
+
+def draw_panel(ax: Axes, panel: Panel) -> None:
+    """Draw a panel into axes; its legend is left to the caller."""
+    for span in panel.spans:
+        _shade(ax, span)
+    for axis in panel.zero:
+        (ax.axvline if axis == "x" else ax.axhline)(0.0, color=INK, lw=0.6, zorder=1)
+    for axis in panel.log:
+        (ax.set_xscale if axis == "x" else ax.set_yscale)("log")
+    for line in panel.lines:
+        _draw(ax, line)
+    if panel.equal:
+        ax.set_aspect("equal")
+    ax.set(xlabel=panel.x, ylabel=panel.y)
+    if panel.xlim is not None:
+        ax.set_xlim(*panel.xlim)
+    if panel.ylim is not None:
+        ax.set_ylim(*panel.ylim)
+    _ticks(ax, panel)
+    if panel.title:
+        ax.set_title(plain_text(panel.title), fontsize=7.5, loc="left", pad=3)
+    ends = _ends(panel)
+    if ends:
+        (label_corner if panel.corner else label_ends)(ax, ends)
+    for one in panel.notes:
+        note(ax, plain_text(one.text), one.at, one.side, color=one.tone, **(BOLD if one.bold else {}))
+
+
+def _draw(ax: Axes, one: Line) -> None:
+    """One curve with its band."""
+    label = plain_text(one.label) or None
+    if one.low is not None and one.high is not None:
+        if one.hatch is not None:
+            band(ax, one.x, one.low, one.high, one.hatch, one.tone)
+        else:
+            alone = None if one.dashes or one.marker else label
+            look: dict[str, Any] = {"fc": FAINT, "alpha": 0.55, "ec": "none", "zorder": 1, "label": alone}
+            ax.fill_between(one.x, one.low, one.high, **look)
+            for edge in (one.low, one.high):
+                ax.plot(one.x, edge, color=MUTED, lw=0.5, zorder=1.5)
+    if one.dashes or one.marker:
+        points = {"marker": one.marker or None, "ms": one.size, "mec": one.tone, "mew": 0.8, "markevery": one.every}
+        ax.plot(
+            one.x,
+            one.y,
+            color=one.tone,
+            ls=one.dashes,
+            lw=one.width,
+            mfc=one.tone if one.filled else "white",
+            zorder=one.over,
+            # A point on the rim of the axes is whole.
+            clip_on=bool(one.dashes),
+            solid_capstyle="butt",
+            label=label,
+            **points,
+        )
+
+
+def _shade(ax: Axes, span: Span) -> None:
+    draw = ax.axvspan if span.axis == "x" else ax.axhspan
+    look: dict[str, Any] = {"color": span.tone, "alpha": 0.35, "lw": 0}
+    if span.hatched:
+        look = {"facecolor": "none", "edgecolor": span.tone, "hatch": "////", "lw": 0.3}
+    draw(span.low, span.high, label=span.label or None, zorder=0.5, **look)
+
+
+def _ticks(ax: Axes, panel: Panel) -> None:
+    """Numbers or names along the axes."""
+    if panel.ticks:
+        ax.set_xticks(panel.ticks)
+    for axis in panel.log:
+        plain_ticks(ax.xaxis if axis == "x" else ax.yaxis)
+    if panel.rows:
+        ax.set_yticks(range(len(panel.rows)), list(map(plain_text, panel.rows)))
+        ax.set_ylim(len(panel.rows) - 0.5, -0.5)
+        ax.grid(visible=False, axis="y")
+    if panel.columns:
+        ax.set_xticks(range(len(panel.columns)), list(map(plain_text, panel.columns)))
+        ax.tick_params(axis="x", labelrotation=30 if len(panel.columns) > 4 else 0)
+
+
+def _ends(panel: Panel) -> list[Label]:
+    place = 0 if panel.corner else -1
+    return [
+        (
+            float(one.x[place]),
+            float(one.y[place]),
+            plain_text(one.end),
+            {"color": INK, **BOLD} if one.picked else {"color": INK if panel.corner else MUTED},
+        )
+        for one in panel.lines
+        if one.end and len(one.x)
+    ]
+
+
+def plain_text(text: str) -> str:
+    """Text that matplotlib takes for no formula."""
+    return text.replace("$", r"\$")
+
+
+def bars_between(x: Iterable[float], low: Iterable[float], high: Iterable[float], look: Line) -> list[Line]:
+    """Upright bars from ``low`` to ``high`` at places ``x``: intervals of single points."""
+    from dataclasses import replace
+
+    return [replace(look, x=(at, at), y=(a, b)) for at, a, b in zip(x, low, high, strict=True)]

@@ -1,0 +1,182 @@
+"""Tables of a datasheet: figures that count, performance, ratings, conditions of use, limits and sources."""
+
+from pneutouch.evaluation.sheet_data import SheetData
+from pneutouch.mechanics.prediction import SensorState
+from pneutouch.report import prose
+from pneutouch.report.blocks import Table, Tile
+from pneutouch.report.certainty import interval
+from pneutouch.report.conditions import DASH, NOT_TESTED, gauge_range, gauge_volume
+from pneutouch.units import KPA, ML
+
+_PERFORMANCE = (
+    "Driving\nkPa",
+    "Apex\ninside\nmm",
+    "Apex\noutside\nmm",
+    "Sensitivity\nkPa/N",
+    "k = 2\nkPa/N",
+    "Published\nkPa/N",
+    "R²",
+    "Non-\nlinearity\n% FS",
+    "Stiffness\nN/mm",
+    "Force range\nN",
+    "Range ends at",
+)
+
+
+def key_figures(sheet: SheetData) -> list[Tile]:
+    """Figures of the first page."""
+    first, last = sheet.prediction.states[0], sheet.prediction.states[-1]
+    mass = sum(solid.mass for solid in sheet.assembly.solids)
+    wide, dead_volume = 2 * sheet.assembly.layout.plate_radius, sheet.prediction.dead_volume / ML
+    behind = sheet.assembly.dead_volume_note or "behind the cavity"
+    return [
+        Tile("Sensitivity", _sensitivity(first), "kPa/N", _condition(sheet, 0)),
+        Tile("Sensitivity", _sensitivity(last), "kPa/N", _condition(sheet, -1)),
+        Tile("Force range", _range(last), "N", f"at {last.driving_pressure / KPA:g} kPa"),
+        Tile("Max. driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa", sheet.rating.summary),
+        Tile("Dead volume", f"{dead_volume:.2f}", "mL", behind),
+        Tile("Size", f"Ø{wide:.1f}", "mm", f"{mass:.1f} g without tube"),
+    ]
+
+
+def warnings(sheet: SheetData) -> list[str]:
+    """Driving pressures of the design that the rating does not allow, and where a pressed dome leaves its axis."""
+    judged = ((sheet.rating.severity(s.driving_pressure), s.driving_pressure) for s in sheet.prediction.states)
+    above = [f"{severity.capitalize()}: {sheet.rating.excess(p)}." for severity, p in judged if severity is not None]
+    left = [(state.driving_pressure / KPA, event) for state in sheet.prediction.states for event in state.off_axis]
+    return above + [f"Warning: {e.kind} at {e.indentation:.2f} mm and {p:g} kPa: {e.message}." for p, e in left]
+
+
+def _condition(sheet: SheetData, k: int) -> str:
+    """Condition and interval of a state's sensitivity."""
+    text = f"{width} (k = 2)" if (width := interval(sheet.uncertainty[k])) else "interval not known, see Uncertainty"
+    return f"at {sheet.prediction.states[k].driving_pressure / KPA:g} kPa; {text}"
+
+
+def ratings(sheet: SheetData) -> list[list[str]]:
+    """Absolute maximum ratings: quantity, value, unit, basis."""
+    basis = f"{sheet.rating.summary} (model {sheet.prediction.model})"
+    gauge = f"{NOT_TESTED}; the pressure gauge ({sheet.gauge.title}) reads to {sheet.gauge.reads_to_kPa:.4g} kPa"
+    return [
+        ["Driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa gauge", basis],
+        ["Cavity pressure while pressed", DASH, "kPa gauge", gauge],
+        ["Overload force", DASH, "N", NOT_TESTED],
+        ["Burst pressure", DASH, "kPa", NOT_TESTED],
+        ["Temperature", DASH, "°C", NOT_TESTED + "; the paper's tests ran at 18 to 26 °C"],
+    ]
+
+
+def rating_note(sheet: SheetData) -> str:
+    """Advice that would raise the rated pressure; empty if it does not follow from the modulus."""
+    rating = sheet.rating
+    return (
+        ""
+        if rating.remedy is None
+        else f"To raise the rated pressure of {rating.pressure_kPa:.1f} kPa: {rating.remedy}."
+    )
+
+
+def operating(sheet: SheetData) -> list[list[str]]:
+    """Operating conditions that the figures hold for."""
+    design = sheet.scene.design
+    pressures = ", ".join(f"{p:g}" for p in design.pneumatics.driving_pressures_kPa)
+    note = sheet.assembly.dead_volume_note
+    stated = f"given in the design, {note}" if note else "given in the design"
+    if design.pneumatics.dead_volume_mL is None:
+        tube = f"{sheet.scene.tube.outer_diameter:g} x {sheet.scene.tube.inner_diameter:g} mm tube"
+        length = f"{design.pneumatics.tube_length_mm:g} mm of {tube}"
+        stated = f"connector {sheet.assembly.internal_volume / ML:.3f} mL and {length}"
+        stated += gauge_volume(sheet)
+    return [
+        ["Driving pressure", pressures, "kPa gauge", "before contact"],
+        ["Medium", "air", "", "trapped, isothermal"],
+        ["Ambient pressure", f"{design.pneumatics.ambient_pressure_kPa:g}", "kPa", "absolute"],
+        ["Dead volume", f"{sheet.prediction.dead_volume / ML:.3f}", "mL", stated],
+        *([] if sheet.scene.gauge is None else [["Pressure gauge", *gauge_range(sheet)]]),
+        ["Contact object", *prose.contact_body(sheet.scene)],
+        ["Indentation", f"0 to {design.depth_mm:.2f}", "mm", f"{design.indentation.steps} steps from first contact"],
+    ]
+
+
+def performance(sheet: SheetData) -> Table:
+    """One row a driving pressure."""
+    pairs = zip(sheet.prediction.states, sheet.uncertainty, strict=True)
+    rows = [_state(sheet, state, interval(document) or DASH) for state, document in pairs]
+    return Table(rows, _PERFORMANCE, numeric=range(10), turned=True)
+
+
+def _state(sheet: SheetData, s: SensorState, width: str) -> list[str]:
+    f, pressure_kPa = s.figures, s.driving_pressure / KPA
+    figures = (DASH, DASH, DASH)
+    if f is not None:
+        figures = f"{f.r_squared:.4f}", f"{100 * f.nonlinearity:.1f}", f"{f.stiffness:.2f}"
+    heights = f"{s.apex_inner:.2f}", f"{s.apex_outer:.2f}"
+    beside = width, _published(sheet, pressure_kPa)
+    return [f"{pressure_kPa:g}", *heights, _sensitivity(s), *beside, *figures, _range(s), _ends(s)]
+
+
+def _published(sheet: SheetData, pressure_kPa: float) -> str:
+    value = sheet.published_kPa_per_N.get(round(pressure_kPa, 9))
+    return DASH if value is None else f"{value:.3f}"
+
+
+def limits(sheet: SheetData) -> Table:
+    """The limits of the driving pressure and which of them the rating follows from."""
+    limits, point, fitted = sheet.prediction.limits, sheet.prediction.limit_point, sheet.prediction.limits.law_range
+    broken = DASH if limits.break_strain is None else f"{limits.break_strain / KPA:.1f}"
+    where = "the resin's least elongation at break" + ("; not met before the limit point" if broken == DASH else "")
+    reach = "none: the pressure goes on rising"
+    if point is not None:
+        reach = f"dome snaps at {point.apex_inner:.2f} mm inside, {point.apex_outer:.2f} mm outside"
+    rows = [
+        ["limit point", DASH if limits.limit_point is None else f"{limits.limit_point / KPA:.2f}", reach],
+        ["break strain", broken, where],
+        ["law range", "" if fitted is None else f"{fitted / KPA:.1f}", "stretched further than its law was fitted"],
+        ["gauge range", f"{limits.gauge / KPA:.4g}", f"what the {sheet.gauge.title} reads"],
+    ]
+    spread = {limit.name: limit for limit in sheet.rating.limits if limit.low < limit.nominal}
+    rows = [row for row in rows if row[1]]
+    for row in rows:
+        if row[0] in spread:
+            limit = spread[row[0]]
+            row[2] = f"{limit.low / KPA:.1f} to {limit.high / KPA:.1f} kPa at k = 2; {row[2]}"
+        row.append("binds" if row[0] == sheet.rating.limit.name else "")
+    binding = [k for k, row in enumerate(rows) if row[3]]
+    return Table(rows, ("Limit", "kPa", "Meaning", "Binds"), numeric=(1,), strong=binding, small=True)
+
+
+def sources(sheet: SheetData) -> list[list[str]]:
+    """Sources of the resin's numbers: quantity, value, source."""
+    m = sheet.scene.membrane_material
+    entries = [
+        ("Shear modulus, MPa", m.shear_modulus_MPa),
+        ("Poisson ratio", m.poisson_ratio),
+        ("Density, g/cm³", m.density_g_per_cm3),
+        ("Shore A", m.shore_a),
+        ("Tensile strength, MPa", m.tensile_strength_MPa),
+        ("Elongation at break, %", m.elongation_at_break_percent),
+    ]
+    rows = [[what, quantity.text(), quantity.source] for what, quantity in entries if quantity is not None]
+    if m.measured is not None:
+        rows.append(
+            ["Hysteresis at 0 kPa, %", m.measured.hysteresis_percent.text(), m.measured.hysteresis_percent.source]
+        )
+    accuracy = sheet.scene.printer.accuracy_mm
+    return [
+        ["The paper", "", prose.PAPER],
+        *rows,
+        [f"Accuracy of the {sheet.scene.printer.title}, mm", f"±{accuracy.nominal:g}", accuracy.source],
+    ]
+
+
+def _sensitivity(state: SensorState) -> str:
+    return f"{state.figures.sensitivity_kPa_per_N:.2f}" if state.figures else DASH
+
+
+def _range(state: SensorState) -> str:
+    return f"0 to {state.figures.force_range[1]:.1f}" if state.figures else DASH
+
+
+def _ends(state: SensorState) -> str:
+    kinds = [event.kind for event in state.events if event.ends_range]
+    return f"{kinds[0] if kinds else 'depth'}, {state.range_end:.2f} mm"
