@@ -59,7 +59,7 @@ def test_a_plot_draws_every_state_with_labelled_axes(prediction):
     from matplotlib.figure import Figure
 
     ax = prediction.plot(Figure().subplots())
-    assert (ax.get_xlabel(), ax.get_ylabel()) == ("contact force, N", "pressure rise, kPa")
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("contact force  (N)", "pressure rise  (kPa)")
     for line, state in zip(ax.get_lines(), prediction.states, strict=True):
         assert line.get_ydata().tolist() == state.pressure_rise_kPa.tolist()
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["0 kPa", "22 kPa"]

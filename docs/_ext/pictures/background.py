@@ -21,7 +21,8 @@ from pneutouch.mechanics.uncertainty import budget, document, model_errors
 from pneutouch.mechanics.viscous.describe import LOOP_SPEEDS, RAMP_SPEED
 from pneutouch.mechanics.viscous.prony import prony_series
 from pneutouch.mechanics.viscous.runs import loop, relaxation
-from pneutouch.report.fit_charts import GainCurve, gain_chart
+from pneutouch.report.chart import Chart, drawn_svg
+from pneutouch.report.fit_charts import GainCurve, gain_panel
 from pneutouch.report.style import ACCENT, FAINT, INK, LINES, MARKERS, MUTED, figure, legend_above, plain_ticks, svg
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
@@ -231,7 +232,7 @@ def dynamics() -> str:
     frequency = np.geomspace(0.1, 2000.0, 600)
     known = states().items()
     gains = [GainCurve(f"{length:g} mm", frequency, gain_at(s.dynamics, frequency)) for length, s in known]
-    return gain_chart(gains, (150.0, 80.0))
+    return drawn_svg(Chart((gain_panel(gains),), (150.0, 80.0)))
 
 
 CHARTS: dict[str, Callable[[], str]] = {

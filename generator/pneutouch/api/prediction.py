@@ -159,13 +159,19 @@ class Prediction(show.Shown):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the pressure rise over the contact force, a line a state; returns the axes."""
+        from pneutouch.report.chart import draw_panel
+        from pneutouch.report.curves import Press, rises, state_look
+
         if ax is None:
             from matplotlib import pyplot
 
             ax = pyplot.subplots()[1]
-        for state in self.states:
-            ax.plot(state.contact_force_N, state.pressure_rise_kPa, label=f"{state.driving_pressure_kPa:g} kPa")
-        ax.set(title=self.name, xlabel="contact force, N", ylabel="pressure rise, kPa")
+        presses = [
+            Press(s.indentation_mm, s.contact_force_N, s.pressure_rise_kPa, state_look(k, s.driving_pressure_kPa))
+            for k, s in enumerate(self.states)
+        ]
+        draw_panel(ax, rises(presses))
+        ax.set_title(self.name)
         ax.legend(title="driving pressure")
         return ax
 

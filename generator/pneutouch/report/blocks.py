@@ -10,7 +10,7 @@ from typing import TypeVar
 
 Row = Sequence["str | Cell"]
 
-_SHORT, _SENTENCE = 18, 40
+_SHORT, _SENTENCE = 22, 40
 """Letters of a cell that is never broken, and from which on it is a sentence."""
 
 
@@ -24,6 +24,11 @@ class Cell:
 
     def __str__(self) -> str:
         return self.text
+
+
+def _letters(cell: str | Cell) -> int:
+    parts = (cell.text, cell.note) if isinstance(cell, Cell) else (cell,)
+    return max(len(line) for part in parts for line in part.split("\n"))
 
 
 @dataclass(frozen=True)
@@ -83,14 +88,19 @@ class Table:
     def lengths(self) -> list[int]:
         """Letters of the longest line of each column."""
         columns = zip(*([self.head] if self.head else []), *self.rows, strict=True)
-        return [max(len(line) for cell in column for line in str(cell).split("\n")) for column in columns]
+        return [max(map(_letters, column)) for column in columns]
 
     @property
     def weights(self) -> list[int]:
-        """Share of each column in the room that there is; 0 for one that is as wide as its cells."""
-        weights = [0 if length <= _SHORT else round(10 * length**0.5) for length in self.lengths]
-        weights = [0 if k in self.numeric else weight for k, weight in enumerate(weights)]
-        return weights if any(weights) else [int(k == 0) for k in range(len(weights))]
+        """Share of each column in the room that there is; 0 for one that is as wide as its cells.
+
+        Beside sentences short columns are narrow; without them all that are not numbers share the room.
+        """
+        lengths = [0 if k in self.numeric else length for k, length in enumerate(self.lengths)]
+        if self.head and 0 < max(lengths) <= _SENTENCE:
+            return lengths
+        weights = [0 if length <= _SHORT else round(10 * length**0.5) for length in lengths]
+        return weights if any(weights) else [*weights[:-1], 1]
 
     @property
     def long(self) -> list[int]:
@@ -162,8 +172,9 @@ class Columns:
 
 @dataclass(frozen=True)
 class Box:
-    """Blocks in a frame: what the reader has to see first."""
+    """Blocks in a frame under a title, where there is one: what the reader has to see first."""
 
+    title: str
     blocks: Sequence[Block]
 
 

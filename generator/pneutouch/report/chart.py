@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.report.style import (
@@ -142,8 +144,8 @@ class Panel:
 
 @dataclass(frozen=True)
 class Chart:
-    """Panels in rows of ``across``; ``x`` and ``y`` are axes that all of them have, ``size`` is in mm, ``shared`` names
-    the axes with the same ends, ``heights`` are those of the rows to one another, ``keys`` the columns of the legend."""
+    """Panels in rows of ``across``; ``x`` and ``y`` are axes that all have, ``size`` is in mm, ``shared`` names the axes
+    with the same ends, ``heights`` are those of the rows to one another, ``keys`` the columns of the legend."""
 
     panels: tuple[Panel, ...]
     size: tuple[float, float] = SIZE
@@ -214,7 +216,8 @@ def _draw(ax: Axes, one: Line) -> None:
     label = plain_text(one.label) or None
     if one.low is not None and one.high is not None:
         if one.hatch is not None:
-            band(ax, one.x, one.low, one.high, one.hatch, one.tone)
+            x, low, high = map(np.asarray, (one.x, one.low, one.high))
+            band(ax, x, low, high, one.hatch, one.tone)
         else:
             alone = None if one.dashes or one.marker else label
             look: dict[str, Any] = {"fc": FAINT, "alpha": 0.55, "ec": "none", "zorder": 1, "label": alone}
@@ -222,8 +225,14 @@ def _draw(ax: Axes, one: Line) -> None:
             for edge in (one.low, one.high):
                 ax.plot(one.x, edge, color=MUTED, lw=0.5, zorder=1.5)
     if one.dashes or one.marker:
-        points = {"marker": one.marker or None, "ms": one.size, "mec": one.tone, "mew": 0.8, "markevery": one.every}
-        ax.plot(
+        points: dict[str, Any] = {
+            "marker": one.marker or None,
+            "ms": one.size,
+            "mec": one.tone,
+            "mew": 0.8,
+            "markevery": one.every,
+        }
+        (drawn,) = ax.plot(
             one.x,
             one.y,
             color=one.tone,
@@ -237,6 +246,8 @@ def _draw(ax: Axes, one: Line) -> None:
             label=label,
             **points,
         )
+        # An entry of the legend has no place that a layout may care for.
+        drawn.set_in_layout(len(one.x) > 0)
 
 
 def _shade(ax: Axes, span: Span) -> None:
@@ -283,6 +294,4 @@ def plain_text(text: str) -> str:
 
 def bars_between(x: Iterable[float], low: Iterable[float], high: Iterable[float], look: Line) -> list[Line]:
     """Upright bars from ``low`` to ``high`` at places ``x``: intervals of single points."""
-    from dataclasses import replace
-
     return [replace(look, x=(at, at), y=(a, b)) for at, a, b in zip(x, low, high, strict=True)]

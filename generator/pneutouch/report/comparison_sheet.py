@@ -1,92 +1,177 @@
 """The sheet of a comparison: what differs, figures with intervals, overlaid curves and sections.
 
-The comparison as one HTML page and one PDF from the same content and the same figures.
-
-The pictures of a comparison: curves with their bands, differences with their intervals, and sections laid over one
-another. Sensors differ by line and marker, and stay apart in grayscale.
+Sensors differ by line and marker, and stay apart in grayscale.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from pneutouch.body.section import section_outline
 from pneutouch.parts import Assembly
-from pneutouch.report import comparison_words, pages
-from pneutouch.report.comparison_words import labels
-from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, band, figure, svg
+from pneutouch.report import comparison_words as words
+from pneutouch.report.blocks import Block, Box, Cell, Heading, Items, Plot, Plots, Sheet, Table, Text, section
+from pneutouch.report.chart import SIZE, Chart, Line, Panel, drawn_svg
+from pneutouch.report.curves import Ends, Press, forces, rises
+from pneutouch.report.pages import set_sheet
+from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED
 from pneutouch.results.comparison import ComparedCurve, ComparisonRecord, DifferenceRecord, RowRecord
-from pneutouch.results.record import plain
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-
-WIDTH = 86.0
-"""Width in mm: two in a row on A4, and readable on a phone."""
 
 MOST = 6
 """Sensors that are drawn: more cover one another."""
 
-_SHORT = 16
-"""Letters of a name that fits into half the width of a legend."""
+_SHORT, _CUT = 16, 44
+"""Letters of a name that fits into half the width of a legend, and into all of it."""
 
 _TONES = (INK, "#3F8FBF", "#B4631D", MUTED, ACCENT, "#8C8C8C")
 _PANELS, _RUNS, _TOLERANCE, _TALLEST = 4, 30, 5e-3, 1.6
+_SENSITIVITY, _STIFFNESS = "sensitivity_kPa_per_N", "stiffness_N_per_mm"
 
 
-def _look(k: int) -> dict[str, Any]:
-    return {"color": _TONES[k % len(_TONES)], "ls": LINES[k % len(LINES)], "lw": 1.2}
+def comparison_sheet(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> dict[str, bytes]:
+    """``comparison.html`` and ``comparison.pdf``; ``parts`` are the assemblies by label. Same input, same bytes."""
+    return set_sheet(described(comparison, parts), "comparison")
 
 
-def _spots(k: int) -> dict[str, Any]:
-    tone = _TONES[k % len(_TONES)]
-    return {"ls": "", "marker": MARKERS[k % len(MARKERS)], "ms": 2.8, "mew": 0.6, "mec": tone, "mfc": "white"}
+def described(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> Sheet:
+    """The whole sheet, its plots drawn."""
+    labels, tool = words.labels(comparison), f"pneutouch {comparison.pneutouch}"
+    title = " and ".join([", ".join(labels[:-1]), labels[-1]])
+    compared = [[one.label, _KINDS[one.kind], one.source or "–"] for one in comparison.compared]
+    inputs = Table(words.input_rows(comparison), ("Input", *labels))
+    return Sheet(
+        title=title,
+        subtitle="Comparison",
+        name=f"{title} – comparison",
+        facts=(("Made by", tool),),
+        tool=tool,
+        foot=tool,
+        blocks=(
+            *(Text(line, "status") for line in words.marks(comparison)),
+            Box(
+                "", [*(Text(line, "strong") for line in words.summary(comparison)), Text(comparison.criterion, "muted")]
+            ),
+            *section("What is compared", Table(compared, ("Name", "Kind", "From"))),
+            *section("Inputs that differ", inputs if inputs.rows else Text("None that is known.", "muted")),
+            Heading("Figures"),
+            *(block for p in words.pressures(comparison) for block in _figures(comparison, p)),
+            *_plots(comparison, parts),
+            *section("What is assumed", Items(comparison.notes)),
+        ),
+    )
 
 
-def responses(comparison: ComparisonRecord) -> dict[str, str]:
-    """Pressure rise over contact force with the band of the sensitivity, a plot a driving pressure."""
-    axes: tuple[str, str] = ("contact_force_N", "pressure_rise_kPa")
-    words = "contact force  (N)", "pressure rise  (kPa)"
-    return _curves(comparison, axes, words, "sensitivity_kPa_per_N")
+_KINDS = {"design": "design, predicted", "build": "build, as predicted when it was built", "measured": "measured"}
 
 
-def indentations(comparison: ComparisonRecord) -> dict[str, str]:
-    """Contact force over indentation in the same way; the band is that of the stiffness."""
-    axes: tuple[str, str] = ("indentation_mm", "contact_force_N")
-    words = "indentation  (mm)", "contact force  (N)"
-    return _curves(comparison, axes, words, "stiffness_N_per_mm")
+def _figures(comparison: ComparisonRecord, pressure_kPa: float | None) -> list[Block]:
+    """The figures at one driving pressure, or of the whole sensor."""
+    labels, title = words.labels(comparison), words.heading(pressure_kPa)
+    head = ("Figure", *labels, *(f"{label}, difference" for label in labels[1:]))
+    rows = [_row(row) for row in comparison.figures if row.driving_pressure_kPa == pressure_kPa]
+    return section(title[0].upper() + title[1:], Table(rows, head, dense=len(labels) > 3), level=3)
 
 
-def _curves(comparison: ComparisonRecord, keys: tuple[str, str], words: tuple[str, str], band: str) -> dict[str, str]:
-    """A plot a driving pressure, by its title; all have the same axes."""
-    names, plots = labels(comparison)[:MOST], {}
-    ends = [max((max(getattr(c, key)) for c in comparison.curves if c.label in names), default=0.0) for key in keys]
-    if not all(ends):
-        return {}
+def _row(row: RowRecord) -> list[str | Cell]:
+    values = [Cell(value, interval) for value, interval in words.figure_cells(row)]
+    differences = [
+        Cell(percent if word == percent else f"{percent}, {word}", interval, strong=word == "exceeds")
+        for percent, interval, word in words.difference_cells(row)
+    ]
+    return [words.figure_name(row), *values, *differences]
+
+
+def _plots(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> list[Block]:
+    """Sections with the plots; those without data are left out."""
+    many = f" The first {MOST} are drawn." if len(comparison.compared) > MOST else ""
+    apart = (
+        f"From {words.labels(comparison)[0]}, with their intervals (k = 2). Filled: the difference is greater than its "
+        "uncertainty; open: it does not."
+    )
+    lines = "Lines: predicted, with the interval of the {}; markers: measured."
+    rising = f"Pressure rise over contact force up to the range's end, by driving pressure. {lines}"
+    cut = "Through the axis, laid over one another; the dome's base plane is z = 0."
+    drawn = (
+        ("Differences", apart, differences(comparison)),
+        ("Response", rising.format("sensitivity"), presses(comparison, rises)),
+        ("Force over indentation", f"By driving pressure. {lines}".format("stiffness"), presses(comparison, forces)),
+        ("Sections", cut, sections(comparison, parts)),
+    )
+    return [
+        block
+        for title, said, plots in drawn
+        for block in section(title, Plots([Plot(svg, title=name) for name, svg in plots], caption=said + many))
+    ]
+
+
+def _look(k: int) -> Line:
+    return Line(tone=_TONES[k % len(_TONES)], dashes=LINES[k % len(LINES)], hatch=k)
+
+
+def _spots(k: int) -> Line:
+    marker, tone = MARKERS[k % len(MARKERS)], _TONES[k % len(_TONES)]
+    return Line(tone=tone, dashes="", marker=marker, size=2.8, over=4)
+
+
+def _legend(looks: Sequence[Line], names: Sequence[str]) -> tuple[list[Line], int]:
+    """Entries of a legend, and its columns: one where a name would not fit into half the width."""
+    entries = [
+        replace(look, label=name if len(name) <= _CUT else f"{name[: _CUT - 1]}…", hatch=None)
+        for look, name in zip(looks, names, strict=True)
+    ]
+    return entries, 2 if max(map(len, names), default=0) <= _SHORT else 1
+
+
+def _drawn(panel: Panel, height: float, looks: Sequence[Line], names: Sequence[str]) -> str:
+    """A panel under the legend of the sensors, as SVG."""
+    entries, keys = _legend(looks, names)
+    high = height + 4 * math.ceil(len(names) / keys)
+    return drawn_svg(Chart((replace(panel, lines=(*panel.lines, *entries)),), (SIZE[0], high), keys=keys))
+
+
+def presses(comparison: ComparisonRecord, draw: Callable[[Sequence[Press]], Panel]) -> list[tuple[str, str]]:
+    """Title and plot by driving pressure: rise over force or force over indentation, all with the same axes."""
+    names = words.labels(comparison)[:MOST]
+    measured = [one.kind == "measured" for one in comparison.compared]
+    looks = [_spots(k) if measured[k] else _look(k) for k in range(len(names))]
+    every = [_press(one, Line()) for one in comparison.curves if one.label in names]
+    lines = [line for line in draw(every).lines if len(line.x)]
+    right, high = (max((float(np.max(getattr(line, key))) for line in lines), default=0.0) for key in ("x", "y"))
+    if not right or not high:
+        return []
+    top = _top(comparison, _SENSITIVITY if draw is rises else _STIFFNESS) * high
+    plots = []
     for pressure_kPa in _spread([float(p) for p in comparison.driving_pressures_kPa]):
-        with figure(WIDTH, 56 + 4 * _key_lines(names)) as drawn:
-            ax = drawn.subplots()
-            for k, name in enumerate(names):
-                _draw(ax, k, _of(comparison, name, pressure_kPa), keys, _ends(comparison, band, k, pressure_kPa))
-            ax.set(
-                xlabel=words[0], ylabel=words[1], xlim=(0, 1.04 * ends[0]), ylim=(0, _top(comparison, band) * ends[1])
-            )
-            _legend(drawn, comparison, names)
-            plots[f"{pressure_kPa:g} kPa"] = svg(drawn)
+        shown = [one for k in range(len(names)) for one in _presses(comparison, k, pressure_kPa)]
+        panel = replace(draw(shown), xlim=(0, 1.04 * right), ylim=(0, top))
+        plots.append((f"{pressure_kPa:g} kPa", _drawn(panel, 56, looks, names)))
     return plots
 
 
-def _top(comparison: ComparisonRecord, band: str) -> float:
+def _press(curve: ComparedCurve, look: Line, *bands: Ends | None) -> Press:
+    depth, force, rise_kPa = map(np.array, (curve.indentation_mm, curve.contact_force_N, curve.pressure_rise_kPa))
+    return Press(depth, force, rise_kPa, look, *bands)
+
+
+def _presses(comparison: ComparisonRecord, k: int, pressure_kPa: float) -> list[Press]:
+    """The predicted curve of a sensor with its bands, or the points of its measured runs."""
+    name = words.labels(comparison)[k]
+    matching = [c for c in comparison.curves if c.label == name and c.driving_pressure_kPa == pressure_kPa]
+    bands = [_ends(comparison, key, k, pressure_kPa) for key in (_SENSITIVITY, _STIFFNESS)]
+    return [
+        _press(one, _spots(k)) if one.measured else _press(one, _look(k), *bands)
+        for one in matching[:: math.ceil(len(matching) / _RUNS) or 1]
+    ]
+
+
+def _top(comparison: ComparisonRecord, key: str) -> float:
     """Height of the axis over the greatest value: space for the bands, as far as they do not flatten the curves."""
     shown = [(k, row.driving_pressure_kPa) for row in comparison.figures for k in range(len(row.values[:MOST]))]
-    ratios = [matching[1] for k, p in shown if (matching := _ends(comparison, band, k, p)) is not None]
+    ratios = [matching[1] for k, p in shown if (matching := _ends(comparison, key, k, p)) is not None]
     return min(1.05 * max(ratios, default=1.0), _TALLEST)
 
 
@@ -97,12 +182,7 @@ def _spread(values: Sequence[float]) -> list[float]:
     return [values[round(k * (len(values) - 1) / (_PANELS - 1))] for k in range(_PANELS)]
 
 
-def _of(comparison: ComparisonRecord, label: str, pressure_kPa: float) -> list[ComparedCurve]:
-    matching = [c for c in comparison.curves if c.label == label and c.driving_pressure_kPa == pressure_kPa]
-    return matching[:: math.ceil(len(matching) / _RUNS) or 1]
-
-
-def _ends(comparison: ComparisonRecord, key: str, k: int, pressure_kPa: float | None) -> tuple[float, float] | None:
+def _ends(comparison: ComparisonRecord, key: str, k: int, pressure_kPa: float | None) -> Ends | None:
     """Ends of a figure's interval over its value."""
     for row in comparison.figures:
         if row.figure == key and row.driving_pressure_kPa == pressure_kPa:
@@ -112,198 +192,53 @@ def _ends(comparison: ComparisonRecord, key: str, k: int, pressure_kPa: float | 
     return None
 
 
-def _draw(
-    ax: Axes, k: int, curves: Sequence[ComparedCurve], keys: tuple[str, str], ends: tuple[float, float] | None
-) -> None:
-    """One predicted curve with its band, or the points of measured runs."""
-    for curve in curves:
-        x, y = (np.array(getattr(curve, key)) for key in keys)
-        if curve.measured:
-            ax.plot(x, y, zorder=4, **_spots(k))
-            continue
-        ax.plot(x, y, zorder=3, **_look(k))
-        if ends is not None:
-            band(ax, x, ends[0] * y, ends[1] * y, k, _TONES[k % len(_TONES)])
-
-
-def _legend(drawn: Figure, comparison: ComparisonRecord, names: Sequence[str]) -> None:
-    from matplotlib.lines import Line2D
-
-    measured = [one.kind == "measured" for one in comparison.compared]
-    handles = [Line2D([], [], **(_spots(k) if measured[k] else _look(k))) for k in range(len(names))]
-    texts = [_cut(name) for name in names]
-    drawn.legend(handles, texts, loc="outside upper left", ncols=_key_columns(names), handlelength=2.6)
-
-
-def _key_columns(names: Sequence[str]) -> int:
-    """Columns of a legend: one where a name would not fit into half the width."""
-    return 2 if max(map(len, names), default=0) <= _SHORT else 1
-
-
-def _key_lines(names: Sequence[str]) -> int:
-    return math.ceil(len(names) / _key_columns(names))
-
-
-def _cut(text: str, most: int = 44) -> str:
-    escaped = text.replace("$", r"\$")
-    return escaped if len(text) <= most else f"{escaped[: most - 1]}…"
-
-
-def differences(comparison: ComparisonRecord) -> str | None:
+def differences(comparison: ComparisonRecord) -> list[tuple[str, str]]:
     """Differences from the first sensor in percent with their intervals; filled where they exceed them."""
-    rows = [
-        (f"{row.name}{_at(row)}", span, one.exceeds, k)
-        for row in comparison.figures
-        for k, one in enumerate(row.differences[: MOST - 1])
-        if one is not None and (span := _span(one)) is not None
-    ]
+    rows = []
+    for row in comparison.figures:
+        at = "" if row.driving_pressure_kPa is None else f" {words.heading(row.driving_pressure_kPa)}"
+        spans = enumerate(map(_span, row.differences[: MOST - 1]))
+        rows += [(f"{row.name}{at}", k, span) for k, span in spans if span is not None]
     if not rows:
-        return None
+        return []
     names = list(dict.fromkeys(name for name, *_ in rows))
-    others = labels(comparison)[1:MOST]
-    with figure(WIDTH, 14 + 4.2 * len(names) + 4 * _key_lines(others) * (len(others) > 1)) as drawn:
-        ax = drawn.subplots()
-        for name, (low, percent, high), exceeds, k in rows:
-            place = names.index(name) + 0.22 * (k - 0.5 * (len(others) - 1))
-            tone = _TONES[(k + 1) % len(_TONES)] if len(others) > 1 else INK
-            ax.plot([low, high], [place, place], color=tone, lw=1.0, marker="|", ms=4)
-            marker = MARKERS[k % len(MARKERS)]
-            face = tone if exceeds else "white"
-            ax.plot(percent, place, ls="", marker=marker, ms=4.4, mec=tone, mfc=face, zorder=4)
-        ax.axvline(0, color=INK, lw=0.8)
-        ax.set_yticks(range(len(names)), names)
-        # The caption names the first sensor: its name may be longer than the axis.
-        ax.set(xlabel="difference  (%)", ylim=(len(names) - 0.5, -0.5))
-        ax.grid(visible=False, axis="y")
-        if len(others) > 1:
-            _key(drawn, others)
-        return svg(drawn)
-
-
-def _span(one: DifferenceRecord) -> tuple[float, float, float] | None:
-    """Lower end, value and upper end of a difference in percent; None without an interval or with one of no width."""
-    low, percent, high = one.low_percent, one.percent, one.high_percent
-    return None if low is None or percent is None or high is None or high <= low else (low, percent, high)
-
-
-def _at(row: RowRecord) -> str:
-    return "" if row.driving_pressure_kPa is None else f" at {row.driving_pressure_kPa:g} kPa"
-
-
-def _key(drawn: Figure, others: Sequence[str]) -> None:
-    from matplotlib.lines import Line2D
-
-    handles = [
-        Line2D([], [], color=_TONES[k + 1], marker=MARKERS[k % len(MARKERS)], ms=4, lw=1.0) for k in range(len(others))
+    # The caption names the first sensor: its name may be longer than the axis.
+    others = words.labels(comparison)[1:MOST]
+    several = len(others) > 1
+    looks = [
+        Line(tone=_TONES[k + 1] if several else INK, marker=MARKERS[k % len(MARKERS)], size=4.4, width=1.0)
+        for k in range(len(others))
     ]
-    drawn.legend(handles, [_cut(name) for name in others], loc="outside upper left", ncols=_key_columns(others))
+    lines = []
+    for name, k, (low, percent, high, exceeds) in rows:
+        place = names.index(name) + 0.22 * (k - 0.5 * (len(others) - 1))
+        lines.append(replace(looks[k], x=(low, high), y=(place, place), marker="|", size=4))
+        lines.append(replace(looks[k], x=(percent,), y=(place,), dashes="", filled=exceeds, over=4))
+    panel = Panel("difference  (%)", "", tuple(lines), zero="x", rows=tuple(names))
+    legend = (looks, others) if several else ((), ())
+    return [("", _drawn(panel, 14 + 4.2 * len(names), *legend))]
 
 
-def sections(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> str | None:
-    """Outlines of the sections of all sensors on one another, their domes' base planes at one height."""
-    names = [name for name in labels(comparison)[:MOST] if name in parts]
-    if not names:
+def _span(one: DifferenceRecord | None) -> tuple[float, float, float, bool] | None:
+    """Lower end, value and upper end in percent, and True where it exceeds them; None without an interval of some
+    width."""
+    if one is None or one.low_percent is None or one.percent is None or one.high_percent is None:
         return None
-    from matplotlib.lines import Line2D
-
-    with figure(WIDTH, 62 + 4 * _key_lines(names)) as drawn:
-        ax = drawn.subplots()
-        for name in names:
-            look = _look(labels(comparison).index(name))
-            for solid in parts[name].solids:
-                for loop in section_outline(solid, _TOLERANCE):
-                    closed = np.vstack([loop, loop[:1]])
-                    ax.plot(closed[:, 0], closed[:, 1], **{**look, "lw": 0.9})
-        ax.set(aspect="equal", xlabel="x  (mm)", ylabel="z  (mm)")
-        handles = [Line2D([], [], **_look(labels(comparison).index(name))) for name in names]
-        texts = [_cut(name) for name in names]
-        drawn.legend(handles, texts, loc="outside upper left", ncols=_key_columns(names), handlelength=2.6)
-        return svg(drawn)
+    low, percent, high = one.low_percent, one.percent, one.high_percent
+    return (low, percent, high, bool(one.exceeds)) if high > low else None
 
 
-_KINDS = {"design": "design, predicted", "build": "build, as predicted when it was built", "measured": "measured"}
-
-_MANY = f"The first {MOST} are drawn."
-
-
-def comparison_sheet(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> dict[str, bytes]:
-    """``comparison.html`` and ``comparison.pdf``; ``parts`` are the assemblies by label. Same input, same bytes."""
-    groups = _pictures(comparison, parts)
-    names = {picture: f"figure-{k}" for k, picture in enumerate(p for _, _, drawn in groups for p in drawn.values())}
-    labels = comparison_words.labels(comparison)
-    content = {
-        "title": " and ".join([", ".join(labels[:-1]), labels[-1]]),
-        "tool": f"pneutouch {comparison.pneutouch}",
-        "labels": labels,
-        "compared": [[one.label, _KINDS[one.kind], one.source or "–"] for one in comparison.compared],
-        "marks": comparison_words.marks(comparison),
-        "summary": comparison_words.summary(comparison),
-        "inputs": comparison_words.input_rows(comparison),
-        "groups": [
-            {
-                "title": comparison_words.heading(p),
-                "rows": [_row(row) for row in comparison.figures if row.driving_pressure_kPa == p],
-            }
-            for p in comparison_words.pressures(comparison)
-        ],
-        "criterion": comparison.criterion,
-        "notes": comparison.notes,
-        "figures": [
-            {
-                "title": title,
-                "caption": caption,
-                "plots": [{"name": names[picture], "title": head} for head, picture in drawn.items()],
-            }
-            for title, caption, drawn in groups
-            if drawn
-        ],
-    }
-    pictures = {name: picture for picture, name in names.items()}
-    return {
-        "comparison.html": pages.html("compare.html.j2", content, pictures).encode(),
-        "comparison.pdf": pages.pdf("compare.typ", plain(content), pictures),
-    }
-
-
-@dataclass(frozen=True, slots=True)
-class _FigureCells:
-    """Cells of a row of figures."""
-
-    name: str
-    values: list[tuple[str, str]]
-    differences: list[tuple[str, str, str]]
-
-
-def _row(row: RowRecord) -> _FigureCells:
-    cells = comparison_words.figure_cells(row), comparison_words.difference_cells(row)
-    return _FigureCells(comparison_words.figure_name(row), *cells)
-
-
-def _pictures(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> list[tuple[str, str, dict[str, str]]]:
-    """Title, caption, and the plots by their own titles."""
-    many = f" {_MANY}" if len(comparison.compared) > MOST else ""
-    apart, cut = differences(comparison), sections(comparison, parts)
-    return [
-        (
-            "Differences",
-            f"From {comparison_words.labels(comparison)[0]}, with their intervals (k = 2). Filled: the difference is "
-            f"greater than its uncertainty; open: it does not.{many}",
-            {} if apart is None else {"": apart},
-        ),
-        (
-            "Response",
-            "Pressure rise over contact force up to the range's end, by driving pressure. Lines: predicted, with the "
-            f"interval of the sensitivity; markers: measured.{many}",
-            responses(comparison),
-        ),
-        (
-            "Force over indentation",
-            "By driving pressure. Lines: predicted, with the interval of the stiffness; markers: measured." + many,
-            indentations(comparison),
-        ),
-        (
-            "Sections",
-            f"Through the axis, laid over one another; the dome's base plane is z = 0.{many}",
-            {} if cut is None else {"": cut},
-        ),
+def sections(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> list[tuple[str, str]]:
+    """Outlines of the sections of all sensors on one another, their domes' base planes at one height."""
+    names = words.labels(comparison)[:MOST]
+    shown = [k for k, name in enumerate(names) if name in parts]
+    if not shown:
+        return []
+    lines = [
+        replace(_look(k), x=(*loop[:, 0], loop[0, 0]), y=(*loop[:, 1], loop[0, 1]), width=0.9)
+        for k in shown
+        for solid in parts[names[k]].solids
+        for loop in section_outline(solid, _TOLERANCE)
     ]
+    panel = Panel("x  (mm)", "z  (mm)", tuple(lines), equal=True)
+    return [("", _drawn(panel, 62, [_look(k) for k in shown], [names[k] for k in shown]))]

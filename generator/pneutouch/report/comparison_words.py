@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from pneutouch.report.measured.head import DASH, between, number, signed
+from pneutouch.report.numbers import DASH, between, number, signed
 from pneutouch.results.comparison import ComparisonRecord, DifferenceRecord, RowRecord
 from pneutouch.wording import SIMULATED
 

@@ -1,4 +1,4 @@
-"""Force, rise, sensitivity and inflation curves: one function each, for predictions, measurements and comparisons alike.
+"""Force, rise, sensitivity and inflation curves: one function each, for predictions and measurements alike.
 
 Deformed shapes of the wall.
 """
@@ -49,7 +49,9 @@ class Press:
     force_band: Ends | None = None
 
 
-def predicted_press(state: SensorState, look: Line, rise_band: Ends | None = None, force_band: Ends | None = None) -> Press:
+def predicted_press(
+    state: SensorState, look: Line, rise_band: Ends | None = None, force_band: Ends | None = None
+) -> Press:
     """The press of a predicted state up to the end of its range."""
     kept = state.indentation <= state.range_end * _ROUNDING
     curves = state.indentation[kept], state.force[kept], state.pressure_rise[kept] / KPA

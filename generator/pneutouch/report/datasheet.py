@@ -115,21 +115,20 @@ def _shapes(sheet: SheetData) -> Block:
 
 
 def _conditions(sheet: SheetData) -> list[Block]:
-    surroundings = Table([*conditions.detection(sheet), *conditions.environment(sheet)])
-    speed = section("Speed of reading", Table(conditions.speed_rows(sheet)))
-    return [
-        Columns(
-            (
-                [
-                    *section("Absolute maximum ratings", Table(sheet_tables.ratings(sheet), numeric=(1,))),
-                    *section("What limits the driving pressure", sheet_tables.limits(sheet)),
-                    *([Text(sheet_tables.rating_note(sheet))] if sheet.rating.remedy is not None else []),
-                ],
-                section("Operating conditions", Table(sheet_tables.operating(sheet), numeric=(1,))),
-            )
-        ),
-        Columns((section("Environment", surroundings), speed)) if speed else Columns((section("Environment", surroundings),), (1,)),
+    """Limits, conditions and surroundings."""
+    ratings = Table(sheet_tables.ratings(sheet), numeric=(1,))
+    operating = Table(sheet_tables.operating(sheet), numeric=(1,))
+    left = [
+        *section("Absolute maximum ratings", ratings),
+        *section("What limits the driving pressure", sheet_tables.limits(sheet)),
+        *([] if sheet.rating.remedy is None else [Text(sheet_tables.rating_note(sheet))]),
     ]
+    right = [
+        *section("Operating conditions", operating),
+        *section("Speed of reading", Table(conditions.speed_rows(sheet))),
+    ]
+    surroundings = Table([*conditions.detection(sheet), *conditions.environment(sheet)])
+    return [Columns((left, right)), *section("Environment", surroundings)]
 
 
 def _making(sheet: SheetData) -> list[Block]:
@@ -148,9 +147,7 @@ def _making(sheet: SheetData) -> list[Block]:
             Table(print_sheet.body_rows(sheet), bodies),
             Items(print_sheet.making(sheet.scene, sheet.pour), numbered=True),
         ),
-        *section(
-            "Findings of the print rules", Table(findings, ("Severity", "Rule", "Finding", "Remedy"))
-        ),
+        *section("Findings of the print rules", Table(findings, ("Severity", "Rule", "Finding", "Remedy"))),
     ]
 
 

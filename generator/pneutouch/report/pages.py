@@ -42,7 +42,9 @@ def html(sheet: Sheet) -> str:
         return Markup(without_repeats(text, seen))
 
     fonts = {name: encoded((FONTS / f"Inter-{name}.otf").read_bytes()) for name in ("Regular", "SemiBold")}
-    return _filled("sheet.html.j2", sheet, None, figure=figure, encoded=encoded, fonts=fonts, turns=bool(found(sheet.blocks, View)))
+    return _filled(
+        "sheet.html.j2", sheet, None, figure=figure, encoded=encoded, fonts=fonts, turns=bool(found(sheet.blocks, View))
+    )
 
 
 def without_repeats(text: str, seen: set[str]) -> str:

@@ -55,6 +55,7 @@ DEFINITIONS = (
     ["Limit point", "greatest driving pressure of the inflation curve; beyond it the dome snaps"],
 )
 
+
 def front_error(errors: tuple[float, float]) -> str:
     """Median and greatest relative differences of fronts from the solid, in words."""
     if not all(map(isfinite, errors)):

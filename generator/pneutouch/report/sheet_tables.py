@@ -67,13 +67,8 @@ def ratings(sheet: SheetData) -> list[list[str]]:
 
 
 def rating_note(sheet: SheetData) -> str:
-    """Advice that would raise the rated pressure; empty if it does not follow from the modulus."""
-    rating = sheet.rating
-    return (
-        ""
-        if rating.remedy is None
-        else f"To raise the rated pressure of {rating.pressure_kPa:.1f} kPa: {rating.remedy}."
-    )
+    """Advice that would raise the rated pressure."""
+    return f"To raise the rated pressure of {sheet.rating.pressure_kPa:.1f} kPa: {sheet.rating.remedy}."
 
 
 def operating(sheet: SheetData) -> list[list[str]]:

@@ -28,19 +28,13 @@ def tradeoff_panel(tradeoff: TradeOff) -> Panel:
         s, title = front.sensitivity_kPa_per_N, front.resin.material.title
         picked = title == chosen
         tone, width, dashes = (ACCENT, 2.0, LINES[0]) if picked else (INK, 0.8, LINES[k % 5])
-        look = {"end": f"{title}  {s[0]:.2g} to {s[-1]:.2g}", "picked": picked, "over": 3 + picked}
-        lines.append(Line(s, front.force, tone=tone, width=width, dashes=dashes, **look))
+        end = f"{title}  {s[0]:.2g} to {s[-1]:.2g}"
+        line = Line(s, front.force, "", end, tone, dashes, width, picked=picked, over=3 + picked)
+        lines.append(line)
         lines.append(Line(s[:1], front.force[:1], tone=tone, dashes="", marker="o", size=2.2, filled=True, over=4))
     across += f"\n{tradeoff.caption}" if tradeoff.caption else ""
     return Panel(
-        across,
-        "greatest force range  (N)",
-        tuple(lines),
-        tuple(notes),
-        xlim=xlim,
-        ylim=ylim,
-        log="xy",
-        corner=True,
+        across, "greatest force range  (N)", tuple(lines), tuple(notes), xlim=xlim, ylim=ylim, log="xy", corner=True
     )
 
 
@@ -68,9 +62,16 @@ def tuning_panel(tuning: TuningChart) -> Panel:
     """Sensitivity over driving pressure with its k = 2 interval, where that is known."""
     chosen, published = tuning.chosen, dict(tuning.published_kPa_per_N)
     end = chosen.label if tuning.others else ""
-    x, y, low, high = chosen.driving_pressure_kPa, chosen.sensitivity_kPa_per_N, tuning.low_kPa_per_N, tuning.high_kPa_per_N
+    x, y, low, high = (
+        chosen.driving_pressure_kPa,
+        chosen.sensitivity_kPa_per_N,
+        tuning.low_kPa_per_N,
+        tuning.high_kPa_per_N,
+    )
     lines = [
-        Line(other.driving_pressure_kPa, other.sensitivity_kPa_per_N, end=other.label, width=0.7, dashes=LINES[1 + k % 4])
+        Line(
+            other.driving_pressure_kPa, other.sensitivity_kPa_per_N, end=other.label, width=0.7, dashes=LINES[1 + k % 4]
+        )
         for k, other in enumerate(tuning.others)
     ]
     lines.append(Line(x, y, end=end, tone=ACCENT, width=2.0, picked=True, over=4, low=low, high=high))
@@ -80,7 +81,9 @@ def tuning_panel(tuning: TuningChart) -> Panel:
     lines += [Line(*working, dashes="", marker="o", size=4.5, over=5), *published_points(published)]
     last, value = working[0][-1], working[1][-1]
     right = max(float(x[-1]), *working[0])
-    notes = [Note(f"{value:.2f} kPa/N\nat {last:g} kPa", (last, 0.3 * value), (-1.0 if last > 0.5 * right else 1.0, 0.0))]
+    notes = [
+        Note(f"{value:.2f} kPa/N\nat {last:g} kPa", (last, 0.3 * value), (-1.0 if last > 0.5 * right else 1.0, 0.0))
+    ]
     if high is not None:
         middle = len(high) // 2
         notes.append(Note("k = 2", (float(x[middle]), float(high[middle])), (1.0, 1.0)))

@@ -16,8 +16,8 @@ from pneutouch.bench.figures import BY_KEY
 from pneutouch.bench.source import MeasuredFile
 from pneutouch.errors import InputError
 from pneutouch.report.measured import GroupComparison
-from pneutouch.report.measured.head import overlap
-from pneutouch.report.measured.panels import some
+from pneutouch.report.measured.groups import some
+from pneutouch.report.numbers import overlap
 from pneutouch.results.measured import DoubtfulPart, RunOfSensor
 from pneutouch.rounding import rounded
 from pneutouch.spec.campaign import CAMPAIGN, CampaignRun

@@ -220,7 +220,7 @@ def characterize(arguments: Mapping[str, Any], folder: Path, report: Report) -> 
         simulated=measured.campaign.simulated,
         design=measured.scene.name,
         model=measured.model,
-        tiles=tiles(measured),
+        tiles=[[one.name, one.value, one.unit, one.condition] for one in tiles(measured)],
         runs=runs,
         groups=[page_group(each) for each in measured.comparisons],
         read_as=reading_text(outcome.read_as),

@@ -1,145 +1,25 @@
-"""The first page in words: the measurement, the verdict on the target, the figures that count, and the conditions.
-
-Numbers as the sheet prints them, and the relation of two intervals.
-"""
+"""The first page of the measured datasheet: the verdict on the target, the figures that count, and the conditions."""
 
 import math
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
 from statistics import median
 
-from pneutouch import __version__
 from pneutouch.bench.statistics import Estimate
-from pneutouch.report.measured.panels import CampaignReport, GroupComparison
+from pneutouch.report.blocks import Box, Cell, Row, Table, Text, Tile
+from pneutouch.report.measured.groups import CampaignReport, GroupComparison
+from pneutouch.report.numbers import between, difference, number, overlap, signed, word_of
 from pneutouch.results.measured import Verdict
 from pneutouch.units import KPA
-from pneutouch.wording import SIMULATED, counted
+from pneutouch.wording import counted
 
-DASH = "–"
-MINUS = "\N{MINUS SIGN}"
-_PLAIN = 1e-5, 1e6
-"""Magnitudes between these are written without an exponent."""
-
-Bounds = tuple[float, float | None, float | None]
-"""Value, lower and upper end."""
-
-
-def decimals(value: float, digits: int) -> int:
-    """Decimals that give a value that many significant digits."""
-    return max(digits - 1 - math.floor(math.log10(abs(value))), 0) if value else digits - 1
-
-
-def number(value: float | None, digits: int = 3, like: float | None = None) -> str:
-    """A value with that many significant digits, or with as many decimals as ``like`` would have."""
-    if value is None or not math.isfinite(value):
-        return DASH
-    scale = value if like is None else like
-    if scale and not _PLAIN[0] <= abs(scale) < _PLAIN[1]:
-        return f"{value:.{digits - 1}e}".replace("-", MINUS)
-    text = f"{value:.{decimals(scale, digits)}f}"
-    return text.replace("-", MINUS) if float(text) else text.lstrip("-")
-
-
-def between(bounds: Bounds, digits: int = 3) -> str:
-    """An interval with the decimals of its value, such as ``2.31 to 2.42``."""
-    value, low, high = bounds
-    if low is None or high is None:
-        return DASH
-    return f"{number(low, digits, value)} to {number(high, digits, value)}"
-
-
-def signed(value: float | None, digits: int = 1) -> str:
-    """A difference with its sign and that many decimals."""
-    if value is None or not math.isfinite(value):
-        return DASH
-    text = f"{value:+.{digits}f}"
-    return text.replace("-", MINUS) if float(text) else text[1:]
-
-
-def difference(measured: float, predicted: float) -> float | None:
-    """Measured less predicted in percent of the predicted; None if that is nothing."""
-    return 100 * (measured - predicted) / abs(predicted) if predicted else None
-
-
-def overlap(measured: Bounds, predicted: Bounds) -> bool | None:
-    """True if a measured interval and a predicted band share a value; None without the band.
-
-    A measured value without an interval counts as itself.
-    """
-    value, low, high = measured
-    _, least, most = predicted
-    if least is None or most is None:
-        return None
-    return (value if low is None else low) <= most and least <= (value if high is None else high)
-
-
-def word_of(yes: bool | None, words: tuple[str, str, str] = ("yes", "no", DASH)) -> str:
-    """A finding in words: yes, no, not known."""
-    return words[2] if yes is None else words[0] if yes else words[1]
-
-
-@dataclass(frozen=True, slots=True)
-class ListedRows:
-    """The first rows of a list, and words on how many more there are."""
-
-    rows: list[list[str]]
-    more: str
-
-
-@dataclass(frozen=True, slots=True)
-class FigureRows:
-    """A figure with rows of driving pressure, age, measured, interval, n, predicted, band, difference, overlap."""
-
-    name: str
-    unit: str
-    rows: list[list[str]]
-
-
-@dataclass(frozen=True, slots=True)
-class ResinTable:
-    """The figures of a resin; ``absent`` names those not measured, ``why`` driving pressures without a prediction."""
-
-    title: str
-    figures: list[FigureRows]
-    absent: str
-    why: list[str]
-
-
-def cut(rows: Sequence[list[str]], most: int) -> ListedRows:
-    """The first rows of a long list."""
-    left = len(rows) - most
-    return ListedRows(list(rows[:most]), f"and {left} more: see figures.json" if left > 0 else "")
+_SENSITIVITY = "sensitivity_kPa_per_N"
+_WORDS = ("passed", "failed", "not decided")
 
 
 def listed(items: Sequence[str]) -> str:
     """Words in a row: ``a, b and c``."""
     return f"{', '.join(items[:-1])} and {items[-1]}" if len(items) > 1 else "".join(items)
-
-
-_SENSITIVITY = "sensitivity_kPa_per_N"
-_WORDS = ("passed", "failed", "not decided")
-
-Tile = list[str]
-
-
-def head(measured: CampaignReport) -> dict[str, str]:
-    """Title, who, when, how many, and the mark of simulated data."""
-    campaign = measured.campaign
-    resins, sensors = {run.resin for run in campaign.runs}, {run.sensor for run in campaign.runs}
-    return {
-        "title": campaign.title,
-        "design": f"{measured.scene.name}, {measured.scene.design.document.title}",
-        "lab": campaign.lab or "not named",
-        "dates": dates(measured),
-        "count": ", ".join(
-            counted(len(x), n) for x, n in ((sensors, "specimen"), (campaign.runs, "run"), (resins, "resin"))
-        ),
-        "tool": f"pneutouch {__version__}",
-        "input_hash": measured.input_hash,
-        "simulated": SIMULATED if campaign.simulated else "",
-        "simulated_note": "A program made these runs. No sensor was measured." if campaign.simulated else "",
-    }
 
 
 def dates(measured: CampaignReport) -> str:
@@ -151,19 +31,12 @@ def dates(measured: CampaignReport) -> str:
     return first if first == last else f"{first} to {last}"
 
 
-@dataclass(frozen=True, slots=True)
-class VerdictText:
-    """The verdict on the target in a word, requirement by requirement, and notes."""
-
-    word: str
-    rows: list[list[str]]
-    notes: str
-
-
-def verdict(measured: CampaignReport) -> VerdictText:
+def verdict_box(measured: CampaignReport) -> Box:
     """Verdict on the target, requirement by requirement, and the number of runs that gave nothing."""
-    rows = [[v.what, v.required, v.measured, word_of(v.passed, _WORDS)] for v in measured.verdicts]
-    return VerdictText(_whole(measured.verdicts), rows, " ".join(_notes(measured)))
+    rows: list[Row] = [[v.what, v.required, v.measured, Cell(word_of(v.passed, _WORDS), strong=True)] for v in measured.verdicts]
+    table = [Table(rows, ("What", "Required", "Measured", "Verdict"))] if rows else []
+    notes = Text(" ".join(_notes(measured)), "muted")
+    return Box(whole_verdict(measured.verdicts), [*table, notes])
 
 
 def _notes(measured: CampaignReport) -> list[str]:
@@ -183,7 +56,8 @@ def _notes(measured: CampaignReport) -> list[str]:
     return notes
 
 
-def _whole(verdicts: tuple[Verdict, ...]) -> str:
+def whole_verdict(verdicts: tuple[Verdict, ...]) -> str:
+    """Verdict on the whole target."""
     if not verdicts:
         return "No target given"
     passed = [v.passed for v in verdicts]
@@ -231,9 +105,9 @@ def _extent(measured: CampaignReport, key: str, name: str, unit: str) -> Tile | 
         estimate = low[1]
         width = between((estimate.value, estimate.low, estimate.high))
         interval = f"; {width} (95 %)" if estimate.low is not None else "; one value, no interval"
-        return [name, number(estimate.value), unit, f"{_where(measured, low[0])}{interval}"]
+        return Tile(name, number(estimate.value), unit, f"{_where(measured, low[0])}{interval}")
     ends = f"{number(low[1].value)} to {number(high[1].value)}"
-    return [name, ends, unit, f"least at {_where(measured, low[0])}, greatest at {_where(measured, high[0])}"]
+    return Tile(name, ends, unit, f"least at {_where(measured, low[0])}, greatest at {_where(measured, high[0])}")
 
 
 def _against(measured: CampaignReport) -> list[Tile]:
@@ -243,26 +117,19 @@ def _against(measured: CampaignReport) -> list[Tile]:
     off = [(gap, b) for b, e, p in pairs if (gap := difference(e.value, p[0])) is not None]
     if not off:
         return []
+    worst = max(off, key=lambda pair: abs(pair[0]))
+    middle = number(median(abs(gap) for gap, _ in off), 2)
+    words = f"median; most {signed(worst[0])} % at {_where(measured, worst[1])}"
+    first = Tile("Off the predicted sensitivity", middle, "%", words)
     if len(off) == 1:
-        first = ["Measured less predicted", signed(off[0][0]), "%", "of the predicted sensitivity"]
-    else:
-        worst = max(off, key=lambda pair: abs(pair[0]))
-        middle = number(median(abs(gap) for gap, _ in off), 2)
-        first = [
-            "Off the predicted sensitivity",
-            middle,
-            "%",
-            f"median; most {signed(worst[0])} % at {_where(measured, worst[1])}",
-        ]
+        first = Tile("Measured less predicted", signed(off[0][0]), "%", "of the predicted sensitivity")
     known = [within for _, e, p in pairs if (within := overlap((e.value, e.low, e.high), p)) is not None]
     if not known:
         return [first]
+    band, words = f"{sum(known)} of {len(known)}", "groups whose 95 % interval meets the band"
     if len(known) == 1:
-        return [first, ["In the predicted band", word_of(known[0]), "", "95 % interval or value against 95 % band"]]
-    return [
-        first,
-        ["In the predicted band", f"{sum(known)} of {len(known)}", "", "groups whose 95 % interval meets the band"],
-    ]
+        band, words = word_of(known[0]), "95 % interval or value against 95 % band"
+    return [first, Tile("In the predicted band", band, "", words)]
 
 
 def _worst(measured: CampaignReport, key: str, name: str, unit: str, what: str) -> Tile | None:
@@ -272,7 +139,7 @@ def _worst(measured: CampaignReport, key: str, name: str, unit: str, what: str) 
         return None
     comparison, estimate = max(pairs, key=lambda pair: pair[1].value)
     most = "greatest, " if len(pairs) > 1 else ""
-    return [name, number(estimate.value), unit, f"{what}; {most}{_where(measured, comparison)}"]
+    return Tile(name, number(estimate.value), unit, f"{what}; {most}{_where(measured, comparison)}")
 
 
 def conditions(measured: CampaignReport) -> list[list[str]]:
@@ -286,6 +153,8 @@ def conditions(measured: CampaignReport) -> list[list[str]]:
         else (f"{scene.design.pneumatics.ambient_pressure_kPa:g} kPa absolute, as the design states")
     )
     design = scene.design.membrane
+    keys = sorted((one.group.key for one in measured.comparisons), key=lambda key: key.age_days)
+    ages = {key.age_days: key.age for key in keys}
     return [
         ["Laboratory", campaign.lab or "not named"],
         ["Dates", dates(measured)],
@@ -296,20 +165,10 @@ def conditions(measured: CampaignReport) -> list[list[str]]:
         ["Sampling", f"{rig.rate_Hz:g} Hz"],
         ["Ambient pressure", air],
         ["Runs", listed([f"{count} {kind}" for kind, count in sorted(kinds.items())])],
-        [
-            "Ages",
-            listed(
-                list({b.group.key.age_days: b.group.key.age for b in sorted(measured.comparisons, key=_age)}.values())
-            )
-            or "none",
-        ],
+        ["Ages", listed(list(ages.values())) or "none"],
         ["Driving pressure as read", _as_read(measured)],
         ["Predicted by", measured.model],
     ]
-
-
-def _age(comparison: GroupComparison) -> float:
-    return comparison.group.key.age_days
 
 
 def _as_read(measured: CampaignReport) -> str:

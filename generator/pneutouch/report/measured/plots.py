@@ -1,194 +1,327 @@
-"""Measured points in the predicted band: sensitivity over driving pressure, rise over force, force over indentation."""
+"""Small multiples: one panel a resin, specimens, pressures and ages distinguished alike on every plot.
+
+Marker: specimen. Line and tone: driving pressure. Filled: the youngest age; open: older. Nothing rests on colour alone.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.bench.figures import FIRST
 from pneutouch.bench.record import MeasuredCurve
-from pneutouch.mechanics.prediction import SensorState
-from pneutouch.report.measured.panels import (
-    GroupComparison,
-    Panel,
-    Plot,
-    band_of,
-    ends_of,
-    key,
-    lines_of,
-    multiples,
-    some,
-)
-from pneutouch.report.style import FAINT, INK, LINES, MARKERS, MUTED
+from pneutouch.report import curves
+from pneutouch.report.blocks import Plot
+from pneutouch.report.chart import SIZE, WIDE, Chart, Line, Panel, bars_between, drawn_svg
+from pneutouch.report.measured.groups import CampaignReport, GroupComparison, ResinGroups, some
+from pneutouch.report.style import INK, LINES, MARKERS, MUTED
 from pneutouch.units import KPA
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
 
 SENSITIVITY, STIFFNESS = "sensitivity_kPa_per_N", "stiffness_N_per_mm"
 _LEAST_SPAN = 20.0
 """Driving pressures closer together than this, kPa, do not make the slack of an axis smaller."""
-_MOST_TICKS = 5
+_MOST_TICKS, _COLUMNS = 5, 4
+_LONG = 15
+"""Letters of an entry of a legend that does not fit into a third of a narrow plot."""
+
+_HEIGHT = 52.0
+_ROW = {2: 60.0, 3: 55.0, 4: 55.0}
+"""Height of a row of panels in mm by the number of columns."""
+_LEGEND = 4.0
+"""Height of a line of the legend, mm."""
+
+SKY = "#3F8FBF"
+"""A tone that stays apart from INK in grayscale, as ACCENT does not."""
+_TONES = (INK, SKY, MUTED)
+
+_POINTS = 120
+"""Points of a branch that are drawn."""
+_PER_DECADE = 8
+"""Points of a relaxation a decade of time."""
+
+Groups = Sequence[ResinGroups]
 
 
-class _Axes(NamedTuple):
-    """Axes of a plot: of a run, of a state, and the figure whose band the state's curve has."""
+def _multiples(groups: Groups, draw: Callable[[ResinGroups], Panel], legend: Sequence[Line], shared: str = "") -> str:
+    """One panel a resin, their axes named once; ``legend`` are lines without points."""
+    panels = [draw(group) for group in groups]
+    named = panels[0].x, panels[0].y
+    panels = [
+        replace(panel, x="", y="", title="" if group.alone else group.label)
+        for panel, group in zip(panels, groups, strict=True)
+    ]
+    panels[0] = replace(panels[0], lines=(*panels[0].lines, *legend))
+    down = math.ceil(len(panels) / _COLUMNS)
+    across = math.ceil(len(panels) / down)
+    wide, keys = (SIZE[0], 3) if across == 1 else (WIDE, 7)
+    if across == 1 and max((len(entry.label) for entry in legend), default=0) > _LONG:
+        keys = 2
+    high = (_HEIGHT if across == 1 else _ROW[across] * down) + math.ceil(len(legend) / keys) * _LEGEND
+    return drawn_svg(Chart(tuple(panels), (wide, high), across, *named, shared=shared, keys=keys))
 
-    measured: Callable[[MeasuredCurve], tuple[Array, Array]]
-    predicted: Callable[[SensorState], tuple[Array, Array]]
-    figure: str
 
-
-def sensitivities(panels: Sequence[Panel]) -> Plot | None:
-    """Sensitivity over driving pressure, means of the specimens with their intervals in the predicted band."""
-    panels = [p for p in panels if any(SENSITIVITY in b.group.figures for b in p.comparisons)]
-    if not panels:
+def _plot(groups: Groups, title: str, words: str, *drawing: Any) -> Plot | None:
+    """The plot of the groups that it has something of; several resins take the whole row."""
+    if not groups:
         return None
-    from matplotlib.lines import Line2D
+    return Plot(_multiples(groups, *drawing), words, title, full=len(groups) > 1)
 
-    known = any(SENSITIVITY in b.predicted for p in panels for b in p.comparisons)
-    legend: dict[str, Artist] = {"predicted": Line2D([], [], color=INK, lw=1.0), **band_of()} if known else {}
-    for k, age in enumerate(_ages(panels)):
-        legend[f"measured, {age}"] = Line2D([], [], ls="", **_spot(k))
-    pressures_kPa = panels[0].campaign_pressures_kPa
+
+def _tone(groups: ResinGroups, pressure_kPa: float) -> Line:
+    """Tone and dashes of a driving pressure: the same in every panel."""
+    k = groups.campaign_pressures_kPa.index(pressure_kPa)
+    return Line(tone=_TONES[k % len(_TONES)], dashes=LINES[k % len(LINES)], width=1.0)
+
+
+def _spots(groups: ResinGroups, comparison: GroupComparison, curve: MeasuredCurve) -> Line:
+    """Look of the points of a run."""
+    key = comparison.group.key
+    young = key.age_days == next(iter(groups.ages))
+    marker = MARKERS[groups.sensors.index(curve.run.sensor) % len(MARKERS)]
+    tone = _tone(groups, key.driving_pressure_kPa).tone
+    return Line(tone=tone, dashes="", marker=marker, size=2.6, filled=young, over=4)
+
+
+def _key(groups: Groups) -> list[Line]:
+    """Legend of the runs: markers of the specimens, fill of the ages."""
+    point = Line(dashes="", marker="o", size=3.4, filled=True)
+    most = min(max((len(group.sensors) for group in groups), default=0), len(MARKERS))
+    lines = [replace(point, marker=MARKERS[k], label=f"specimen {k + 1}") for k in range(most)]
+    if len({age for group in groups for age in group.ages}) > 1:
+        lines += [replace(point, label="youngest"), replace(point, filled=False, label="older")]
+    return lines
+
+
+_BAND = Line(low=(), high=(), dashes="", label="predicted, 95 %")
+
+
+def _ends(values: Sequence[float], most: int = 2) -> list[float]:
+    """All of them where they are few, else the lowest and the highest."""
+    return list(values) if len(values) <= most else [values[0], values[-1]]
+
+
+def sensitivities(groups: Groups) -> Plot | None:
+    """Sensitivity over driving pressure, means of the specimens with their intervals in the predicted band."""
+    groups = [g for g in groups if any(SENSITIVITY in b.group.figures for b in g.comparisons)]
+    words = "Mean over specimens with its 95 % interval, in the predicted band."
+    if not groups:
+        return None
+    ages = list(dict.fromkeys(age for g in groups for age in g.ages.values()))
+    known = any(SENSITIVITY in b.predicted for g in groups for b in g.comparisons)
+    legend = [Line(label="predicted", width=1.0), _BAND] if known else []
+    legend += [replace(_mean(k), label=f"measured, {age}") for k, age in enumerate(ages)]
+    pressures_kPa = groups[0].campaign_pressures_kPa
     span_kPa = pressures_kPa[-1] - pressures_kPa[0]
     slack = 0.08 * max(span_kPa, _LEAST_SPAN)
     apart = min(np.diff(pressures_kPa), default=span_kPa) > 0.15 * span_kPa
-    top = 1.12 * max(_greatest(comparison) for panel in panels for comparison in panel.comparisons)
-    bottom = min(
-        0.0,
-        *(b.group.figures[SENSITIVITY].value for p in panels for b in p.comparisons if SENSITIVITY in b.group.figures),
-    )
+    few = span_kPa == 0 or (apart and len(pressures_kPa) <= _MOST_TICKS)
+    across = pressures_kPa[0] - slack, pressures_kPa[-1] + slack
 
-    def draw(ax: Axes, panel: Panel) -> None:
-        _predicted_sensitivity(ax, panel, 0.5 * slack)
-        _measured_sensitivity(ax, panel, _ages(panels), 0.18 * slack)
-        ax.set(xlim=(pressures_kPa[0] - slack, pressures_kPa[-1] + slack), ylim=(1.12 * bottom, top or 1.0))
-        if span_kPa == 0 or (apart and len(pressures_kPa) <= _MOST_TICKS):
-            ax.set_xticks(pressures_kPa)
+    def draw(group: ResinGroups) -> Panel:
+        lines = [*_predicted_sensitivity(group, 0.5 * slack), *_measured_sensitivity(group, ages, 0.18 * slack)]
+        panel = curves.sensitivities(lines)
+        return replace(panel, xlim=across, ylim=up, ticks=pressures_kPa if few else ())
 
-    labels = "driving pressure  (kPa)", "sensitivity  (kPa/N)"
-    return multiples(panels, draw, labels, legend, shared=True)
-
-
-def _ages(panels: Sequence[Panel]) -> list[str]:
-    """Ages in words, the youngest first."""
-    return list(
-        {b.group.key.age_days: b.group.key.age for p in panels for b in sorted(p.comparisons, key=_age)}.values()
-    )
+    means = [b.group.figures[SENSITIVITY] for g in groups for b in g.comparisons if SENSITIVITY in b.group.figures]
+    ends = [end for one in means for end in (one.value, one.high)]
+    ends += [end for g in groups for b in g.comparisons for end in b.predicted.get(SENSITIVITY, ())]
+    top = 1.12 * max(end for end in ends if end is not None)
+    up = 1.12 * min(0.0, *(one.value for one in means)), top or 1.0
+    return _plot(groups, "Sensitivity over driving pressure", words, draw, legend, "xy")
 
 
-def _age(comparison: GroupComparison) -> float:
-    return comparison.group.key.age_days
+def _mean(k: int) -> Line:
+    return Line(dashes="", marker=MARKERS[k % len(MARKERS)], size=3.6, filled=k == 0, over=5)
 
 
-def _spot(k: int) -> dict[str, Any]:
-    return {"marker": MARKERS[k % len(MARKERS)], "ms": 3.6, "mec": INK, "mfc": INK if k == 0 else "white", "color": INK}
-
-
-def _greatest(comparison: GroupComparison) -> float:
-    """Upper end of the drawn range of a group."""
-    measured, predicted = comparison.group.figures.get(SENSITIVITY), comparison.predicted.get(SENSITIVITY)
-    ends = [] if measured is None else [measured.value, measured.high]
-    return max((end for end in (*ends, *(predicted or ())) if end is not None), default=0.0)
-
-
-def _predicted_sensitivity(ax: Axes, panel: Panel, half: float) -> None:
+def _predicted_sensitivity(groups: ResinGroups, half: float) -> list[Line]:
     """The band between driving pressures; of one alone a bar of ``half`` its width."""
     known = {
         b.group.key.driving_pressure_kPa: b.predicted[SENSITIVITY]
-        for b in reversed(panel.comparisons)
+        for b in reversed(groups.comparisons)
         if SENSITIVITY in b.predicted
     }
-    pressures = np.array(sorted(known))
-    if not pressures.size:
-        return
-    value = np.array([known[p][0] for p in pressures])
-    if pressures.size == 1:
-        pressures, value = pressures[0] + half * np.array([-1.0, 1.0]), np.repeat(value, 2)
-    ax.plot(pressures, value, color=INK, lw=1.0, zorder=2)
-    ends = [bounds for bounds in (known[p][1:] for p in sorted(known)) if None not in bounds]
-    if len(ends) == len(known):
-        low, high = np.broadcast_to(np.array(ends, float).T, (2, len(ends)))
-        low, high = (np.resize(end, pressures.size) for end in (low, high))
-        ax.fill_between(pressures, low, high, fc=FAINT, alpha=0.55, ec="none", zorder=1)
-        for end in (low, high):
-            ax.plot(pressures, end, color=MUTED, lw=0.5, zorder=1)
+    rows = [(p, *known[p]) for p in sorted(known)]
+    if len(rows) == 1:
+        rows = [(rows[0][0] + side, *rows[0][1:]) for side in (-half, half)]
+    if not rows:
+        return []
+    x, value, low, high = zip(*rows, strict=True)
+    whole = None not in (*low, *high)
+    line = Line(x, value, width=1.0, over=2)
+    return [replace(line, low=np.array(low, float), high=np.array(high, float)) if whole else line]
 
 
-def _measured_sensitivity(ax: Axes, panel: Panel, ages: list[str], aside: float) -> None:
-    """Means with error bars; ages stand next to one another."""
-    for comparison in panel.comparisons:
+def _measured_sensitivity(groups: ResinGroups, ages: list[str], aside: float) -> list[Line]:
+    """Means with their intervals; ages stand next to one another."""
+    lines = []
+    for comparison in groups.comparisons:
         estimate = comparison.group.figures.get(SENSITIVITY)
         if estimate is None:
             continue
         k = ages.index(comparison.group.key.age)
         place_kPa = comparison.group.key.driving_pressure_kPa + aside * (k - 0.5 * (len(ages) - 1))
-        low, high = (estimate.value if end is None else end for end in (estimate.low, estimate.high))
-        # Drawn by hand: caps of an error bar that is a point would hide the marker.
-        ax.plot([place_kPa, place_kPa], [low, high], color=INK, lw=0.9, marker="_", ms=4 if high > low else 0, zorder=4)
-        ax.plot(place_kPa, estimate.value, ls="", zorder=5, **_spot(k))
+        if estimate.low is not None and estimate.high is not None:
+            # Caps on an interval without width would hide the marker.
+            caps = "_" if estimate.high > estimate.low else ""
+            look = Line(width=0.9, marker=caps, size=4, over=4)
+            lines += bars_between((place_kPa,), (estimate.low,), (estimate.high,), look)
+        lines.append(replace(_mean(k), x=(place_kPa,), y=(estimate.value,)))
+    return lines
 
 
-def responses(panels: Sequence[Panel]) -> Plot | None:
+def responses(groups: Groups) -> Plot | None:
     """Pressure rise over force: every run's points over the predicted curves and their bands."""
-    over = _Axes(
-        lambda curve: (curve.force, curve.rise / KPA),
-        lambda state: (state.force, state.pressure_rise / KPA),
-        SENSITIVITY,
-    )
-    return _curves(panels, over, ("contact force  (N)", "pressure rise  (kPa)"))
+    words = "Pressure rise over contact force. {}sensitivity{}"
+    return _curves(groups, "Response", words, curves.rises, SENSITIVITY)
 
 
-def indentations(panels: Sequence[Panel]) -> Plot | None:
+def indentations(groups: Groups) -> Plot | None:
     """Force over indentation in the same way; the band is that of the stiffness."""
-    over = _Axes(
-        lambda curve: (curve.indentation, curve.force), lambda state: (state.indentation, state.force), STIFFNESS
-    )
-    return _curves(panels, over, ("indentation  (mm)", "contact force  (N)"))
+    words = "Contact force over indentation. {}stiffness{}"
+    return _curves(groups, "Force over indentation", words, curves.forces, STIFFNESS)
 
 
-def _curves(panels: Sequence[Panel], over: _Axes, labels: tuple[str, str]) -> Plot | None:
-    panels = [panel for panel in panels if panel.has("steps")]
-    if not panels:
-        return None
-    drawn = [b for p in panels for b in p.comparisons if b.group.of_kind("steps")]
-    pressures_kPa = sorted({b.group.key.driving_pressure_kPa for b in drawn})
-    legend: dict[str, Artist] = {**key(panels), **lines_of(panels, pressures_kPa)}
-    if any(b.state is not None and b.relative_band(over.figure) for b in drawn):
-        legend |= band_of()
-    return multiples(panels, lambda ax, panel: _draw(ax, panel, over), labels, legend)
+def _curves(
+    groups: Groups, title: str, words: str, draw: Callable[[Sequence[curves.Press]], Panel], figure: str
+) -> Plot | None:
+    groups = [g for g in groups if any(b.group.of_kind("steps") for b in g.comparisons)]
+    drawn = [b for g in groups for b in g.comparisons if b.group.of_kind("steps")]
+    legend = _key(groups)
+    for pressure_kPa in sorted({b.group.key.driving_pressure_kPa for b in drawn}):
+        legend.append(replace(_tone(groups[0], pressure_kPa), label=f"{pressure_kPa:g} kPa"))
+    if any(b.state is not None and b.relative_band(figure) for b in drawn):
+        legend.append(_BAND)
+    many = groups and len(groups[0].campaign_pressures_kPa) > 2
+    ends = " at the lowest and the highest driving pressure" if many else ""
+    alone = " Thin lines join the points of runs without a prediction." if any(b.state is None for b in drawn) else ""
+    said = words.format("Markers: every run; lines: predicted, with the band of the ", f"{ends}.{alone}")
+    return _plot(groups, title, said, lambda group: draw(_presses(group)), legend)
 
 
-def _draw(ax: Axes, panel: Panel, over: _Axes) -> None:
-    """Bands of two driving pressures at most: more cover one another. Of several ages the youngest's prediction."""
-    shaded_kPa = ends_of(panel.driving_pressures_kPa)
+def _presses(groups: ResinGroups) -> list[curves.Press]:
+    """Runs and predictions; bands of two driving pressures at most: more cover one another.
+
+    Of several ages the youngest's prediction.
+    """
+    shaded_kPa = _ends(groups.driving_pressures_kPa)
+    presses: list[curves.Press] = []
     done: set[float] = set()
-    for comparison in panel.comparisons:
+    for comparison in groups.comparisons:
         runs, pressure_kPa = some(comparison.group.of_kind("steps")), comparison.group.key.driving_pressure_kPa
-        color, line = panel.tone(comparison)
-        for curve in runs:
-            joined = {"ls": line, "lw": 0.5, "color": color} if comparison.state is None else {}
-            ax.plot(*over.measured(curve), zorder=4, **{**panel.spots(comparison, curve), **joined})
+        tone = _tone(groups, pressure_kPa)
+        for run in runs:
+            look = _spots(groups, comparison, run)
+            if comparison.state is None:
+                look = replace(look, dashes=tone.dashes, width=0.5)
+            presses.append(curves.Press(run.indentation, run.force, run.rise / KPA, look))
         if runs and comparison.state is not None and pressure_kPa not in done:
             done.add(pressure_kPa)
-            _predicted(ax, panel, comparison, comparison.state, over, shade=pressure_kPa in shaded_kPa)
-    ax.set(xlim=(0, None), ylim=(0, None))
+            bands = map(comparison.relative_band, (SENSITIVITY, STIFFNESS) if pressure_kPa in shaded_kPa else ("", ""))
+            presses.append(curves.predicted_press(comparison.state, tone, *bands))
+    return presses
 
 
-def _predicted(
-    ax: Axes, panel: Panel, comparison: GroupComparison, state: SensorState, over: _Axes, *, shade: bool
-) -> None:
-    """The predicted curve up to the end of its range, and its band where it is to be shaded."""
-    kept = state.indentation <= state.range_end * (1 + 1e-12)
-    x, y = (values[kept] for values in over.predicted(state))
-    color, line = panel.tone(comparison)
-    ax.plot(x, y, color=color, ls=line, lw=1.0, zorder=3)
-    ends = comparison.relative_band(over.figure)
-    if shade and ends:
-        ax.fill_between(x, ends[0] * y, ends[1] * y, fc=FAINT, alpha=0.45, ec="none", zorder=1)
-        for end in ends:
-            ax.plot(x, end * y, color=color, ls=LINES[0], lw=0.35, zorder=2)
+def loops(groups: Groups) -> Plot | None:
+    """Rise over force in and out, of one run at the lowest and at the highest driving pressure.
+
+    More loops in a panel, or those of several specimens, would hide one another.
+    """
+    words = (
+        "Pressure rise over contact force: the first run at the lowest and at the highest driving pressure, all its "
+        "cycles."
+    )
+    runs = {
+        g.label: [(p, run) for p in _ends(g.driving_pressures_kPa) if (run := _loop_of(g, p)) is not None]
+        for g in groups
+    }
+    pressures_kPa = sorted({p for each in runs.values() for p, _ in each})
+    tones = {pressure_kPa: _TONES[k % len(_TONES)] for k, pressure_kPa in enumerate(pressures_kPa)}
+    square = Line(dashes="", marker="s", size=5, filled=True)
+    legend = [replace(square, label=f"{p:g} kPa", tone=tone) for p, tone in tones.items()]
+    legend += [Line(label="loading", width=0.9), Line(label="unloading", width=0.9, dashes=LINES[1])]
+
+    def draw(group: ResinGroups) -> Panel:
+        branches = [
+            _branch(curve[2 * k], curve[2 * k + 1], Line(tone=tones[p], width=0.9, dashes=LINES[k]))
+            for p, run in runs[group.label]
+            for curve in run.loop
+            for k in (0, 1)
+        ]
+        return curves.rises(branches)
+
+    return _plot([g for g in groups if runs[g.label]], "Hysteresis", words, draw, legend)
+
+
+def _loop_of(groups: ResinGroups, pressure_kPa: float) -> MeasuredCurve | None:
+    """The first loop run at a driving pressure."""
+    members = (one.group for one in groups.comparisons if one.group.key.driving_pressure_kPa == pressure_kPa)
+    return next((curve for group in members for curve in group.of_kind("loop") if curve.loop), None)
+
+
+def _branch(force: Array, rise: Array, look: Line) -> curves.Press:
+    step = max(len(force) // _POINTS, 1)
+    return curves.Press(force[:0], force[::step], rise[::step] / KPA, look)
+
+
+def relaxations(groups: Groups) -> Plot | None:
+    """Force and pressure rise over the logarithm of time, in percent of their value at `FIRST`; every run."""
+    words = "Force and pressure rise in a long hold, in percent of their value at 1 s; every driving pressure."
+    legend = [*_key(groups), Line(label="force", width=0.9)]
+    legend.append(Line(label="pressure rise", tone=MUTED, width=0.9, dashes=LINES[1]))
+
+    def draw(group: ResinGroups) -> Panel:
+        runs = [(b, curve) for b in group.comparisons for curve in some(b.group.of_kind("relaxation"))]
+        lines = [line for b, curve in runs for line in _relaxation(curve, _spots(group, b, curve))]
+        across, up = "time in the hold  (s)", f"share of the value at {FIRST:g} s  (%)"
+        return Panel(across, up, tuple(lines), log="x")
+
+    relaxed = [
+        g for g in groups if any(c.relaxation is not None for b in g.comparisons for c in b.group.of_kind("relaxation"))
+    ]
+    return _plot(relaxed, "Relaxation", words, draw, legend, "xy")
+
+
+def _relaxation(curve: MeasuredCurve, look: Line) -> list[Line]:
+    """Both channels of a hold, in means over equal shares of a decade."""
+    if curve.relaxation is None:
+        return []
+    time, *channels = curve.relaxation
+    if time.size == 0 or time[-1] <= FIRST:
+        return []
+    edges = np.geomspace(FIRST, time[-1], max(int(_PER_DECADE * np.log10(time[-1] / FIRST)), 2) + 1)
+    later = time >= FIRST
+    which = np.digitize(time[later], edges[1:-1])
+    count = np.bincount(which)
+    seconds, *means = (
+        np.bincount(which, weights=part[later])[count > 0] / count[count > 0] for part in (time, *channels)
+    )
+    return [
+        replace(look, x=seconds, y=100 * values / values[0], dashes=dashes, tone=tone, width=0.7, every=3)
+        for values, tone, dashes in zip(means, (INK, MUTED), LINES, strict=False)
+    ]
+
+
+def ageings(measured: CampaignReport) -> Plot | None:
+    """Change of sensitivity between ages with its interval, one row a group; and the paper's change in a year."""
+    rows = measured.ageing
+    if not rows:
+        return None
+    words = "Change of the sensitivity since fresh, in percent of the aged one, with its 95 % interval."
+    known = [(k, row.low, row.high) for k, row in enumerate(rows) if row.low is not None and row.high is not None]
+    papers = [(row.published_change_one_year_percent, k) for k, row in enumerate(rows)]
+    papers = [(side * x, k) for x, k in papers if x is not None for side in (-1, 1)]
+    lines = [Line((low, high), (k, k), width=0.9, marker="|", size=4) for k, low, high in known]
+    point = Line(dashes="", marker="o", size=3.6, filled=True, label="measured")
+    lines.append(replace(point, x=[row.sensitivity_change_percent for row in rows], y=range(len(rows))))
+    if papers:
+        x, y = zip(*papers, strict=True)
+        lines.append(Line(x, y, "paper, one year (sign not given)", dashes="", marker=MARKERS[3], size=4.2))
+    names = tuple(f"{row.resin}, {row.driving_pressure_kPa:g} kPa, {row.age}" for row in rows)
+    panel = Panel("change of sensitivity  (%)", "", tuple(lines), zero="x", rows=names)
+    return Plot(drawn_svg(Chart((panel,), (SIZE[0], 22 + 5.2 * len(rows)), keys=2)), words)

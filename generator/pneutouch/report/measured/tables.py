@@ -1,53 +1,19 @@
-"""The tables of the sheet as rows of text.
+"""The tables of the measured datasheet, and the meaning of each figure in one line.
 
-Meaning of each figure, in one line; formulas and sources are in docs/howto/measuring.md.
-
-Effects of time and direction: hysteresis loops, relaxation, ageing.
+Formulas and sources are in docs/howto/measuring.md.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pneutouch.arrays import Array
-from pneutouch.bench.figures import FIGURES, FIRST, FigureDefinition
-from pneutouch.bench.record import MeasuredCurve
-from pneutouch.report.measured.head import (
-    DASH,
-    Bounds,
-    FigureRows,
-    ListedRows,
-    ResinTable,
-    between,
-    cut,
-    difference,
-    number,
-    overlap,
-    signed,
-    word_of,
-)
-from pneutouch.report.measured.panels import (
-    NARROW,
-    TONES,
-    CampaignReport,
-    GroupComparison,
-    Panel,
-    Plot,
-    ends_of,
-    key,
-    multiples,
-    some,
-)
-from pneutouch.report.style import INK, LINES, MARKERS, MUTED, figure, plain_ticks, svg
-from pneutouch.results.measured import AgeingChange
-from pneutouch.units import KPA
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
+from pneutouch.bench.figures import FIGURES, FigureDefinition
+from pneutouch.report.blocks import Block, Cell, Table, Text, section
+from pneutouch.report.measured.groups import CampaignReport, GroupComparison, ResinGroups
+from pneutouch.report.numbers import DASH, Bounds, between, difference, number, overlap, signed, word_of
+from pneutouch.report.style import MARKERS
 
 MOST = 40
 """Entries of a list of warnings, questions, failures, leaks or volumes that are printed."""
@@ -59,67 +25,91 @@ _SHAPES = dict(zip(MARKERS, ("circle", "square", "triangle", "diamond", "triangl
 
 _NAMES = [figure.name for figure in FIGURES]
 
-Row = list[str]
+_FIGURES = (
+    "Figure",
+    "Unit",
+    "Driving\nkPa",
+    "Age",
+    "Measured",
+    "95 % interval",
+    "n",
+    "Predicted",
+    "Predicted band",
+    "Difference\n%",
+    "Overlap",
+)
+
+_SPECIMENS = (
+    "Resin",
+    "Specimen",
+    "Marker",
+    "Driving\nkPa",
+    "Age",
+    "Runs",
+    "Sensitivity\nkPa/N",
+    "s\nkPa/N",
+    "Stiffness\nN/mm",
+    "s\nN/mm",
+)
+
+_AGEING = ("Resin", "Driving\nkPa", "Age", "Change\nof S\n%", "95 % interval\n%", "Paper,\none year\n%")
 
 
-def resin_table(panel: Panel) -> ResinTable:
-    """Every figure of a resin over driving pressure and age: measured and predicted."""
-    groups: list[FigureRows] = []
-    absent: list[str] = []
-    for each in FIGURES:
-        compared = [comparison for comparison in panel.comparisons if each.key in comparison.group.figures]
-        if not compared:
-            absent.append(f"{each.name}, {each.unit}" if _NAMES.count(each.name) > 1 else each.name)
-            continue
-        rows = [[*_condition(comparison), *_figure(each, comparison)] for comparison in compared]
-        groups.append(FigureRows(each.name, each.unit, rows))
-    unknown = {b.group.key.driving_pressure_kPa: b.why for b in panel.comparisons if b.why}
-    return ResinTable(
-        panel.label,
-        groups,
-        f"Not measured: {'; '.join(absent)}." if absent else "",
-        [f"No prediction at {pressure:g} kPa: {why}" for pressure, why in sorted(unknown.items())],
+def resin_section(groups: ResinGroups) -> list[Block]:
+    """Every figure of a resin over driving pressure and age, measured and predicted; and what is not there."""
+    found = [(each, b) for each in FIGURES for b in groups.comparisons if each.key in b.group.figures]
+    rows = [[each.name, each.unit, *_condition(b), *_figure(each, b)] for each, b in found]
+    there = {each.key for each, _ in found}
+    absent = [
+        f"{each.name}, {each.unit}" if _NAMES.count(each.name) > 1 else each.name
+        for each in FIGURES
+        if each.key not in there
+    ]
+    unknown = {b.group.key.driving_pressure_kPa: b.why for b in groups.comparisons if b.why}
+    return section(
+        f"Figures of {groups.label}",
+        Table(rows, _FIGURES, numeric=(2, 4, 5, 6, 7, 8, 9), merged=2, dense=True),
+        Text(f"Not measured: {'; '.join(absent)}." if absent else "", "muted"),
+        *(Text(f"No prediction at {pressure:g} kPa: {why}", "muted") for pressure, why in sorted(unknown.items())),
     )
 
 
-def _condition(comparison: GroupComparison) -> Row:
+def _condition(comparison: GroupComparison) -> list[str]:
     return [f"{comparison.group.key.driving_pressure_kPa:g}", comparison.group.key.age]
 
 
-def _figure(figure: FigureDefinition, comparison: GroupComparison) -> Row:
+def _figure(figure: FigureDefinition, comparison: GroupComparison) -> list[str | Cell]:
     estimate, digits = comparison.group.figures[figure.key], figure.digits
     measured: Bounds = (estimate.value, estimate.low, estimate.high)
-    cells = [number(estimate.value, digits), between(measured, digits), f"{estimate.specimens} / {estimate.runs}"]
+    count = f"{estimate.specimens} / {estimate.runs}"
+    cells: list[str | Cell] = [number(estimate.value, digits), between(measured, digits), count]
     predicted = comparison.predicted.get(figure.key)
     if predicted is None:
         return [*cells, "", "", "", ""]
+    meets = overlap(measured, predicted)
     apart = signed(difference(estimate.value, predicted[0]))
-    return [
-        *cells,
-        number(predicted[0], digits),
-        between(predicted, digits),
-        apart,
-        word_of(overlap(measured, predicted), ("yes", "no", "")),
-    ]
+    word = Cell(word_of(meets, ("yes", "no", "")), strong=meets is not None and not meets)
+    return [*cells, number(predicted[0], digits), between(predicted, digits), apart, word]
 
 
-def specimens(panels: Sequence[Panel]) -> ListedRows:
+def specimen_section(groups: Sequence[ResinGroups]) -> list[Block]:
     """Sensitivity and stiffness of each specimen, mean and standard deviation over its runs."""
     rows = []
-    for panel in panels:
-        for k, sensor in enumerate(panel.sensors):
-            for comparison in panel.comparisons:
+    for group in groups:
+        for k, sensor in enumerate(group.sensors):
+            for comparison in group.comparisons:
                 values = _of_sensor(comparison, sensor)
                 if values:
                     marker = f"{k + 1}, {_SHAPES[MARKERS[k % len(MARKERS)]]}"
-                    rows.append([panel.label, sensor, marker, *_condition(comparison), *values])
-    return cut(rows, MOST_SPECIMENS)
+                    rows.append([group.label, sensor, marker, *_condition(comparison), *values])
+    note = Text("s: standard deviation between the runs of the specimen.", "muted")
+    return _listed("Specimens", rows, _SPECIMENS, (3, 5, 6, 7, 8, 9), note, most=MOST_SPECIMENS, merged=3)
 
 
-def _of_sensor(comparison: GroupComparison, sensor: str) -> Row:
+def _of_sensor(comparison: GroupComparison, sensor: str) -> list[str]:
     group = comparison.group
     each = [figures for curve, figures in zip(group.curves, group.each, strict=True) if curve.run.sensor == sensor]
-    cells: Row = []
+    cells: list[str] = []
     for name, digits in (("sensitivity_kPa_per_N", 4), ("stiffness_N_per_mm", 3)):
         values = np.array([figures[name] for figures in each if name in figures])
         if not values.size:
@@ -132,57 +122,57 @@ def _of_sensor(comparison: GroupComparison, sensor: str) -> Row:
     return [str(count), *cells] if set(cells) != {DASH} else []
 
 
-def ageing(measured: CampaignReport) -> list[Row]:
+def ageing_table(measured: CampaignReport) -> Table:
     """Resin, driving pressure, age, change in percent, interval, the paper's, whose sign is not given."""
-    return [
-        [
-            row.resin,
-            f"{row.driving_pressure_kPa:g}",
-            row.age,
-            signed(row.sensitivity_change_percent),
-            _percent(row.low, row.high),
-            DASH if (paper := row.published_change_one_year_percent) is None else f"± {paper:.3g}",
-        ]
-        for row in measured.ageing
-    ]
+    rows = []
+    for row in measured.ageing:
+        at, change, paper = f"{row.driving_pressure_kPa:g}", signed(row.sensitivity_change_percent), DASH
+        ends = DASH if row.low is None or row.high is None else f"{signed(row.low)} to {signed(row.high)}"
+        if row.published_change_one_year_percent is not None:
+            paper = f"± {row.published_change_one_year_percent:.3g}"
+        rows.append([row.resin, at, row.age, change, ends, paper])
+    return Table(rows, _AGEING, numeric=(1, 3, 4, 5), dense=True)
 
 
-def _percent(low: float | None, high: float | None) -> str:
-    return DASH if low is None or high is None else f"{signed(low)} to {signed(high)}"
-
-
-def injections(measured: CampaignReport) -> ListedRows:
-    """Sensor, name, value, standard error, unit of leak and injection runs."""
-    rows = [
+def lists(measured: CampaignReport) -> list[Block]:
+    """Leak and dead volume, failures, questions and warnings, each where there are any."""
+    injections = [
         [row.sensor, row.figure, number(row.value, 4), number(row.standard_error, 2), row.unit]
         for row in measured.injections
     ]
-    return cut(rows, MOST)
-
-
-def warning_rows(measured: CampaignReport) -> ListedRows:
-    """Parts not to be trusted: file, seconds, why, used or not; mere notes are in figures.json."""
-    rows = [
+    # The message begins with the file's path, which is printed next to it.
+    failures = [[file, why.split(f"{file}: ", 1)[-1]] for file, why in measured.failures]
+    # Mere notes are in figures.json.
+    warnings = [
         [curve.run.file, f"{warning.start:.2f} to {warning.end:.2f}", warning.why, word_of(warning.used)]
         for curve in measured.curves
         for warning in curve.warnings
         if warning.kind != "note"
     ]
-    return cut(rows, MOST)
+    wrong, doubtful = "What looks wrong and was not changed.", "Parts of runs that may be wrong."
+    volumes = ("Sensor", "Figure", "Value", "Standard error", "Unit")
+    return [
+        *_listed("Leak and dead volume", injections, volumes, (2, 3)),
+        *_listed("Failures", failures, ("File", "Why it is not used")),
+        *_listed("Questions", measured.questions, ("File or run", "Question"), (), Text(wrong, "muted")),
+        *_listed("Warnings", warnings, ("File", "Seconds", "Why", "Used"), (1,), Text(doubtful, "muted")),
+    ]
 
 
-def failures(measured: CampaignReport) -> ListedRows:
-    """Files that are not used, and why."""
-    # The message begins with the file's path, which is printed next to it.
-    return cut([[file, why.split(f"{file}: ", 1)[-1]] for file, why in measured.failures], MOST)
+def _listed(
+    title: str,
+    rows: Sequence[Sequence[str]],
+    head: Sequence[str],
+    numeric: Sequence[int] = (),
+    *notes: Text,
+    most: int = MOST,
+    merged: int = 0,
+) -> list[Block]:
+    """A section with the first rows of a long list; nothing without any."""
+    left = len(rows) - most
+    more = Text(f"and {left} more: see figures.json" if left > 0 else "", "muted")
+    return section(title, Table(rows[:most], head, numeric, merged=merged), more, *notes) if rows else []
 
-
-def questions(measured: CampaignReport) -> ListedRows:
-    """Parts of the data that look wrong and were not changed."""
-    return cut([list(pair) for pair in measured.questions], MOST)
-
-
-WHERE = "Formulas, units and sources: docs/howto/measuring.md, section Definitions."
 
 LINES_OF = {
     "sensitivity_kPa_per_N": "Slope of the least-squares line of pressure rise over force, with intercept, over a run.",
@@ -230,160 +220,7 @@ TERMS = (
 """Further words of the tables."""
 
 
-def rows() -> list[list[str]]:
+def definitions() -> Table:
     """Name with unit, and meaning: of every figure, then of the tables' other words."""
     named = [[f"{f.name}, {f.unit}" if f.unit else f.name, LINES_OF[f.key]] for f in FIGURES]
-    return [*named, *([what, meaning] for what, meaning in TERMS)]
-
-
-_POINTS = 120
-"""Points of a branch that are drawn."""
-_PER_DECADE = 8
-"""Points of a relaxation a decade of time."""
-
-
-def loops(panels: Sequence[Panel]) -> Plot | None:
-    """Rise over force in and out, of one run at the lowest and at the highest driving pressure.
-
-    More loops in a panel, or those of several specimens, would hide one another.
-    """
-    from matplotlib.lines import Line2D
-
-    panels = [
-        panel for panel in panels if any(_loop_of(panel, pressure_kPa) for pressure_kPa in panel.driving_pressures_kPa)
-    ]
-    if not panels:
-        return None
-    pressures_kPa = sorted(
-        {
-            pressure_kPa
-            for panel in panels
-            for pressure_kPa in ends_of(panel.driving_pressures_kPa)
-            if _loop_of(panel, pressure_kPa)
-        }
-    )
-    tones = {pressure_kPa: TONES[k % len(TONES)] for k, pressure_kPa in enumerate(pressures_kPa)}
-    legend: dict[str, Any] = {
-        **{f"{p:g} kPa": Line2D([], [], ls="", marker="s", ms=5, color=tone) for p, tone in tones.items()},
-        "loading": Line2D([], [], color=INK, lw=0.9),
-        "unloading": Line2D([], [], color=INK, lw=0.9, ls=LINES[1]),
-    }
-
-    def draw(ax: Axes, panel: Panel) -> None:
-        for pressure_kPa in ends_of(panel.driving_pressures_kPa):
-            curve = _loop_of(panel, pressure_kPa)
-            for force_up, rise_up, force_down, rise_down in curve.loop if curve else ():
-                ax.plot(*_thin(force_up, rise_up / KPA), color=tones[pressure_kPa], lw=0.9)
-                ax.plot(*_thin(force_down, rise_down / KPA), color=tones[pressure_kPa], lw=0.9, ls=LINES[1])
-        ax.set(xlim=(0, None), ylim=(0, None))
-
-    return multiples(panels, draw, ("contact force  (N)", "pressure rise  (kPa)"), legend)
-
-
-def _loop_of(panel: Panel, driving_pressure_kPa: float) -> MeasuredCurve | None:
-    """The first loop run at a driving pressure."""
-    runs = (
-        curve
-        for comparison in panel.comparisons
-        if comparison.group.key.driving_pressure_kPa == driving_pressure_kPa
-        for curve in comparison.group.of_kind("loop")
-        if curve.loop
-    )
-    return next(runs, None)
-
-
-def _thin(x: Array, y: Array) -> tuple[Array, Array]:
-    step = max(len(x) // _POINTS, 1)
-    return x[::step], y[::step]
-
-
-def relaxations(panels: Sequence[Panel]) -> Plot | None:
-    """Force and pressure rise over the logarithm of time, in percent of their value at `FIRST`; every run."""
-    from matplotlib.lines import Line2D
-
-    panels = [panel for panel in panels if any(curve.relaxation is not None for curve in _relaxed(panel))]
-    if not panels:
-        return None
-    legend: dict[str, Any] = {
-        **key(panels),
-        "force": Line2D([], [], color=INK, lw=0.9),
-        "pressure rise": Line2D([], [], color=MUTED, lw=0.9, ls=LINES[1]),
-    }
-
-    def draw(ax: Axes, panel: Panel) -> None:
-        ax.set_xscale("log")
-        for comparison in panel.comparisons:
-            for curve in some(comparison.group.of_kind("relaxation")):
-                _relaxation(ax, curve, panel.spots(comparison, curve))
-        plain_ticks(ax.xaxis)
-
-    return multiples(
-        panels, draw, ("time in the hold  (s)", f"share of the value at {FIRST:g} s  (%)"), legend, shared=True
-    )
-
-
-def _relaxed(panel: Panel) -> list[MeasuredCurve]:
-    return [curve for comparison in panel.comparisons for curve in comparison.group.of_kind("relaxation")]
-
-
-def _relaxation(ax: Axes, curve: MeasuredCurve, look: dict[str, Any]) -> None:
-    if curve.relaxation is None:
-        return
-    time, *channels = curve.relaxation
-    if time.size == 0 or time[-1] <= FIRST:
-        return
-    edges = np.geomspace(FIRST, time[-1], max(int(_PER_DECADE * np.log10(time[-1] / FIRST)), 2) + 1)
-    later = time >= FIRST
-    which = np.digitize(time[later], edges[1:-1])
-    count = np.bincount(which)
-    seconds, *means = (
-        np.bincount(which, weights=part[later])[count > 0] / count[count > 0] for part in (time, *channels)
-    )
-    for values, color, line in zip(means, (INK, MUTED), LINES[:2], strict=True):
-        style = {
-            **look,
-            "ls": line,
-            "color": color,
-            "mec": color,
-            "lw": 0.7,
-            "markevery": 3,
-            "mfc": color if look["mfc"] != "white" else "white",
-        }
-        ax.plot(seconds, 100 * values / values[0], **style)
-
-
-def ageings(measured: CampaignReport) -> Plot | None:
-    """Change of sensitivity between ages with its interval, one row a group; and the paper's change in a year."""
-    rows = measured.ageing
-    if not rows:
-        return None
-    with figure(NARROW, 22 + 5.2 * len(rows)) as drawn:
-        ax = drawn.add_subplot()
-        for k, row in enumerate(rows):
-            if row.low is not None and row.high is not None:
-                ax.plot([row.low, row.high], [k, k], color=INK, lw=0.9, marker="|", ms=4)
-            label = "measured" if k == 0 else None
-            ax.plot(row.sensitivity_change_percent, k, ls="", marker="o", color=INK, ms=3.6, label=label)
-            paper = row.published_change_one_year_percent
-            if paper is not None:
-                first = all(each.published_change_one_year_percent is None for each in rows[:k])
-                ax.plot(
-                    [-paper, paper],
-                    [k, k],
-                    ls="",
-                    marker=MARKERS[3],
-                    color=INK,
-                    mfc="white",
-                    ms=4.2,
-                    label="paper, one year (sign not given)" if first else None,
-                )
-        ax.axvline(0, color=INK, lw=0.6)
-        ax.set_yticks(range(len(rows)), [_short(row) for row in rows])
-        ax.set(xlabel="change of sensitivity  (%)", ylim=(len(rows) - 0.4, -0.6))
-        ax.grid(visible=False, axis="y")
-        drawn.legend(loc="outside upper left", ncols=2, handletextpad=0.2)
-        return Plot(svg(drawn), wide=False)
-
-
-def _short(row: AgeingChange) -> str:
-    return f"{row.resin}, {row.driving_pressure_kPa:g} kPa, {row.age}".replace("$", r"\$")
+    return Table([*named, *TERMS])

@@ -9,8 +9,9 @@ from pneutouch.catalogue import Library
 from pneutouch.evaluation.charts import curve, interval
 from pneutouch.evaluation.sheet_data import ChartPoint, TradeOff, TuningChart, TuningCurve
 from pneutouch.output.files import replace_files
+from pneutouch.report.chart import Chart, drawn_svg
 from pneutouch.report.prose import front_error
-from pneutouch.report.tradeoff import tradeoff_chart, tuning_chart
+from pneutouch.report.tradeoff import tradeoff_panel, tuning_panel
 from pneutouch.selection import Candidate
 from pneutouch.selection.front import TradeOffFront, contact_front, front
 from pneutouch.selection.problem import SelectionProblem
@@ -39,10 +40,10 @@ def write_charts(
     Raises InputError if the folder cannot be written.
     """
     library = library or Library.default()
-    charts = {"trade-off.svg": tradeoff_chart(tradeoff(selection, library), _SIZE)}
+    charts = {"trade-off.svg": drawn_svg(Chart((tradeoff_panel(tradeoff(selection, library)),), _SIZE))}
     chart = tuning(selection, library, chosen)
     if chart is not None:
-        charts["tuning.svg"] = tuning_chart(chart, _SIZE)
+        charts["tuning.svg"] = drawn_svg(Chart((tuning_panel(chart),), _SIZE))
     files = {folder / name: text.encode() for name, text in charts.items()}
     replace_files(files, key="charts")
     return list(files)
