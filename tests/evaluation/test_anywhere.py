@@ -15,7 +15,8 @@ from pneutouch.cli.app import app
 from pneutouch.evaluation.anywhere import contact_anywhere, contact_chart
 from pneutouch.evaluation.result import predicted
 from pneutouch.mechanics.atlas.figures import FIGURES
-from pneutouch.report.anywhere import contact_figures, contact_section
+from pneutouch.report.anywhere import contact_panels, contact_section
+from pneutouch.report.blocks import Items, Table, Text, found
 from pneutouch.results.record import plain as data
 
 S, SOURCE = "sensitivity_kPa_per_N", "place of contact"
@@ -118,8 +119,8 @@ def test_outside_the_table_the_reason_stands_in_its_place(plain, change, reason)
     sensor = plain.sensor.replace(**change)
     content = data(contact_anywhere(plain.prediction, sensor))
     assert list(content) == ["unknown"] and reason in content["unknown"]
-    section = contact_section(contact_chart(plain.prediction, sensor))
-    assert not section["known"] and reason in section["why"]
+    (why,) = contact_section(contact_chart(plain.prediction, sensor))[1:]
+    assert isinstance(why, Text) and reason in why.text
 
 
 def test_a_design_with_a_ball_states_why_the_place_is_not_counted(evaluated):
@@ -139,11 +140,13 @@ def test_a_design_with_a_ball_states_why_the_place_is_not_counted(evaluated):
 def test_the_section_has_a_row_a_contact_and_a_column_a_reading(plain):
     chart = contact_chart(plain.prediction, plain.sensor)
     section = contact_section(chart)
-    assert all(len(row) == len(section["head"]) == 5 for row in section["rows"])
-    assert [line.split()[0] for line in (row[0] for row in section["rows"])][-2:] == ["plate,", "plate,"]
-    assert f"{chart.standard_uncertainties[0]:.0%} at 0 kPa" in section["notes"][0]
+    (table,), (notes,) = found(section, Table), found(section, Items)
+    assert all(len(row) == len(table.head) == 5 for row in table.rows)
+    assert [row[0].split()[0] for row in table.rows][-2:] == ["plate,", "plate,"]
+    assert f"{chart.standard_uncertainties[0]:.0%} at" in notes.lines[0]
     one = dataclasses.replace(plain.prediction, states=plain.prediction.states[:1])
-    assert len(contact_section(contact_chart(one, plain.sensor))["head"]) == 3
+    (table,) = found(contact_section(contact_chart(one, plain.sensor)), Table)
+    assert len(table.head) == 3
 
 
 def test_edges_have_rows_next_to_those_of_balls(plain):
@@ -152,7 +155,8 @@ def test_edges_have_rows_next_to_those_of_balls(plain):
     by_contact = {(row.kind, round(row.radius / size, 3), round(row.offset / size, 3)): row for row in chart.rows[:-2]}
     edge, ball = (by_contact[kind, 1.0, 0.0].errors_percent for kind in ("edge", "ball"))
     assert all(0.0 < e < b for e, b in zip(np.ravel(edge), np.ravel(ball), strict=True))
-    labels = [row[0] for row in contact_section(chart)["rows"]]
+    (table,) = found(contact_section(chart), Table)
+    labels = [row[0] for row in table.rows]
     assert f"edge of {size:.3g} mm radius, across the pole" in labels
     assert f"edge of {0.3 * size:.3g} mm radius, {0.3 * size:.3g} mm off the axis" in labels
     contacts = data(contact_anywhere(plain.prediction, plain.sensor))["contacts"]
@@ -162,10 +166,11 @@ def test_edges_have_rows_next_to_those_of_balls(plain):
 
 def test_the_chart_has_a_curve_a_driving_pressure_and_axes_with_units(plain):
     chart = contact_chart(plain.prediction, plain.sensor)
-    charts = contact_figures(chart)
-    assert charts == contact_figures(chart)
-    for text, words in zip(
-        charts.values(), ("radius, contact central  (mm)", "offset from the axis  (mm)", "(degrees)"), strict=True
-    ):
-        assert words in text
-        assert all(f"driven at {pressure} kPa" in text for pressure in (0, 22)) and "error of the force read" in text
+    panels = contact_panels(chart)
+    quantities = "radius, contact central  (mm)", "offset from the axis  (mm)", "tilt of a plate  (degrees)"
+    assert tuple(panel.x for panel in panels) == quantities
+    for panel, curves in zip(panels, (chart.by_radius, chart.by_offset, chart.by_tilt), strict=True):
+        drawn = [line for line in panel.lines if line.label]
+        for line, errors_percent in zip(drawn, curves.errors_percent, strict=True):
+            np.testing.assert_array_equal(line.y, errors_percent)
+    assert len({panel.ylim for panel in panels}) == 1

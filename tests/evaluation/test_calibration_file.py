@@ -153,13 +153,12 @@ def test_the_recipe_of_a_calibrated_build_is_shown(place):
 def test_text_and_sheet_state_the_specimen_and_that_data_are_simulated(simulated, library, tmp_path):
     from pneutouch.cli.prediction_text import prediction_text
     from pneutouch.evaluation.result import predicted_in_full
-    from pneutouch.evaluation.sheet import sheet_data
-    from pneutouch.report.sheet import content_of
+    from pneutouch.report.prose import status
 
     content = changed(source={"simulated": simulated})
     evaluation = predicted(library_of(tmp_path, library, content))
     sensor = content["source"]["sensor"]
-    for text in (prediction_text(predicted_in_full(evaluation)), content_of(sheet_data(evaluation, ""))["status"]):
+    for text in (prediction_text(predicted_in_full(evaluation)), status(evaluation.scene)):
         assert f"sensor {sensor}" in text and ("SIMULATED DATA" in text) is simulated
 
 

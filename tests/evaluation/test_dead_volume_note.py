@@ -53,10 +53,10 @@ def test_the_plan_has_the_note(command):
 
 def test_the_sheet_has_the_note_at_every_place_of_the_figure(evaluated):
     from pneutouch.evaluation.sheet import sheet_data
-    from pneutouch.report.sheet import content_of
+    from pneutouch.report import sheet_charts, sheet_tables
 
-    content = content_of(sheet_data(evaluated("paper-dome", model="atlas"), "0"))
-    (tile,) = [row for row in content["key_figures"] if row[0] == "Dead volume"]
-    (operating,) = [row for row in content["operating"] if row[0] == "Dead volume"]
-    for text in (tile[3], operating[3], content["captions"]["tradeoff"], *content["assumptions"][-1:]):
+    sheet = sheet_data(evaluated("paper-dome", model="atlas"), "0")
+    (tile,) = [one for one in sheet_tables.key_figures(sheet) if one.name == "Dead volume"]
+    (operating,) = [row for row in sheet_tables.operating(sheet) if row[0] == "Dead volume"]
+    for text in (tile.condition, operating[3], sheet_charts.tradeoff(sheet).caption, sheet.prediction.assumptions[-1]):
         assert NOTE in text

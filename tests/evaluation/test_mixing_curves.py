@@ -7,7 +7,8 @@ import pytest
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.result import by_mixing_curve
 from pneutouch.evaluation.sheet import sheet_data
-from pneutouch.report.conditions import curves_section
+from pneutouch.report.blocks import Items, Table, found
+from pneutouch.report.conditions import mixing_section
 from pneutouch.results.record import plain as data
 from pneutouch.spec.read import parse_changes
 
@@ -65,9 +66,9 @@ def test_a_stiffer_wall_reads_less_at_a_newton(graded):
 def test_check_and_datasheet_set_the_curves_side_by_side(graded):
     (note,) = finding(graded)
     assert note.severity == "note"
-    section = curves_section(sheet_data(graded, ""))
-    assert section["head"][1:-1] == ["mixture-tool: softer", "j750-tension: in use", "j750-hardness: stiffer"]
-    assert [len(row) for row in section["rows"]] == [5] * 6
+    (table,) = found(mixing_section(sheet_data(graded, "")), Table)
+    assert table.head[1:-1] == ["mixture-tool: softer", "j750-tension: in use", "j750-hardness: stiffer"]
+    assert [len(row) for row in table.rows] == [5] * 6
     for one in graded.curves:
         assert one.by_curve.curve in note.message
         assert f"{one.states[-1].figures.sensitivity_kPa_per_N:.2f} kPa/N" in note.message
@@ -81,7 +82,8 @@ def test_a_fraction_beyond_the_stiffest_curve_is_a_warning():
     (warning,) = finding(evaluation)
     assert warning.severity == "warning"
     assert "j750-hardness: stiffer than any resin that it states, perhaps rigid there" in warning.message
-    assert any("j750-hardness" in line for line in curves_section(sheet_data(evaluation, ""))["lines"][1:])
+    (notes,) = found(mixing_section(sheet_data(evaluation, "")), Items)
+    assert any("j750-hardness" in line for line in notes.lines[1:])
 
 
 @pytest.mark.slow
@@ -94,5 +96,5 @@ def test_a_measured_curve_and_a_resin_have_no_other_curves(tmp_path, library):
     for evaluation in (measured, resin):
         assert evaluation.curves == ()
         assert finding(evaluation) == []
-        assert not curves_section(sheet_data(evaluation, ""))["known"]
+        assert mixing_section(sheet_data(evaluation, "")) == []
     assert "mixing fraction" not in str(measured.uncertainty)

@@ -20,7 +20,8 @@ from pneutouch.evaluation.result import predicted_in_full
 from pneutouch.evaluation.sheet import ageing_data, sheet_data, viscous_curves
 from pneutouch.mechanics.viscous.prony import ageing_ratio
 from pneutouch.output.files import json_bytes
-from pneutouch.report import curves
+from pneutouch.report import relaxation
+from pneutouch.report.blocks import Items, Plot, Table, found
 from pneutouch.results.record import plain as data
 from tests.conftest import ROOT
 from tests.mechanics.viscous.tables import PAPER_RESINS, agilus_table, friction_table, resin, wall_table
@@ -129,9 +130,10 @@ def test_the_flag_reaches_the_prediction(command):
 
 
 def test_the_sheets_section_has_the_figures_of_the_prediction(agilus):
-    found, drawn = viscous(agilus.viscous_runs), viscous_curves(agilus.viscous_runs)
-    section = curves.section(found, "Ageing: not known.")
-    rows = iter(section["rows"])
+    sheet = sheet_data(agilus, "")
+    section = relaxation.viscous_section(sheet)
+    (table,), (notes,) = found(section, Table), found(section, Items)
+    rows = iter(table.rows)
     for state in data(viscous(agilus.viscous_runs))["states"]:
         for one in state["by_source"]:
             row, held = next(rows), one["relaxation"]
@@ -142,30 +144,30 @@ def test_the_sheets_section_has_the_figures_of_the_prediction(agilus):
                 [t["width_percent"] for t in one["hysteresis"]], abs=0.051
             )
     assert next(rows, None) is None
-    assert any("dogbone" in note for note in section["notes"]) and any(
-        "1904.11888" in note for note in section["notes"]
-    )
-    assert curves.held_chart(drawn, (86.0, 62.0)) == curves.held_chart(drawn, (86.0, 62.0))
-    assert curves.loop_chart(drawn, (86.0, 62.0)).count("<path") > 4
+    assert any("dogbone" in note for note in notes.lines) and any("1904.11888" in note for note in notes.lines)
+    assert len(found(section, Plot)) == 2 and section == relaxation.viscous_section(sheet)
+    curves = sheet.viscous_curves
+    assert len(relaxation.loop_panel(curves).lines) == 2 * len(curves.loops)
 
 
 def test_a_run_that_stops_is_told_in_the_section_and_not_drawn(agilus):
     sensor = agilus.sensor.replace(gauge_limit=0.03)
     runs = viscous_runs(agilus.prediction, agilus.scene.membrane_material, sensor)
     drawn = viscous_curves(runs)
-    section = curves.section(viscous(runs), "")
-    assert any("gauge range" in note for note in section["notes"])
-    assert any("–" in row for row in section["rows"])
-    assert "<svg" in curves.held_chart(drawn, (86.0, 62.0)) and "<svg" in curves.loop_chart(drawn, (86.0, 62.0))
+    section = relaxation.viscous_section(replace(sheet_data(agilus, ""), viscous=viscous(runs), viscous_curves=drawn))
+    (table,), (notes,) = found(section, Table), found(section, Items)
+    assert any("gauge range" in note for note in notes.lines)
+    assert any("–" in row for row in table.rows)
+    assert len(relaxation.loop_panel(drawn).lines) == 2 * sum(loop is not None for loop in drawn.loops)
 
 
 def test_the_line_on_ageing(library):
     tango = evaluate("paper-dome", model="atlas", library=library)
     sheet = sheet_data(tango, "")
-    line = curves.ageing_line(sheet)
+    line = relaxation.ageing_line(sheet)
     assert "27.6 to 29.5" in line and "+8.3%" in line and "14.76 %, sign not given" in line
     unknown = ageing_data(tango.prediction, resin(library, "Agilus30"), tango.sensor)
-    assert curves.ageing_line(replace(sheet, ageing=unknown)).endswith("is not known.")
+    assert relaxation.ageing_line(replace(sheet, ageing=unknown)).endswith("is not known.")
 
 
 @pytest.mark.parametrize("table", [agilus_table, wall_table, pytest.param(friction_table, marks=pytest.mark.slow)])

@@ -14,8 +14,8 @@ from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.report.certainty import OTHERS, SENSITIVITY, ends, ranked, share_bars, shares
-from pneutouch.report.curves import sensitivities
-from pneutouch.report.tradeoff import tradeoff_chart, tuning_chart
+from pneutouch.report.curves import resin_sensitivities
+from pneutouch.report.tradeoff import tradeoff_panel, tuning_panel
 from pneutouch.results.record import plain as data
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
@@ -25,7 +25,6 @@ from pneutouch.workflows.select.charts import write_charts
 from pneutouch.workflows.select.select import select
 from tests.refusals import refused
 
-SIZE = (86.0, 62.0)
 TARGET = {
     "target": {"sensitivity_kPa_per_N": 1.5, "tolerance_percent": 5, "driving_pressure_kPa": 20, "force_range_N": 20},
     "given": {"materials": ["TangoPlus", "FLX9960"]},
@@ -52,13 +51,12 @@ def axes(monkeypatch):
     return seen
 
 
-def test_the_window_stands_where_the_target_says(selection, axes):
-    tradeoff_chart(selected_tradeoff(selection), SIZE)
-    (window,) = [patch for patch in axes[0].patches if patch.get_gid() == "target-window"]
-    assert window.get_x() == pytest.approx(1.5 * 0.95)
-    assert window.get_x() + window.get_width() == pytest.approx(1.5 * 1.05)
-    assert window.get_y() == pytest.approx(20)
-    assert window.get_y() + window.get_height() == pytest.approx(axes[0].get_ylim()[1])
+def test_the_window_stands_where_the_target_says(selection):
+    panel = tradeoff_panel(selected_tradeoff(selection))
+    (window,) = [line for line in panel.lines if line.high is not None]
+    assert window.x == pytest.approx((1.5 * 0.95, 1.5 * 1.05))
+    assert window.low == pytest.approx((20, 20))
+    assert window.high == pytest.approx((panel.ylim[1], panel.ylim[1]))
 
 
 def test_fronts_are_respond_s_and_the_designs_lie_on_or_below_them(selection):
@@ -155,13 +153,11 @@ def test_a_design_s_charts_mark_the_design_at_its_own_figures(evaluated, drawn):
         )
 
 
-def test_axes_of_the_charts_carry_quantities_and_units(evaluated, drawn, axes):
+def test_axes_of_the_charts_carry_quantities_and_units(evaluated, drawn):
     evaluation = evaluated("paper-dome", model="atlas")
-    tuning_chart(replace(tuning(evaluation, 0.03), published_kPa_per_N=((0.0, 2.547),)), SIZE)
-    tradeoff_chart(drawn, SIZE)
-    assert len(axes) == 2
-    for ax in axes:
-        assert all(re.search(r"\w+  \((kPa|N|kPa/N)\)$", label) for label in (ax.get_xlabel(), ax.get_ylabel()))
+    tuned = tuning_panel(replace(tuning(evaluation, 0.03), published_kPa_per_N=((0.0, 2.547),)))
+    for panel in (tuned, tradeoff_panel(drawn)):
+        assert all(re.search(r"\w+  \((kPa|N|kPa/N)\)$", label) for label in (panel.x, panel.y))
 
 
 def test_share_bars_add_up_and_are_as_long_as_the_shares(evaluated, axes):
@@ -177,7 +173,7 @@ def test_share_bars_add_up_and_are_as_long_as_the_shares(evaluated, axes):
     np.testing.assert_allclose(lengths, 100 * np.concatenate(list(rows.values())))
 
 
-def test_a_single_state_at_0_kPa_without_resin_curves_is_drawn(axes):
+def test_a_single_state_at_0_kPa_without_resin_curves_is_drawn():
     changes = {"pneumatics.driving_pressures_kPa": [0.0]}
-    sensitivities({}, evaluate("paper-dome", changes, model="atlas").prediction, "TangoPlus", {})
-    assert axes[0].get_xlim() == (0.0, 1.0)
+    prediction = evaluate("paper-dome", changes, model="atlas").prediction
+    assert resin_sensitivities({}, prediction, "TangoPlus", {}).xlim == (0, 1.0)

@@ -13,6 +13,7 @@ import pytest
 from pneutouch.catalogue import load_scene
 from pneutouch.evaluation.anywhere import contact_chart
 from pneutouch.report import curves, prose
+from pneutouch.report.chart import Line
 from pneutouch.results.record import plain as data
 
 SECTIONS = [
@@ -141,25 +142,25 @@ def test_the_air_on_the_sheet_is_computed_and_no_longer_a_fixed_factor(evaluated
 def test_model_and_why_it_was_taken_stand_on_the_sheet(evaluated):
     from pneutouch.evaluation import evaluate
     from pneutouch.evaluation.sheet import sheet_data
-    from pneutouch.report.certainty import uncertainty_section
+    from pneutouch.report.certainty import model_rows
 
     chosen = evaluate("paper-dome", model="auto", tolerance=0.02)
-    model = dict(uncertainty_section(sheet_data(chosen, ""))["model"])
+    model = dict(model_rows(sheet_data(chosen, "")))
     assert model["Model"] == "atlas"
     assert model["Numerical error"] == "within 1.8% in sensitivity"
     assert "passed over membrane" in model["Why this model"]
     asked = evaluated("paper-dome", model="atlas")
-    assert "requested" in dict(uncertainty_section(sheet_data(asked, ""))["model"])["Why this model"]
+    assert "requested" in dict(model_rows(sheet_data(asked, "")))["Why this model"]
 
 
 @pytest.fixture
-def page(monkeypatch):
+def page():
     """The HTML page of an evaluation alone, without the PDF."""
     from pneutouch.evaluation.sheet import sheet_data
-    from pneutouch.report import datasheet, pages
+    from pneutouch.report import pages
+    from pneutouch.report.datasheet import described
 
-    monkeypatch.setattr(pages, "pdf", lambda *_: b"")
-    return lambda evaluation: datasheet(sheet_data(evaluation, "0"))["datasheet.html"].decode()
+    return lambda evaluation: pages.html(described(sheet_data(evaluation, "0")))
 
 
 @pytest.mark.slow
@@ -240,23 +241,17 @@ def test_pdf_pages_keep_text_inside_the_margins(built):
 
 
 def test_axes_carry_quantities_and_units(evaluated):
-    from matplotlib.figure import Figure
+    prediction = evaluated("paper-dome").prediction
+    presses = [curves.predicted_press(state, Line()) for state in prediction.states]
+    for panel in (curves.inflation(prediction), curves.rises(presses), curves.forces(presses)):
+        assert all(re.search(r"\w+  \((kPa|N|mm|kPa/N)\)$", label) for label in (panel.x, panel.y))
 
-    seen = []
-    original = Figure.savefig
 
-    def record(self, *words, **options):
-        seen.extend((ax.get_xlabel(), ax.get_ylabel()) for ax in self.axes)
-        return original(self, *words, **options)
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Figure, "savefig", record)
-        evaluation = evaluated("paper-dome")
-        curves.inflation(evaluation.prediction)
-        curves.response(evaluation.prediction)
-        curves.indentation(evaluation.prediction)
-    assert len(seen) == 3
-    assert all(re.search(r"\w+  \((kPa|N|mm|kPa/N)\)$", label) for pair in seen for label in pair)
+def test_curves_end_where_the_range_ends(evaluated):
+    for state in evaluated("paper-dome").prediction.states:
+        press = curves.predicted_press(state, Line())
+        assert press.indentation[-1] == pytest.approx(state.range_end, rel=1e-9)
+        assert curves.rises([press]).lines[0].x[-1] == pytest.approx(state.figures.force_range[1], rel=1e-6)
 
 
 def test_print_sheet_names_files_resins_machines_and_the_measured_deviation(built):

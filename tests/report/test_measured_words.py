@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.report.measured.head import MINUS, between, number, overlap, signed
+from pneutouch.report.numbers import MINUS, between, number, overlap, signed
 
 
 @given(st.floats(0.01, 100), st.floats(0, 10), st.floats(0.01, 100), st.floats(0, 10))

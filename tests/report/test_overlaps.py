@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 
 from pneutouch.evaluation.sheet import sheet_data
 from pneutouch.report import curves
-from pneutouch.report.datasheet import _figures
+from pneutouch.report.chart import drawn_svg
+from pneutouch.report.datasheet import described
 from pneutouch.report.style import ACCENT, figure, label_ends, note, svg
 from tests.report.overlaps import overlaps
 
@@ -42,7 +43,7 @@ def sheet_of(evaluated):
 def test_no_label_lies_over_a_curve_or_another_label(name, sheet_of):
     sheet = sheet_of(name)
     with overlaps() as (found, labels):
-        _figures(sheet)
+        described(sheet)
     assert found == []
     assert sum(labels) > 150
 
@@ -92,7 +93,8 @@ def picked(monkeypatch):
 def test_the_design_is_picked_out_on_its_own_curve(name, sheet_of, picked):
     """A graded design too, whose resin is none of the chart's."""
     sheet = sheet_of(name)
-    curves.sensitivities(sheet.resin_curves, sheet.prediction, sheet.scene.membrane_material.title, {})
+    title = sheet.scene.membrane_material.title
+    drawn_svg(curves.resin_sensitivities(sheet.resin_curves, sheet.prediction, title, {}))
     ((points, curve),) = picked
     own = [(1e3 * s.driving_pressure, s.figures.sensitivity_kPa_per_N) for s in sheet.prediction.states if s.figures]
     np.testing.assert_allclose(points, own)

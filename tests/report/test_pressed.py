@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from pneutouch.evaluation.sheet_data import PressedView
-from pneutouch.report.pictures import caption, pressed_figure, pressed_files
+from pneutouch.report.blocks import View, found
+from pneutouch.report.pictures import pressed_blocks, pressed_caption, pressed_files
 
 RADIUS = 10.0
 
@@ -25,6 +26,11 @@ def view() -> PressedView:
     pressure = np.repeat(np.maximum(np.linspace(-60.0, 60.0, 13), 0.0)[:, None], 24, axis=1)
     ring = np.stack([4 * np.cos(around), 4 * np.sin(around), np.full(24, 11.0)], axis=1)
     return PressedView(5.0, 3.0, 0.0, 2.5, RADIUS * normals, normals, pressure, (np.vstack([ring, ring[:1]]),))
+
+
+def shown(view: PressedView) -> View:
+    (block,) = found(pressed_blocks(view), View)
+    return block
 
 
 def test_the_mesh_is_the_dome_in_metres_with_colours(view: PressedView) -> None:
@@ -49,24 +55,24 @@ def test_the_mesh_is_the_dome_in_metres_with_colours(view: PressedView) -> None:
 
 def test_the_same_view_gives_the_same_bytes(view: PressedView) -> None:
     assert pressed_files(view, "dome") == pressed_files(view, "dome")
-    assert pressed_figure(view) == pressed_figure(view)
+    assert pressed_blocks(view) == pressed_blocks(view)
 
 
 def test_the_scale_names_quantity_and_unit_and_ends_at_the_greatest_pressure(view: PressedView) -> None:
-    scale = pressed_figure(view).scale
+    scale = shown(view).scale
     assert "contact pressure" in scale and "(kPa)" in scale
     assert "<!-- 60 -->" in scale and "<!-- 0 -->" in scale and "<!-- 70 -->" not in scale
 
 
 def test_the_view_of_the_page_shades_the_pressure_less_than_a_body(view: PressedView) -> None:
-    drawn = json.loads(pressed_figure(view).data)
+    drawn = json.loads(shown(view).data)
     relief = {part["name"]: part["relief"] for part in drawn["bodies"]}
     assert relief["object"] == 0.0 < relief["pressed dome"] < 1.0
     assert drawn["tilt_deg"] > 26.0
 
 
 def test_a_grid_of_the_page_holds_every_vertex_once_and_the_pole_in_a_row(view: PressedView) -> None:
-    drawn = json.loads(pressed_figure(view).data)
+    drawn = json.loads(shown(view).data)
     dome = next(part for part in drawn["bodies"] if part["name"] == "pressed dome")
     steps = np.frombuffer(base64.b64decode(dome["positions"]), "<i2").reshape(-1, dome["columns"], 3)
     found = np.array(drawn["middle"]) + drawn["reach"] * steps / 32767
@@ -74,8 +80,8 @@ def test_a_grid_of_the_page_holds_every_vertex_once_and_the_pole_in_a_row(view: 
 
 
 def test_the_caption_states_the_state(view: PressedView) -> None:
-    assert "5 kPa driving pressure, pressed 3.00 mm (contact force 2.50 N)" in caption(view)
-    assert "pressed 3.00 mm and moved -2 mm sideways (" in caption(replace(view, travel=-2.0))
+    assert "5 kPa driving pressure, pressed 3.00 mm (contact force 2.50 N)" in pressed_caption(view)
+    assert "pressed 3.00 mm and moved -2 mm sideways (" in pressed_caption(replace(view, travel=-2.0))
 
 
 def test_the_picture_has_a_dark_dome_top_on_white_ground(view: PressedView) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.report import curves
+from pneutouch.report.sheet_charts import drawn_by
 
 
 def test_a_resin_that_cannot_be_solved_does_not_stop_the_sheet(evaluated, library, monkeypatch):
@@ -31,7 +31,7 @@ def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library
     sensor, elastic = evaluated("paper-dome").sensor, elastomers(library)
     found = resin_curves(sensor, elastic, 0.022, "solid", None)
     assert set(found) == {m.title for m in elastic.values()}
-    assert curves.drawn_by(found) == "drawn by the atlas"
+    assert drawn_by(found) == "drawn by the atlas"
     for material in elastic.values():
         pressure, sensitivity, model = found[material.title]
         assert model == "atlas"
@@ -51,7 +51,7 @@ def test_a_resin_outside_the_atlas_is_drawn_by_the_solid_and_the_caption_says_so
     sensor = evaluated("paper-dome").sensor
     found = resin_curves(sensor, {"a": tango, "b": odd}, 0.02, "solid", None)
     assert [curve.model for curve in found.values()] == ["atlas", "solid"]
-    assert curves.drawn_by(found) == "drawn by the atlas, FLX9960-DM by the solid"
+    assert drawn_by(found) == "drawn by the atlas, FLX9960-DM by the solid"
     same = resin_curves(sensor, {"b": hard}, 0.02, "solid", None)["FLX9960-DM"]
     near = np.interp(found["FLX9960-DM"].driving_pressure_kPa, same.driving_pressure_kPa, same.sensitivity_kPa_per_N)
     np.testing.assert_allclose(found["FLX9960-DM"].sensitivity_kPa_per_N, near, rtol=0.02)
@@ -85,7 +85,7 @@ def test_curves_under_friction_are_the_solids_within_a_percent(resin, model, eva
     sensor = evaluated("paper-dome").sensor.replace(friction=0.6)
     found = resin_curves(sensor, {resin: material}, 0.022, "solid", None)
     (curve,) = found.values()
-    assert curve.model == model and curves.drawn_by(found) == f"drawn by the {model}"
+    assert curve.model == model and drawn_by(found) == f"drawn by the {model}"
     at = np.array([5.5, 16.5])
     states = solid_states(in_resin(sensor, material).replace(waves=0), 1e-3 * at)
     solid = [state.figures.sensitivity_kPa_per_N for state in states]
@@ -94,4 +94,4 @@ def test_curves_under_friction_are_the_solids_within_a_percent(resin, model, eva
 
 
 def test_a_chart_without_curves_names_no_model():
-    assert curves.drawn_by({}) == "no curve of a resin was computed"
+    assert drawn_by({}) == "no curve of a resin was computed"

@@ -144,7 +144,7 @@ class Panel:
 
 @dataclass(frozen=True)
 class Chart:
-    """Panels in rows of ``across``; ``x`` and ``y`` are axes that all have, ``size`` is in mm, ``shared`` names the axes
+    """Panels in rows of ``across``; ``x`` and ``y`` are axes of all, ``size`` is in mm, ``shared`` names the axes
     with the same ends, ``heights`` are those of the rows to one another, ``keys`` the columns of the legend."""
 
     panels: tuple[Panel, ...]

@@ -4,6 +4,7 @@ Calculated or quoted, never guessed.
 """
 
 from collections.abc import Sequence
+
 import numpy as np
 
 from pneutouch.arrays import Array

@@ -12,7 +12,7 @@ from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.goodness import RunResiduals
 from pneutouch.bench.record import MeasuredCurve, Trace
 from pneutouch.report.chart import WIDE, Chart, Line, Panel, Span, drawn_svg
-from pneutouch.report.style import ACCENT, FAINT, INK, LINES, MARKERS, MUTED
+from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED
 from pneutouch.units import KPA, ML
 
 _BAND = 5.0

@@ -33,7 +33,9 @@ def dates(measured: CampaignReport) -> str:
 
 def verdict_box(measured: CampaignReport) -> Box:
     """Verdict on the target, requirement by requirement, and the number of runs that gave nothing."""
-    rows: list[Row] = [[v.what, v.required, v.measured, Cell(word_of(v.passed, _WORDS), strong=True)] for v in measured.verdicts]
+    rows: list[Row] = [
+        [v.what, v.required, v.measured, Cell(word_of(v.passed, _WORDS), strong=True)] for v in measured.verdicts
+    ]
     table = [Table(rows, ("What", "Required", "Measured", "Verdict"))] if rows else []
     notes = Text(" ".join(_notes(measured)), "muted")
     return Box(whole_verdict(measured.verdicts), [*table, notes])
