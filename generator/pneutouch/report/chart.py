@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +29,7 @@ from pneutouch.report.style import (
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 SIZE = (86.0, 62.0)
 """Width and height of a chart in mm: two in a row on A4, and readable on a phone."""
@@ -144,8 +146,10 @@ class Panel:
 
 @dataclass(frozen=True)
 class Chart:
-    """Panels in rows of ``across``; ``x`` and ``y`` are axes of all, ``size`` is in mm, ``shared`` names the axes
-    with the same ends, ``heights`` are those of the rows to one another, ``keys`` the columns of the legend."""
+    """Panels in rows of ``across`` that share ``x`` and ``y`` as axes, and the ends of those in ``shared``.
+
+    ``size`` is in mm, ``heights`` are those of the rows to one another; the legend has ``keys`` columns.
+    """
 
     panels: tuple[Panel, ...]
     size: tuple[float, float] = SIZE
@@ -155,33 +159,32 @@ class Chart:
     shared: str = ""
     heights: tuple[float, ...] | None = None
     keys: int = 4
+    legend: str = ""
 
 
 def drawn_svg(chart: Chart | Panel) -> str:
     """A chart, or a panel of the usual size, as SVG."""
-    if isinstance(chart, Panel):
-        chart = Chart((chart,))
-    down = -(-len(chart.panels) // chart.across)
+    with chart_figure(Chart((chart,)) if isinstance(chart, Panel) else chart) as drawn:
+        return svg(drawn)
+
+
+@contextmanager
+def chart_figure(chart: Chart) -> Iterator[Figure]:
+    """A chart as a figure that can be saved within the context."""
+    down, count = -(-len(chart.panels) // chart.across), len(chart.panels)
+    shared: dict[str, Any] = {f"share{axis}": True for axis in chart.shared}
     with figure(*chart.size) as drawn:
-        grid = drawn.subplots(
-            down,
-            chart.across,
-            squeeze=False,
-            sharex="all" if "x" in chart.shared else False,
-            sharey="all" if "y" in chart.shared else False,
-            height_ratios=chart.heights,
-        )
-        axes = list(grid.flat)
-        for ax in axes[len(chart.panels) :]:
+        axes = list(drawn.subplots(down, chart.across, squeeze=False, height_ratios=chart.heights, **shared).flat)
+        for ax in axes[count:]:
             ax.remove()
-        for ax, panel in zip(axes, chart.panels, strict=False):
+        for ax, panel in zip(axes[:count], chart.panels, strict=True):
             draw_panel(ax, panel)
         if chart.x or chart.y:
             drawn.supxlabel(chart.x, fontsize=7.5)
             drawn.supylabel(chart.y, fontsize=7.5)
-        drawn.align_ylabels(axes[: len(chart.panels)])
-        legend_above(*axes[: len(chart.panels)], columns=chart.keys)
-        return svg(drawn)
+        drawn.align_ylabels(axes[:count])
+        legend_above(*axes[:count], columns=chart.keys, title=chart.legend)
+        yield drawn
 
 
 def draw_panel(ax: Axes, panel: Panel) -> None:
@@ -217,7 +220,7 @@ def _draw(ax: Axes, one: Line) -> None:
     if one.low is not None and one.high is not None:
         if one.hatch is not None:
             x, low, high = map(np.asarray, (one.x, one.low, one.high))
-            band(ax, x, low, high, one.hatch, one.tone)
+            band(ax, x, low, high, one.hatch, one.tone, label)
         else:
             alone = None if one.dashes or one.marker else label
             look: dict[str, Any] = {"fc": FAINT, "alpha": 0.55, "ec": "none", "zorder": 1, "label": alone}

@@ -120,7 +120,7 @@ def _spots(k: int) -> Line:
 def _legend(looks: Sequence[Line], names: Sequence[str]) -> tuple[list[Line], int]:
     """Entries of a legend, and its columns: one where a name would not fit into half the width."""
     entries = [
-        replace(look, label=name if len(name) <= _CUT else f"{name[: _CUT - 1]}…", hatch=None)
+        replace(look, label=name if len(name) <= _CUT else f"{name[: _CUT - 1]}…")
         for look, name in zip(looks, names, strict=True)
     ]
     return entries, 2 if max(map(len, names), default=0) <= _SHORT else 1

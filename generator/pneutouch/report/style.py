@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
-    from matplotlib.patches import Patch
     from matplotlib.patheffects import AbstractPathEffect
     from matplotlib.text import Annotation
 
@@ -135,21 +134,31 @@ def note(ax: Axes, text: str, at: tuple[float, float], side: tuple[float, float]
     label.set_in_layout(False)
 
 
-def legend_above(*axes: Axes, columns: int = 4) -> None:
-    """The legend of axes of one figure above them, where no curve runs, in rows of ``columns`` entries."""
+def legend_above(*axes: Axes, columns: int = 4, title: str = "") -> None:
+    """The legend of axes of one figure above them, where no curve runs, in rows of ``columns`` entries.
+
+    Labels that several axes have stand once; what has one label in the same axes, a band and its line, is one entry.
+    """
     entries: dict[str, Any] = {}
     for ax in axes:
+        own: dict[str, tuple[Any, ...]] = {}
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
-            entries.setdefault(label, handle)
+            own[label] = (*own.get(label, ()), handle)
+        entries = entries | {label: parts for label, parts in own.items() if label not in entries}
     if not entries:
         return
     columns = min(columns, len(entries))
     # matplotlib fills columns: taken in this order the entries read row by row.
     words = [word for k in range(columns) for word in list(entries)[k::columns]]
+    handles = [entries[word] if len(entries[word]) > 1 else entries[word][0] for word in words]
     look: dict[str, Any] = {"handlelength": 2.6, "handletextpad": 0.4, "columnspacing": 1.4, "borderpad": 0.1}
     drawn = axes[0].get_figure(root=True)
     assert drawn is not None
-    drawn.legend([entries[word] for word in words], words, loc="outside upper left", ncols=columns, **look)
+    legend = drawn.legend(handles, words, loc="outside upper left", ncols=columns, **look)
+    if title:
+        legend.set_title(title)
+        legend.get_title().set_fontsize(7)
+        legend.set_alignment("left")
 
 
 def halo() -> list[AbstractPathEffect]:
@@ -174,24 +183,12 @@ _FILL, _HATCH = 0.07, 0.55
 """Opacity of the ground and of the hatch: the curves and the other bands are seen through both."""
 
 
-def band(ax: Axes, x: Array, low: Array, high: Array, number: int, tone: str) -> None:
+def band(ax: Axes, x: Array, low: Array, high: Array, number: int, tone: str, label: str | None = None) -> None:
     """Draw the band of curve ``number`` between ``low`` and ``high`` (n,), with its ends in the line of the curve."""
     from matplotlib.colors import to_rgba
 
     fill, lines = to_rgba(tone, _FILL), to_rgba(tone, _HATCH)
-    ax.fill_between(x, low, high, lw=0, zorder=1, facecolor=fill, edgecolor=lines, hatch=_hatch(number))
+    look: dict[str, Any] = {"facecolor": fill, "edgecolor": lines, "hatch": HATCHES[number % len(HATCHES)]}
+    ax.fill_between(x, low, high, lw=0, zorder=1, label=label, **look)
     for end in (low, high):
         ax.plot(x, end, color=tone, lw=0.5, ls=LINES[number % len(LINES)], zorder=2)
-
-
-def band_key(number: int, tone: str) -> Patch:
-    """The band of a curve for a legend."""
-    from matplotlib.colors import to_rgba
-    from matplotlib.patches import Patch
-
-    fill, lines = to_rgba(tone, _FILL), to_rgba(tone, _HATCH)
-    return Patch(lw=0, facecolor=fill, edgecolor=lines, hatch=2 * _hatch(number))
-
-
-def _hatch(number: int) -> str:
-    return HATCHES[number % len(HATCHES)]

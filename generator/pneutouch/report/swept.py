@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.report.style import INK, LINES, MARKERS, MUTED, band, band_key, figure, svg
+from pneutouch.report.chart import WIDE, Chart, Line, Panel, bars_between, chart_figure, plain_text
+from pneutouch.report.style import INK, LINES, MARKERS, MUTED, figure, svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_LINES, _PANELS, _WIDTH = 6, 4, 180.0
+_LINES, _PANELS = 6, 4
 _TONES = (INK, "#3F8FBF", "#B4631D", MUTED, "#0B5C8A", "#9A9A9A")
 _OUTSIDE, _MOST_TEXTS = "#EFEFEF", 120
 
@@ -68,7 +69,12 @@ class SweptFigure:
     def at(self, order: Sequence[int]) -> SweptFigure:
         """The axes in another order."""
         axes = tuple(self.axes[k] for k in order)
-        return SweptFigure(self.label, axes, *(np.transpose(a, order) for a in (self.value, self.low, self.high)))
+        return SweptFigure(self.label, axes, *(np.transpose(a, order) for a in self.arrays))
+
+    @property
+    def arrays(self) -> tuple[Array, Array, Array]:
+        """Value, lower and upper end."""
+        return self.value, self.low, self.high
 
 
 def pictures(swept: SweptFigure) -> dict[str, tuple[str, bytes]]:
@@ -77,21 +83,21 @@ def pictures(swept: SweptFigure) -> dict[str, tuple[str, bytes]]:
     Other axes become lines (names first), then panels; what is left stays at its middle value, which the title states.
     """
     varied = [k for k, axis in enumerate(swept.axes) if len(axis.values) > 1]
-    drawn = {}
-    for k in varied:
-        others = sorted((j for j in range(len(swept.axes)) if j != k), key=lambda j: _rank(swept.axes[j]))
-        drawn[f"over-{swept.axes[k].key}"] = _panels(swept.at([k, *others]), 2, _lines)
+    drawn = {f"over-{swept.axes[k].key}": _over(_ordered(swept, [k])) for k in varied}
     numbers = [k for k in varied if swept.axes[k].numeric and swept.axes[k].key != "driving_pressure_kPa"]
     if len(numbers) > 1:
-        chosen = numbers[:2]
-        others = sorted((j for j in range(len(swept.axes)) if j not in chosen), key=lambda j: _rank(swept.axes[j]))
-        drawn["map"] = _panels(swept.at([*chosen, *others]), 2, _map)
+        drawn["map"] = _mapped(_ordered(swept, numbers[:2]))
     return drawn
 
 
-def _rank(axis: SweptAxis) -> tuple[bool, bool]:
-    """Names become lines before numbers; what does not vary comes last."""
-    return len(axis.values) == 1, axis.numeric
+def _ordered(swept: SweptFigure, first: list[int]) -> SweptFigure:
+    """The chosen axes first; then names before numbers, and what does not vary last. At least three axes."""
+    others = [k for k in range(len(swept.axes)) if k not in first]
+    others.sort(key=lambda k: (len(swept.axes[k].values) == 1, swept.axes[k].numeric))
+    swept, none = swept.at([*first, *others]), SweptAxis("", "", "", ("",))
+    while len(swept.axes) < 3:
+        swept = SweptFigure(swept.label, (*swept.axes, none), *(a[..., None] for a in swept.arrays))
+    return swept
 
 
 def _some(count: int, most: int) -> list[int]:
@@ -99,103 +105,73 @@ def _some(count: int, most: int) -> list[int]:
     return list(range(count)) if count <= most else sorted({round(k * (count - 1) / (most - 1)) for k in range(most)})
 
 
-Draw = Callable[["Axes", SweptFigure, Any], Any]
+def _panels(swept: SweptFigure) -> list[tuple[str, SweptFigure]]:
+    """Title and figure over the first two axes for values of the third; axes after it stay at their middle value."""
+    middle = tuple(len(axis.values) // 2 for axis in swept.axes[3:])
+    fixed = [axis.named(k) for axis, k in zip(swept.axes[3:], middle, strict=True) if axis.key]
+    panels = []
+    for place in _some(len(swept.axes[2].values), _PANELS):
+        words = [swept.axes[2].named(place)] if swept.axes[2].key else []
+        cut: tuple[Any, ...] = (slice(None), slice(None), place, *middle)
+        arrays = (a[cut] for a in swept.arrays)
+        panels.append((", ".join([*words, *fixed]), SweptFigure(swept.label, swept.axes[:2], *arrays)))
+    return panels
 
 
-def _panels(swept: SweptFigure, used: int, draw: Draw) -> tuple[str, bytes]:
-    """A panel for each value of the axis after the ``used`` ones; those after it stay at their middle value."""
-    while len(swept.axes) < used + 1:
-        swept = SweptFigure(
-            swept.label, (*swept.axes, SweptAxis("", "", "", ("",))), *(a[..., None] for a in _arrays(swept))
-        )
-    if draw is _lines:
-        swept = _thinned(swept)
-    middle = [len(axis.values) // 2 for axis in swept.axes[used + 1 :]]
-    fixed = [axis.named(k) for axis, k in zip(swept.axes[used + 1 :], middle, strict=True) if axis.key]
-    places = _some(len(swept.axes[used].values), _PANELS)
-    across = min(len(places), 2)
-    down = math.ceil(len(places) / across)
-    ranging = _arrays(swept) if draw is _lines else (swept.value[:, :, places],)
-    known = np.concatenate([a[np.isfinite(a)].ravel() for a in ranging])
-    span = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
-    shown: Any = None
-    with figure(_WIDTH if across > 1 else 0.62 * _WIDTH, 66 * down + 8) as drawn:
-        grid = drawn.subplots(down, across, squeeze=False)
-        for ax, place in zip(grid.flat, places, strict=False):
-            one = SweptFigure(swept.label, swept.axes[:used], *(_cut(a, (place, *middle)) for a in _arrays(swept)))
-            shown = draw(ax, one, span)
-            words = [swept.axes[used].named(place)] if swept.axes[used].key else []
-            ax.set_title(_plain(", ".join([*words, *fixed])), fontsize=7.5, loc="left", pad=4)
-        for ax in list(grid.flat)[len(places) :]:
-            ax.remove()
-        _finish(drawn, swept, shown, list(grid.flat)[: len(places)])
+def _size(count: int) -> tuple[float, float]:
+    across = min(count, 2)
+    return (WIDE if across > 1 else 0.62 * WIDE), 66 * math.ceil(count / across) + 8
+
+
+def _over(swept: SweptFigure) -> tuple[str, bytes]:
+    """Lines, or points over names, for values of the second axis that have a figure anywhere."""
+    kept = [k for k in range(len(swept.axes[1].values)) if np.isfinite(swept.value[:, k]).any()]
+    kept = [kept[k] for k in _some(len(kept), _LINES)]
+    lines = replace(swept.axes[1], values=tuple(swept.axes[1].values[k] for k in kept))
+    swept = SweptFigure(swept.label, (swept.axes[0], lines, *swept.axes[2:]), *(a[:, kept] for a in swept.arrays))
+    known = np.concatenate([a[np.isfinite(a)].ravel() for a in swept.arrays])
+    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+    limits = min(0.0, low), high + 0.05 * (high - low or abs(high) or 1.0)
+    panels = [replace(_lines(one), title=title, ylim=limits) for title, one in _panels(swept)]
+    across, keys = min(len(panels), 2), 6 if len(panels) > 1 else 3
+    with chart_figure(Chart(tuple(panels), _size(len(panels)), across, keys=keys, legend=lines.words)) as drawn:
         return _files(drawn)
 
 
-def _arrays(swept: SweptFigure) -> tuple[Array, Array, Array]:
-    return swept.value, swept.low, swept.high
-
-
-def _thinned(swept: SweptFigure) -> SweptFigure:
-    """At most `_LINES` values of the second axis, of those that have a figure anywhere."""
-    first, second, *others = swept.axes
-    known = [k for k in range(len(second.values)) if np.isfinite(swept.value[:, k]).any()]
-    kept = [known[k] for k in _some(len(known), _LINES)]
-    lines = SweptAxis(second.key, second.words, second.unit, tuple(second.values[k] for k in kept))
-    return SweptFigure(swept.label, (first, lines, *others), *(a[:, kept] for a in _arrays(swept)))
-
-
-def _cut(values: Array, places: tuple[int, ...]) -> Array:
-    """Values at places along the last axes."""
-    for place in reversed(places):
-        values = np.take(values, place, axis=-1)
-    return values
-
-
-def _finish(drawn: Figure, swept: SweptFigure, shown: Any, axes: list[Axes]) -> None:
-    """A legend of the lines, or the scale of a map."""
-    if isinstance(shown, dict):
-        if len(shown) > 1 or swept.axes[1].key:
-            handles, title = list(shown.values()), swept.axes[1].words
-            legend = drawn.legend(
-                handles,
-                list(shown),
-                loc="outside upper left",
-                ncols=6 if len(axes) > 1 else 3,
-                handlelength=2.6,
-                title=title,
-                title_fontsize=7,
-            )
-            legend.set_alignment("left")
-    else:
-        drawn.colorbar(shown, ax=axes, label=swept.label, shrink=0.9)
-
-
-def _lines(ax: Axes, swept: SweptFigure, span: tuple[float, float]) -> dict[str, Any]:
-    """A line, or points over names, for each value of the second axis, with its band; returns the legend."""
-    from matplotlib.lines import Line2D
-
+def _lines(swept: SweptFigure) -> Panel:
+    """A line, or points over names, for each value of the second axis, with its band."""
     axis, lines = swept.axes
-    handles = {}
+    drawn: list[Line] = []
     for n in range(len(lines.values)):
-        look: dict[str, Any] = {"color": _TONES[n], "marker": MARKERS[n], "ms": 3.0, "mfc": "white", "mew": 0.7}
-        apart = 0.0 if axis.numeric else 0.12 * (n - (len(lines.values) - 1) / 2)
-        x = apart + np.array(axis.values if axis.numeric else range(len(axis.values)), float)
-        style = LINES[n % len(LINES)] if axis.numeric else ""
-        value, low, high = (a[:, n] for a in _arrays(swept))
-        ax.plot(x, value, ls=style, lw=1.2, zorder=4, **look)
+        look = Line(tone=_TONES[n], marker=MARKERS[n], size=3.0, label=lines.text(n) if lines.key else "", over=4)
+        value, low, high = (a[:, n] for a in swept.arrays)
         if axis.numeric:
-            band(ax, x, low, high, n, _TONES[n])
+            x: Array = np.array(axis.values, np.float64)
+            drawn.append(replace(look, x=x, y=value, low=low, high=high, hatch=n, dashes=LINES[n % len(LINES)]))
         else:
-            ax.vlines(x, low, high, color=_TONES[n], lw=0.9, zorder=3)
-        line = Line2D([], [], ls=style, lw=1.2, **look)
-        handles[_plain(lines.text(n))] = (band_key(n, _TONES[n]), line) if axis.numeric else line
-    if not axis.numeric:
-        ax.set_xticks(range(len(axis.values)), [f"{v:g}" if isinstance(v, float) else str(v) for v in axis.values])
-        ax.tick_params(axis="x", labelrotation=30 if len(axis.values) > 4 else 0)
-    slack = 0.05 * (span[1] - span[0] or abs(span[1]) or 1.0)
-    ax.set(xlabel=axis.label, ylabel=swept.label, ylim=(min(0.0, span[0]), span[1] + slack))
-    return handles
+            aside = 0.12 * (n - (len(lines.values) - 1) / 2)
+            places = [k + aside for k in range(len(axis.values))]
+            drawn.append(replace(look, x=places, y=value, dashes=""))
+            drawn += bars_between(places, low, high, Line(tone=_TONES[n], width=0.9))
+    names = () if axis.numeric else tuple(f"{v:g}" if isinstance(v, float) else str(v) for v in axis.values)
+    return Panel(axis.label, swept.label, tuple(drawn), columns=names)
+
+
+def _mapped(swept: SweptFigure) -> tuple[str, bytes]:
+    """Maps over the first two axes, all in the same colours."""
+    panels = _panels(swept)
+    values = np.concatenate([one.value[np.isfinite(one.value)] for _, one in panels])
+    span = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)
+    with figure(*_size(len(panels))) as drawn:
+        grid = drawn.subplots(math.ceil(len(panels) / 2), min(len(panels), 2), squeeze=False)
+        axes = list(grid.flat)[: len(panels)]
+        for ax in list(grid.flat)[len(panels) :]:
+            ax.remove()
+        for ax, (title, one) in zip(axes, panels, strict=True):
+            shown = _map(ax, one, span)
+            ax.set_title(plain_text(title), fontsize=7.5, loc="left", pad=4)
+        drawn.colorbar(shown, ax=axes, label=swept.label, shrink=0.9)
+        return _files(drawn)
 
 
 def _map(ax: Axes, swept: SweptFigure, span: tuple[float, float]) -> Any:
@@ -217,10 +193,6 @@ def _map(ax: Axes, swept: SweptFigure, span: tuple[float, float]) -> Any:
     ax.grid(visible=False)
     ax.set(xlabel=first.label, ylabel=second.label)
     return shown
-
-
-def _plain(text: str) -> str:
-    return text.replace("$", r"\$")
 
 
 def _files(drawn: Figure) -> tuple[str, bytes]:

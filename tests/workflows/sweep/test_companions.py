@@ -166,8 +166,7 @@ def test_bands_of_several_lines_are_hatched_apart():
     value = np.array([[1.0, 1.1, 1.2], [2.0, 2.1, 2.2]])
     text, _ = pictures(SweptFigure("S", (numbers, names), value, 0.8 * value, 1.2 * value))["over-a_mm"]
     patterns = re.findall(r'<pattern id="(h[0-9a-f]+)".*?<path d="([^"]*)"', text, re.DOTALL)
-    # Three bands and their entries in the legend, whose hatches are closer.
-    assert len(patterns) == len(set(patterns)) == len({lines for _, lines in patterns}) == 6
+    assert len(patterns) == len(set(patterns)) == len({lines for _, lines in patterns}) == 3
     assert {name for name, _ in patterns} == set(re.findall(r"url\(#(h[0-9a-f]+)\)", text))
     assert len(set(HATCHES)) == 6
 
