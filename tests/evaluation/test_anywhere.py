@@ -16,7 +16,7 @@ from pneutouch.evaluation.anywhere import contact_anywhere, contact_chart
 from pneutouch.evaluation.result import predicted
 from pneutouch.mechanics.atlas.figures import FIGURES
 from pneutouch.report.anywhere import contact_panels, contact_section
-from pneutouch.report.blocks import Items, Table, Text, found
+from pneutouch.report.blocks import Items, SheetTable, Text, found
 from pneutouch.results.record import plain as data
 
 S, SOURCE = "sensitivity_kPa_per_N", "place of contact"
@@ -140,12 +140,12 @@ def test_a_design_with_a_ball_states_why_the_place_is_not_counted(evaluated):
 def test_the_section_has_a_row_a_contact_and_a_column_a_reading(plain):
     chart = contact_chart(plain.prediction, plain.sensor)
     section = contact_section(chart)
-    (table,), (notes,) = found(section, Table), found(section, Items)
+    (table,), (notes,) = found(section, SheetTable), found(section, Items)
     assert all(len(row) == len(table.head) == 5 for row in table.rows)
     assert [row[0].split()[0] for row in table.rows][-2:] == ["plate,", "plate,"]
     assert f"{chart.standard_uncertainties[0]:.0%} at" in notes.lines[0]
     one = dataclasses.replace(plain.prediction, states=plain.prediction.states[:1])
-    (table,) = found(contact_section(contact_chart(one, plain.sensor)), Table)
+    (table,) = found(contact_section(contact_chart(one, plain.sensor)), SheetTable)
     assert len(table.head) == 3
 
 
@@ -155,7 +155,7 @@ def test_edges_have_rows_next_to_those_of_balls(plain):
     by_contact = {(row.kind, round(row.radius / size, 3), round(row.offset / size, 3)): row for row in chart.rows[:-2]}
     edge, ball = (by_contact[kind, 1.0, 0.0].errors_percent for kind in ("edge", "ball"))
     assert all(0.0 < e < b for e, b in zip(np.ravel(edge), np.ravel(ball), strict=True))
-    (table,) = found(contact_section(chart), Table)
+    (table,) = found(contact_section(chart), SheetTable)
     labels = [row[0] for row in table.rows]
     assert f"edge of {size:.3g} mm radius, across the pole" in labels
     assert f"edge of {0.3 * size:.3g} mm radius, {0.3 * size:.3g} mm off the axis" in labels

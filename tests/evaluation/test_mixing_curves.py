@@ -7,7 +7,7 @@ import pytest
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.result import by_mixing_curve
 from pneutouch.evaluation.sheet import sheet_data
-from pneutouch.report.blocks import Items, Table, found
+from pneutouch.report.blocks import Items, SheetTable, found
 from pneutouch.report.conditions import mixing_section
 from pneutouch.results.record import plain as data
 from pneutouch.spec.read import parse_changes
@@ -66,7 +66,7 @@ def test_a_stiffer_wall_reads_less_at_a_newton(graded):
 def test_check_and_datasheet_set_the_curves_side_by_side(graded):
     (note,) = finding(graded)
     assert note.severity == "note"
-    (table,) = found(mixing_section(sheet_data(graded, "")), Table)
+    (table,) = found(mixing_section(sheet_data(graded, "")), SheetTable)
     assert table.head[1:-1] == ["mixture-tool: softer", "j750-tension: in use", "j750-hardness: stiffer"]
     assert [len(row) for row in table.rows] == [5] * 6
     for one in graded.curves:

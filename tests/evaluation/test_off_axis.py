@@ -15,7 +15,7 @@ from pneutouch.mechanics.harmonic.press import OffAxisPress
 from pneutouch.mechanics.models.atlas import outside_atlas
 from pneutouch.mechanics.models.choice import USUAL, models_for
 from pneutouch.parts import assemble
-from pneutouch.report.blocks import Table, found
+from pneutouch.report.blocks import SheetTable, found
 from pneutouch.report.conditions import shear_rows
 from pneutouch.results.record import plain as data
 from pneutouch.workflows.select.base import check_central
@@ -173,7 +173,7 @@ def test_a_shear_is_reported_in_the_document_the_text_and_the_sheets_table():
     (line,) = _sheared(document["states"])
     assert "0 kPa" in line and f"{sheared['slips_throughout_mm']:.2f} mm" in line
     (row,) = shear_rows(prediction.states)
-    tables = found(off_axis(prediction.states), Table)
+    tables = found(off_axis(prediction.states), SheetTable)
     assert all(len(cells) == len(table.head) for table in tables for cells in table.rows)
     assert row in tables[-1].rows and row[1] == "1.00" and row[3] == f"{sheared['sideways_force_N'][-1]:.3f}"
 

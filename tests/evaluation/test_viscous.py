@@ -21,7 +21,7 @@ from pneutouch.evaluation.sheet import ageing_data, sheet_data, viscous_curves
 from pneutouch.mechanics.viscous.prony import ageing_ratio
 from pneutouch.output.files import json_bytes
 from pneutouch.report import relaxation
-from pneutouch.report.blocks import Items, Plot, Table, found
+from pneutouch.report.blocks import Items, Plot, SheetTable, found
 from pneutouch.results.record import plain as data
 from tests.conftest import ROOT
 from tests.mechanics.viscous.tables import PAPER_RESINS, agilus_table, friction_table, resin, wall_table
@@ -132,7 +132,7 @@ def test_the_flag_reaches_the_prediction(command):
 def test_the_sheets_section_has_the_figures_of_the_prediction(agilus):
     sheet = sheet_data(agilus, "")
     section = relaxation.viscous_section(sheet)
-    (table,), (notes,) = found(section, Table), found(section, Items)
+    (table,), (notes,) = found(section, SheetTable), found(section, Items)
     rows = iter(table.rows)
     for state in data(viscous(agilus.viscous_runs))["states"]:
         for one in state["by_source"]:
@@ -155,7 +155,7 @@ def test_a_run_that_stops_is_told_in_the_section_and_not_drawn(agilus):
     runs = viscous_runs(agilus.prediction, agilus.scene.membrane_material, sensor)
     drawn = viscous_curves(runs)
     section = relaxation.viscous_section(replace(sheet_data(agilus, ""), viscous=viscous(runs), viscous_curves=drawn))
-    (table,), (notes,) = found(section, Table), found(section, Items)
+    (table,), (notes,) = found(section, SheetTable), found(section, Items)
     assert any("gauge range" in note for note in notes.lines)
     assert any("–" in row for row in table.rows)
     assert len(relaxation.loop_panel(drawn).lines) == 2 * sum(loop is not None for loop in drawn.loops)

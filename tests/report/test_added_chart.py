@@ -7,13 +7,15 @@ import pytest
 from pneutouch.evaluation.sheet import sheet_data
 from pneutouch.report import datasheet, pages
 from pneutouch.report.blocks import Plot, found
-from pneutouch.report.chart import Line, Panel, drawn_svg
+from pneutouch.report.chart import Panel, PlotLine, drawn_svg
 
 
 def volumes(sheet):
     """Cavity volume over driving pressure."""
     curve = sheet.prediction.inflation
-    panel = Panel("driving pressure  (kPa)", "cavity volume  (mL)", (Line(1e3 * curve.pressure, 1e-3 * curve.volume),))
+    panel = Panel(
+        "driving pressure  (kPa)", "cavity volume  (mL)", (PlotLine(1e3 * curve.pressure, 1e-3 * curve.volume),)
+    )
     return Plot(drawn_svg(panel), "Volume of the cavity & its <growth>.")
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pneutouch.report import blocks, pages
-from pneutouch.report.chart import Line, Panel, drawn_svg
+from pneutouch.report.chart import Panel, PlotLine, drawn_svg
 from pneutouch.report.pictures import png
 
 from .words import page_words, pdf_words, sheet_texts
@@ -18,7 +18,7 @@ ODD = '<b>50 % & $x_1$ #pagebreak() {{ sheet }} "said" \\n *no* [_a_]'
 
 @pytest.fixture(scope="module")
 def sheet():
-    svg = drawn_svg(Panel("force  (N)", "rise  (kPa)", (Line((0, 1), (0, 2)),)))
+    svg = drawn_svg(Panel("force  (N)", "rise  (kPa)", (PlotLine((0, 1), (0, 2)),)))
     rows = [
         ["alpha", "one", blocks.Cell("1.5", "1.2 to 1.8", strong=True)],
         ["alpha", "two", "2.5"],
@@ -35,12 +35,12 @@ def sheet():
         mark_note="for a reason",
         blocks=(
             blocks.Text(ODD, "status"),
-            blocks.Box("Framed", [blocks.Text("inside the frame", "strong")]),
+            blocks.FramedBlocks("Framed", [blocks.Text("inside the frame", "strong")]),
             blocks.Heading("A section"),
             blocks.Text("words", "muted"),
             blocks.Items(["first", ODD], numbered=True),
-            blocks.Table(rows, ("Name", "Part", "Value\nkPa"), numeric=(2,), strong=(2,), merged=1),
-            blocks.Table([["fact", "a value", "and what it rests on"]]),
+            blocks.SheetTable(rows, ("Name", "Part", "Value\nkPa"), numeric=(2,), strong=(2,), merged=1),
+            blocks.SheetTable([["fact", "a value", "and what it rests on"]]),
             blocks.Plots(
                 [blocks.Plot(svg, "caption of one", "title of one", full=True), blocks.Plot(svg)], caption="both"
             ),
@@ -67,14 +67,14 @@ def test_page_and_pdf_hold_every_figure(sheet):
 
 
 def test_cells_that_repeat_are_merged_in_groups(sheet):
-    table = next(block for block in sheet.blocks if isinstance(block, blocks.Table))
+    table = next(block for block in sheet.blocks if isinstance(block, blocks.SheetTable))
     assert [len(group) for group in table.groups] == [2, 1]
     assert table.names == ["Name", "Part", "Value, kPa"]
     assert b"rowspan: 2" in pages.source(sheet)["sheet.typ"]
 
 
 def test_an_empty_section_is_left_out():
-    assert blocks.section("Nothing", blocks.Table([]), blocks.Items([]), blocks.Text("")) == []
+    assert blocks.section("Nothing", blocks.SheetTable([]), blocks.Items([]), blocks.Text("")) == []
 
 
 def test_the_same_sheet_gives_the_same_bytes(sheet):

@@ -13,7 +13,7 @@ import pytest
 from pneutouch.catalogue import load_scene
 from pneutouch.evaluation.anywhere import contact_chart
 from pneutouch.report import curves, prose
-from pneutouch.report.chart import Line
+from pneutouch.report.chart import PlotLine
 from pneutouch.results.record import plain as data
 
 SECTIONS = [
@@ -242,14 +242,14 @@ def test_pdf_pages_keep_text_inside_the_margins(built):
 
 def test_axes_carry_quantities_and_units(evaluated):
     prediction = evaluated("paper-dome").prediction
-    presses = [curves.predicted_press(state, Line()) for state in prediction.states]
+    presses = [curves.predicted_press(state, PlotLine()) for state in prediction.states]
     for panel in (curves.inflation(prediction), curves.rises(presses), curves.forces(presses)):
         assert all(re.search(r"\w+  \((kPa|N|mm|kPa/N)\)$", label) for label in (panel.x, panel.y))
 
 
 def test_curves_end_where_the_range_ends(evaluated):
     for state in evaluated("paper-dome").prediction.states:
-        press = curves.predicted_press(state, Line())
+        press = curves.predicted_press(state, PlotLine())
         assert press.indentation[-1] == pytest.approx(state.range_end, rel=1e-9)
         assert curves.rises([press]).lines[0].x[-1] == pytest.approx(state.figures.force_range[1], rel=1e-6)
 

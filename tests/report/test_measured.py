@@ -11,7 +11,7 @@ import pytest
 
 from pneutouch.bench.figures import FIGURES
 from pneutouch.bench.record import SuspectInterval
-from pneutouch.report.blocks import Box, Heading, Plot, Table, found
+from pneutouch.report.blocks import FramedBlocks, Heading, Plot, SheetTable, found
 from pneutouch.report.measured import tables
 from pneutouch.report.measured.groups import groups_of
 from pneutouch.report.measured.head import tiles, whole_verdict
@@ -36,7 +36,7 @@ def headings(sheet):
 def table_under(sheet, title):
     """The table below a heading."""
     place = next(k for k, block in enumerate(sheet.blocks) if isinstance(block, Heading) and block.text == title)
-    return next(block for block in sheet.blocks[place:] if isinstance(block, Table))
+    return next(block for block in sheet.blocks[place:] if isinstance(block, SheetTable))
 
 
 @pytest.fixture(scope="module")
@@ -108,7 +108,7 @@ def test_figures_are_those_of_the_groups_with_interval_and_difference(campaign, 
         ]
         rows = table_under(sheet, f"Figures of {beside.label}").rows
         assert row in [list(map(str, cells[4:])) for cells in rows]
-    assert sum("3 / 9" in row for table in found(sheet.blocks, Table) for row in table.rows) >= 12
+    assert sum("3 / 9" in row for table in found(sheet.blocks, SheetTable) for row in table.rows) >= 12
 
 
 def test_simulated_data_says_so_on_every_page_and_measured_data_does_not(files, least):
@@ -127,7 +127,7 @@ def test_failures_questions_doubts_and_leaks_are_listed(sheet):
         f"doubt number {k} in a row" for k in range(MOST)
     ]
     assert ["TangoPlus-1", "leak", "0.02130", "0.0031", "kPa/min"] in table_under(sheet, "Leak and dead volume").rows
-    (box,) = found(sheet.blocks, Box)
+    (box,) = found(sheet.blocks, FramedBlocks)
     assert f"{MOST + 7} parts" in box.blocks[-1].text and "1 of 252 runs" in box.blocks[-1].text
 
 
@@ -177,7 +177,9 @@ def test_one_run_is_shown_without_interval_and_without_empty_headings(least):
 def test_ageing_stands_beside_the_papers(library):
     aged = measured_of(library, resins=("TangoPlus",), runs=1, kinds=("steps",), ages=(0.0, 365.0))
     sheet = described(aged)
-    (table,) = [table for table in found(sheet.blocks, Table) if table.head[:1] == ("Resin",) and len(table.head) == 6]
+    (table,) = [
+        table for table in found(sheet.blocks, SheetTable) if table.head[:1] == ("Resin",) and len(table.head) == 6
+    ]
     assert table.rows[0][2:] == ["12 months", f"{MINUS}9.1", f"{MINUS}15.0 to {MINUS}3.2", "± 14.8"]
     assert ["Ages", "fresh and 12 months"] in table_under(sheet, "Conditions").rows
     assert len(found(sheet.blocks, Plot)) == 4
@@ -208,7 +210,7 @@ def test_a_resin_of_any_title_can_be_drawn(least):
 
 
 def test_specimen_rows_are_means_over_runs(campaign):
-    (table,) = found(specimen_section(groups_of(campaign.comparisons)), Table)
+    (table,) = found(specimen_section(groups_of(campaign.comparisons)), SheetTable)
     rows = table.rows
     assert len(rows) == 7 * 3 * 2
     beside = campaign.comparisons[0]
@@ -250,7 +252,7 @@ def test_docs_define_every_figure_with_its_key(root):
 
 def test_a_verdict_of_its_own_words_is_printed(least):
     wish = Verdict("stiffness at 0 kPa", "at most 5 N/mm", "4.7 N/mm", True)
-    (table,) = found(found(described(replace(least, verdicts=(wish,))).blocks, Box), Table)
+    (table,) = found(found(described(replace(least, verdicts=(wish,))).blocks, FramedBlocks), SheetTable)
     assert list(map(str, table.rows[0])) == [wish.what, wish.required, wish.measured, "passed"]
 
 
@@ -275,4 +277,4 @@ def _only(group, kind):
 
 def test_a_failure_does_not_say_its_file_twice(campaign):
     listed = lists(replace(campaign, failures=(("runs/a.csv", "/home/lab/campaign/runs/a.csv: no such file"),)))
-    assert ["runs/a.csv", "no such file"] in found(listed, Table)[1].rows
+    assert ["runs/a.csv", "no such file"] in found(listed, SheetTable)[1].rows

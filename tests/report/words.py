@@ -8,7 +8,20 @@ from collections.abc import Iterator
 
 import pypdfium2
 
-from pneutouch.report.blocks import Box, Cell, Columns, Heading, Items, Plot, Plots, Sheet, Table, Text, Tiles, View
+from pneutouch.report.blocks import (
+    Cell,
+    Columns,
+    FramedBlocks,
+    Heading,
+    Items,
+    Plot,
+    Plots,
+    Sheet,
+    SheetTable,
+    Text,
+    Tiles,
+    View,
+)
 
 
 def texts_of(blocks) -> Iterator[str]:
@@ -17,7 +30,7 @@ def texts_of(blocks) -> Iterator[str]:
         match block:
             case Items():
                 yield from block.lines
-            case Table():
+            case SheetTable():
                 for cells in (block.head, *block.rows):
                     for cell in cells:
                         yield from (cell.text, cell.note) if isinstance(cell, Cell) else (cell,)
@@ -32,7 +45,7 @@ def texts_of(blocks) -> Iterator[str]:
             case Columns():
                 for column in block.columns:
                     yield from texts_of(column)
-            case Box():
+            case FramedBlocks():
                 yield block.title
                 yield from texts_of(block.blocks)
             case View():

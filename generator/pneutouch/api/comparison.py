@@ -13,8 +13,7 @@ from pneutouch.api.prediction import Prediction
 from pneutouch.errors import InputError
 from pneutouch.mechanics.models.choice import model_options
 from pneutouch.report import comparison_words
-from pneutouch.results.comparison import RowRecord
-from pneutouch.results.record import plain
+from pneutouch.results.comparison import ComparisonRecord, RowRecord
 from pneutouch.spec.design import DesignFile
 from pneutouch.workflows.compare import CompareResult, write
 from pneutouch.workflows.compare import compare as run
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 
-class Comparison(show.Shown):
+class Comparison(show.Documented):
     """Columns side by side. ``inputs`` holds the fields that differ, a value a column; ``predictions`` are those of the
     designs, ``designs`` what was given as an object."""
 
@@ -58,10 +57,8 @@ class Comparison(show.Shown):
                 columns[label, key] = [None if one is None else getattr(one, key) for one in entries]
         return DataFrame(columns, index)
 
-    def to_dict(self) -> dict[str, Any]:
-        """The comparison as the command ``compare`` prints it as JSON."""
-        document: dict[str, Any] = plain(self._result.record)
-        return document
+    def _document(self) -> ComparisonRecord:
+        return self._result.record
 
     def write(self, out: str | Path = "outputs") -> Path:
         """Write the comparison as HTML, PDF and JSON into a folder of ``out``; returns that folder."""

@@ -10,7 +10,6 @@ from typing import Any
 from pneutouch.api import show
 from pneutouch.api.fields import plain
 from pneutouch.errors import InputError, shown
-from pneutouch.results import record
 from pneutouch.results.driving import DrivingRecord
 from pneutouch.spec.read import validate
 from pneutouch.spec.tasks import DrivingTask, TaskFile, read_tasks
@@ -34,7 +33,7 @@ def _number(value: Any) -> Any:
     return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
-class DrivingResult(show.Shown):
+class DrivingResult(show.Documented):
     """The driving pressures for the tasks of a design, in their order; None for a task that no pressure does."""
 
     def __init__(self, answer: DrivingRecord) -> None:
@@ -61,10 +60,8 @@ class DrivingResult(show.Shown):
         band = None if self._solved[0] is None else self._solved[0].band
         return None if band is None else (band.low_kPa, band.high_kPa)
 
-    def to_dict(self) -> dict[str, Any]:
-        """The document that the command ``predict`` prints as JSON for the same tasks."""
-        document: dict[str, Any] = record.plain(self._record)
-        return document
+    def _document(self) -> Any:
+        return self._record
 
     def _head(self) -> str:
         return f"Driving pressures of {shown(self._record.design)}, model {self._record.model}"

@@ -113,7 +113,7 @@ class PredictedState(show.Shown):
         return [(figure.name, str(figure)) for figure in self.figures.values()]
 
 
-class Prediction(show.Shown):
+class Prediction(show.Documented):
     """Prediction of a design by one model at its driving pressures."""
 
     def __init__(self, evaluation: Evaluation) -> None:
@@ -140,9 +140,8 @@ class Prediction(show.Shown):
         remedy = f"predicted: {known} kPa; give `driving_pressures_kPa` to predict others"
         raise InputError("not predicted", key="pressure_kPa", value=pressure_kPa, remedy=remedy)
 
-    def to_dict(self) -> dict[str, Any]:
-        """The whole prediction, as the command ``predict`` prints it as JSON."""
-        return dict(plain(predicted_in_full(self.evaluation)))
+    def _document(self) -> Any:
+        return predicted_in_full(self.evaluation)
 
     def to_frame(self) -> DataFrame:
         """A row a driving pressure; a column a figure, with ``_low`` and ``_high`` where its interval is known."""

@@ -9,11 +9,10 @@ from pneutouch.api import show
 from pneutouch.errors import InputError, shown
 from pneutouch.printability import Finding
 from pneutouch.results.prediction import ByMixingCurve
-from pneutouch.results.record import plain
 
 
 @dataclass(frozen=True, repr=False)
-class CheckResult(show.Shown):
+class CheckResult(show.Documented):
     """The findings of a check; it is ``passed`` where none of them is an error.
 
     ``curves`` are the figures by every mixing curve of a mix.
@@ -28,10 +27,9 @@ class CheckResult(show.Shown):
         """True if no rule is broken."""
         return all(finding.severity != "error" for finding in self.findings)
 
-    def to_dict(self) -> dict[str, Any]:
-        """The document that the command ``check`` prints as JSON."""
-        content = {"design": self.name, "passed": self.passed, "findings": [plain(f.stated) for f in self.findings]}
-        return {**content, "mixing_curves": plain(self.curves)} if self.curves else content
+    def _document(self) -> Any:
+        content = {"design": self.name, "passed": self.passed, "findings": [f.stated for f in self.findings]}
+        return {**content, "mixing_curves": self.curves} if self.curves else content
 
     def _head(self) -> str:
         verdict = "passed" if self.passed else "not passed"

@@ -20,7 +20,6 @@ from pneutouch.catalogue import DesignSource, Library
 from pneutouch.catalogue.library import read_given
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.output.new import new_changed
-from pneutouch.results.record import plain
 from pneutouch.results.selection import FoundDesign, GradedRecord, ProcessesRecord, SelectionRecord
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, validate
@@ -132,7 +131,7 @@ def given_base(design: Design | None) -> Iterator[GivenBase]:
             raise
 
 
-class Selection(show.Shown):
+class Selection(show.Documented):
     """Designs that meet a target, best first; empty if none does. `to_dict` names the misses of each."""
 
     def __init__(self, designs: tuple[Design, ...], record: SelectedRecord) -> None:
@@ -143,10 +142,8 @@ class Selection(show.Shown):
         """True if a design meets the target."""
         return bool(self.designs)
 
-    def to_dict(self) -> dict[str, Any]:
-        """The document that the command ``select`` prints as JSON."""
-        document: dict[str, Any] = plain(self._record)
-        return document
+    def _document(self) -> Any:
+        return self._record
 
     def _head(self) -> str:
         return f"Selection: {counted(len(self.designs), 'design')} meet{'s' * (len(self.designs) == 1)} the target"

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel
 
 from pneutouch.catalogue.listing import listing
+from pneutouch.results.record import plain
 from pneutouch.spec.fields import declarations
 
 if TYPE_CHECKING:
@@ -45,6 +46,18 @@ class Shown:
 
     def _repr_html_(self) -> str:
         return html(self._head(), self._cells(), self._columns, self._picture())
+
+
+class Documented(Shown):
+    """Base of objects that a command prints as JSON."""
+
+    def _document(self) -> Any:
+        """Record or tables of the document."""
+        raise NotImplementedError
+
+    def to_dict(self) -> dict[str, Any]:
+        """The document that the command prints as JSON."""
+        return dict(plain(self._document()))
 
 
 def short(value: Any) -> str:

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from pneutouch.evaluation.sheet_data import ContactChart, ContactRow, ErrorCurves
-from pneutouch.report.blocks import Block, Items, Plot, Plots, Table, Text, section
-from pneutouch.report.chart import Chart, Line, Note, Panel, drawn_svg
+from pneutouch.report.blocks import Items, Plot, Plots, SheetBlock, SheetTable, Text, section
+from pneutouch.report.chart import Chart, Note, Panel, PlotLine, drawn_svg
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS
 
 _SIZE = (57.0, 58.0)
@@ -16,14 +16,14 @@ _SIZE = (57.0, 58.0)
 
 DASH = "–"
 
-_LOOKS = (Line(tone=INK, dashes=LINES[0], width=1.6), Line(tone=ACCENT, dashes=LINES[1], width=1.6))
+_LOOKS = (PlotLine(tone=INK, dashes=LINES[0], width=1.6), PlotLine(tone=ACCENT, dashes=LINES[1], width=1.6))
 """Line styles of the lowest and the highest driving pressure."""
 
 _MARKED = 5
 """Points of a curve to one mark."""
 
 
-def contact_section(chart: ContactChart | str | None) -> list[Block]:
+def contact_section(chart: ContactChart | str | None) -> list[SheetBlock]:
     """Charts, table and notes; the reason alone where the table does not cover the sensor."""
     title = "Contact that is not central"
     if chart is None or isinstance(chart, str):
@@ -36,7 +36,7 @@ def contact_section(chart: ContactChart | str | None) -> list[Block]:
     return section(
         title,
         Plots(plots, (1, 1, 1), _caption(chart)),
-        Table(rows, head, numeric=range(1, len(head))),
+        SheetTable(rows, head, numeric=range(1, len(head))),
         Items(_notes(chart)),
     )
 
@@ -72,7 +72,7 @@ def contact_panels(chart: ContactChart) -> list[Panel]:
     ]
 
 
-def _curves(curves: ErrorCurves, words: list[str] | None = None) -> list[Line]:
+def _curves(curves: ErrorCurves, words: list[str] | None = None) -> list[PlotLine]:
     """One curve a driving pressure; those of edges, without words, are thin and marked."""
     lines = [replace(look, x=curves.along, y=y) for y, look in zip(curves.errors_percent, _LOOKS, strict=False)]
     if words is None:

@@ -56,7 +56,7 @@ class Items:
 
 
 @dataclass(frozen=True)
-class Table:
+class SheetTable:
     """A table; one without a head states facts: what, value, unit, and a longer last cell.
 
     Attributes:
@@ -166,19 +166,19 @@ class Tiles:
 class Columns:
     """Blocks side by side, each column of a share of the width."""
 
-    columns: Sequence[Sequence[Block]]
+    columns: Sequence[Sequence[SheetBlock]]
     widths: Sequence[int] = (1, 1)
 
 
 @dataclass(frozen=True)
-class Box:
+class FramedBlocks:
     """Blocks in a frame under a title, where there is one: what the reader has to see first."""
 
     title: str
-    blocks: Sequence[Block]
+    blocks: Sequence[SheetBlock]
 
 
-Block = Heading | Text | Items | Table | Plot | Plots | View | Tiles | Columns | Box
+SheetBlock = Heading | Text | Items | SheetTable | Plot | Plots | View | Tiles | Columns | FramedBlocks
 
 
 @dataclass(frozen=True)
@@ -204,21 +204,21 @@ class Sheet:
     facts: Sequence[tuple[str, str]]
     tool: str
     foot: str
-    blocks: Sequence[Block]
+    blocks: Sequence[SheetBlock]
     mark: str = ""
     mark_note: str = ""
     date: datetime.date | None = None
 
 
-def section(title: str, *blocks: Block, level: int = 2) -> list[Block]:
+def section(title: str, *blocks: SheetBlock, level: int = 2) -> list[SheetBlock]:
     """A heading and its blocks; nothing where none of them holds anything."""
     held = [block for block in blocks if _holds(block)]
     return [Heading(title, level), *held] if held else []
 
 
-def _holds(block: Block) -> bool:
+def _holds(block: SheetBlock) -> bool:
     match block:
-        case Table():
+        case SheetTable():
             return bool(block.rows)
         case Items():
             return bool(block.lines)
@@ -235,7 +235,7 @@ def _holds(block: Block) -> bool:
 Kind = TypeVar("Kind")
 
 
-def found(blocks: Sequence[Block], kind: type[Kind]) -> list[Kind]:
+def found(blocks: Sequence[SheetBlock], kind: type[Kind]) -> list[Kind]:
     """Every block of a kind, those within columns and boxes too, in their order."""
     every: list[Kind] = []
     for block in blocks:
@@ -244,7 +244,7 @@ def found(blocks: Sequence[Block], kind: type[Kind]) -> list[Kind]:
         match block:
             case Columns():
                 every += [one for column in block.columns for one in found(column, kind)]
-            case Box():
+            case FramedBlocks():
                 every += found(block.blocks, kind)
             case Plots() if kind is Plot:
                 every += block.plots  # type: ignore[arg-type]

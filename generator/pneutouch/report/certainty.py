@@ -8,7 +8,7 @@ from typing import Any
 
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorPrediction
-from pneutouch.report.blocks import Block, Columns, Items, Plot, Table, Text, section
+from pneutouch.report.blocks import Columns, Items, Plot, SheetBlock, SheetTable, Text, section
 from pneutouch.report.style import ACCENT, BOLD, INK, MUTED, figure, svg
 from pneutouch.results.uncertainty import SourceRecord, UncertaintyRecord
 from pneutouch.units import KPA
@@ -54,9 +54,9 @@ def shares(covered: dict[str, UncertaintyRecord]) -> dict[str, dict[str, float]]
     return {label: dict(document.known[SENSITIVITY].shares) for label, document in covered.items()}
 
 
-def uncertainty_section(sheet: SheetData, plots: Sequence[Plot]) -> list[Block]:
+def uncertainty_section(sheet: SheetData, plots: Sequence[Plot]) -> list[SheetBlock]:
     """Everything in the section; ``plots`` are its charts."""
-    documents, model = sheet.uncertainty, Table(model_rows(sheet))
+    documents, model = sheet.uncertainty, SheetTable(model_rows(sheet))
     covered = ends(sheet.prediction, documents)
     if not covered:
         why = next((document.unknown for document in documents if document.unknown is not None), None)
@@ -64,14 +64,14 @@ def uncertainty_section(sheet: SheetData, plots: Sequence[Plot]) -> list[Block]:
         return section("Uncertainty", Text(f"No interval is given: {why}."), model)
     last = list(covered.values())[-1]
     head = ["Figure", "Unit", *(cell for label in covered for cell in (f"at {label}", "k = 2"))]
-    figures = Table(_figures(covered), head, numeric=range(2, len(head)), small=True)
+    figures = SheetTable(_figures(covered), head, numeric=range(2, len(head)), small=True)
     sources = [_source(source) for source in last.sources or () if source.standard_uncertainty > 0]
     return section(
         "Uncertainty",
         Items(_summary(covered)),
         Columns(((figures,), (model,)), (3, 2)),
         *plots,
-        Table(sources, ("Source", "Standard\nuncertainty", "Of", "Basis", "Where from"), numeric=(1,)),
+        SheetTable(sources, ("Source", "Standard\nuncertainty", "Of", "Basis", "Where from"), numeric=(1,)),
         Items([_plain(f"{note}.") for note in last.notes or ()]),
     )
 

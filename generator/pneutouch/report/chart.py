@@ -38,11 +38,11 @@ WIDE = 180.0
 """Width of a chart over the whole row of A4, mm."""
 
 Values = Array | Sequence[float]
-Limits = tuple[float | None, float | None]
+AxisEnds = tuple[float | None, float | None]
 
 
 @dataclass(frozen=True)
-class Line:
+class PlotLine:
     """A curve or a set of points; one without points is an entry of the legend alone.
 
     Attributes:
@@ -129,11 +129,11 @@ class Panel:
 
     x: str = ""
     y: str = ""
-    lines: tuple[Line, ...] = ()
+    lines: tuple[PlotLine, ...] = ()
     notes: tuple[Note, ...] = ()
     title: str = ""
-    xlim: Limits | None = None
-    ylim: Limits | None = None
+    xlim: AxisEnds | None = None
+    ylim: AxisEnds | None = None
     log: str = ""
     zero: str = ""
     rows: tuple[str, ...] = ()
@@ -214,7 +214,7 @@ def draw_panel(ax: Axes, panel: Panel) -> None:
         note(ax, plain_text(one.text), one.at, one.side, color=one.tone, **(BOLD if one.bold else {}))
 
 
-def _draw(ax: Axes, one: Line) -> None:
+def _draw(ax: Axes, one: PlotLine) -> None:
     """One curve with its band."""
     label = plain_text(one.label) or None
     if one.low is not None and one.high is not None:
@@ -295,6 +295,6 @@ def plain_text(text: str) -> str:
     return text.replace("$", r"\$")
 
 
-def bars_between(x: Iterable[float], low: Iterable[float], high: Iterable[float], look: Line) -> list[Line]:
+def bars_between(x: Iterable[float], low: Iterable[float], high: Iterable[float], look: PlotLine) -> list[PlotLine]:
     """Upright bars from ``low`` to ``high`` at places ``x``: intervals of single points."""
     return [replace(look, x=(at, at), y=(a, b)) for at, a, b in zip(x, low, high, strict=True)]

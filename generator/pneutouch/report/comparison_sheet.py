@@ -14,9 +14,21 @@ import numpy as np
 from pneutouch.body.section import section_outline
 from pneutouch.parts import Assembly
 from pneutouch.report import comparison_words as words
-from pneutouch.report.blocks import Block, Box, Cell, Heading, Items, Plot, Plots, Sheet, Table, Text, section
-from pneutouch.report.chart import SIZE, Chart, Line, Panel, drawn_svg
-from pneutouch.report.curves import Ends, Press, forces, rises
+from pneutouch.report.blocks import (
+    Cell,
+    FramedBlocks,
+    Heading,
+    Items,
+    Plot,
+    Plots,
+    Sheet,
+    SheetBlock,
+    SheetTable,
+    Text,
+    section,
+)
+from pneutouch.report.chart import SIZE, Chart, Panel, PlotLine, drawn_svg
+from pneutouch.report.curves import BandEnds, Press, forces, rises
 from pneutouch.report.pages import set_sheet
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED
 from pneutouch.results.comparison import ComparedCurve, ComparisonRecord, DifferenceRecord, RowRecord
@@ -42,7 +54,7 @@ def described(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> Sh
     labels, tool = words.labels(comparison), f"pneutouch {comparison.pneutouch}"
     title = " and ".join([", ".join(labels[:-1]), labels[-1]])
     compared = [[one.label, _KINDS[one.kind], one.source or "–"] for one in comparison.compared]
-    inputs = Table(words.input_rows(comparison), ("Input", *labels))
+    inputs = SheetTable(words.input_rows(comparison), ("Input", *labels))
     return Sheet(
         title=title,
         subtitle="Comparison",
@@ -52,10 +64,10 @@ def described(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> Sh
         foot=tool,
         blocks=(
             *(Text(line, "status") for line in words.marks(comparison)),
-            Box(
+            FramedBlocks(
                 "", [*(Text(line, "strong") for line in words.summary(comparison)), Text(comparison.criterion, "muted")]
             ),
-            *section("What is compared", Table(compared, ("Name", "Kind", "From"))),
+            *section("What is compared", SheetTable(compared, ("Name", "Kind", "From"))),
             *section("Inputs that differ", inputs if inputs.rows else Text("None that is known.", "muted")),
             Heading("Figures"),
             *(block for p in words.pressures(comparison) for block in _figures(comparison, p)),
@@ -68,12 +80,12 @@ def described(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> Sh
 _KINDS = {"design": "design, predicted", "build": "build, as predicted when it was built", "measured": "measured"}
 
 
-def _figures(comparison: ComparisonRecord, pressure_kPa: float | None) -> list[Block]:
+def _figures(comparison: ComparisonRecord, pressure_kPa: float | None) -> list[SheetBlock]:
     """The figures at one driving pressure, or of the whole sensor."""
     labels, title = words.labels(comparison), words.heading(pressure_kPa)
     head = ("Figure", *labels, *(f"{label}, difference" for label in labels[1:]))
     rows = [_row(row) for row in comparison.figures if row.driving_pressure_kPa == pressure_kPa]
-    return section(title[0].upper() + title[1:], Table(rows, head, dense=len(labels) > 3), level=3)
+    return section(title[0].upper() + title[1:], SheetTable(rows, head, dense=len(labels) > 3), level=3)
 
 
 def _row(row: RowRecord) -> list[str | Cell]:
@@ -85,7 +97,7 @@ def _row(row: RowRecord) -> list[str | Cell]:
     return [words.figure_name(row), *values, *differences]
 
 
-def _plots(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> list[Block]:
+def _plots(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> list[SheetBlock]:
     """Sections with the plots; those without data are left out."""
     many = f" The first {MOST} are drawn." if len(comparison.compared) > MOST else ""
     apart = (
@@ -108,16 +120,16 @@ def _plots(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> list[
     ]
 
 
-def _look(k: int) -> Line:
-    return Line(tone=_TONES[k % len(_TONES)], dashes=LINES[k % len(LINES)], hatch=k)
+def _look(k: int) -> PlotLine:
+    return PlotLine(tone=_TONES[k % len(_TONES)], dashes=LINES[k % len(LINES)], hatch=k)
 
 
-def _spots(k: int) -> Line:
+def _spots(k: int) -> PlotLine:
     marker, tone = MARKERS[k % len(MARKERS)], _TONES[k % len(_TONES)]
-    return Line(tone=tone, dashes="", marker=marker, size=2.8, over=4)
+    return PlotLine(tone=tone, dashes="", marker=marker, size=2.8, over=4)
 
 
-def _legend(looks: Sequence[Line], names: Sequence[str]) -> tuple[list[Line], int]:
+def _legend(looks: Sequence[PlotLine], names: Sequence[str]) -> tuple[list[PlotLine], int]:
     """Entries of a legend, and its columns: one where a name would not fit into half the width."""
     entries = [
         replace(look, label=name if len(name) <= _CUT else f"{name[: _CUT - 1]}…")
@@ -126,7 +138,7 @@ def _legend(looks: Sequence[Line], names: Sequence[str]) -> tuple[list[Line], in
     return entries, 2 if max(map(len, names), default=0) <= _SHORT else 1
 
 
-def _drawn(panel: Panel, height: float, looks: Sequence[Line], names: Sequence[str]) -> str:
+def _drawn(panel: Panel, height: float, looks: Sequence[PlotLine], names: Sequence[str]) -> str:
     """A panel under the legend of the sensors, as SVG."""
     entries, keys = _legend(looks, names)
     high = height + 4 * math.ceil(len(names) / keys)
@@ -138,7 +150,7 @@ def presses(comparison: ComparisonRecord, draw: Callable[[Sequence[Press]], Pane
     names = words.labels(comparison)[:MOST]
     measured = [one.kind == "measured" for one in comparison.compared]
     looks = [_spots(k) if measured[k] else _look(k) for k in range(len(names))]
-    every = [_press(one, Line()) for one in comparison.curves if one.label in names]
+    every = [_press(one, PlotLine()) for one in comparison.curves if one.label in names]
     lines = [line for line in draw(every).lines if len(line.x)]
     right, high = (max((float(np.max(getattr(line, key))) for line in lines), default=0.0) for key in ("x", "y"))
     if not right or not high:
@@ -152,7 +164,7 @@ def presses(comparison: ComparisonRecord, draw: Callable[[Sequence[Press]], Pane
     return plots
 
 
-def _press(curve: ComparedCurve, look: Line, *bands: Ends | None) -> Press:
+def _press(curve: ComparedCurve, look: PlotLine, *bands: BandEnds | None) -> Press:
     depth, force, rise_kPa = map(np.array, (curve.indentation_mm, curve.contact_force_N, curve.pressure_rise_kPa))
     return Press(depth, force, rise_kPa, look, *bands)
 
@@ -182,7 +194,7 @@ def _spread(values: Sequence[float]) -> list[float]:
     return [values[round(k * (len(values) - 1) / (_PANELS - 1))] for k in range(_PANELS)]
 
 
-def _ends(comparison: ComparisonRecord, key: str, k: int, pressure_kPa: float | None) -> Ends | None:
+def _ends(comparison: ComparisonRecord, key: str, k: int, pressure_kPa: float | None) -> BandEnds | None:
     """Ends of a figure's interval over its value."""
     for row in comparison.figures:
         if row.figure == key and row.driving_pressure_kPa == pressure_kPa:
@@ -206,7 +218,7 @@ def differences(comparison: ComparisonRecord) -> list[tuple[str, str]]:
     others = words.labels(comparison)[1:MOST]
     several = len(others) > 1
     looks = [
-        Line(tone=_TONES[k + 1] if several else INK, marker=MARKERS[k % len(MARKERS)], size=4.4, width=1.0)
+        PlotLine(tone=_TONES[k + 1] if several else INK, marker=MARKERS[k % len(MARKERS)], size=4.4, width=1.0)
         for k in range(len(others))
     ]
     lines = []

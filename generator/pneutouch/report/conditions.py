@@ -10,7 +10,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import CurveOutcome, SensorState
-from pneutouch.report.blocks import Block, Items, Table, Text, section
+from pneutouch.report.blocks import Items, SheetBlock, SheetTable, Text, section
 from pneutouch.rounding import tenths_below
 from pneutouch.units import KPA
 
@@ -24,7 +24,7 @@ def environment(sheet: SheetData) -> list[list[str]]:
     material = sheet.scene.membrane_material
     if material.shore_a and material.shore_a_one_year:
         text = f"Shore A {material.shore_a.text()} to {material.shore_a_one_year.text()}"
-        rows.append(["Ageing, one year in light and air", text, "paper, Table 1"])
+        rows.append(["Ageing, one year in light and air", text, "paper, SheetTable 1"])
     return [*rows, ["Humidity, oils, ozone, UV", NOT_TESTED, ""]]
 
 
@@ -170,14 +170,14 @@ _SHEAR_NOTE = (
 )
 
 
-def off_axis(states: tuple[SensorState, ...]) -> list[Block]:
+def off_axis(states: tuple[SensorState, ...]) -> list[SheetBlock]:
     """Tables of contact off the axis, and of an object that moves sideways after pressing; nothing without them."""
-    blocks: list[Block] = []
+    blocks: list[SheetBlock] = []
     tables = (_off_axis_rows(states), _OFF_AXIS, _OFF_AXIS_NOTE), (shear_rows(states), _SHEAR, _SHEAR_NOTE)
     for rows, head, words in tables:
         if rows:
             columns = range(len(head))
-            blocks += [Table(rows, head, numeric=columns, turned=True), Text(words, "muted")]
+            blocks += [SheetTable(rows, head, numeric=columns, turned=True), Text(words, "muted")]
     return blocks
 
 
@@ -228,7 +228,7 @@ _BEYOND = (
 )
 
 
-def mixing_section(sheet: SheetData) -> list[Block]:
+def mixing_section(sheet: SheetData) -> list[SheetBlock]:
     """The table by every mixing curve: a row a figure, a column a curve, the softest first."""
     curves = sheet.curves
     head = ["Figure", *(f"{one.by_curve.curve}: {one.by_curve.place}" for one in curves), "Unit"]
@@ -241,7 +241,7 @@ def mixing_section(sheet: SheetData) -> list[Block]:
     rows.append(["Rated pressure", *map(_rated, curves), "kPa"])
     beyond = ", ".join(one.by_curve.curve for one in curves if one.by_curve.beyond)
     lines = [_CAPTION, *([_BEYOND.format(curves=beyond)] if beyond else [])]
-    blocks = (Table(rows, head, numeric=range(1, len(head) - 1)), Items(lines)) if curves else ()
+    blocks = (SheetTable(rows, head, numeric=range(1, len(head) - 1)), Items(lines)) if curves else ()
     return section("By every mixing curve", *blocks)
 
 

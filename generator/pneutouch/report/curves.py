@@ -14,7 +14,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.evaluation.sheet_data import ResinCurve
 from pneutouch.mechanics.prediction import DeformedShape, SensorPrediction, SensorState
-from pneutouch.report.chart import SIZE, Line, Note, Panel
+from pneutouch.report.chart import SIZE, Note, Panel, PlotLine
 from pneutouch.report.style import ACCENT, FAINT, INK, LINES, MARKERS, MUTED, figure, svg
 from pneutouch.units import KPA
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 _ROUNDING = 1 + 1e-9
 
-Ends = tuple[float, float]
+BandEnds = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Press:
         indentation: mm.
         force: Contact force, N.
         rise_kPa: Pressure rise.
-        look: Line that is drawn in the same way.
+        look: PlotLine that is drawn in the same way.
         rise_band: Ends of the rise's band over its value; None without one.
         force_band: Those of the force's.
     """
@@ -44,13 +44,13 @@ class Press:
     indentation: Array
     force: Array
     rise_kPa: Array
-    look: Line = Line()  # noqa: RUF009 (a frozen record)
-    rise_band: Ends | None = None
-    force_band: Ends | None = None
+    look: PlotLine = PlotLine()  # noqa: RUF009 (a frozen record)
+    rise_band: BandEnds | None = None
+    force_band: BandEnds | None = None
 
 
 def predicted_press(
-    state: SensorState, look: Line, rise_band: Ends | None = None, force_band: Ends | None = None
+    state: SensorState, look: PlotLine, rise_band: BandEnds | None = None, force_band: BandEnds | None = None
 ) -> Press:
     """The press of a predicted state up to the end of its range."""
     kept = state.indentation <= state.range_end * _ROUNDING
@@ -58,10 +58,10 @@ def predicted_press(
     return Press(*curves, look, rise_band, force_band)
 
 
-def state_look(k: int, pressure_kPa: float) -> Line:
+def state_look(k: int, pressure_kPa: float) -> PlotLine:
     """The look of the curve of state number ``k`` of a design."""
     marker, tone = MARKERS[k % len(MARKERS)], INK if k % 2 == 0 else ACCENT
-    return Line(label=f"{pressure_kPa:g} kPa", tone=tone, dashes=LINES[k % len(LINES)], marker=marker)
+    return PlotLine(label=f"{pressure_kPa:g} kPa", tone=tone, dashes=LINES[k % len(LINES)], marker=marker)
 
 
 def rises(presses: Sequence[Press]) -> Panel:
@@ -76,12 +76,12 @@ def forces(presses: Sequence[Press]) -> Panel:
     return Panel("indentation  (mm)", "contact force  (N)", lines, xlim=(0, None), ylim=(0, None))
 
 
-def _banded(look: Line, x: Array, y: Array, ends: Ends | None) -> Line:
+def _banded(look: PlotLine, x: Array, y: Array, ends: BandEnds | None) -> PlotLine:
     low, high = (None, None) if ends is None else (ends[0] * y, ends[1] * y)
     return replace(look, x=x, y=y, low=low, high=high)
 
 
-def sensitivities(lines: Sequence[Line], notes: Sequence[Note] = (), caption: str = "") -> Panel:
+def sensitivities(lines: Sequence[PlotLine], notes: Sequence[Note] = (), caption: str = "") -> Panel:
     """Sensitivity (kPa/N) over driving pressure (kPa); the axes hold all lines, bands and points."""
     heights = [value for one in lines for values in (one.y, one.high) if values is not None for value in values]
     right = max((float(value) for one in lines for value in one.x), default=0.0)
@@ -91,10 +91,10 @@ def sensitivities(lines: Sequence[Line], notes: Sequence[Note] = (), caption: st
     return Panel(across, "sensitivity  (kPa/N)", tuple(lines), tuple(notes), xlim=limits[0], ylim=limits[1])
 
 
-def published_points(published_kPa_per_N: Mapping[float, float]) -> list[Line]:
+def published_points(published_kPa_per_N: Mapping[float, float]) -> list[PlotLine]:
     """Published sensitivities by driving pressure, kPa."""
     x, y = list(published_kPa_per_N), list(published_kPa_per_N.values())
-    look = Line(x, y, "published measurement", dashes="", marker="D", size=4.5, over=5)
+    look = PlotLine(x, y, "published measurement", dashes="", marker="D", size=4.5, over=5)
     return [look] if x else []
 
 
@@ -118,15 +118,15 @@ def resin_sensitivities(
         chosen = "this design"
         every[chosen] = ResinCurve(states_kPa, predicted, prediction.model)
     lines = [_compared(k, label, label == chosen, *curve[:2]) for k, (label, curve) in enumerate(every.items())]
-    own = Line(states_kPa, predicted, "this design", tone=ACCENT, dashes="", marker="o", size=4, over=4)
+    own = PlotLine(states_kPa, predicted, "this design", tone=ACCENT, dashes="", marker="o", size=4, over=4)
     return sensitivities([*lines, own, *published_points(published_kPa_per_N)])
 
 
-def _compared(k: int, label: str, picked: bool, x: Array, y: Array) -> Line:
+def _compared(k: int, label: str, picked: bool, x: Array, y: Array) -> PlotLine:
     """A curve among others with its name at its end; the one that the chart is about is thick."""
     if picked:
-        return Line(x, y, end=label, tone=ACCENT, width=2.0, picked=True, over=3.5)
-    return Line(x, y, end=label, tone=MUTED, width=0.8, dashes=LINES[k % 4])
+        return PlotLine(x, y, end=label, tone=ACCENT, width=2.0, picked=True, over=3.5)
+    return PlotLine(x, y, end=label, tone=MUTED, width=0.8, dashes=LINES[k % 4])
 
 
 _OFF = 0.03
@@ -146,9 +146,9 @@ def inflation(prediction: SensorPrediction) -> Panel:
     peak, gauge_kPa = int(np.argmax(p)), prediction.limits.gauge / KPA
     own = [state.apex_inner for state in states], [state.driving_pressure / KPA for state in states]
     lines = [
-        Line(height[: peak + 1], p[: peak + 1], tone=ACCENT, width=1.6),
-        Line(height[peak:], p[peak:], tone=MUTED, dashes=LINES[1]),
-        Line(*own, label="driving pressures of this design", dashes="", marker="o", size=3.5),
+        PlotLine(height[: peak + 1], p[: peak + 1], tone=ACCENT, width=1.6),
+        PlotLine(height[peak:], p[peak:], tone=MUTED, dashes=LINES[1]),
+        PlotLine(*own, label="driving pressures of this design", dashes="", marker="o", size=3.5),
     ]
     notes = []
     if point is not None:
@@ -156,7 +156,7 @@ def inflation(prediction: SensorPrediction) -> Panel:
         lines.append(_point(at, "D", 4.5))
         notes.append(Note(f"limit point\n{at[1]:.1f} kPa, {at[0]:.2f} mm", at))
     if gauge_kPa < 1.2 * p.max():
-        lines.append(Line((height[0], height[-1]), (gauge_kPa, gauge_kPa), tone=MUTED, width=0.8, dashes=LINES[4]))
+        lines.append(PlotLine((height[0], height[-1]), (gauge_kPa, gauge_kPa), tone=MUTED, width=0.8, dashes=LINES[4]))
         notes.append(Note(f"gauge range {gauge_kPa:g} kPa", (float(np.median(height)), gauge_kPa), tone=MUTED))
     limits = ("break strain", prediction.limits.break_strain, "X"), ("law range", prediction.limits.law_range, "D")
     for name, pressure, marker in limits:
@@ -168,8 +168,8 @@ def inflation(prediction: SensorPrediction) -> Panel:
     return Panel("inner apex height  (mm)", "driving pressure  (kPa)", tuple(lines), tuple(notes), ylim=top)
 
 
-def _point(at: tuple[float, float], marker: str, size: float) -> Line:
-    return Line((at[0],), (at[1],), dashes="", marker=marker, size=size, filled=True, over=4)
+def _point(at: tuple[float, float], marker: str, size: float) -> PlotLine:
+    return PlotLine((at[0],), (at[1],), dashes="", marker=marker, size=size, filled=True, over=4)
 
 
 def shapes(prediction: SensorPrediction) -> list[str]:

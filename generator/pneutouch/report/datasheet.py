@@ -7,7 +7,19 @@ from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.export.scene import view_data
 from pneutouch.report import conditions, curves, graded, print_sheet, prose, sheet_charts, sheet_tables
 from pneutouch.report.anywhere import contact_section
-from pneutouch.report.blocks import Block, Columns, Items, Plot, Plots, Sheet, Table, Text, Tiles, View, section
+from pneutouch.report.blocks import (
+    Columns,
+    Items,
+    Plot,
+    Plots,
+    Sheet,
+    SheetBlock,
+    SheetTable,
+    Text,
+    Tiles,
+    View,
+    section,
+)
 from pneutouch.report.certainty import uncertainty_section, uncertainty_shares
 from pneutouch.report.drawing import section_drawing
 from pneutouch.report.mould import mould_section_blocks
@@ -77,7 +89,7 @@ def _charts(name: str, sheet: SheetData) -> list[Plot]:
     return [plot for plot in drawn if plot is not None]
 
 
-def _first(sheet: SheetData) -> list[Block]:
+def _first(sheet: SheetData) -> list[SheetBlock]:
     """Description, picture and the figures that count."""
     bodies, scene = shown(sheet.assembly, _PIXELS[0]), sheet.scene
     grade = "" if scene.membrane_material.along is None else " The darker the membrane, the more of the stiff resin."
@@ -87,7 +99,7 @@ def _first(sheet: SheetData) -> list[Block]:
     return [Columns((said, (view,))), Tiles(sheet_tables.key_figures(sheet))]
 
 
-def _performance(sheet: SheetData) -> list[Block]:
+def _performance(sheet: SheetData) -> list[SheetBlock]:
     errors = [f"Model error. {line}" for line in sheet.prediction.error_estimate.summary]
     return section(
         "Performance",
@@ -102,7 +114,7 @@ def _performance(sheet: SheetData) -> list[Block]:
     )
 
 
-def _shapes(sheet: SheetData) -> Block:
+def _shapes(sheet: SheetData) -> SheetBlock:
     """Half sections of the deformed wall, or why there are none."""
     state = sheet.prediction.states[0]
     if state.shapes:
@@ -114,10 +126,10 @@ def _shapes(sheet: SheetData) -> Block:
     return Text(words, "muted")
 
 
-def _conditions(sheet: SheetData) -> list[Block]:
+def _conditions(sheet: SheetData) -> list[SheetBlock]:
     """Limits, conditions and surroundings."""
-    ratings = Table(sheet_tables.ratings(sheet), numeric=(1,))
-    operating = Table(sheet_tables.operating(sheet), numeric=(1,))
+    ratings = SheetTable(sheet_tables.ratings(sheet), numeric=(1,))
+    operating = SheetTable(sheet_tables.operating(sheet), numeric=(1,))
     left = [
         *section("Absolute maximum ratings", ratings),
         *section("What limits the driving pressure", sheet_tables.limits(sheet)),
@@ -125,13 +137,13 @@ def _conditions(sheet: SheetData) -> list[Block]:
     ]
     right = [
         *section("Operating conditions", operating),
-        *section("Speed of reading", Table(conditions.speed_rows(sheet))),
+        *section("Speed of reading", SheetTable(conditions.speed_rows(sheet))),
     ]
-    surroundings = Table([*conditions.detection(sheet), *conditions.environment(sheet)])
+    surroundings = SheetTable([*conditions.detection(sheet), *conditions.environment(sheet)])
     return [Columns((left, right)), *section("Environment", surroundings)]
 
 
-def _making(sheet: SheetData) -> list[Block]:
+def _making(sheet: SheetData) -> list[SheetBlock]:
     """Drawing, mould, and how the sensor is made."""
     words = "Lengths in mm; tolerances are the stated accuracies of the printers; bracketed sizes are for reference"
     body = sheet.object_section
@@ -144,22 +156,24 @@ def _making(sheet: SheetData) -> list[Block]:
         *([] if sheet.assembly.mould is None else mould_section_blocks(sheet.assembly.mould)),
         *section(
             print_sheet.making_title(sheet.pour),
-            Table(print_sheet.body_rows(sheet), bodies),
+            SheetTable(print_sheet.body_rows(sheet), bodies),
             Items(print_sheet.making(sheet.scene, sheet.pour), numbered=True),
         ),
-        *section("Findings of the print rules", Table(findings, ("Severity", "Rule", "Finding", "Remedy"))),
+        *section("Findings of the print rules", SheetTable(findings, ("Severity", "Rule", "Finding", "Remedy"))),
     ]
 
 
-def _use(sheet: SheetData, date: str) -> list[Block]:
+def _use(sheet: SheetData, date: str) -> list[SheetBlock]:
     """Reliability, ordering, measuring and handling; then what the figures rest on."""
-    untested = Table([[what, conditions.NOT_TESTED] for what in prose.RELIABILITY])
-    revisions = Table([[sheet.scene.design.document.revision, date, "As predicted; first issue of this revision."]])
+    untested = SheetTable([[what, conditions.NOT_TESTED] for what in prose.RELIABILITY])
+    revisions = SheetTable(
+        [[sheet.scene.design.document.revision, date, "As predicted; first issue of this revision."]]
+    )
     return [
         Columns(
             (
                 [*section("Reliability", untested), *section("Revisions", revisions)],
-                section("Ordering code", Table(print_sheet.code_table(sheet.scene))),
+                section("Ordering code", SheetTable(print_sheet.code_table(sheet.scene))),
             )
         ),
         Columns(
@@ -169,6 +183,6 @@ def _use(sheet: SheetData, date: str) -> list[Block]:
             )
         ),
         *section("Assumptions of the prediction", Items(sheet.prediction.assumptions)),
-        *section("Definitions", Table(prose.DEFINITIONS)),
-        *section("Sources of the resin's numbers", Table(sheet_tables.sources(sheet))),
+        *section("Definitions", SheetTable(prose.DEFINITIONS)),
+        *section("Sources of the resin's numbers", SheetTable(sheet_tables.sources(sheet))),
     ]

@@ -11,7 +11,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.goodness import RunResiduals
 from pneutouch.bench.record import MeasuredCurve, Trace
-from pneutouch.report.chart import WIDE, Chart, Line, Panel, Span, drawn_svg
+from pneutouch.report.chart import WIDE, Chart, Panel, PlotLine, Span, drawn_svg
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED
 from pneutouch.units import KPA, ML
 
@@ -36,7 +36,7 @@ def law_chart(data: Sequence[tuple[Array, Array]], laws: Sequence[LawCurve], lar
 
     SVG. Laws differ by line and shade, specimens by marker, so that they can be distinguished in grayscale.
     """
-    point = Line(dashes="", tone=MUTED, size=2.6)
+    point = PlotLine(dashes="", tone=MUTED, size=2.6)
     top = [
         replace(
             point,
@@ -49,13 +49,13 @@ def law_chart(data: Sequence[tuple[Array, Array]], laws: Sequence[LawCurve], lar
     ]
     bottom = []
     for k, law in enumerate(laws):
-        look = Line(tone=(ACCENT, INK)[k % 2], dashes=LINES[k % len(LINES)])
+        look = PlotLine(tone=(ACCENT, INK)[k % 2], dashes=LINES[k % len(LINES)])
         top.append(replace(look, x=law.stretch, y=law.stress, label=law.label))
         off = replace(look, marker=MARKERS[k], size=2.0, filled=True, width=0.8)
         bottom.append(replace(off, x=law.off_at, y=100 * law.off))
     chosen, share = laws[0], 0.01 * _BAND
     ends = (1 - share) * chosen.stress, (1 + share) * chosen.stress
-    top.append(Line(chosen.stretch, label=f"±{_BAND:g} %", dashes="", low=ends[0], high=ends[1]))
+    top.append(PlotLine(chosen.stretch, label=f"±{_BAND:g} %", dashes="", low=ends[0], high=ends[1]))
     panels = (
         Panel(y="nominal stress  (MPa)", lines=tuple(top)),
         Panel(
@@ -95,13 +95,13 @@ def residual_chart(runs: Sequence[RunResiduals], size: tuple[float, float]) -> s
     return drawn_svg(Chart(tuple(panels), size))
 
 
-def _scattered(k: int, runs: Sequence[tuple[Array, Array]], label: str) -> list[Line]:
+def _scattered(k: int, runs: Sequence[tuple[Array, Array]], label: str) -> list[PlotLine]:
     """Runs as points; the first carries the label, and a line joins their mean where they share their travels."""
-    look = Line(tone=_TONES[k % 3], dashes="", marker=MARKERS[k % len(MARKERS)], size=2.8, filled=k % 2 == 0)
+    look = PlotLine(tone=_TONES[k % 3], dashes="", marker=MARKERS[k % len(MARKERS)], size=2.8, filled=k % 2 == 0)
     points = [replace(look, x=x, y=y, label="" if place else label) for place, (x, y) in enumerate(runs)]
     shortest = min((x for x, _ in runs), key=len)
     mean = np.mean([np.interp(shortest, x, y) for x, y in runs], axis=0)
-    return [*points, Line(shortest, mean, tone=look.tone, dashes=LINES[k % len(LINES)], width=0.9, over=2)]
+    return [*points, PlotLine(shortest, mean, tone=look.tone, dashes=LINES[k % len(LINES)], width=0.9, over=2)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,12 +127,12 @@ class GainCurve:
 def response_chart(curves: TimeCurves, gains: Sequence[GainCurve]) -> str:
     """The signal on the left, the gains on the right; SVG."""
     lines = [
-        Line(curves.time, curves.slow / KPA, "slow press", dashes=LINES[1], width=0.9),
-        Line(curves.time, curves.gauge / KPA, "at the gauge", tone=ACCENT, width=0.9),
+        PlotLine(curves.time, curves.slow / KPA, "slow press", dashes=LINES[1], width=0.9),
+        PlotLine(curves.time, curves.gauge / KPA, "at the gauge", tone=ACCENT, width=0.9),
     ]
     if curves.samples is not None:
         time, rise = curves.samples
-        lines.append(Line(time, rise / KPA, "gauge, read", dashes="", marker=MARKERS[0], size=1.8, filled=True))
+        lines.append(PlotLine(time, rise / KPA, "gauge, read", dashes="", marker=MARKERS[0], size=1.8, filled=True))
     left = Panel("time  (s)", "pressure rise  (kPa)", tuple(lines))
     return drawn_svg(Chart((left, gain_panel(gains)), (WIDE, 70.0), across=2))
 
@@ -140,7 +140,7 @@ def response_chart(curves: TimeCurves, gains: Sequence[GainCurve]) -> str:
 def gain_panel(gains: Sequence[GainCurve]) -> Panel:
     """Gains over frequency, both logarithmic, with the band of 3 dB."""
     lines = [
-        Line(one.frequency, one.gain, one.label, tone=_TONES[k % 3], dashes=LINES[k % len(LINES)], width=1.0)
+        PlotLine(one.frequency, one.gain, one.label, tone=_TONES[k % 3], dashes=LINES[k % len(LINES)], width=1.0)
         for k, one in enumerate(gains)
     ]
     band = Span(0.5**0.5, 2.0**0.5, "y")
@@ -166,8 +166,8 @@ def evidence_svg(curve: MeasuredCurve, thinned: Trace, simulated: bool) -> str:
     panels = []
     for label, values in channels:
         ends = float(np.nanmin(values)), float(np.nanmax(values))
-        lines = [Line(thinned.time, values, width=0.6)]
-        look = Line(label="first contact", tone=MUTED, dashes=LINES[4], width=0.5)
+        lines = [PlotLine(thinned.time, values, width=0.6)]
+        look = PlotLine(label="first contact", tone=MUTED, dashes=LINES[4], width=0.5)
         lines += [replace(look, x=(at, at), y=ends) for at in touched]
         panels.append(Panel("", label, tuple(lines), spans=tuple(spans)))
     words = f"{curve.run.label}: {curve.run.file}{'  (SIMULATED)' if simulated else ''}"

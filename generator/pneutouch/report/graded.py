@@ -10,7 +10,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.evaluation.sheet_data import ComparedMembrane, SheetData
 from pneutouch.report.blocks import Plot
-from pneutouch.report.chart import SIZE, Chart, Line, Note, Panel, drawn_svg
+from pneutouch.report.chart import SIZE, Chart, Note, Panel, PlotLine, drawn_svg
 from pneutouch.report.curves import predicted_press, rises, sensitivities
 from pneutouch.report.pictures import GRADE_COLOURS, greatest_share
 from pneutouch.report.style import ACCENT, INK, LINES, figure, svg
@@ -61,9 +61,9 @@ def grade_modulus(sheet: SheetData) -> Plot | None:
 
 def _along(along: ArcGrading, values: Array, label: str, mean: float | None = None) -> str:
     """A value along the arc from the pole to the rim."""
-    lines, notes = [Line(along.arc, values, tone=ACCENT, width=1.8)], []
+    lines, notes = [PlotLine(along.arc, values, tone=ACCENT, width=1.8)], []
     if mean is not None:
-        lines.append(Line((0, 1), (mean, mean), width=0.8, dashes=LINES[1]))
+        lines.append(PlotLine((0, 1), (mean, mean), width=0.8, dashes=LINES[1]))
         notes.append(Note(f"mean {mean:.2f} MPa", (0.5, mean)))
     top = (0, 1.08 * float(values.max()) or 1.0)
     panel = Panel("arc from the pole (0) to the rim (1)", label, tuple(lines), tuple(notes), xlim=(0, 1), ylim=top)
@@ -124,9 +124,9 @@ def graded_response(sheet: SheetData) -> Plot | None:
     return Plot(drawn_svg(replace(panel, x=at)), words)
 
 
-def _compared(sheet: SheetData) -> list[tuple[ComparedMembrane, Line]]:
+def _compared(sheet: SheetData) -> list[tuple[ComparedMembrane, PlotLine]]:
     """Every membrane with its look, the graded one last and on top."""
-    looks = [Line(end=one.label, width=0.9, dashes=LINES[1 + k % 4]) for k, one in enumerate(sheet.constants)]
+    looks = [PlotLine(end=one.label, width=0.9, dashes=LINES[1 + k % 4]) for k, one in enumerate(sheet.constants)]
     graded = ComparedMembrane("graded", sheet.prediction.states)
-    picked = Line(end=graded.label, tone=ACCENT, width=2.0, picked=True, over=4)
+    picked = PlotLine(end=graded.label, tone=ACCENT, width=2.0, picked=True, over=4)
     return [*zip(sheet.constants, looks, strict=True), (graded, picked)]

@@ -14,7 +14,7 @@ from pneutouch.parts.mould import MouldAssembly, silicone_batch
 from pneutouch.parts.mould.filling import release_of
 from pneutouch.parts.mould.pieces import LEDGE_HEIGHT, lay_out_mould, mould_solids, screw_places, silicone
 from pneutouch.parts.mould.size import PROUD, SCREW, MouldSize
-from pneutouch.report.blocks import Block, Plot, Table, section
+from pneutouch.report.blocks import Plot, SheetBlock, SheetTable, section
 from pneutouch.report.section import CENTRE, THIN, leader
 from pneutouch.report.style import INK, MM, MUTED, figure, svg
 
@@ -60,13 +60,13 @@ def draw_mould(ax: Axes, mould: MouldAssembly, labels: bool = True) -> None:
         _holes(ax, size.insert)
 
 
-def mould_section_blocks(mould: MouldAssembly) -> list[Block]:
+def mould_section_blocks(mould: MouldAssembly) -> list[SheetBlock]:
     """The datasheet's section on the mould."""
     words = (
         "The closed mould in section, turned over as it is poured: air leaves at the flange's underside, and parting "
         "lines meet the flange alone. Lengths in mm; own design, untested."
     )
-    return section("Mould", Plot(mould_section(mould), words, mm=_WIDE), Table(mould_rows(mould)))
+    return section("Mould", Plot(mould_section(mould), words, mm=_WIDE), SheetTable(mould_rows(mould)))
 
 
 def mould_rows(mould: MouldAssembly) -> list[list[str]]:

@@ -20,7 +20,7 @@ from pneutouch.arrays import Array, Index
 from pneutouch.evaluation.sheet_data import PressedView
 from pneutouch.export.scene import TILT_DEG, ShadedBody, cut_open, shaded, shaded_glb, view_data
 from pneutouch.parts import Assembly
-from pneutouch.report.blocks import Block, Columns, Text, View
+from pneutouch.report.blocks import Columns, SheetBlock, Text, View
 from pneutouch.report.style import ACCENT, INK, figure, svg
 from pneutouch.shape.dome import DomeShape
 from pneutouch.spec.material import ArcGrading
@@ -176,7 +176,7 @@ def pressed_files(view: PressedView, name: str) -> dict[str, bytes]:
     return {f"{name}-pressed.glb": shaded_glb(bodies), f"{name}-pressed.png": _with_scale(view, _image(bodies))}
 
 
-def pressed_blocks(view: PressedView) -> list[Block]:
+def pressed_blocks(view: PressedView) -> list[SheetBlock]:
     """The pressed dome on a sheet: the 3D view over its scale, and its caption beside it."""
     bodies = _bodies(view)
     with figure(86, 13) as drawn:

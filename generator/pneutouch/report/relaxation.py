@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from pneutouch.evaluation.sheet_data import AgeingData, SheetData, ViscousCurves
-from pneutouch.report.blocks import Block, Items, Plot, Plots, Table, Text, section
-from pneutouch.report.chart import Line, Panel, drawn_svg
+from pneutouch.report.blocks import Items, Plot, Plots, SheetBlock, SheetTable, Text, section
+from pneutouch.report.chart import Panel, PlotLine, drawn_svg
 from pneutouch.report.style import ACCENT, INK, LINES, MUTED
 from pneutouch.results.behaviour import BySource, Viscous, WholeLoop
 from pneutouch.units import KPA
@@ -28,7 +28,7 @@ _CONTACT_LOST = (
 _TONES = (ACCENT, INK, MUTED)
 
 
-def viscous_section(sheet: SheetData) -> list[Block]:
+def viscous_section(sheet: SheetData) -> list[SheetBlock]:
     """Charts, table and notes, or why there are none; and the line on ageing."""
     viscous, ageing = sheet.viscous, Text(ageing_line(sheet))
     title = "Relaxation and hysteresis"
@@ -39,7 +39,7 @@ def viscous_section(sheet: SheetData) -> list[Block]:
     return section(
         title,
         Plots([] if sheet.viscous_curves is None else _plots(viscous, sheet.viscous_curves)),
-        Table(cells, HEAD, numeric=(0, 2, 3, 4, 5, 6), turned=True),
+        SheetTable(cells, HEAD, numeric=(0, 2, 3, 4, 5, 6), turned=True),
         Items(_notes(viscous, rows)),
         ageing,
     )
@@ -60,7 +60,7 @@ def _plots(viscous: Viscous, curves: ViscousCurves) -> list[Plot]:
 def held_panel(viscous: ViscousCurves) -> Panel:
     """Force and pressure rise over time at the highest driving pressure."""
     lines = [
-        Line(curve.time, values, f"data {_letter(j)}" if k == 0 else "", tone=_TONES[j % 3], dashes=LINES[k])
+        PlotLine(curve.time, values, f"data {_letter(j)}" if k == 0 else "", tone=_TONES[j % 3], dashes=LINES[k])
         for j, curve in enumerate(viscous.held)
         if curve is not None
         for k, values in enumerate((curve.force, curve.rise))
@@ -72,7 +72,7 @@ def held_panel(viscous: ViscousCurves) -> Panel:
 def loop_panel(viscous: ViscousCurves) -> Panel:
     """Pressure rise over force in the quicker loop at the highest driving pressure."""
     lines = [
-        Line(force, rise / KPA, f"data {_letter(j)}" if k == 0 else "", tone=_TONES[j % 3], dashes=LINES[k])
+        PlotLine(force, rise / KPA, f"data {_letter(j)}" if k == 0 else "", tone=_TONES[j % 3], dashes=LINES[k])
         for j, loop in enumerate(viscous.loops)
         if loop is not None
         for k, (force, rise) in enumerate(((loop.force_in, loop.rise_in), (loop.force_out, loop.rise_out)))

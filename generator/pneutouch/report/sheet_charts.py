@@ -5,7 +5,7 @@ from dataclasses import replace
 from pneutouch.evaluation.sheet_data import ResinCurve, SheetData
 from pneutouch.report import curves
 from pneutouch.report.blocks import Plot
-from pneutouch.report.chart import Line, drawn_svg
+from pneutouch.report.chart import PlotLine, drawn_svg
 from pneutouch.report.prose import front_error
 from pneutouch.report.style import FAINT
 from pneutouch.report.tradeoff import tradeoff_panel, tuning_panel
@@ -43,7 +43,7 @@ def response(sheet: SheetData) -> Plot:
     panel, fits = curves.rises(_presses(sheet)), []
     for f in (state.figures for state in sheet.prediction.states if state.figures is not None):
         fit_kPa = [f.intercept_kPa + f.sensitivity_kPa_per_N * force for force in f.force_range]
-        fits.append(Line(f.force_range, fit_kPa, tone=FAINT, width=0.8, over=1))
+        fits.append(PlotLine(f.force_range, fit_kPa, tone=FAINT, width=0.8, over=1))
     words = "Response: pressure rise over contact force at each driving pressure, with the fitted lines."
     return Plot(drawn_svg(replace(panel, lines=(*panel.lines, *fits))), words)
 

@@ -3,7 +3,7 @@
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report import prose
-from pneutouch.report.blocks import Table, Tile
+from pneutouch.report.blocks import SheetTable, Tile
 from pneutouch.report.certainty import interval
 from pneutouch.report.conditions import DASH, NOT_TESTED, gauge_range, gauge_volume
 from pneutouch.units import KPA, ML
@@ -27,14 +27,14 @@ def key_figures(sheet: SheetData) -> list[Tile]:
     """Figures of the first page."""
     first, last = sheet.prediction.states[0], sheet.prediction.states[-1]
     mass = sum(solid.mass for solid in sheet.assembly.solids)
-    wide, dead_volume = 2 * sheet.assembly.layout.plate_radius, sheet.prediction.dead_volume / ML
+    wide, dead_volume_mL = 2 * sheet.assembly.layout.plate_radius, sheet.prediction.dead_volume / ML
     behind = sheet.assembly.dead_volume_note or "behind the cavity"
     return [
         Tile("Sensitivity", _sensitivity(first), "kPa/N", _condition(sheet, 0)),
         Tile("Sensitivity", _sensitivity(last), "kPa/N", _condition(sheet, -1)),
         Tile("Force range", _range(last), "N", f"at {last.driving_pressure / KPA:g} kPa"),
         Tile("Max. driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa", sheet.rating.summary),
-        Tile("Dead volume", f"{dead_volume:.2f}", "mL", behind),
+        Tile("Dead volume", f"{dead_volume_mL:.2f}", "mL", behind),
         Tile("Size", f"Ø{wide:.1f}", "mm", f"{mass:.1f} g without tube"),
     ]
 
@@ -93,11 +93,11 @@ def operating(sheet: SheetData) -> list[list[str]]:
     ]
 
 
-def performance(sheet: SheetData) -> Table:
+def performance(sheet: SheetData) -> SheetTable:
     """One row a driving pressure."""
     pairs = zip(sheet.prediction.states, sheet.uncertainty, strict=True)
     rows = [_state(sheet, state, interval(document) or DASH) for state, document in pairs]
-    return Table(rows, _PERFORMANCE, numeric=range(10), turned=True)
+    return SheetTable(rows, _PERFORMANCE, numeric=range(10), turned=True)
 
 
 def _state(sheet: SheetData, s: SensorState, width: str) -> list[str]:
@@ -115,7 +115,7 @@ def _published(sheet: SheetData, pressure_kPa: float) -> str:
     return DASH if value is None else f"{value:.3f}"
 
 
-def limits(sheet: SheetData) -> Table:
+def limits(sheet: SheetData) -> SheetTable:
     """The limits of the driving pressure and which of them the rating follows from."""
     limits, point, fitted = sheet.prediction.limits, sheet.prediction.limit_point, sheet.prediction.limits.law_range
     broken = DASH if limits.break_strain is None else f"{limits.break_strain / KPA:.1f}"
@@ -137,7 +137,7 @@ def limits(sheet: SheetData) -> Table:
             row[2] = f"{limit.low / KPA:.1f} to {limit.high / KPA:.1f} kPa at k = 2; {row[2]}"
         row.append("binds" if row[0] == sheet.rating.limit.name else "")
     binding = [k for k, row in enumerate(rows) if row[3]]
-    return Table(rows, ("Limit", "kPa", "Meaning", "Binds"), numeric=(1,), strong=binding, small=True)
+    return SheetTable(rows, ("Limit", "kPa", "Meaning", "Binds"), numeric=(1,), strong=binding, small=True)
 
 
 def sources(sheet: SheetData) -> list[list[str]]:

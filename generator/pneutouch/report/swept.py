@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.report.chart import WIDE, Chart, Line, Panel, bars_between, chart_figure, plain_text
+from pneutouch.report.chart import WIDE, Chart, Panel, PlotLine, bars_between, chart_figure, plain_text
 from pneutouch.report.style import INK, LINES, MARKERS, MUTED, figure, svg
 
 if TYPE_CHECKING:
@@ -141,9 +141,9 @@ def _over(swept: SweptFigure) -> tuple[str, bytes]:
 def _lines(swept: SweptFigure) -> Panel:
     """A line, or points over names, for each value of the second axis, with its band."""
     axis, lines = swept.axes
-    drawn: list[Line] = []
+    drawn: list[PlotLine] = []
     for n in range(len(lines.values)):
-        look = Line(tone=_TONES[n], marker=MARKERS[n], size=3.0, label=lines.text(n) if lines.key else "", over=4)
+        look = PlotLine(tone=_TONES[n], marker=MARKERS[n], size=3.0, label=lines.text(n) if lines.key else "", over=4)
         value, low, high = (a[:, n] for a in swept.arrays)
         if axis.numeric:
             x: Array = np.array(axis.values, np.float64)
@@ -152,7 +152,7 @@ def _lines(swept: SweptFigure) -> Panel:
             aside = 0.12 * (n - (len(lines.values) - 1) / 2)
             places = [k + aside for k in range(len(axis.values))]
             drawn.append(replace(look, x=places, y=value, dashes=""))
-            drawn += bars_between(places, low, high, Line(tone=_TONES[n], width=0.9))
+            drawn += bars_between(places, low, high, PlotLine(tone=_TONES[n], width=0.9))
     names = () if axis.numeric else tuple(f"{v:g}" if isinstance(v, float) else str(v) for v in axis.values)
     return Panel(axis.label, swept.label, tuple(drawn), columns=names)
 

@@ -1,9 +1,11 @@
-"""What sensitivity costs in force range, resin by resin, and how far the driving pressure tunes the sensitivity."""
+"""Charts of the force range that a sensitivity costs, and of the sensitivity over the driving pressure."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from pneutouch.evaluation.sheet_data import TradeOff, TuningChart
-from pneutouch.report.chart import Line, Note, Panel
+from pneutouch.report.chart import Note, Panel, PlotLine
 from pneutouch.report.curves import published_points, sensitivities
 from pneutouch.report.style import ACCENT, FAINT, INK, LINES
 
@@ -19,19 +21,19 @@ def tradeoff_panel(tradeoff: TradeOff) -> Panel:
         least, (low, high) = tradeoff.force or ylim[0], window
         frame = (low, low, high, high), (ylim[1], least, least, ylim[1])
         floor, top = (least, least), (ylim[1], ylim[1])
-        lines += [Line(window, low=floor, high=top, dashes=""), Line(*frame, width=0.6, over=1)]
+        lines += [PlotLine(window, low=floor, high=top, dashes=""), PlotLine(*frame, width=0.6, over=1)]
         notes.append(Note("target", ((low * high) ** 0.5, ylim[1]), (0.0, -1.0), bold=True))
     for k, (_, label, *at) in enumerate(tradeoff.spots):
-        lines.append(Line(at[:1], at[1:], dashes="", marker="o", size=4.5, filled=k == 0, over=6 + (k == 0)))
+        lines.append(PlotLine(at[:1], at[1:], dashes="", marker="o", size=4.5, filled=k == 0, over=6 + (k == 0)))
         notes.append(Note(label, (at[0], at[1]), (-1.0, -1.0), bold=k == 0))
     for k, front in enumerate(tradeoff.known):
         s, title = front.sensitivity_kPa_per_N, front.resin.material.title
         picked = title == chosen
         tone, width, dashes = (ACCENT, 2.0, LINES[0]) if picked else (INK, 0.8, LINES[k % 5])
         end = f"{title}  {s[0]:.2g} to {s[-1]:.2g}"
-        line = Line(s, front.force, "", end, tone, dashes, width, picked=picked, over=3 + picked)
+        line = PlotLine(s, front.force, "", end, tone, dashes, width, picked=picked, over=3 + picked)
         lines.append(line)
-        lines.append(Line(s[:1], front.force[:1], tone=tone, dashes="", marker="o", size=2.2, filled=True, over=4))
+        lines.append(PlotLine(s[:1], front.force[:1], tone=tone, dashes="", marker="o", size=2.2, filled=True, over=4))
     across += f"\n{tradeoff.caption}" if tradeoff.caption else ""
     return Panel(
         across, "greatest force range  (N)", tuple(lines), tuple(notes), xlim=xlim, ylim=ylim, log="xy", corner=True
@@ -51,40 +53,34 @@ def _limits(tradeoff: TradeOff) -> tuple[tuple[float, float], tuple[float, float
     return (left, right), (low, max(high, low * (limit / low) ** 2))
 
 
-def _gauge(tradeoff: TradeOff, xlim: tuple[float, float]) -> list[Line]:
+def _gauge(tradeoff: TradeOff, xlim: tuple[float, float]) -> list[PlotLine]:
     """The line at which the cavity pressure reaches the end of the pressure sensor's range: no design is beyond."""
     label = f"end of the gauge's range: force × sensitivity = {tradeoff.gauge_kPa:g} kPa"
     edge = [tradeoff.gauge_kPa / x for x in xlim]
-    return [Line(xlim, edge, label, tone=FAINT, width=5, over=2)]
+    return [PlotLine(xlim, edge, label, tone=FAINT, width=5, over=2)]
 
 
 def tuning_panel(tuning: TuningChart) -> Panel:
     """Sensitivity over driving pressure with its k = 2 interval, where that is known."""
-    chosen, published = tuning.chosen, dict(tuning.published_kPa_per_N)
-    end = chosen.label if tuning.others else ""
-    x, y, low, high = (
-        chosen.driving_pressure_kPa,
-        chosen.sensitivity_kPa_per_N,
-        tuning.low_kPa_per_N,
-        tuning.high_kPa_per_N,
-    )
+    chosen, working_kPa_per_N, high_kPa_per_N = tuning.chosen, tuning.working_kPa_per_N, tuning.high_kPa_per_N
+    at_kPa = chosen.driving_pressure_kPa
     lines = [
-        Line(
-            other.driving_pressure_kPa, other.sensitivity_kPa_per_N, end=other.label, width=0.7, dashes=LINES[1 + k % 4]
-        )
-        for k, other in enumerate(tuning.others)
+        PlotLine(one.driving_pressure_kPa, one.sensitivity_kPa_per_N, "", one.label, width=0.7, dashes=LINES[1 + k % 4])
+        for k, one in enumerate(tuning.others)
     ]
-    lines.append(Line(x, y, end=end, tone=ACCENT, width=2.0, picked=True, over=4, low=low, high=high))
-    for pressure, value in tuning.working_kPa_per_N.items():
-        lines.append(Line((pressure, pressure), (0, value), width=0.6, dashes=LINES[4], over=2))
-    working = list(tuning.working_kPa_per_N), list(tuning.working_kPa_per_N.values())
-    lines += [Line(*working, dashes="", marker="o", size=4.5, over=5), *published_points(published)]
-    last, value = working[0][-1], working[1][-1]
-    right = max(float(x[-1]), *working[0])
-    notes = [
-        Note(f"{value:.2f} kPa/N\nat {last:g} kPa", (last, 0.3 * value), (-1.0 if last > 0.5 * right else 1.0, 0.0))
+    picked = PlotLine(at_kPa, chosen.sensitivity_kPa_per_N, end=chosen.label if tuning.others else "", tone=ACCENT)
+    lines.append(replace(picked, width=2.0, picked=True, over=4, low=tuning.low_kPa_per_N, high=high_kPa_per_N))
+    lines += [
+        PlotLine((at, at), (0, value), width=0.6, dashes=LINES[4], over=2) for at, value in working_kPa_per_N.items()
     ]
-    if high is not None:
-        middle = len(high) // 2
-        notes.append(Note("k = 2", (float(x[middle]), float(high[middle])), (1.0, 1.0)))
+    lines.append(
+        PlotLine(list(working_kPa_per_N), list(working_kPa_per_N.values()), dashes="", marker="o", size=4.5, over=5)
+    )
+    lines += published_points(dict(tuning.published_kPa_per_N))
+    last_kPa, value = list(working_kPa_per_N.items())[-1]
+    side = -1.0 if last_kPa > 0.5 * max(float(at_kPa[-1]), *working_kPa_per_N) else 1.0
+    notes = [Note(f"{value:.2f} kPa/N\nat {last_kPa:g} kPa", (last_kPa, 0.3 * value), (side, 0.0))]
+    if high_kPa_per_N is not None:
+        middle = len(high_kPa_per_N) // 2
+        notes.append(Note("k = 2", (float(at_kPa[middle]), float(high_kPa_per_N[middle])), (1.0, 1.0)))
     return sensitivities(lines, notes, tuning.caption)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from statistics import median
 
 from pneutouch.bench.statistics import Estimate
-from pneutouch.report.blocks import Box, Cell, Row, Table, Text, Tile
+from pneutouch.report.blocks import Cell, FramedBlocks, Row, SheetTable, Text, Tile
 from pneutouch.report.measured.groups import CampaignReport, GroupComparison
 from pneutouch.report.numbers import between, difference, number, overlap, signed, word_of
 from pneutouch.results.measured import Verdict
@@ -31,14 +31,14 @@ def dates(measured: CampaignReport) -> str:
     return first if first == last else f"{first} to {last}"
 
 
-def verdict_box(measured: CampaignReport) -> Box:
+def verdict_box(measured: CampaignReport) -> FramedBlocks:
     """Verdict on the target, requirement by requirement, and the number of runs that gave nothing."""
     rows: list[Row] = [
         [v.what, v.required, v.measured, Cell(word_of(v.passed, _WORDS), strong=True)] for v in measured.verdicts
     ]
-    table = [Table(rows, ("What", "Required", "Measured", "Verdict"))] if rows else []
+    table = [SheetTable(rows, ("What", "Required", "Measured", "Verdict"))] if rows else []
     notes = Text(" ".join(_notes(measured)), "muted")
-    return Box(whole_verdict(measured.verdicts), [*table, notes])
+    return FramedBlocks(whole_verdict(measured.verdicts), [*table, notes])
 
 
 def _notes(measured: CampaignReport) -> list[str]:

@@ -17,7 +17,7 @@ from pneutouch.bench.figures import FIRST
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.report import curves
 from pneutouch.report.blocks import Plot
-from pneutouch.report.chart import SIZE, WIDE, Chart, Line, Panel, bars_between, drawn_svg
+from pneutouch.report.chart import SIZE, WIDE, Chart, Panel, PlotLine, bars_between, drawn_svg
 from pneutouch.report.measured.groups import CampaignReport, GroupComparison, ResinGroups, some
 from pneutouch.report.style import INK, LINES, MARKERS, MUTED
 from pneutouch.units import KPA
@@ -47,7 +47,9 @@ _PER_DECADE = 8
 Groups = Sequence[ResinGroups]
 
 
-def _multiples(groups: Groups, draw: Callable[[ResinGroups], Panel], legend: Sequence[Line], shared: str = "") -> str:
+def _multiples(
+    groups: Groups, draw: Callable[[ResinGroups], Panel], legend: Sequence[PlotLine], shared: str = ""
+) -> str:
     """One panel a resin, their axes named once; ``legend`` are lines without points."""
     panels = [draw(group) for group in groups]
     named = panels[0].x, panels[0].y
@@ -72,24 +74,24 @@ def _plot(groups: Groups, title: str, words: str, *drawing: Any) -> Plot | None:
     return Plot(_multiples(groups, *drawing), words, title, full=len(groups) > 1)
 
 
-def _tone(groups: ResinGroups, pressure_kPa: float) -> Line:
+def _tone(groups: ResinGroups, pressure_kPa: float) -> PlotLine:
     """Tone and dashes of a driving pressure: the same in every panel."""
     k = groups.campaign_pressures_kPa.index(pressure_kPa)
-    return Line(tone=_TONES[k % len(_TONES)], dashes=LINES[k % len(LINES)], width=1.0)
+    return PlotLine(tone=_TONES[k % len(_TONES)], dashes=LINES[k % len(LINES)], width=1.0)
 
 
-def _spots(groups: ResinGroups, comparison: GroupComparison, curve: MeasuredCurve) -> Line:
+def _spots(groups: ResinGroups, comparison: GroupComparison, curve: MeasuredCurve) -> PlotLine:
     """Look of the points of a run."""
     key = comparison.group.key
     young = key.age_days == next(iter(groups.ages))
     marker = MARKERS[groups.sensors.index(curve.run.sensor) % len(MARKERS)]
     tone = _tone(groups, key.driving_pressure_kPa).tone
-    return Line(tone=tone, dashes="", marker=marker, size=2.6, filled=young, over=4)
+    return PlotLine(tone=tone, dashes="", marker=marker, size=2.6, filled=young, over=4)
 
 
-def _key(groups: Groups) -> list[Line]:
+def _key(groups: Groups) -> list[PlotLine]:
     """Legend of the runs: markers of the specimens, fill of the ages."""
-    point = Line(dashes="", marker="o", size=3.4, filled=True)
+    point = PlotLine(dashes="", marker="o", size=3.4, filled=True)
     most = min(max((len(group.sensors) for group in groups), default=0), len(MARKERS))
     lines = [replace(point, marker=MARKERS[k], label=f"specimen {k + 1}") for k in range(most)]
     if len({age for group in groups for age in group.ages}) > 1:
@@ -97,7 +99,7 @@ def _key(groups: Groups) -> list[Line]:
     return lines
 
 
-_BAND = Line(low=(), high=(), dashes="", label="predicted, 95 %")
+_BAND = PlotLine(low=(), high=(), dashes="", label="predicted, 95 %")
 
 
 def _ends(values: Sequence[float], most: int = 2) -> list[float]:
@@ -113,7 +115,7 @@ def sensitivities(groups: Groups) -> Plot | None:
         return None
     ages = list(dict.fromkeys(age for g in groups for age in g.ages.values()))
     known = any(SENSITIVITY in b.predicted for g in groups for b in g.comparisons)
-    legend = [Line(label="predicted", width=1.0), _BAND] if known else []
+    legend = [PlotLine(label="predicted", width=1.0), _BAND] if known else []
     legend += [replace(_mean(k), label=f"measured, {age}") for k, age in enumerate(ages)]
     pressures_kPa = groups[0].campaign_pressures_kPa
     span_kPa = pressures_kPa[-1] - pressures_kPa[0]
@@ -135,11 +137,11 @@ def sensitivities(groups: Groups) -> Plot | None:
     return _plot(groups, "Sensitivity over driving pressure", words, draw, legend, "xy")
 
 
-def _mean(k: int) -> Line:
-    return Line(dashes="", marker=MARKERS[k % len(MARKERS)], size=3.6, filled=k == 0, over=5)
+def _mean(k: int) -> PlotLine:
+    return PlotLine(dashes="", marker=MARKERS[k % len(MARKERS)], size=3.6, filled=k == 0, over=5)
 
 
-def _predicted_sensitivity(groups: ResinGroups, half: float) -> list[Line]:
+def _predicted_sensitivity(groups: ResinGroups, half: float) -> list[PlotLine]:
     """The band between driving pressures; of one alone a bar of ``half`` its width."""
     known = {
         b.group.key.driving_pressure_kPa: b.predicted[SENSITIVITY]
@@ -153,11 +155,11 @@ def _predicted_sensitivity(groups: ResinGroups, half: float) -> list[Line]:
         return []
     x, value, low, high = zip(*rows, strict=True)
     whole = None not in (*low, *high)
-    line = Line(x, value, width=1.0, over=2)
+    line = PlotLine(x, value, width=1.0, over=2)
     return [replace(line, low=np.array(low, float), high=np.array(high, float)) if whole else line]
 
 
-def _measured_sensitivity(groups: ResinGroups, ages: list[str], aside: float) -> list[Line]:
+def _measured_sensitivity(groups: ResinGroups, ages: list[str], aside: float) -> list[PlotLine]:
     """Means with their intervals; ages stand next to one another."""
     lines = []
     for comparison in groups.comparisons:
@@ -169,7 +171,7 @@ def _measured_sensitivity(groups: ResinGroups, ages: list[str], aside: float) ->
         if estimate.low is not None and estimate.high is not None:
             # Caps on an interval without width would hide the marker.
             caps = "_" if estimate.high > estimate.low else ""
-            look = Line(width=0.9, marker=caps, size=4, over=4)
+            look = PlotLine(width=0.9, marker=caps, size=4, over=4)
             lines += bars_between((place_kPa,), (estimate.low,), (estimate.high,), look)
         lines.append(replace(_mean(k), x=(place_kPa,), y=(estimate.value,)))
     return lines
@@ -242,13 +244,13 @@ def loops(groups: Groups) -> Plot | None:
     }
     pressures_kPa = sorted({p for each in runs.values() for p, _ in each})
     tones = {pressure_kPa: _TONES[k % len(_TONES)] for k, pressure_kPa in enumerate(pressures_kPa)}
-    square = Line(dashes="", marker="s", size=5, filled=True)
+    square = PlotLine(dashes="", marker="s", size=5, filled=True)
     legend = [replace(square, label=f"{p:g} kPa", tone=tone) for p, tone in tones.items()]
-    legend += [Line(label="loading", width=0.9), Line(label="unloading", width=0.9, dashes=LINES[1])]
+    legend += [PlotLine(label="loading", width=0.9), PlotLine(label="unloading", width=0.9, dashes=LINES[1])]
 
     def draw(group: ResinGroups) -> Panel:
         branches = [
-            _branch(curve[2 * k], curve[2 * k + 1], Line(tone=tones[p], width=0.9, dashes=LINES[k]))
+            _branch(curve[2 * k], curve[2 * k + 1], PlotLine(tone=tones[p], width=0.9, dashes=LINES[k]))
             for p, run in runs[group.label]
             for curve in run.loop
             for k in (0, 1)
@@ -264,7 +266,7 @@ def _loop_of(groups: ResinGroups, pressure_kPa: float) -> MeasuredCurve | None:
     return next((curve for group in members for curve in group.of_kind("loop") if curve.loop), None)
 
 
-def _branch(force: Array, rise: Array, look: Line) -> curves.Press:
+def _branch(force: Array, rise: Array, look: PlotLine) -> curves.Press:
     step = max(len(force) // _POINTS, 1)
     return curves.Press(force[:0], force[::step], rise[::step] / KPA, look)
 
@@ -272,8 +274,8 @@ def _branch(force: Array, rise: Array, look: Line) -> curves.Press:
 def relaxations(groups: Groups) -> Plot | None:
     """Force and pressure rise over the logarithm of time, in percent of their value at `FIRST`; every run."""
     words = "Force and pressure rise in a long hold, in percent of their value at 1 s; every driving pressure."
-    legend = [*_key(groups), Line(label="force", width=0.9)]
-    legend.append(Line(label="pressure rise", tone=MUTED, width=0.9, dashes=LINES[1]))
+    legend = [*_key(groups), PlotLine(label="force", width=0.9)]
+    legend.append(PlotLine(label="pressure rise", tone=MUTED, width=0.9, dashes=LINES[1]))
 
     def draw(group: ResinGroups) -> Panel:
         runs = [(b, curve) for b in group.comparisons for curve in some(b.group.of_kind("relaxation"))]
@@ -287,7 +289,7 @@ def relaxations(groups: Groups) -> Plot | None:
     return _plot(relaxed, "Relaxation", words, draw, legend, "xy")
 
 
-def _relaxation(curve: MeasuredCurve, look: Line) -> list[Line]:
+def _relaxation(curve: MeasuredCurve, look: PlotLine) -> list[PlotLine]:
     """Both channels of a hold, in means over equal shares of a decade."""
     if curve.relaxation is None:
         return []
@@ -316,12 +318,12 @@ def ageings(measured: CampaignReport) -> Plot | None:
     known = [(k, row.low, row.high) for k, row in enumerate(rows) if row.low is not None and row.high is not None]
     papers = [(row.published_change_one_year_percent, k) for k, row in enumerate(rows)]
     papers = [(side * x, k) for x, k in papers if x is not None for side in (-1, 1)]
-    lines = [Line((low, high), (k, k), width=0.9, marker="|", size=4) for k, low, high in known]
-    point = Line(dashes="", marker="o", size=3.6, filled=True, label="measured")
+    lines = [PlotLine((low, high), (k, k), width=0.9, marker="|", size=4) for k, low, high in known]
+    point = PlotLine(dashes="", marker="o", size=3.6, filled=True, label="measured")
     lines.append(replace(point, x=[row.sensitivity_change_percent for row in rows], y=range(len(rows))))
     if papers:
         x, y = zip(*papers, strict=True)
-        lines.append(Line(x, y, "paper, one year (sign not given)", dashes="", marker=MARKERS[3], size=4.2))
+        lines.append(PlotLine(x, y, "paper, one year (sign not given)", dashes="", marker=MARKERS[3], size=4.2))
     names = tuple(f"{row.resin}, {row.driving_pressure_kPa:g} kPa, {row.age}" for row in rows)
     panel = Panel("change of sensitivity  (%)", "", tuple(lines), zero="x", rows=names)
     return Plot(drawn_svg(Chart((panel,), (SIZE[0], 22 + 5.2 * len(rows)), keys=2)), words)

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from pneutouch import __version__
-from pneutouch.report.blocks import Block, Columns, Plot, Plots, Sheet, Table, Text, Tiles, section
+from pneutouch.report.blocks import Columns, Plot, Plots, Sheet, SheetBlock, SheetTable, Text, Tiles, section
 from pneutouch.report.measured import head, plots, tables
 from pneutouch.report.measured.groups import MOST_RUNS, CampaignReport, ResinGroups, groups_of
 from pneutouch.report.pages import set_sheet
@@ -46,7 +46,7 @@ def described(measured: CampaignReport) -> Sheet:
     )
 
 
-def _blocks(measured: CampaignReport, groups: list[ResinGroups]) -> list[Block]:
+def _blocks(measured: CampaignReport, groups: list[ResinGroups]) -> list[SheetBlock]:
     aged = plots.ageings(measured)
     table = tables.ageing_table(measured)
     return [
@@ -57,7 +57,7 @@ def _blocks(measured: CampaignReport, groups: list[ResinGroups]) -> list[Block]:
         *(block for group in groups for block in tables.resin_section(group)),
         *tables.lists(measured),
         *tables.specimen_section(groups),
-        *section("Conditions", Table(head.conditions(measured))),
+        *section("Conditions", SheetTable(head.conditions(measured))),
         *section("Definitions", tables.definitions(), Text(_WHERE, "muted")),
     ]
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pneutouch.bench.figures import FIGURES, FigureDefinition
-from pneutouch.report.blocks import Block, Cell, Table, Text, section
+from pneutouch.report.blocks import Cell, SheetBlock, SheetTable, Text, section
 from pneutouch.report.measured.groups import CampaignReport, GroupComparison, ResinGroups
 from pneutouch.report.numbers import DASH, Bounds, between, difference, number, overlap, signed, word_of
 from pneutouch.report.style import MARKERS
@@ -55,7 +55,7 @@ _SPECIMENS = (
 _AGEING = ("Resin", "Driving\nkPa", "Age", "Change\nof S\n%", "95 % interval\n%", "Paper,\none year\n%")
 
 
-def resin_section(groups: ResinGroups) -> list[Block]:
+def resin_section(groups: ResinGroups) -> list[SheetBlock]:
     """Every figure of a resin over driving pressure and age, measured and predicted; and what is not there."""
     found = [(each, b) for each in FIGURES for b in groups.comparisons if each.key in b.group.figures]
     rows = [[each.name, each.unit, *_condition(b), *_figure(each, b)] for each, b in found]
@@ -68,7 +68,7 @@ def resin_section(groups: ResinGroups) -> list[Block]:
     unknown = {b.group.key.driving_pressure_kPa: b.why for b in groups.comparisons if b.why}
     return section(
         f"Figures of {groups.label}",
-        Table(rows, _FIGURES, numeric=(2, 4, 5, 6, 7, 8, 9), merged=2, dense=True),
+        SheetTable(rows, _FIGURES, numeric=(2, 4, 5, 6, 7, 8, 9), merged=2, dense=True),
         Text(f"Not measured: {'; '.join(absent)}." if absent else "", "muted"),
         *(Text(f"No prediction at {pressure:g} kPa: {why}", "muted") for pressure, why in sorted(unknown.items())),
     )
@@ -92,7 +92,7 @@ def _figure(figure: FigureDefinition, comparison: GroupComparison) -> list[str |
     return [*cells, number(predicted[0], digits), between(predicted, digits), apart, word]
 
 
-def specimen_section(groups: Sequence[ResinGroups]) -> list[Block]:
+def specimen_section(groups: Sequence[ResinGroups]) -> list[SheetBlock]:
     """Sensitivity and stiffness of each specimen, mean and standard deviation over its runs."""
     rows = []
     for group in groups:
@@ -122,7 +122,7 @@ def _of_sensor(comparison: GroupComparison, sensor: str) -> list[str]:
     return [str(count), *cells] if set(cells) != {DASH} else []
 
 
-def ageing_table(measured: CampaignReport) -> Table:
+def ageing_table(measured: CampaignReport) -> SheetTable:
     """Resin, driving pressure, age, change in percent, interval, the paper's, whose sign is not given."""
     rows = []
     for row in measured.ageing:
@@ -131,10 +131,10 @@ def ageing_table(measured: CampaignReport) -> Table:
         if row.published_change_one_year_percent is not None:
             paper = f"± {row.published_change_one_year_percent:.3g}"
         rows.append([row.resin, at, row.age, change, ends, paper])
-    return Table(rows, _AGEING, numeric=(1, 3, 4, 5), dense=True)
+    return SheetTable(rows, _AGEING, numeric=(1, 3, 4, 5), dense=True)
 
 
-def lists(measured: CampaignReport) -> list[Block]:
+def lists(measured: CampaignReport) -> list[SheetBlock]:
     """Leak and dead volume, failures, questions and warnings, each where there are any."""
     injections = [
         [row.sensor, row.figure, number(row.value, 4), number(row.standard_error, 2), row.unit]
@@ -167,11 +167,11 @@ def _listed(
     *notes: Text,
     most: int = MOST,
     merged: int = 0,
-) -> list[Block]:
+) -> list[SheetBlock]:
     """A section with the first rows of a long list; nothing without any."""
     left = len(rows) - most
     more = Text(f"and {left} more: see figures.json" if left > 0 else "", "muted")
-    return section(title, Table(rows[:most], head, numeric, merged=merged), more, *notes) if rows else []
+    return section(title, SheetTable(rows[:most], head, numeric, merged=merged), more, *notes) if rows else []
 
 
 LINES_OF = {
@@ -220,7 +220,7 @@ TERMS = (
 """Further words of the tables."""
 
 
-def definitions() -> Table:
+def definitions() -> SheetTable:
     """Name with unit, and meaning: of every figure, then of the tables' other words."""
     named = [[f"{f.name}, {f.unit}" if f.unit else f.name, LINES_OF[f.key]] for f in FIGURES]
-    return Table([*named, *TERMS])
+    return SheetTable([*named, *TERMS])
