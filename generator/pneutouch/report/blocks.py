@@ -82,7 +82,8 @@ class SheetTable:
     @property
     def names(self) -> list[str]:
         """Names of the columns in one line each, the unit behind a comma."""
-        return [", ".join(" ".join(part.split("\n")) for part in name.rsplit("\n", 1)) for name in self.head]
+        units = [name.rpartition("\n") for name in self.head]
+        return [", ".join(filter(None, (name.replace("\n", " ").rstrip(","), unit))) for name, _, unit in units]
 
     @property
     def lengths(self) -> list[int]:

@@ -71,7 +71,7 @@ def uncertainty_section(sheet: SheetData, plots: Sequence[Plot]) -> list[SheetBl
         Items(_summary(covered)),
         Columns(((figures,), (model,)), (3, 2)),
         *plots,
-        SheetTable(sources, ("Source", "Standard\nuncertainty", "Of", "Basis", "Where from"), numeric=(1,)),
+        SheetTable(sources, ("Source", "Standard uncertainty", "Of", "Basis", "Where from"), numeric=(1,)),
         Items([_plain(f"{note}.") for note in last.notes or ()]),
     )
 

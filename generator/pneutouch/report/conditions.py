@@ -24,7 +24,7 @@ def environment(sheet: SheetData) -> list[list[str]]:
     material = sheet.scene.membrane_material
     if material.shore_a and material.shore_a_one_year:
         text = f"Shore A {material.shore_a.text()} to {material.shore_a_one_year.text()}"
-        rows.append(["Ageing, one year in light and air", text, "paper, SheetTable 1"])
+        rows.append(["Ageing, one year in light and air", text, "paper, Table 1"])
     return [*rows, ["Humidity, oils, ozone, UV", NOT_TESTED, ""]]
 
 

@@ -16,7 +16,7 @@ _PERFORMANCE = (
     "k = 2\nkPa/N",
     "Published\nkPa/N",
     "R²",
-    "Non-\nlinearity\n% FS",
+    "Non-linearity\n% FS",
     "Stiffness\nN/mm",
     "Force range\nN",
     "Range ends at",
