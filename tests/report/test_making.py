@@ -3,14 +3,14 @@
 import pytest
 
 from pneutouch.catalogue import load_scene
-from pneutouch.evaluation.sheet import silicone_pour
 from pneutouch.parts import assemble
+from pneutouch.parts.mould import silicone_batch
 from pneutouch.report.print_sheet import making, making_title
 
 
 def steps(name, changes=None):
     assembly = assemble(load_scene(name, changes))
-    pour = silicone_pour(assembly)
+    pour = None if assembly.mould is None else silicone_batch(assembly.mould)
     return pour, making(assembly.scene, pour)
 
 

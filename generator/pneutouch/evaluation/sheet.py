@@ -1,7 +1,5 @@
 """A datasheet's record made from an evaluation.
 
-Silicone to weigh for a cast membrane.
-
 The pressed dome of a datasheet, evaluated from the Fourier sums of a prediction.
 """
 
@@ -18,40 +16,15 @@ from pneutouch.evaluation.dynamics import dynamics
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.gauge import gauge_record, zero_drift_kPa_per_K
 from pneutouch.evaluation.relaxation import viscous
-from pneutouch.evaluation.sheet_data import (
-    AgeingData,
-    ComparedMembrane,
-    LoadingLoop,
-    PressedView,
-    RelaxationCurve,
-    SheetData,
-    SiliconePour,
-    ViscousCurves,
-)
+from pneutouch.evaluation.sheet_data import AgeingData, ComparedMembrane, PressedView, SheetData
 from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.evaluation.uncertainty import unknown
 from pneutouch.mechanics import Sensor, SensorPrediction
 from pneutouch.mechanics.models.choice import stated_error
-from pneutouch.mechanics.viscous.describe import ViscousRuns
 from pneutouch.mechanics.viscous.prony import ageing_ratio, ageing_unknown
-from pneutouch.mechanics.viscous.runs import LoopRun, RelaxationRun
-from pneutouch.parts import Assembly
 from pneutouch.parts.mould import silicone_batch
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
-
-
-def silicone_pour(assembly: Assembly) -> SiliconePour | None:
-    """The batch that fills the mould once; None if the membrane is not cast."""
-    if assembly.mould is None:
-        return None
-    batch = silicone_batch(assembly.mould)
-    note = (
-        f"{batch.volume_mL:.1f} mL, {batch.cavities} x (cavity {batch.cavity_mL:.2f} + channels "
-        f"{batch.channels_mL:.2f} + overflow {batch.overflow_mL:.2f} mL) and {batch.loss_mL:.1f} mL left in the cup"
-    )
-    return SiliconePour(batch.volume_mL, batch.mass_g, batch.parts_g, note)
-
 
 _ANGLES = 64
 """Angles around the axis at which the surface is evaluated."""
@@ -119,7 +92,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         gauge=gauge_record(evaluation),
         resin_curves=resin_curves(sensor, evaluation.alike, highest, prediction.model, prediction.closure, states),
         viscous=viscous(evaluation.viscous_runs),
-        viscous_curves=viscous_curves(evaluation.viscous_runs),
+        viscous_runs=None if isinstance(evaluation.viscous_runs, str) else evaluation.viscous_runs,
         ageing=ageing_data(prediction, material, sensor),
         constants=constant_membranes(sensor, prediction),
         published_kPa_per_N=published,
@@ -128,7 +101,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         object_section=object_section(sensor),
         pressed=pressed_view(prediction),
         speed=dynamics(evaluation.bandwidth),
-        pour=silicone_pour(evaluation.assembly),
+        pour=None if evaluation.assembly.mould is None else silicone_batch(evaluation.assembly.mould),
         curves=evaluation.curves,
     )
     if unknown(sensor, prediction.model) is not None:
@@ -163,26 +136,6 @@ def _constant(sensor: Sensor, pressures: np.ndarray, label: str) -> ComparedMemb
         except ComputationError:
             continue
     return None
-
-
-def viscous_curves(runs: ViscousRuns | str) -> ViscousCurves | None:
-    """The curves of a hold and of the quicker loop at the highest driving pressure, one a source."""
-    if isinstance(runs, str):
-        return None
-    quick = list(runs.loops.values())[-1]
-    return ViscousCurves(tuple(map(_curve, runs.held[-1])), tuple(map(_loop, quick[-1])))
-
-
-def _curve(run: RelaxationRun) -> RelaxationCurve | None:
-    late = run.times >= 1.0 - 1e-9
-    if late.sum() < 2:
-        return None
-    force, rise = (100 * values / values[late][0] for values in (run.force, run.rise))
-    return RelaxationCurve(run.times, force, rise)
-
-
-def _loop(run: LoopRun) -> LoadingLoop | None:
-    return None if run.force_out.size < 2 else LoadingLoop(run.force_in, run.rise_in, run.force_out, run.rise_out)
 
 
 def ageing_data(prediction: SensorPrediction, material: Material, sensor: Sensor) -> AgeingData | str:

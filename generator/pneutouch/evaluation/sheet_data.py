@@ -15,7 +15,9 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.prediction import CurveOutcome, SensorPrediction, SensorState
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.uncertainty import GasNotes
+    from pneutouch.mechanics.viscous.describe import ViscousRuns
     from pneutouch.parts import Assembly
+    from pneutouch.parts.mould.assembly import SiliconeBatch
     from pneutouch.printability import Finding
     from pneutouch.results.behaviour import Dynamics, GaugeFigures, Viscous
     from pneutouch.results.printing import JobEstimate
@@ -24,51 +26,12 @@ if TYPE_CHECKING:
     from pneutouch.spec.contact import ContactKind
 
 
-class RelaxationCurve(NamedTuple):
-    """Contact force and pressure rise in percent of their values at 1 s, over time since the press (s), (n,) each."""
-
-    time: Array
-    force: Array
-    rise: Array
-
-
-class LoadingLoop(NamedTuple):
-    """Contact force (N) and pressure rise (MPa), loading and unloading."""
-
-    force_in: Array
-    rise_in: Array
-    force_out: Array
-    rise_out: Array
-
-
-class ViscousCurves(NamedTuple):
-    """Curves and loops (the quicker ones) at the highest driving pressure, one a source; None where a run ended early.
-
-    Attributes:
-        held: None where the run ended before 1 s.
-        loops: None without an unloading branch.
-    """
-
-    held: tuple[RelaxationCurve | None, ...]
-    loops: tuple[LoadingLoop | None, ...]
-
-
 class AgeingData(NamedTuple):
     """Ratio of the modulus after a year to the fresh one, and pairs of driving pressure (MPa) and change of
     sensitivity."""
 
     modulus_ratio: float
     sensitivity_change: tuple[tuple[float, float], ...]
-
-
-@dataclass(frozen=True)
-class SiliconePour:
-    """Masses to weigh for one filling: all parts together and each of them, g; ``note`` names the basis of the mass."""
-
-    volume_mL: float
-    mass_g: float
-    parts_g: tuple[float, ...]
-    note: str
 
 
 @dataclass(frozen=True)
@@ -89,7 +52,7 @@ class SheetData:
         gauge: Range of its gauge, and the smallest force at each driving pressure.
         resin_curves: The same sensor in every resin, by title.
         viscous: Relaxation and hysteresis, or why they are not predicted.
-        viscous_curves: Their curves at the highest driving pressure; None where they are not predicted.
+        viscous_runs: The runs that they are read from; None where they are not predicted.
         ageing: Change after a year, or why it is unknown.
         constants: Membranes of constant mix to compare a graded one with.
         published_kPa_per_N: Published sensitivities of this sensor by driving pressure, kPa.
@@ -130,8 +93,8 @@ class SheetData:
     object_section: Array | None = None
     pressed: PressedView | None = None
     speed: Dynamics | None = None
-    viscous_curves: ViscousCurves | None = None
-    pour: SiliconePour | None = None
+    viscous_runs: ViscousRuns | None = None
+    pour: SiliconeBatch | None = None
     curves: tuple[CurveOutcome, ...] = ()
 
 

@@ -43,25 +43,11 @@ AxisEnds = tuple[float | None, float | None]
 
 @dataclass(frozen=True)
 class PlotLine:
-    """A curve or a set of points; one without points is an entry of the legend alone.
+    """A curve or a set of points (n,) each; one without points is an entry of the legend alone.
 
-    Attributes:
-        x: Places, (n,).
-        y: Values there, (n,).
-        label: Entry of the legend; empty for none.
-        end: Text written right of the axes at its last point, or in the corner for its first.
-        tone: Colour.
-        dashes: Pattern of the line; empty for points alone.
-        width: Of the line, points.
-        marker: Shape of the points; empty for a line alone.
-        size: Of the points.
-        filled: False for open points.
-        every: Points of the curve to one that is marked.
-        picked: True for the curve that the chart is about: its ``end`` is bold.
-        low: Lower end of its band, (n,); None without one.
-        high: Upper end.
-        hatch: Number of the hatch of the band; None for a plain one.
-        over: Order in which curves lie over one another.
+    ``label`` stands in the legend, ``end`` right of the axes at the last point, or in the corner for the first. A line
+    without ``dashes`` is points alone, every ``every``-th marked; a ``picked`` one is what the chart is about. ``low``
+    and ``high`` are the ends of its band, plain or of the ``hatch`` of a number; ``over`` is its order among others.
     """
 
     x: Values = ()
@@ -107,24 +93,11 @@ class Span:
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes.
+    """One pair of axes with quantities and units.
 
-    Attributes:
-        x: Quantity and unit of the horizontal axis.
-        y: Of the vertical one.
-        lines: What is drawn; labels of several panels stand in one legend.
-        notes: Texts near points.
-        title: Above the panel.
-        xlim: Ends of the axis; None where the data say.
-        ylim: Of the vertical one.
-        log: The axes that are logarithmic: ``x``, ``y`` or ``xy``.
-        zero: The axes with a line at nothing: ``x``, ``y`` or both.
-        rows: Names of the rows of a chart of rows, from above; they stand at 0, 1, 2, ...
-        columns: Names of columns in the same way.
-        ticks: Places of the numbers of the horizontal axis, where they are to be these.
-        spans: Shaded stretches.
-        corner: True for the ends' texts in the upper right corner, each with a line to its curve's start.
-        equal: True for one scale on both axes.
+    ``log`` and ``zero`` name the axes that are logarithmic or have a line at nothing. ``rows`` (from above) and
+    ``columns`` are names that stand at 0, 1, 2, ... in place of numbers, ``ticks`` the only numbers of the horizontal
+    axis. ``corner``: the texts of ends stand in the upper right corner; ``equal``: both axes have one scale.
     """
 
     x: str = ""

@@ -9,8 +9,9 @@ from collections.abc import Mapping
 
 from pneutouch.body import Body
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.evaluation.sheet_data import SheetData, SiliconePour
+from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.parts.glue import GLUES, glue_of
+from pneutouch.parts.mould.assembly import SiliconeBatch
 from pneutouch.report.markdown import filled
 from pneutouch.report.mould import mould_rows
 from pneutouch.report.section import port_steps
@@ -20,7 +21,7 @@ from pneutouch.units import ML
 from pneutouch.wording import counted
 
 
-def making(scene: ResolvedDesign, pour: SiliconePour | None = None) -> list[str]:
+def making(scene: ResolvedDesign, pour: SiliconeBatch | None = None) -> list[str]:
     """Steps to make, clean and assemble a sensor, in order; ``pour`` if its membrane is cast."""
     grown = isinstance(scene.seat, OnePiece)
     lines = _printed(scene, grown) if pour is None else casting_steps(scene, pour)
@@ -36,7 +37,7 @@ def making(scene: ResolvedDesign, pour: SiliconePour | None = None) -> list[str]
     return [*lines, *_assembly(scene), port_steps(scene), *_mounting(scene)]
 
 
-def making_title(pour: SiliconePour | None) -> str:
+def making_title(pour: SiliconeBatch | None) -> str:
     """Heading of the steps on the sheet."""
     return "Material and print" if pour is None else "How to make it"
 
@@ -67,7 +68,7 @@ def _printed(scene: ResolvedDesign, grown: bool) -> list[str]:
     return lines
 
 
-def casting_steps(scene: ResolvedDesign, pour: SiliconePour) -> list[str]:
+def casting_steps(scene: ResolvedDesign, pour: SiliconeBatch) -> list[str]:
     """Steps to cast a membrane: release, weigh, mix, degas, pour, cure and demould."""
     silicone = scene.membrane_material
     casting = silicone.casting
@@ -77,6 +78,10 @@ def casting_steps(scene: ResolvedDesign, pour: SiliconePour) -> list[str]:
     ratio = ":".join(f"{part:g}" for part in casting.parts_by_mass)
     pot, cure = casting.pot_life_min.text(), casting.cure_h.text()
     around = isinstance(scene.seat, CastRing)
+    basis = (
+        f"{pour.volume_mL:.1f} mL, {pour.cavities} x (cavity {pour.cavity_mL:.2f} + channels {pour.channels_mL:.2f} + "
+        f"overflow {pour.overflow_mL:.2f} mL) and {pour.loss_mL:.1f} mL left in the cup"
+    )
     insert = (
         "Put the perforated ring into the mould's ring, dry and without release agent; file it where it stands out of "
         "either face, for it must let the mould close. "
@@ -88,7 +93,7 @@ def casting_steps(scene: ResolvedDesign, pour: SiliconePour) -> list[str]:
         "Mould: print its parts; they lie in their files as they are printed. Drill what came out narrow, clean, dry. "
         f"{casting.release[0].upper()}{casting.release[1:]}, on every face that the silicone "
         f"touches. These stop its cure: {', '.join(casting.inhibited_by)}; wear nitrile gloves, not latex.",
-        f"Weigh {masses} of {silicone.title} into one cup, {ratio} by mass, {pour.mass_g:.2f} g together: {pour.note}.",
+        f"Weigh {masses} of {silicone.title} into one cup, {ratio} by mass, {pour.mass_g:.2f} g together: {basis}.",
         f"Mix 3 min and scrape sides and bottom. Degas under vacuum until the froth has fallen, about 5 min. From the "
         f"start of mixing it flows for {pot} min at room temperature.",
         f"{insert}Pour in a thin stream into cap and ring, the ring in the cap, and lower the core slowly; or close "

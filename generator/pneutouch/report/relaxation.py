@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pneutouch.evaluation.sheet_data import AgeingData, SheetData, ViscousCurves
+from pneutouch.evaluation.sheet_data import AgeingData, SheetData
 from pneutouch.report.blocks import Items, Plot, Plots, SheetBlock, SheetTable, Text, section
 from pneutouch.report.chart import Panel, PlotLine, drawn_svg
 from pneutouch.report.style import ACCENT, INK, LINES, MUTED
@@ -38,43 +38,43 @@ def viscous_section(sheet: SheetData) -> list[SheetBlock]:
     cells = [_cells(*row) for row in rows]
     return section(
         title,
-        Plots([] if sheet.viscous_curves is None else _plots(viscous, sheet.viscous_curves)),
+        Plots([] if sheet.viscous_runs is None else _plots(viscous, sheet)),
         SheetTable(cells, HEAD, numeric=(0, 2, 3, 4, 5, 6), turned=True),
         Items(_notes(viscous, rows)),
         ageing,
     )
 
 
-def _plots(viscous: Viscous, curves: ViscousCurves) -> list[Plot]:
+def _plots(viscous: Viscous, sheet: SheetData) -> list[Plot]:
     last = viscous.states[-1]
     depth, highest = f"{viscous.depth_mm:.2f} mm", f"at {last.driving_pressure_kPa:g} kPa"
     quick = last.by_source[-1].hysteresis[-1].speed_mm_per_s
     ratio = "force (full) and pressure rise (dashed) over their values at 1 s"
     pressed = f"Pressed to {depth} and let go at {quick:g} mm/s, {highest}: in (full) and out (dashed)."
     return [
-        Plot(drawn_svg(_or_words(held_panel(curves))), f"Held at {depth}, {highest}: {ratio}."),
-        Plot(drawn_svg(_or_words(loop_panel(curves))), pressed),
+        Plot(drawn_svg(_or_words(held_panel(sheet))), f"Held at {depth}, {highest}: {ratio}."),
+        Plot(drawn_svg(_or_words(loop_panel(sheet))), pressed),
     ]
 
 
-def held_panel(viscous: ViscousCurves) -> Panel:
+def held_panel(sheet: SheetData) -> Panel:
     """Force and pressure rise over time at the highest driving pressure."""
     lines = [
-        PlotLine(curve.time, values, f"data {_letter(j)}" if k == 0 else "", tone=_TONES[j % 3], dashes=LINES[k])
-        for j, curve in enumerate(viscous.held)
-        if curve is not None
-        for k, values in enumerate((curve.force, curve.rise))
+        PlotLine(run.times, values, f"data {_letter(j)}" if k == 0 else "", tone=_TONES[j % 3], dashes=LINES[k])
+        for j, run in enumerate(sheet.viscous_runs.held[-1] if sheet.viscous_runs else ())
+        if run.holds
+        for k, values in enumerate((run.percent(run.force), run.percent(run.rise)))
     ]
     across, up = "time since the press  (s)", "share of the value at 1 s  (%)"
     return Panel(across, up, tuple(lines), xlim=(0.01, 600.0), ylim=(0, None), log="x")
 
 
-def loop_panel(viscous: ViscousCurves) -> Panel:
+def loop_panel(sheet: SheetData) -> Panel:
     """Pressure rise over force in the quicker loop at the highest driving pressure."""
     lines = [
         PlotLine(force, rise / KPA, f"data {_letter(j)}" if k == 0 else "", tone=_TONES[j % 3], dashes=LINES[k])
-        for j, loop in enumerate(viscous.loops)
-        if loop is not None
+        for j, loop in enumerate(list(sheet.viscous_runs.loops.values())[-1][-1] if sheet.viscous_runs else ())
+        if loop.force_out.size > 1
         for k, (force, rise) in enumerate(((loop.force_in, loop.rise_in), (loop.force_out, loop.rise_out)))
     ]
     return Panel("contact force  (N)", "pressure rise  (kPa)", tuple(lines), xlim=(0, None), ylim=(0, None))

@@ -19,7 +19,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags
+from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.press import AtlasPress, batch_of
 from pneutouch.mechanics.atlas.table import Atlas, shipped
 from pneutouch.mechanics.response import hysteresis
@@ -121,14 +121,28 @@ class RelaxationRun:
     rise: Array
     ended: str | None = None
 
+    @property
+    def _late(self) -> Index:
+        return np.flatnonzero(self.times >= 1.0 - 1e-9)
+
+    @property
+    def holds(self) -> bool:
+        """True if the run reaches from 1 s onwards."""
+        return self._late.size > 1
+
+    def percent(self, values: Array) -> Array:
+        """Values of a run that `holds` in percent of that at 1 s."""
+        shares: Array = 100 * values / values[self._late[0]]
+        return shares
+
     def drop(self, values: Array) -> tuple[float, float]:
         """Loss of a value from 1 s to the end, and loss per decade (least squares over log10 t from 1 s), over the
         value at 1 s.
 
         Raises ValueError if the run does not reach from 1 s onwards.
         """
-        late = self.times >= 1.0 - 1e-9
-        if late.sum() < 2:
+        late = self._late
+        if not self.holds:
             raise ValueError("the run does not hold for longer than 1 s")
         first, decades = values[late][0], np.log10(self.times[late])
         slope = np.polyfit(decades, values[late], 1)[0]
