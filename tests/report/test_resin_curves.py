@@ -33,7 +33,7 @@ def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library
     assert set(found) == {m.title for m in elastic.values()}
     assert drawn_by(found) == "drawn by the atlas"
     for material in elastic.values():
-        pressure, sensitivity, model = found[material.title]
+        pressure, sensitivity, model, _ = found[material.title]
         assert model == "atlas"
         assert pressure[0] == 0
         assert pressure[-1] == pytest.approx(22)

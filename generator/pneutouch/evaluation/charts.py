@@ -15,7 +15,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
-from pneutouch.evaluation.sheet_data import ChartPoint, ResinCurve, TradeOff, TuningChart, TuningCurve
+from pneutouch.evaluation.sheet_data import ChartPoint, SensitivityCurve, TradeOff, TuningChart
 from pneutouch.evaluation.uncertainty import known
 from pneutouch.mechanics import Sensor, SensorState, predict
 from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, SENSITIVITY
@@ -50,7 +50,7 @@ _BUDGETS = 7
 """Driving pressures at which the interval is worked out; its logarithm is straight between them."""
 
 
-def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
+def curve(sensor: Sensor, highest: float, label: str) -> SensitivityCurve | None:
     """The curve from no driving pressure to ``highest`` (MPa), or to `RATED_SHARE` of the limit point if that comes
     first.
 
@@ -61,32 +61,27 @@ def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
     if found is None:
         return None
     factor = np.array([sensor.correction.sensitivity_factor(p * KPA) for p in found.driving_pressure_kPa.tolist()])
-    return TuningCurve(label, found.driving_pressure_kPa, factor * found.sensitivity_kPa_per_N)
+    return found._replace(sensitivity_kPa_per_N=factor * found.sensitivity_kPa_per_N, label=label)
 
 
-def under_contact(sensor: Sensor, drawn: TuningCurve, states: Sequence[SensorState]) -> TuningCurve:
+def under_contact(
+    sensor: Sensor, plate: SensitivityCurve, states: Sequence[SensorState], least: int = 3
+) -> SensitivityCurve:
     """A curve of the sensor under a plate without friction made that of the sensor under its own contact.
 
-    ``states`` are the solid's, at a few driving pressures; the ratio is straight in its logarithm between them.
-    Pressures that it cannot be solved at are left out.
+    ``states`` are the solid's, at a few driving pressures; the ratio is straight in its logarithm between them, and
+    ``least`` pressures. Those at which it cannot be solved are left out.
     """
-    at, values = _corrected(sensor, drawn, states)
-    return TuningCurve(drawn.label, at, values)
-
-
-def _corrected(
-    sensor: Sensor, drawn: TuningCurve | ResinCurve, states: Sequence[SensorState], least: int = 3
-) -> tuple[Array, Array]:
-    """Driving pressures (kPa) and sensitivities (kPa/N) of a plate's curve times the ratio of the contact to it."""
-    pressures = tuple((drawn.driving_pressure_kPa * KPA).tolist())
+    pressures = tuple((plate.driving_pressure_kPa * KPA).tolist())
     ratio = CorrectedAtlas(sensor, pressures, states, least).ratio[SENSITIVITY]
     kept = np.isfinite(ratio)
-    return drawn.driving_pressure_kPa[kept], np.exp(ratio[kept]) * drawn.sensitivity_kPa_per_N[kept]
+    values = np.exp(ratio[kept]) * plate.sensitivity_kPa_per_N[kept]
+    return SensitivityCurve(plate.driving_pressure_kPa[kept], values, "atlas corrected by the solid", plate.label)
 
 
 def interval(
     sensor: Sensor,
-    drawn: TuningCurve,
+    drawn: SensitivityCurve,
     material: Material,
     materials: Sequence[Material],
     printer: Printer,
@@ -137,7 +132,7 @@ def resin_curves(
     model: str,
     closure: str | None,
     states: Sequence[SensorState] = (),
-) -> dict[str, ResinCurve]:
+) -> dict[str, SensitivityCurve]:
     """Sensitivity over driving pressure, from 0 to ``highest`` (MPa), by resin title.
 
     Each curve stops short of its own resin's limit point. A sheet of the membrane's is drawn by the membrane, any other
@@ -166,7 +161,7 @@ def resin_curves(
 
 def _by_atlas(
     variants: dict[str, Sensor], highest: float, points: int, share: float, left_out: tuple[int, ...]
-) -> dict[str, ResinCurve]:
+) -> dict[str, SensitivityCurve]:
     """Curves by title of the sensors that the atlas covers, all in one call, from no driving pressure to ``highest``
     (MPa) or that share of their limit points.
 
@@ -184,11 +179,13 @@ def _by_atlas(
     known = (np.isfinite(values) & ~np.isin(response.ends, left_out)).reshape(-1, points)
     rows = zip(inside, grids, values.reshape(-1, points), known, strict=True)
     return {
-        title: ResinCurve(grid[kept] / KPA, row[kept], "atlas") for title, grid, row, kept in rows if kept.sum() > 1
+        title: SensitivityCurve(grid[kept] / KPA, row[kept], "atlas")
+        for title, grid, row, kept in rows
+        if kept.sum() > 1
     }
 
 
-def _under_contact(variant: Sensor, plate: ResinCurve, states: Sequence[SensorState]) -> ResinCurve | None:
+def _under_contact(variant: Sensor, plate: SensitivityCurve, states: Sequence[SensorState]) -> SensitivityCurve | None:
     """A resin's curve under its own contact, from few of the solid's; None if it cannot be solved at both ends.
 
     Where the ranges at both ends go to the depth, the atlas's curve ``plate`` times the ratio of the solid to it, whose
@@ -199,17 +196,17 @@ def _under_contact(variant: Sensor, plate: ResinCurve, states: Sequence[SensorSt
     lowest, highest = float(at[0]), float(at[-1])
     ends = CorrectedAtlas(variant, (lowest, highest), states).logs
     if states or np.abs(ends[CONTACT_FIGURES[-1]] - np.log(variant.protocol.depth)).max() < _AT_DEPTH:
-        curve = ResinCurve(*_corrected(variant, plate, states, least=2), "atlas corrected by the solid")
+        curve = under_contact(variant, plate, states, least=2)
         return curve if curve.driving_pressure_kPa.size > 1 else None
     middle = 0.5 * (lowest + highest)
     three = np.append(ends[SENSITIVITY], pressed_logs(variant.replace(waves=0), (middle,))[SENSITIVITY])
     if not np.isfinite(three).all():
         return None
     parabola = np.polyfit([lowest, highest, middle], three, 2)
-    return ResinCurve(at / KPA, np.exp(np.polyval(parabola, at)), "solid")
+    return SensitivityCurve(at / KPA, np.exp(np.polyval(parabola, at)), "solid")
 
 
-def _by_model(variant: Sensor, highest: float, model: str, closure: str | None) -> ResinCurve | None:
+def _by_model(variant: Sensor, highest: float, model: str, closure: str | None) -> SensitivityCurve | None:
     """One resin's curve by a model of its own; None if this geometry cannot be solved in it, which must not stop the
     sheet."""
     top = min(highest, _MARGIN * _LIMIT_SHARE[model] * limit_point(variant).driving_pressure)
@@ -222,7 +219,7 @@ def _by_model(variant: Sensor, highest: float, model: str, closure: str | None) 
     if not values:
         return None
     x, y = zip(*values, strict=True)
-    return ResinCurve(np.array(x), np.array(y), model)
+    return SensitivityCurve(np.array(x), np.array(y), model)
 
 
 def air(evaluation: Evaluation) -> GasNotes:

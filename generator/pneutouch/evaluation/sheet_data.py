@@ -80,7 +80,7 @@ class SheetData:
     numerical_error: float
     zero_drift_kPa_per_K: float
     gauge: GaugeFigures
-    resin_curves: dict[str, ResinCurve]
+    resin_curves: dict[str, SensitivityCurve]
     viscous: Viscous
     ageing: AgeingData | str
     constants: tuple[ComparedMembrane, ...] = ()
@@ -98,12 +98,13 @@ class SheetData:
     curves: tuple[CurveOutcome, ...] = ()
 
 
-class ResinCurve(NamedTuple):
-    """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each, and the model that computed it."""
+class SensitivityCurve(NamedTuple):
+    """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each, the model that computed it, and what to call it."""
 
     driving_pressure_kPa: Array
     sensitivity_kPa_per_N: Array
-    model: str
+    model: str = "atlas"
+    label: str = ""
 
 
 class ComparedMembrane(NamedTuple):
@@ -111,14 +112,6 @@ class ComparedMembrane(NamedTuple):
 
     label: str
     states: tuple[SensorState, ...]
-
-
-class TuningCurve(NamedTuple):
-    """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each."""
-
-    label: str
-    driving_pressure_kPa: Array
-    sensitivity_kPa_per_N: Array
 
 
 @dataclass(frozen=True)
@@ -135,11 +128,11 @@ class TuningChart:
         caption: Note below the chart on what the curves leave out; empty for no note.
     """
 
-    chosen: TuningCurve
+    chosen: SensitivityCurve
     low_kPa_per_N: Array | None
     high_kPa_per_N: Array | None
     working_kPa_per_N: dict[float, float]
-    others: tuple[TuningCurve, ...] = ()
+    others: tuple[SensitivityCurve, ...] = ()
     published_kPa_per_N: tuple[tuple[float, float], ...] = ()
     caption: str = ""
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.evaluation.sheet_data import ResinCurve
+from pneutouch.evaluation.sheet_data import SensitivityCurve
 from pneutouch.mechanics.prediction import DeformedShape, SensorPrediction, SensorState
 from pneutouch.report.chart import SIZE, Note, Panel, PlotLine
 from pneutouch.report.style import ACCENT, FAINT, INK, LINES, MARKERS, MUTED, figure, svg
@@ -99,7 +99,7 @@ def published_points(published_kPa_per_N: Mapping[float, float]) -> list[PlotLin
 
 
 def resin_sensitivities(
-    curves: Mapping[str, ResinCurve],
+    curves: Mapping[str, SensitivityCurve],
     prediction: SensorPrediction,
     chosen: str,
     published_kPa_per_N: Mapping[float, float],
@@ -116,7 +116,7 @@ def resin_sensitivities(
     every = dict(curves)
     if len(predicted) and not (chosen in every and _holds(every[chosen], states_kPa, predicted)):
         chosen = "this design"
-        every[chosen] = ResinCurve(states_kPa, predicted, prediction.model)
+        every[chosen] = SensitivityCurve(states_kPa, predicted, prediction.model)
     lines = [_compared(k, label, label == chosen, *curve[:2]) for k, (label, curve) in enumerate(every.items())]
     own = PlotLine(states_kPa, predicted, "this design", tone=ACCENT, dashes="", marker="o", size=4, over=4)
     return sensitivities([*lines, own, *published_points(published_kPa_per_N)])
@@ -133,7 +133,7 @@ _OFF = 0.03
 """Share that a resin's curve may be off the design's states, for its model's error, and still be that of the design."""
 
 
-def _holds(curve: ResinCurve, pressures_kPa: Array, sensitivities_kPa_per_N: Array) -> bool:
+def _holds(curve: SensitivityCurve, pressures_kPa: Array, sensitivities_kPa_per_N: Array) -> bool:
     """True if a curve runs through points."""
     at = np.interp(pressures_kPa, curve.driving_pressure_kPa, curve.sensitivity_kPa_per_N)
     return bool((np.abs(at - sensitivities_kPa_per_N) <= _OFF * sensitivities_kPa_per_N).all())

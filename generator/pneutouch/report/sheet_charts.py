@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from pneutouch.evaluation.sheet_data import ResinCurve, SheetData
+from pneutouch.evaluation.sheet_data import SensitivityCurve, SheetData
 from pneutouch.report import curves
 from pneutouch.report.blocks import Plot
 from pneutouch.report.chart import PlotLine, drawn_svg
@@ -20,7 +20,7 @@ def sensitivity(sheet: SheetData) -> Plot:
     return Plot(drawn_svg(panel), f"{words}{drawn_by(sheet.resin_curves)}.")
 
 
-def drawn_by(curves: dict[str, ResinCurve]) -> str:
+def drawn_by(curves: dict[str, SensitivityCurve]) -> str:
     """Models that drew the curves, with their resins, in words."""
     models = sorted({curve.model for curve in curves.values()})
     if not models:

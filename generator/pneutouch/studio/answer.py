@@ -209,8 +209,8 @@ def _resin_lines(evaluation: Evaluation) -> tuple[ResinLine, ...]:
         prediction.states,
     )
     return tuple(
-        ResinLine(_drawn(pressures), _drawn(values), model=model, title=title)
-        for title, (pressures, values, model) in resins.items()
+        ResinLine(_drawn(one.driving_pressure_kPa), _drawn(one.sensitivity_kPa_per_N), model=one.model, title=title)
+        for title, one in resins.items()
     )
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from pneutouch.catalogue import Library
 from pneutouch.evaluation.charts import curve, interval
-from pneutouch.evaluation.sheet_data import ChartPoint, TradeOff, TuningChart, TuningCurve
+from pneutouch.evaluation.sheet_data import ChartPoint, SensitivityCurve, TradeOff, TuningChart
 from pneutouch.output.files import replace_files
 from pneutouch.report.chart import Chart, drawn_svg
 from pneutouch.report.prose import front_error
@@ -128,7 +128,7 @@ def _tuned_by_solid(selection: SelectionRun, library: Library, chosen: Candidate
         return None
     at_kPa = np.array([state.driving_pressure for state in states]) / KPA
     solved_kPa_per_N = np.array([state.figures.sensitivity_kPa_per_N for state in states if state.figures])
-    drawn = TuningCurve(chosen.resin.material.title, at_kPa, solved_kPa_per_N)
+    drawn = SensitivityCurve(at_kPa, solved_kPa_per_N, "solid", chosen.resin.material.title)
     caption = f"{contact_text(selection.base)}: by the solid"
     low, high = solve.interval(chosen.resin, chosen.pool, drawn, states) or (None, None)
     return TuningChart(drawn, low, high, _working(chosen), caption=caption)

@@ -24,7 +24,7 @@ from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.evaluation.charts import interval
 from pneutouch.evaluation.contact_object import check_object, rigid_base
 from pneutouch.evaluation.evaluate import Evaluation, PredictionOptions, evaluate_scene, sensor_of
-from pneutouch.evaluation.sheet_data import TuningCurve
+from pneutouch.evaluation.sheet_data import SensitivityCurve
 from pneutouch.evaluation.subject import subject_of
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.evaluation.uncertainty import even_wall, known, unknown
@@ -263,7 +263,7 @@ class CandidateSolver:
         return float(estimate.budget.expanded[SENSITIVITY, 0])
 
     def interval(
-        self, resin: CandidateResin, pool: CandidatePool, drawn: TuningCurve, states: Sequence[SensorState]
+        self, resin: CandidateResin, pool: CandidatePool, drawn: SensitivityCurve, states: Sequence[SensorState]
     ) -> tuple[Array, Array] | None:
         """Both ends of the k = 2 interval of a candidate's tuning curve through its states; None if not known."""
         scene, sensor = self.drawn(resin, pool)
