@@ -6,6 +6,8 @@ from dataclasses import asdict, fields
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 
 from pneutouch.errors import BeyondLimitError
@@ -13,12 +15,14 @@ from pneutouch.evaluation.result import by_model
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.models.atlas import MODEL, meets_ring, outside_atlas
+from pneutouch.mechanics.models.accuracy import TABULATION
+from pneutouch.mechanics.models.atlas import MODEL, SHALLOW, meets_ring, outside_atlas
 from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.results.record import plain as data
 from pneutouch.shape.hemisphere import Hemisphere
+from pneutouch.units import KPA, ML
 
 SENSOR = Sensor(
     Dome(Hemisphere(9.25, 1.5)),
@@ -190,3 +194,40 @@ def test_the_document_is_complete():
     assert set(document["states"][1]["curve"]) == set(solid["states"][1]["curve"])
     assert set(document["states"][1]) == set(solid["states"][1])
     assert document["model"] == "atlas" and document["limit_point"] is not None
+
+
+@pytest.mark.parametrize("depth", [0.005, 0.02, 0.05, 0.08])
+def test_a_shallow_press_is_left_to_the_solid(depth):
+    """A dome pressed by 6.5 thousandths of its radius, where the table reads 0.435 kPa/N and the solid 0.341."""
+    wall = WallMaterial(0.59, 0.49)
+    gas = GasCircuit(0.101325, dead_volume=1.272 * ML, gauge_limit=0.1)
+    press = IndentationProtocol(plate_radius=13.865, depth=depth * 9.2428, steps=6)
+    sensor = Sensor(Dome(Hemisphere(9.2428, 1.174)), wall, gas, press)
+    auto, solid = (predict("", sensor, [7.2388 * KPA], model=model) for model in ("auto", "solid"))
+    assert auto.model == "solid"
+    assert auto.states[0].figures == solid.states[0].figures
+    assert predict("", sensor, [7.2388 * KPA], model="atlas").error_estimate.model_choice is not None
+
+
+@given(
+    st.floats(3.0, 15.0),
+    st.floats(0.07, 0.3),
+    st.floats(0.15, 2.0),
+    st.integers(0, 50).map(lambda percent: percent / 100),
+    st.floats(0.0, 2.0),
+    st.floats(SHALLOW, 0.3),
+)
+@settings(max_examples=12, deadline=None)
+def test_from_the_least_range_on_the_sensitivity_is_within_the_stated_error(radius, ratio, mu, share, dead_mL, depth):
+    """Sizes, resins, driving pressures and dead volumes drawn at random; force and rise never fall."""
+    gas = GasCircuit(0.101325, dead_volume=dead_mL * ML, gauge_limit=1.0)
+    press = IndentationProtocol(plate_radius=1.5 * radius, depth=depth * radius, steps=8)
+    sensor = Sensor(Dome(Hemisphere(radius, ratio * radius)), WallMaterial(mu, 0.49), gas, press)
+    pressure = np.array([share * 1.2 * mu * ratio])
+    ours, theirs = MODEL.answer_one(sensor, pressure), solid_result(sensor, pressure).states[0]
+    state = ours.result.states[0]
+    if ours.limitation is None:
+        assert state.figures.sensitivity_kPa_per_N == pytest.approx(
+            theirs.figures.sensitivity_kPa_per_N, rel=TABULATION
+        )
+        assert (np.diff(state.force) >= 0.0).all() and (np.diff(state.pressure_rise) >= 0.0).all()
