@@ -180,6 +180,7 @@ def test_what_is_no_list_of_texts_is_refused_by_its_keyword(given):
         assert (caught.value.key, caught.value.value) == (name, given)
 
 
+@pytest.mark.slow
 def test_one_kind_and_one_resin_are_lists_of_one():
     with pytest.raises(pt.InputError, match="Did you mean steps") as caught:
         pt.simulate("paper-dome", "nowhere", kinds="step")

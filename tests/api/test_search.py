@@ -113,6 +113,7 @@ def test_a_misspelt_table_of_a_target_file_is_named_first(tmp_path):
     assert (caught.value.file, caught.value.key) == (str(path), "targets")
 
 
+@pytest.mark.slow
 def test_a_design_is_a_base_as_its_file_is(tmp_path):
     asked = {"sensitivity_kPa_per_N": 1.9, "driving_pressure_kPa": 12}
     base = pt.load("paper-dome").replace("mine", tube_length_mm=90, plate_diameter_mm=40)
@@ -141,6 +142,7 @@ def test_a_target_that_is_no_path_is_refused(target):
     assert (caught.value.key, caught.value.value) == ("target", target)
 
 
+@pytest.mark.slow
 def test_one_resin_is_a_list_of_one():
     asked = {"sensitivity_kPa_per_N": 1.9, "driving_pressure_kPa": 12}
     one, listed = pt.select(**asked, materials="TangoPlus"), pt.select(**asked, materials=["TangoPlus"])

@@ -44,6 +44,7 @@ def test_a_material_is_not_cast_before_its_file_states_how(command, gel, words):
     assert "or fit it again: pneutouch fit-material --like DragonSkin20" in done.stderr
 
 
+@pytest.mark.slow
 def test_it_is_left_out_of_a_search_with_the_reason(command, gel):
     words = ("--sensitivity", "2.2", "--at", "5", "--profile", "our-casting", "--material", "DragonSkin20")
     done = command("select", *words, "--material", "OurGel")
@@ -65,6 +66,7 @@ def test_the_profile_that_makes_a_material_is_named(command, words, taken):
     assert f"Dragon Skin 20 takes {taken} (process casting)" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_search_names_the_process_as_its_option(command):
     done = command("select", "--sensitivity", "2.2", "--at", "5", "--material", "DragonSkin20")
     assert "or give --process casting" in done.stderr

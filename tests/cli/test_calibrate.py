@@ -228,6 +228,7 @@ def test_a_usual_fit_has_no_warning_and_a_poor_one_has(campaign, place, stretche
     assert f"\nwarning: {said}\n" in run(*words, "--save", "poor").stdout
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("factor", "power"), [(0.4, 1.0), (1.0, 0.1)])
 def test_runs_that_contradict_the_fitted_model_give_no_calibration(campaign, place, stretched, factor, power):
     stretched(factor, power)
@@ -265,6 +266,7 @@ def test_one_that_was_to_be_saved_is_an_error_with_its_report(campaign, place, s
     assert not (place / "calibrations").exists()
 
 
+@pytest.mark.slow
 def test_a_design_that_cannot_be_fitted_is_refused_at_once_and_compared_instead(campaign, place):
     """The fit needs the atlas, whose walls have a base; the last line of characterize is a command that works."""
     content = tomllib.loads((place / "designs" / "mine.toml").read_text())

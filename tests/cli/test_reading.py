@@ -98,6 +98,7 @@ def test_what_is_printed_is_what_the_page_shows(tmp_path, recording):
     assert "next: pneutouch calibrate" in again.stderr
 
 
+@pytest.mark.slow
 def test_what_is_printed_of_mixed_files_belongs_to_their_runs(tmp_path, recording):
     """Pasted below each entry it is what was read, and nothing is printed again; a plain file between needs nothing."""
     plain = dict(zip(("time_s", "position_mm", "force_N", "pressure_kPa"), recording, strict=True))

@@ -86,6 +86,7 @@ def test_same_input_same_bytes(scanned, again):
         assert (again[1] / path.name).read_bytes() == path.read_bytes(), path.name
 
 
+@pytest.mark.slow
 def test_measured_signals_are_read_like_simulated_ones(tmp_path):
     time = np.arange(0, 15, 0.01)
     pressure = 3 + 0.02 * np.sin(2 * np.pi * time * 4 / 3) + 0.03 * np.sin(2 * np.pi * time * 2 / 3)
@@ -101,6 +102,7 @@ def test_measured_signals_are_read_like_simulated_ones(tmp_path):
         assert pattern["detected"] and pattern["amplitude_kPa"] == pytest.approx(size, rel=0.05)
 
 
+@pytest.mark.slow
 def test_held_force_and_speed(tmp_path):
     result = run(*ASKED, "--control", "force", "--speed", "3", "--out", str(tmp_path), "--json")
     assert result.exit_code == 0, result.stderr

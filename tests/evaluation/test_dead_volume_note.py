@@ -51,6 +51,7 @@ def test_the_plan_has_the_note(command):
     assert NOTE in json.loads(done.stdout)["dead_volume_note"]
 
 
+@pytest.mark.slow
 def test_the_sheet_has_the_note_at_every_place_of_the_figure(evaluated):
     from pneutouch.evaluation.sheet import sheet_data
     from pneutouch.report import sheet_charts, sheet_tables

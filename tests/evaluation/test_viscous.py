@@ -149,6 +149,7 @@ def test_the_sheets_section_has_the_figures_of_the_prediction(agilus):
     assert len(relaxation.loop_panel(sheet).lines) == len(relaxation.held_panel(sheet).lines)
 
 
+@pytest.mark.slow
 def test_a_run_that_stops_is_told_in_the_section_and_not_drawn(agilus):
     sensor = agilus.sensor.replace(gauge_limit=0.03)
     runs = viscous_runs(agilus.prediction, agilus.scene.membrane_material, sensor)
@@ -161,6 +162,7 @@ def test_a_run_that_stops_is_told_in_the_section_and_not_drawn(agilus):
     assert len(relaxation.loop_panel(sheet).lines) == 2 * len(whole)
 
 
+@pytest.mark.slow
 def test_the_line_on_ageing(library):
     tango = evaluate("paper-dome", model="atlas", library=library)
     sheet = sheet_data(tango, "")

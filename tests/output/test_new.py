@@ -116,6 +116,7 @@ def test_a_copy_of_a_profile_hides_none_and_takes_nothing_of_a_design(command, t
     assert not (tmp_path / "printprofiles").exists() and not (tmp_path / "here").exists()
 
 
+@pytest.mark.slow
 def test_a_silicone_of_a_laboratorys_own_is_cast_on_a_copied_profile(command, tmp_path):
     """The way from the installed program: a material, a profile that runs it, a design, its print rules."""
     command("new", "our-casting", "--from", "silicone-casting")

@@ -36,6 +36,7 @@ def test_an_added_chart_stands_on_page_and_pdf_with_its_caption(with_chart, eval
     assert f'image("{name}"'.encode() in files["sheet.typ"]
 
 
+@pytest.mark.slow
 def test_without_it_the_sheet_does_not_have_it(evaluated):
     sheet = datasheet.described(sheet_data(evaluated("paper-dome", model="atlas"), "0"))
     assert not any("Volume of the cavity" in plot.caption for plot in found(sheet.blocks, Plot))

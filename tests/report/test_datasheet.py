@@ -102,6 +102,7 @@ def test_a_pressure_above_the_rating_is_warned_of_first_and_the_rating_shows_its
     assert "Warning:" not in other and "To raise the rated pressure of 31.2 kPa" in other
 
 
+@pytest.mark.slow
 def test_published_measurements_stand_beside_the_prediction_only_for_the_papers_sensor(built, html):
     assert "2.547" in html
     assert "1.923" in html

@@ -34,11 +34,13 @@ def test_a_graded_membrane_has_its_figures_in_the_same_bytes(graded):
     assert once[0].svg.count("<path") > 2 * 90
 
 
+@pytest.mark.slow
 def test_a_constant_membrane_has_none():
     found = evaluate("paper-dome", parse_changes(SHALLOW))
     assert graded_plots(sheet_data(found, "")) == []
 
 
+@pytest.mark.slow
 def test_constants_beyond_their_own_limit_are_drawn_as_far_as_they_go(graded):
     """The softest bears 40 kPa, the grade more: its curve ends, the sheet does not."""
     states = tuple(replace(s, driving_pressure=p) for s, p in zip(graded.prediction.states, (0.0, 0.05), strict=True))

@@ -30,6 +30,7 @@ def close(one, other):
     return one == pytest.approx(other, rel=1e-6) if isinstance(one, float) else one == other
 
 
+@pytest.mark.slow
 def test_the_stored_numbers_are_those_of_today(library):
     found = json.loads(json.dumps(mixing.measure(library)))
     assert close(found, stored("mixing"))

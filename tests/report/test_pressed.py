@@ -53,6 +53,7 @@ def test_the_mesh_is_the_dome_in_metres_with_colours(view: PressedView) -> None:
     assert gray[touched].max() < gray[~touched].min()
 
 
+@pytest.mark.slow
 def test_the_same_view_gives_the_same_bytes(view: PressedView) -> None:
     assert pressed_files(view, "dome") == pressed_files(view, "dome")
     assert pressed_blocks(view) == pressed_blocks(view)

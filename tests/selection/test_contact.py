@@ -65,6 +65,7 @@ def test_a_design_for_a_ball_meets_the_target_under_that_ball(tmp_path):
     assert float(choice.pool.radius[0]) == 9.25
 
 
+@pytest.mark.slow
 def test_what_is_said_names_the_contact_and_the_uncertainty_under_it():
     selection = under_ball()
     said, text = document(selection), selection_text(selection)

@@ -19,6 +19,7 @@ def problem_of(evaluation, pressure: float, *resins: str):
     return replace(problem, resins=tuple(resin for resin in problem.resins if resin.name in resins))
 
 
+@pytest.mark.slow
 def test_a_contact_that_changes_nothing_leaves_the_fronts_as_they_are(evaluated):
     """The places on the fronts are answered by the atlas itself."""
     sensor = evaluated("paper-dome", model="atlas").sensor
@@ -39,6 +40,7 @@ def test_a_contact_that_changes_nothing_leaves_the_fronts_as_they_are(evaluated)
     assert found.sensitivity_kPa_per_N == pytest.approx(plain.sensitivity_kPa_per_N, rel=2e-3)
 
 
+@pytest.mark.slow
 def test_a_solver_without_answers_corrects_nothing(evaluated):
     problem = problem_of(evaluated("paper-dome", model="atlas"), 0.022, "FLX9950")
     (plain,), drawn = front(problem), contact_front(problem, lambda *_: SolvedStates((), "none"))

@@ -88,11 +88,13 @@ def test_a_weight_on_tunability_prefers_sensitivities_that_move():
     assert moves({"robustness": 0.0, "tunability": 10.0}) > moves({"robustness": 10.0, "tunability": 0.0}) + 0.05
 
 
+@pytest.mark.slow
 def test_a_weight_on_robustness_prefers_the_smallest_uncertainty():
     designs = answer(FINGERTIP, weights={"robustness": 100.0, "tunability": 0.0}).answer.designs
     assert designs[0].expanded == pytest.approx(min(choice.expanded for choice in designs), rel=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("given", "free"),
     [
@@ -140,6 +142,7 @@ def test_the_paper_s_own_cells_lead_back_to_its_resins():
     assert sum(near) >= 10
 
 
+@pytest.mark.slow
 def test_the_same_target_gives_the_same_document(fingertip):
     assert document(select(target(FINGERTIP), "test")) == document(fingertip)
 

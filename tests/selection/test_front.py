@@ -66,6 +66,7 @@ def test_no_point_of_a_front_is_beaten_by_another(problem):
         assert np.all(found.wall >= problem.least_wall - 1e-9)
 
 
+@pytest.mark.slow
 def test_designs_lie_on_or_under_their_front(problem):
     found = answer(FINGERTIP).answer.designs
     fronts = {one.resin.name: one for one in front(problem)}

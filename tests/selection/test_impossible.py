@@ -33,6 +33,7 @@ def test_the_wish_said_to_be_in_the_way_is(wanted):
             assert answer(rest).answer.designs, f"{dropped.requirement} given up, and still nothing"
 
 
+@pytest.mark.slow
 def test_what_a_wish_would_need_is_enough():
     wanted = {**FINGERTIP, "force_range_N": 150.0}
     dropped = next(dropped for dropped in answer(wanted).answer.dropped if dropped.requirement == "force range")

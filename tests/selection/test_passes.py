@@ -75,6 +75,7 @@ def test_the_first_design_and_the_one_to_be_saved_are_judged_as_check_does(finge
         ]
 
 
+@pytest.mark.slow
 def test_a_plate_that_digs_in_rejects_the_first_design_before_it_is_saved(fingertip, monkeypatch):
     """The print rules see no plate: only the solid's prediction does."""
     changed = replace(fingertip, changes={**fingertip.changes, "indentation.plate_diameter_mm": 4})
@@ -101,6 +102,7 @@ def test_a_design_that_the_print_rules_break_is_rejected_with_the_rule():
     assert rule is None and "too small for" in reason
 
 
+@pytest.mark.slow
 def test_a_design_for_a_finger_has_its_sleeve_and_keeps_the_footprint():
     wanted = {"sensitivity_kPa_per_N": 3.0, "driving_pressure_kPa": 10.0, "fits": "finger:20", "max_footprint_mm": 26.0}
     selection = answer(
@@ -119,6 +121,7 @@ def test_a_design_for_a_finger_has_its_sleeve_and_keeps_the_footprint():
         assert listed["footprint_mm"] == pytest.approx(wide, abs=0.02)
 
 
+@pytest.mark.slow
 def test_the_solid_confirms_each_design_with_the_clamping_ring_of_its_own_size():
     """The base design's ring, 11.05 mm, would stand inside a wider dome: the solid finds no equilibrium at rest."""
     wanted = {"sensitivity_kPa_per_N": 1.387, "max_diameter_mm": 65.0}
@@ -152,6 +155,7 @@ def test_a_plate_wider_than_the_contact_goes_with_a_large_dome():
     assert not stated.answer.designs
 
 
+@pytest.mark.slow
 def test_names_are_tested_before_anything_is_computed(command, tmp_path):
     (tmp_path / "designs").mkdir()
     (tmp_path / "designs" / "mine.toml").write_text("")

@@ -38,6 +38,7 @@ def test_a_design_is_rated_as_its_file_is():
         assert choice.rated == pytest.approx(found.pressure, rel=3e-3)
 
 
+@pytest.mark.slow
 def test_no_design_is_driven_above_its_rated_pressure():
     """A free driving pressure is searched up to the rated one, a given one is a limit."""
     given = {"inner_radius_mm": 9.25, "wall_thickness_mm": 1.5, "materials": ["TangoPlus"]}

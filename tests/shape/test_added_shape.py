@@ -64,6 +64,7 @@ def test_the_solid_predicts_a_hemisphere_of_another_name_alike(clamp):
     assert [(one.rule, one.severity) for one in other.findings] == [(one.rule, one.severity) for one in usual.findings]
 
 
+@pytest.mark.slow
 def test_a_build_makes_the_same_bodies_and_a_datasheet(tmp_path):
     folders = [
         build(evaluate(renamed("paper-dome", "dome", key)), tmp_path / key) for key in ("hemisphere", "half-ball")

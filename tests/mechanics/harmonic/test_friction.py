@@ -165,6 +165,7 @@ def test_the_work_of_the_object_is_stored_or_dissipated(body: RigidObject | None
     assert stored + spent == pytest.approx(work, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_the_tractions_foreseen_follow_the_tangent_of_the_path() -> None:
     """They are off by the square of the step at points that stay in contact and stick."""
     follower, off = _followed(BALL, 3.0, 0.0, np.inf), []

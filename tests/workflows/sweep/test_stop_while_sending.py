@@ -10,6 +10,8 @@ import sys
 import time
 from pathlib import Path
 
+import pytest
+
 from tests.conftest import ROOT
 from tests.workflows.sweep.conftest import PATIENCE
 
@@ -40,6 +42,7 @@ def half_sent(number: int, folder: Path) -> list[dict[str, int]]:
     return []
 
 
+@pytest.mark.slow
 def test_a_stop_ends_the_pool_and_the_process(tmp_path):
     script = tmp_path / "stopped.py"
     script.write_text(SCRIPT)

@@ -45,6 +45,7 @@ def test_the_same_tray_gives_the_same_bytes(seven, folder, library, tmp_path):
     assert content(again) == content(folder)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("which", ["seven", "seats"])
 def test_stl_and_3mf_are_closed_apart_positive_and_the_same(which, request):
     laid, where = (request.getfixturevalue("seven"), request.getfixturevalue("folder"))
