@@ -146,7 +146,7 @@ def reading_words(columns: Sequence[str] | None, fields: Mapping[str, Any]) -> l
 
 
 def reading_text(read_as: "Iterable[ReadFiles]") -> str:
-    """Lines for a campaign file that keep the columns and formats which were found by looking at the files."""
+    """Notes on the columns and formats that were guessed from the files, with lines for campaign.toml to keep them."""
     from pneutouch.workflows.characterize.load import reading_text as text
 
     return text(read_as)

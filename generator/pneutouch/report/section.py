@@ -132,7 +132,7 @@ def draw_section(ax: Axes, assembly: Assembly) -> None:
 
 
 def draw_loops(ax: Axes, loops: Sequence[Array], role: str) -> None:
-    """A section from its loops (n, 2) in mm, hatched as bodies of a ``role`` are."""
+    """Draw a section bounded by closed loops, (n, 2) each, mm, with the hatch that bodies of this ``role`` have."""
     from matplotlib.patches import PathPatch
 
     shape = _shape(loops)

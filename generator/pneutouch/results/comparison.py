@@ -97,7 +97,7 @@ class RowRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ComparisonRecord:
-    """A comparison; ``inputs`` are those that differ, a value a column."""
+    """A comparison; ``inputs`` holds the input fields that differ between columns, one value for each column."""
 
     pneutouch: str
     """Version of the program."""

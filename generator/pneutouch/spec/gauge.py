@@ -23,7 +23,7 @@ def _figure(unit: str, low: float, high: float, help: str) -> Any:
 
 
 class GaugeRange(Table):
-    """[range_kPa]: the pressures that are read, in the gauge's reference."""
+    """[range_kPa]: ends of the measuring range, kPa, gauge or absolute pressure as ``reference`` states."""
 
     low: float = Field(ge=-1e5, le=1e5, description="Lower end of the range.", json_schema_extra={"unit": "kPa"})
     high: float = Field(ge=-1e5, le=1e5, description="Upper end of the range.", json_schema_extra={"unit": "kPa"})

@@ -66,11 +66,13 @@ class Observations:
 
 
 class ObservationPoints(NamedTuple):
-    """Observations as arrays; c curves of at most m points, i injections of at most n, padded by repetition.
+    """Observations as arrays: c curves of at most m points and i injections of at most n points.
 
-    travel, force, rise, force_error, rise_error, there: (c, m) mm, N, MPa, standard deviations, and whether it is a
-    point. driving: (c,). volume, pressure, pressure_error, known: (i, n) mm3, MPa, MPa, and whether it is a point.
-    travel_error, group: (c,) standard deviation of the run's first contact, mm, and number of its driving pressure."""
+    Shorter rows are filled up with their last point; ``there`` and ``known`` are True for real points.
+    Curves, (c, m): travel (mm), force (N), pressure rise (MPa), standard errors of force (N) and rise (MPa), there.
+    Driving pressure of each curve, (c,), MPa. Injections, (i, n): volume (mm3), pressure and its standard error (MPa),
+    known. travel_error, (c,): standard error of the run's first contact, mm. group, (c,): index of its driving
+    pressure."""
 
     travel: Array
     force: Array
@@ -98,7 +100,7 @@ class ObservationPoints(NamedTuple):
 
     @property
     def values(self) -> Array:
-        """All measured values in one row: force, rise, pressure of the injections, (N,)."""
+        """All measured values in one flat array: forces (N), pressure rises (MPa), then injection pressures (MPa)."""
         return np.concatenate([self.force.ravel(), self.rise.ravel(), self.pressure.ravel()])
 
     @property

@@ -23,10 +23,11 @@ TANGENTIAL = 0.1
 
 @dataclass(frozen=True)
 class FrictionPoints:
-    """Friction at the quadrature points of the outer wall at one set of positions, (n_edges, n_points) each.
+    """Friction at the quadrature points of the outer wall in one position of the wall, (n_edges, n_points) each.
 
-    traction: along the object's surface, positive where it pulls the wall towards the axis.  cap: what it may be.
-    slope: of the surface; slip: from the place of rest along the surface.  sticking, sliding: of the points that touch.
+    traction: along the object's surface, per area at rest, in mu; positive where it pulls the wall towards the axis.
+    cap: greatest size of the traction, 0 without contact. slope: of the object's surface, dz/dr. slip: distance along
+    the surface from the place of rest, in R0. sticking, sliding: True for points that touch and stick, or slide.
     """
 
     traction: Array

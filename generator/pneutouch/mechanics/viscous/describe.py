@@ -82,7 +82,10 @@ class _Point(NamedTuple):
 def relaxation_by_solid(
     sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], depth: float, speed: float
 ) -> list[list[RelaxationRun]]:
-    """Relaxation as `runs.relaxation` has it, under the sensor's own contact."""
+    """Press by the solid to ``depth`` mm at ``speed`` mm/s and hold, under the sensor's own contact.
+
+    Driving pressures in MPa; lists by pressure, then series. `runs.relaxation` does the same by the atlas.
+    """
     return [[_relaxed(sensor, one, pressure, depth, speed) for one in series] for pressure in driving_pressures]
 
 

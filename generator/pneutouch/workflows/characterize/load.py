@@ -117,7 +117,7 @@ def same_failures(failures: Iterable[Sequence[str]]) -> list[tuple[str, str]]:
 
 
 def reading_text(read_as: Iterable[ReadFiles]) -> str:
-    """Lines for a campaign file that keep the columns and formats which were found by looking at the files."""
+    """Notes on the columns and formats that were guessed from the files, with lines for campaign.toml to keep them."""
     blocks = []
     for entry in read_as:
         files, whole = entry.files, entry.whole_campaign
