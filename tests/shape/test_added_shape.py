@@ -8,9 +8,10 @@ import pytest
 from pneutouch.catalogue import DesignSource, Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
-from pneutouch.evaluation.contact_object import object_section
+from pneutouch.evaluation.contact_object import check_shape, object_section
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.export.simulator.model import moving_share
+from pneutouch.mechanics.models.solid import solid_probe
 from pneutouch.parts import assemble
 from pneutouch.printability.measure.mould import cavity_match
 from pneutouch.schemas import schema_of
@@ -20,7 +21,6 @@ from pneutouch.spec.calibration import CalibratedDesign, SensorCalibration
 from pneutouch.spec.design import DesignFile, Membrane
 from pneutouch.spec.read import validate
 from pneutouch.workflows.build import build
-from pneutouch.workflows.select.base import check_central
 from tests.shape.shapes import HalfBall, HalfHighCap, Thimble
 
 ADDED = (HalfBall, HalfHighCap, Thimble)
@@ -164,9 +164,9 @@ def test_the_moving_mass_goes_with_the_square_of_the_height():
 def test_no_search_is_made_in_a_shape_that_the_atlas_does_not_cover():
     scene = load_scene("paper-dome", {SHAPE: "half-ball"})
     with pytest.raises(InputError) as caught:
-        check_central(scene)
+        check_shape(scene)
     assert (caught.value.key, caught.value.value, caught.value.file) == (SHAPE, "half-ball", scene.where)
-    check_central(load_scene("paper-dome"))
+    check_shape(load_scene("paper-dome"))
 
 
 def test_a_calibration_of_one_shape_is_not_taken_for_another():
@@ -176,3 +176,12 @@ def test_a_calibration_of_one_shape_is_not_taken_for_another():
     calibration = SensorCalibration.model_construct(design=made)
     assert calibration.misfit("TangoPlus", 9.25, 1.5, "hemisphere") is None
     assert "half-ball" in str(calibration.misfit("TangoPlus", 9.25, 1.5, "half-ball"))
+
+
+@pytest.mark.parametrize("kind", [HalfHighCap, Thimble])
+def test_a_graded_wall_of_another_shape_has_its_moduli_from_pole_to_rim(kind):
+    """The grade of the design along the arc of the shape, at the points at which the solid takes it."""
+    source = renamed("graded-dome", "graded-cap", kind.key)
+    sensor = sensor_of(assemble(load_scene(source)))
+    found, stated = solid_probe(sensor).solid.relative, np.array(sensor.wall.grade[1])
+    assert found.min() == pytest.approx(stated.min(), rel=0.05) and found.max() == pytest.approx(stated.max(), rel=0.1)

@@ -69,7 +69,8 @@ def named_by_flag(given: Mapping[str, str], where: str, *, alone: bool) -> Itera
         yield
     except PneutouchError as error:
         for each in (error, *error.others):
-            parameter = given.get((each.key or "").partition("[")[0])
+            keys = ((each.key or "").partition("[")[0], *each.fields)
+            parameter = next((given[key] for key in keys if key in given), None)
             if each.file in (None, where) and parameter is not None:
                 each.file, each.key = None, parameter
             elif alone and each.file == where:

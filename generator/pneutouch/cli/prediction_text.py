@@ -65,6 +65,7 @@ def prediction_text(prediction: PredictionRecord) -> str:
         *_off_axis(prediction.states),
         *_sheared(prediction.states),
         f"error in sensitivity {far}: {error.sensitivity_basis}",
+        *([] if error.model_choice is None else [f"model {prediction.model}: {error.model_choice}"]),
         *_uncertainty(prediction.states[-1]),
         *_anywhere(prediction.contact_anywhere),
         *_viscous(prediction.viscous),

@@ -32,6 +32,7 @@ from pneutouch.mechanics.solid.indenter import (
 from pneutouch.mechanics.solid.mesh import MOST_CELLS, object_cells
 from pneutouch.mechanics.solid.object_contact import RIM, flat_radius
 from pneutouch.parts import Assembly
+from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.spec.part import ClampedFlange
 
 if TYPE_CHECKING:
@@ -110,6 +111,15 @@ def _check_cells(scene: ResolvedDesign, sensor: Sensor) -> None:
         f"along the arc would do ({CELLS_PER_RADIUS} to that radius), the solid takes {MOST_CELLS} at most",
         f"for this dome the radius must be at least {math.ceil(100 * least) / 100:g} mm",
     )
+
+
+def check_shape(scene: ResolvedDesign) -> None:
+    """Raise InputError for a dome of another shape than the atlas's, with which no search is made."""
+    membrane = scene.design.membrane
+    why = no_hemisphere(membrane.dome)
+    if why is not None:
+        problem = f"the atlas finds designs: {why}"
+        raise InputError(problem, file=scene.where, key="membrane.shape", value=membrane.shape)
 
 
 def check_object(scene: ResolvedDesign, sensor: Sensor) -> None:

@@ -45,8 +45,8 @@ def predict(
     """Predict a sensor at ascending driving pressures (MPa) with one model; ``closure`` is the membrane's.
 
     ``auto`` takes the cheapest model whose stated error meets the tolerance (a fraction) and gives the reason. Raises
-    InputError for an unknown model or closure and for a sensor outside the atlas's box, BeyondLimitError beyond the
-    limit point, ComputationError if no equilibrium is found.
+    InputError for an unknown model or closure and for a sensor that the model does not cover, BeyondLimitError beyond
+    the limit point, ComputationError if no equilibrium is found.
     """
     if closure not in CLOSURES:
         raise InputError(f"unknown closure.{nearest(closure, CLOSURES)}", key="closure", value=closure)
@@ -56,6 +56,9 @@ def predict(
         _cheapest(sensor, pressures, closure, tolerance) if name == "auto" else _named(name, sensor, pressures, closure)
     )
     errors, result = chosen.errors(sensor, pressures), answer.result
+    if answer.limitation is not None and errors.sensitivity_tabulation_relative is not None:
+        # The stated error of the table does not hold where it has a limitation.
+        errors = replace(errors, sensitivity_tabulation_relative=None, summary=())
     if why:
         errors = replace(errors, model_choice=why, summary=(f"Model {chosen.name}: {why}.", *errors.summary))
     # The factors were found against the solid's answers: the membrane's errors are others.

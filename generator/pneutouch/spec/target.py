@@ -145,7 +145,11 @@ class Given(Table):
     @model_validator(mode="after")
     def _mix_or_materials(self) -> Given:
         if self.materials is not None and (self.mix is not None or self.graded):
-            raise FieldsError("materials and a mix contradict each other; give one of them", "materials", "mix")
+            raise FieldsError(
+                "materials and a mix contradict each other; give one of them",
+                "materials",
+                "mix" if self.mix is not None else "graded",
+            )
         return self
 
 
@@ -279,7 +283,9 @@ class Target(Table):
             )
         if graded and self.setting.gauge == "any":
             raise FieldsError(
-                "the search for a grade does not choose the gauge; give setting.gauge by name", "setting.gauge"
+                "the search for a grade does not choose the gauge; give setting.gauge by name",
+                "given.graded",
+                "setting.gauge",
             )
         if graded and self.weights.contact_anywhere:
             raise FieldsError(

@@ -171,7 +171,8 @@ def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> PageSe
         def progress(done: int, total: int, step: str) -> None:
             report(done, steps if charted else total, step)
 
-        run = answer(target, PAGE, library, progress=progress).run
+        found = answer(target, PAGE, library, progress=progress)
+        run = found.run
         if isinstance(run, ProcessSelection):
             return _by_process(run, page)
         if isinstance(run, GradedSelectionRun):

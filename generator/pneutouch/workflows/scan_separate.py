@@ -9,6 +9,7 @@ from pneutouch.arrays import Array
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
 from pneutouch.catalogue.library import elastomers
 from pneutouch.errors import InputError
+from pneutouch.evaluation.contact_object import check_shape
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.table import least_limit, shipped
 from pneutouch.mechanics.models.atlas import resin_outside_atlas
@@ -108,6 +109,7 @@ def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeC
     Sizes are in hundredths of a millimetre and pressures in tenths of a kPa, as they are shown; no pressure is above
     the rated pressure of its dome.
     """
+    check_shape(scene)
     recipe, feature = shipped().recipe, scene.printer.smallest.wall("elastomer")
     least = feature.least or feature.recommended
     resins = {

@@ -65,8 +65,8 @@ class HarmonicFields(PointFields):
 
 class HarmonicModel(SolidModel):
     """A solid whose nodes carry harmonics around the axis to an order. Positions are coefficients (n_nodes, columns) in
-    units of the inner radius, see `fields.Harmonics`; with order 0 they and all results are the solid's. ``stride`` 2
-    is for scenes that are symmetric about two planes.
+    units of the solid's ``length``, see `fields.Harmonics`; with order 0 they and all results are the solid's.
+    ``stride`` 2 is for scenes that are symmetric about two planes.
 
     The volume is averaged in the meridian as in the solid, and around the axis over the harmonics to the same order.
     """

@@ -13,8 +13,8 @@ against a refined mesh (docs/background/contact.md): 0.002 where the range ends 
 event ends it."""
 
 TABULATION = 0.0075
-"""Greatest relative error of the atlas's sensitivity against the solid where `auto` takes it: away from buckling and
-tearing (docs/background/atlas.md); held by `make check-slow`."""
+"""Greatest relative error of the atlas's sensitivity against the solid where `auto` takes it: away from buckling,
+tearing and ranges below 0.1 R0 (docs/background/atlas.md); held by `make check-slow`."""
 
 _MEMBRANE = 17.0
 """Greatest relative error of the membrane's sensitivity against the solid: no bending stiffness."""

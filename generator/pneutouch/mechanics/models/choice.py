@@ -80,13 +80,17 @@ def models_for(sensor: Sensor, tolerance: float) -> ModelSequence:
         else:
             models.append(name)
     if not models:
-        raise InputError(f"no model covers the sensor: {'; '.join(passed)}", key="model", value="auto")
+        problem = f"no model covers the sensor: {'; '.join(passed)}"
+        raise InputError(problem, key="model", value="auto", remedy=remedy(sensor))
     return ModelSequence(tuple(models), tuple(passed))
 
 
 def remedy(sensor: Sensor) -> str:
-    """A model to take in place of one that has no answer for a sensor."""
-    return f"take `model` auto or {usual_model(sensor)}"
+    """Advice in place of a model that has no answer for a sensor: another one, or a scene that one covers."""
+    usual = usual_model(sensor)
+    return (
+        f"take `model` auto or {usual}" if outside(usual, sensor) is None else "take `clamp` base, or central contact"
+    )
 
 
 class ModelOptions(TypedDict):

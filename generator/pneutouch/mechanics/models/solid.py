@@ -199,7 +199,9 @@ def _grade(sensor: Sensor) -> Callable[[Array, Array], Array] | None:
     if sensor.wall.grade is None:
         return None
     arc, relative = np.array(sensor.wall.grade[0]), np.array(sensor.wall.grade[1])
-    return lambda radius, height: np.interp(sensor.dome.shape.arc_share(radius, height), arc, relative)
+    shape = sensor.dome.shape
+    # The solid asks in lengths of its own scale.
+    return lambda radius, height: np.interp(shape.arc_share(shape.scale * radius, shape.scale * height), arc, relative)
 
 
 def _limit_point(sensor: Sensor, run: Inflation) -> LimitPoint | None:

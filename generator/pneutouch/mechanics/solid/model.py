@@ -57,10 +57,10 @@ class PointFields:
 
 class SolidModel:
     """A wall on one mesh, of one law whose modulus may vary along the arc.  Positions are (n_nodes, 2) arrays in units
-    of the inner radius.
+    of the mesh's ``length``, the scale of its shape.
 
-    ``grade`` gives the modulus over the material's own at reference points (r, z), arrays of any one shape.  ``base``
-    is what both faces of the wall lie down on; None lets them pass through.
+    ``grade`` gives the modulus over the material's own at reference points (r, z), in the same unit, arrays of any one
+    shape.  ``base`` is what both faces of the wall lie down on; None lets them pass through.
     """
 
     def __init__(
@@ -94,7 +94,7 @@ class SolidModel:
         folding = self.dofs[meeting].reshape(meeting.shape[0], 2 * meeting.shape[1])
         self._patterns(_half_width(folding), folding)
         self.cavity = Cavity(mesh.inner)
-        self.contact = Contact(mesh, self.rest, float(self._relative.max()) * CONTACT_STIFFNESS / self.wall)
+        self.contact = Contact(mesh, self.rest, float(self.relative.max()) * CONTACT_STIFFNESS / self.wall)
         self.base = None if base is None else BaseContact(*self._base_faces(base), self.faces)
         fold = FlangeContact(meeting, self.rest, self.contact, self.faces) if folding.size else None
         self.supports: tuple[BaseContact | FlangeContact, ...] = tuple(
@@ -130,16 +130,16 @@ class SolidModel:
         points, weights = gauss_square(self.scheme.gauss)
         b, measure, position = strain_operator(self.rest, self.mesh.cells, points)
         self._weight = measure * weights
-        self._relative = self.grade(position[..., 0], position[..., 1])
+        self.relative = self.grade(position[..., 0], position[..., 1])
         n_cells, n_points = self._weight.shape
         self._b = np.ascontiguousarray(b)
         self._tall = self._b.reshape(n_cells, n_points * 5, -1)
         self._wide = np.ascontiguousarray(np.swapaxes(self._tall, 1, 2))
         modes = pressure_modes(points, self._weight, self.scheme.pressure)
         self._tested = np.ascontiguousarray(modes * self._weight[:, None, :])
-        self._stiff_weight = (self._relative * self._weight).ravel()
+        self._stiff_weight = (self.relative * self._weight).ravel()
         # The averaged volume belongs to a whole cell, and so does its bulk modulus.
-        mean = (self._relative * self._weight).sum(axis=1) / self._weight.sum(axis=1)
+        mean = (self.relative * self._weight).sum(axis=1) / self._weight.sum(axis=1)
         self._kappa = (self.material.bulk_ratio * mean)[:, None, None]
 
     def expand(self, step: Array) -> Array:

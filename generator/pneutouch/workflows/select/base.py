@@ -16,11 +16,11 @@ from pneutouch.catalogue import DEFAULT, DesignSource, Library, ResolvedDesign, 
 from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixed_material, mixing
 from pneutouch.catalogue.printers import casting_missing, made_by, makers, uncast
 from pneutouch.errors import InputError, PneutouchError, shown
+from pneutouch.evaluation.contact_object import check_shape
 from pneutouch.mechanics.models.atlas import resin_outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.selection.mixes import levels
 from pneutouch.selection.problem import CandidateResin
-from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.spec.design import CALIBRATION, DesignFile
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
@@ -81,6 +81,7 @@ def pair_of(name: str, printer: Printer, library: Library, where: str, named: bo
             f"{soft} with {stiff}; it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once; "
             f"{remedy}",
             file=where,
+            fields=["given.mix"],
         )
     return pair
 
@@ -174,21 +175,17 @@ def _base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
         if error.file is None and error.key not in chosen:
             error.file = where
         raise
+    check_shape(scene)
     check_central(scene)
     return scene
 
 
 def check_central(scene: ResolvedDesign) -> None:
-    """Raise InputError for contact off the axis and for other shapes, with which no search is made."""
-    contact, membrane = scene.design.contact, scene.design.membrane
-    why = no_hemisphere(membrane.dome)
-    if why is not None:
-        raise InputError(
-            f"the atlas finds designs: {why}", file=scene.where, key="membrane.shape", value=membrane.shape
-        )
-    if not contact.off_axis:
+    """Raise InputError for contact off the axis, with which no search is made."""
+    off_axis = scene.design.contact.off_axis
+    if not off_axis:
         return
-    key, value = next(iter(contact.off_axis.items()))
+    key, value = next(iter(off_axis.items()))
     raise InputError(
         "the search is made with central and level contact",
         file=scene.where,
