@@ -1,6 +1,6 @@
 """Errors in the fields that are their contract: what was given wrongly, and where; never in their words."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -10,9 +10,11 @@ from pneutouch.errors import InputError
 
 
 @contextmanager
-def refused(key: str, value: Any = None) -> Iterator[None]:
-    """An input is refused at a key, and where one is given with its value."""
+def refused(key: str, value: Any = None, *, remedy: str = "", fields: Collection[str] = ()) -> Iterator[None]:
+    """An input is refused at a key; where they are given also with its value, a word of its remedy, and its fields."""
     with pytest.raises(InputError) as caught:
         yield
     assert caught.value.key == key, caught.value
     assert value is None or caught.value.value == value, caught.value
+    assert remedy in (caught.value.remedy or ""), caught.value
+    assert set(fields) <= set(caught.value.fields), caught.value

@@ -35,9 +35,9 @@ def test_another_membrane_is_refused(place, changes, why):
 
 
 def test_a_model_or_clamp_that_was_not_fitted_is_refused(place):
-    with refused("calibration", "mine"):
+    with refused("calibration", "mine", remedy="another model"):
         evaluate("paper-dome@mine", DEAD, model="membrane", library=place)
-    with refused("calibration", "mine"):
+    with refused("calibration", "mine", remedy="clamp base"):
         evaluate("paper-dome@mine", DEAD, clamp="flange", library=place)
 
 

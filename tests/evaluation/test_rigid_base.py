@@ -3,6 +3,7 @@
 import numpy as np
 
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
+from pneutouch.mechanics.models.choice import outside
 from pneutouch.mechanics.solid.indenter import RigidBase
 from tests.refusals import refused
 
@@ -31,5 +32,7 @@ def test_a_clamping_ring_is_part_of_the_base():
 
 
 def test_the_atlas_does_not_answer_without_it(library):
-    with refused("model", "atlas"):
+    without, with_it = (evaluate("paper-dome", changes, model="membrane").sensor for changes in (OFF, {}))
+    assert outside("atlas", without) is not None and outside("atlas", with_it) is None
+    with refused("model", "atlas", remedy="solid"):
         evaluate("paper-dome", OFF, model="atlas")

@@ -1,15 +1,7 @@
 """The library: every kind of thing is a folder of TOML files, and a file's name is the thing's name.
 
-Files in the user's folder come before the shipped ones, so a lab's own printer profile overrides ours.
-
-A library that reads every file once: the points of a sweep name the same few materials, printers and parts, and a
-selection needs every resin several times.
-
-Folders of the files: the user's, and the shipped one.
-
-The shipped examples of files that commands take, other than designs: targets, trays, sweeps and campaigns.
-
-The elastomers of a library that a design is compared with.
+Files in the user's folder come before the shipped ones, so a lab's own printer profile overrides ours. Points of a
+sweep and resins of a selection read every file once (`CachedLibrary`).
 """
 
 from __future__ import annotations

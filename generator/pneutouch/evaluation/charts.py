@@ -1,9 +1,6 @@
-"""Effect of the air, trade-off and tuning of one design, for its datasheet, by the atlas, which must cover the
-sensor.
+"""Curves and trade-off of one design for its datasheet: effects of the air, of the resin and of the driving pressure.
 
-A sensor's sensitivity over the driving pressure, with its interval, by the atlas.
-
-The same sensor in every resin: the curves that show the effect of the offline parameter.
+They are the atlas's where it covers the sensor, corrected by the solid under another contact.
 """
 
 from __future__ import annotations

@@ -1,21 +1,12 @@
-"""A body of revolution as arcs and lines in the (r, z) plane: the one source for solid, print mesh and FE mesh.
+"""Meridians: closed loops of straight lines and arcs in the (r, z) plane, mm, that sweep a solid of revolution.
 
-Exact pieces of a meridian: straight lines and circular arcs in the (r, z) plane, lengths in mm.
+They are sampled to a chord tolerance, and cut exactly at a level. A piece counts at its lower end and not at its upper
+one, and a point on a crossing lies beyond it: two outlines that share a piece never both hold a point of it, and never
+both leave it out.
 
-Inside and outside of a closed outline of arcs and lines, exactly: where a level crosses it.
-
-A piece counts at its lower end and not at its upper one, and a point on a crossing lies beyond it. Two outlines that
-share a piece therefore never both hold a point of it, and never both leave it out.
-
-The meridian: a closed loop of pieces that sweeps a solid.
-
-Sample a meridian to a chord tolerance, keeping the area under it.
-
-An inscribed polygon always errs to the inside and loses volume to first order in the tolerance.
-Moving the inner vertices of an arc off it by two thirds of the sagitta makes every chord enclose the
-area of its arc. The greatest error falls to two thirds, so fewer chords meet the same tolerance.
-
-Draw an outline corner by corner: a start, then for each face its tag and where it ends.
+An inscribed polygon always errs to the inside and loses volume to first order in the tolerance. Moving the inner
+vertices of an arc off it by two thirds of the sagitta makes every chord enclose the area of its arc. The greatest error
+falls to two thirds, so fewer chords meet the same tolerance.
 """
 
 from __future__ import annotations

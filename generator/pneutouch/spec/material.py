@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
-from pneutouch.spec.fields import MaterialKind, SparseTable, Table
+from pneutouch.spec.fields import FieldsError, MaterialKind, SparseTable, Table
 from pneutouch.spec.values import Quantity
 
 SHRINKAGE_PERCENT = (0.0, 10.0)
@@ -293,13 +293,13 @@ class Material(SparseTable):
             number = getattr(self.density_g_per_cm3, key)
             problem = None if number is None else density_problem(number, self.kind)
             if problem is not None:
-                raise ValueError(f"density_g_per_cm3.{key} = {number:g}: {problem}")
+                raise FieldsError(f"density_g_per_cm3.{key} = {number:g}: {problem}", "density_g_per_cm3")
         return self
 
     @model_validator(mode="after")
     def _cast_of_one(self) -> Material:
         if self.casting is not None and (self.kind != "elastomer" or self.is_digital):
-            raise ValueError("casting: a resin that is cast is an elastomer with one base resin, itself")
+            raise FieldsError("casting: a resin that is cast is an elastomer with one base resin, itself", "casting")
         return self
 
     @model_validator(mode="after")

@@ -1,12 +1,6 @@
-"""A sensor's pressure-to-force model for a microcontroller, for Python and for other programs.
+"""A design's sensor as its pressure-to-force model for a microcontroller, for Python and for a simulator.
 
-Tabulate a design's sensor, compare the table with the full model, and write it in the forms that are used.
-
-A design's sensor as a model of a simulator.
-
-Tabulate a design's press at its driving pressures and write its sensor for a simulator.
-
-Content of a folder of a simulator's model, in ten lines.
+Tabulate the press at its driving pressures, compare the table with the full model, and write it in the forms used.
 """
 
 from __future__ import annotations

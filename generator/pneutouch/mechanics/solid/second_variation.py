@@ -2,11 +2,9 @@
 
 A displacement is u_r = a cos(n t), u_z = b cos(n t), u_theta = c sin(n t) of the angle t around the axis, with nodal
 a, b, c on the mesh of the meridian. Integrals over the angle are taken over half their value for n = 0, where the
-second variation is then that of the axisymmetric solid. It is a polynomial K0 + n K1 + n^2 K2.
-
-The second variation around the axis of what acts on the faces of the wall: gas, contact, friction and base.
-
-Second derivatives of an isotropic energy by the shears that an axisymmetric deformation does not have.
+second variation is then that of the axisymmetric solid. It is a polynomial K0 + n K1 + n^2 K2, of the wall, whose law
+has second derivatives by the shears that an axisymmetric deformation does not have, and of what acts on its faces:
+gas, contact, friction and base.
 """
 
 from __future__ import annotations
