@@ -124,7 +124,7 @@ def test_a_file_and_options_give_one_answer_and_the_row_picked_is_saved(command,
     [
         ("--process casting --charts charts", "--charts cannot be given with --process"),
         ("--process cast", '--process cast: must be "any"'),
-        ("--process casting --profile j735", "setting: processes and profile contradict each other"),
+        ("--process casting --profile j735", "--profile: processes and profile contradict each other"),
     ],
 )
 def test_what_a_command_cannot_search_is_refused_by_its_options(command, words, problem):

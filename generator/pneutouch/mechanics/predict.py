@@ -56,8 +56,7 @@ def predict(
         _cheapest(sensor, pressures, closure, tolerance) if name == "auto" else _named(name, sensor, pressures, closure)
     )
     errors, result = chosen.errors(sensor, pressures), answer.result
-    if answer.limitation is not None and errors.sensitivity_tabulation_relative is not None:
-        # The stated error of the table does not hold where it has a limitation.
+    if answer.limitation is not None and answer.limitation.beyond_error:
         errors = replace(errors, sensitivity_tabulation_relative=None, summary=())
     if why:
         errors = replace(errors, model_choice=why, summary=(f"Model {chosen.name}: {why}.", *errors.summary))

@@ -117,7 +117,7 @@ SHALLOW = 0.1
 0.5 % off the solid's at 0.1, 1.1 % at 0.05, 9 % at 0.01 and 33 % at 0.005 (`tests/mechanics/test_atlas_model.py`)."""
 
 _TOO_SHALLOW = Limitation(
-    f"the range ends within {SHALLOW:g} R0 of first contact, where the table is less accurate", False
+    f"the range ends within {SHALLOW:g} R0 of first contact, where the table is less accurate", False, beyond_error=True
 )
 
 _LIMITATIONS = {

@@ -15,10 +15,12 @@ from pneutouch.results.prediction import ErrorEstimate
 
 
 class Limitation(NamedTuple):
-    """Reason why `auto` must not use an answer; ``fatal`` if it is none at all."""
+    """Reason why `auto` must not use an answer; ``fatal`` if it is none at all, ``beyond_error`` if the stated error
+    does not hold for it."""
 
     why: str
     fatal: bool
+    beyond_error: bool = False
 
 
 class ModelAnswer(NamedTuple):
