@@ -105,6 +105,10 @@ class DomeShape(ABC):
         nearest = np.take_along_axis(np.array(shares), np.argmin(gaps, axis=0)[None], axis=0)
         return 1.0 - nearest.reshape(np.shape(radius))
 
+    def arc_share_scaled(self, radius: Array, height: Array) -> Array:
+        """`arc_share` of points in units of `scale`, as the solid has them."""
+        return self.arc_share(self.scale * radius, self.scale * height)
+
     def weights(self, arc: Array) -> Array:
         """Weights of arc positions (n,), 0 at the pole, in a mean over the wall: as the rings there are wide."""
         return np.asarray(self.points(1.0 - arc, np.array([0.5]))[:, 0, 0])

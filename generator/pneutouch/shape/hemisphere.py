@@ -36,6 +36,10 @@ class Hemisphere(DomeShape):
         """Arc position of points: the angle off the axis."""
         return np.asarray(np.clip(np.arctan2(radius, np.maximum(height, 0.0)) / _QUARTER, 0.0, 1.0))
 
+    def arc_share_scaled(self, radius: Array, height: Array) -> Array:
+        """Arc position of points in any unit: an angle has none, and takes no rounding from one."""
+        return self.arc_share(radius, height)
+
     def weights(self, arc: Array) -> Array:
         """Weights of arc positions: the wall has its area even over the height."""
         return np.asarray(np.sin(_QUARTER * arc))

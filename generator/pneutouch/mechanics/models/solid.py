@@ -199,9 +199,7 @@ def _grade(sensor: Sensor) -> Callable[[Array, Array], Array] | None:
     if sensor.wall.grade is None:
         return None
     arc, relative = np.array(sensor.wall.grade[0]), np.array(sensor.wall.grade[1])
-    shape = sensor.dome.shape
-    # The solid asks in lengths of its own scale.
-    return lambda radius, height: np.interp(shape.arc_share(shape.scale * radius, shape.scale * height), arc, relative)
+    return lambda radius, height: np.interp(sensor.dome.shape.arc_share_scaled(radius, height), arc, relative)
 
 
 def _limit_point(sensor: Sensor, run: Inflation) -> LimitPoint | None:
