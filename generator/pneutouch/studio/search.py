@@ -23,9 +23,8 @@ from pneutouch.spec.target import Target
 from pneutouch.studio.candidate import CandidateCard, CandidateStates, candidate_figures, grade_figures
 from pneutouch.studio.question import PAGE, Question
 from pneutouch.workflows.select.charts import tradeoff
-from pneutouch.workflows.select.document import dropped_lines, headline, missed_text, remarks, search_notes, selected
+from pneutouch.workflows.select.document import dropped_lines, headline, missed_text, remarks, search_notes
 from pneutouch.workflows.select.graded import GradedSelectionRun
-from pneutouch.workflows.select.graded_document import graded
 from pneutouch.workflows.select.processes import ProcessSelection
 from pneutouch.workflows.select.search import search as answer
 from pneutouch.workflows.select.select import STEPS, SelectionRun
@@ -81,13 +80,13 @@ class PageSelection:
     table: PageTable | None
 
 
-def _by_process(selection: ProcessSelection, page: CandidateStates) -> PageSelection:
+def _by_process(selection: ProcessSelection, document: Mapping[str, Any], page: CandidateStates) -> PageSelection:
     """The best design of each process; for one in which no design meets the target, the card shows the nearest."""
     row = {process: number for number, (process, _) in enumerate(selection.best, start=1)}
     cards = [_card(process, run, page, row.get(process)) for process, run in selection.runs.items()]
     searched, (head, rows) = len(selection.runs) + len(selection.left_out), processes_table(selection)
     return PageSelection(
-        selection={**plain(selection.record), "written": None},
+        selection=document,
         headline=f"{len(row) or 'none'} of {searched} processes with a design that meets the target",
         notes=[],
         cards=[card for card in cards if card is not None],
@@ -172,18 +171,18 @@ def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> PageSe
             report(done, steps if charted else total, step)
 
         found = answer(target, PAGE, library, progress=progress)
-        run = found.run
+        run, document = found.run, {**plain(found.record), "written": None}
         if isinstance(run, ProcessSelection):
-            return _by_process(run, page)
+            return _by_process(run, document, page)
         if isinstance(run, GradedSelectionRun):
-            return _graded(run, page)
+            return _graded(run, document, page)
         report(len(STEPS), steps, _CHART)
-        return _selected(run, page, library)
+        return _selected(run, document, page, library)
 
 
-def _selected(run: SelectionRun, page: CandidateStates, library: Library) -> PageSelection:
+def _selected(run: SelectionRun, document: Mapping[str, Any], page: CandidateStates, library: Library) -> PageSelection:
     return PageSelection(
-        selection={**plain(selected(run)), "written": None},
+        selection=document,
         headline=headline(run),
         notes=search_notes(run),
         cards=_cards(run, page),
@@ -242,7 +241,7 @@ def _chart(run: SelectionRun, library: Library) -> FrontChart:
     return rounded(chart, _DIGITS)
 
 
-def _graded(run: GradedSelectionRun, page: CandidateStates) -> PageSelection:
+def _graded(run: GradedSelectionRun, document: Mapping[str, Any], page: CandidateStates) -> PageSelection:
     """The search for a grade, with the constant membranes of its size as a table in place of the chart."""
     head, rows = graded_table(run)
     rejected = [] if run.rejected is None else [f"the grade is rejected by the check: {run.rejected}"]
@@ -258,7 +257,7 @@ def _graded(run: GradedSelectionRun, page: CandidateStates) -> PageSelection:
     )
     headline, *remarks = graded_lines(run)
     return PageSelection(
-        selection={**plain(graded(run)), "written": None},
+        selection=document,
         headline=headline,
         notes=[],
         cards=[card],
