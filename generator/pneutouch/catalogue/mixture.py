@@ -291,8 +291,8 @@ def _by_curves(
         by_curve = MixByCurve(
             curve=name,
             place="in use" if top == last else "stiffer" if top < last else "softer",
-            shear_modulus_MPa=Quantity.model_validate(_modulus(law, fraction, weight)),
-            elongation_at_break_percent=_quantity(_elongation(law, fraction)),
+            shear_modulus_MPa=_modulus(law, fraction, weight),
+            elongation_at_break_percent=_elongation(law, fraction),
             along_MPa=None if grade.is_constant else law.modulus_at(fraction).tolist(),
             beyond=bool(fraction.max() > top + _SLACK),
         )
@@ -300,24 +300,19 @@ def _by_curves(
     return entries
 
 
-def _quantity(content: dict[str, Any] | None) -> Quantity | None:
-    return None if content is None else Quantity.model_validate(content)
-
-
-def _modulus(law: ResolvedMixingCurve, fraction: Array, weight: Array) -> dict[str, Any]:
+def _modulus(law: ResolvedMixingCurve, fraction: Array, weight: Array) -> Quantity:
     """Mean modulus over the wall; with the band of an assumed curve, else the spread of a measured one.
 
     All the wall is at one end of the band together: the curve is one, and where it is wrong it is wrong everywhere.
     """
-    modulus: dict[str, Any] = {
-        "value": float(np.average(law.modulus_at(fraction), weights=weight)),
-        "source": f"{FROM_CURVE} {law.curve.soft}+{law.curve.stiff}: {law.curve.assumption}",
-    }
+    low = high = spread = None
     if law.curve.is_assumed:
-        modulus["low"], modulus["high"] = (float(np.average(end, weights=weight)) for end in law.band_at(fraction))
+        low, high = (float(np.average(end, weights=weight)) for end in law.band_at(fraction))
     elif np.isfinite(law.spread).all():
-        modulus["spread"] = float(np.average(law.spread_at(fraction), weights=weight))
-    return modulus
+        spread = float(np.average(law.spread_at(fraction), weights=weight))
+    value = float(np.average(law.modulus_at(fraction), weights=weight))
+    source = f"{FROM_CURVE} {law.curve.soft}+{law.curve.stiff}: {law.curve.assumption}"
+    return Quantity(value=value, low=low, high=high, spread=spread, source=source)
 
 
 def _content(grade: Grade, soft: Material, stiff: Material, share: float) -> dict[str, Any]:
@@ -338,12 +333,13 @@ def _content(grade: Grade, soft: Material, stiff: Material, share: float) -> dic
     }
 
 
-def _elongation(law: ResolvedMixingCurve, fraction: Array) -> dict[str, Any] | None:
+def _elongation(law: ResolvedMixingCurve, fraction: Array) -> Quantity | None:
     """The least along the arc: the wall tears where it is stiffest first."""
     least = float(law.elongation_at(fraction).min())
     if not np.isfinite(least):
         return None
-    return {"value": least, "source": "straight between the resins of the mixing curve, the least along the arc"}
+    source = "straight between the resins of the mixing curve, the least along the arc"
+    return Quantity(value=least, source=source)
 
 
 def _between(one: str, other: str, share: float) -> str:

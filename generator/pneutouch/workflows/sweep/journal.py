@@ -16,7 +16,7 @@ import shutil
 from io import FileIO
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, NamedTuple
 
 from pneutouch.errors import InputError
 from pneutouch.output.files import digest, write_synced
@@ -45,20 +45,18 @@ class Journal:
         if not self.path.exists():
             return {}
         lines = read_bytes(self.path, MOST_BYTES, "journal").split(b"\n")
-        whole = [line for line in lines if _content(line) is not None]
+        entries = [(line, entry) for line in lines if (entry := _entry(line)) is not None]
         records: dict[int, Record] = {}
-        for line in whole:
-            content = _content(line)
-            assert content is not None
-            if content["sweep"] != self.fingerprint:
+        for _, entry in entries:
+            if entry.sweep != self.fingerprint:
                 problem = (
                     "holds the progress of another sweep: the design, a material, the printer, the model, the values "
-                    "or "
-                    "the version has changed"
+                    "or the version has changed"
                 )
                 remedy = "`fresh` starts over, or give another `out`"
                 raise InputError(problem, file=self.path.parent, remedy=remedy)
-            records |= {record["point"]: record for record in content["records"]}
+            records |= {record["point"]: record for record in entry.records}
+        whole = [line for line, _ in entries]
         if lines != [*whole, b""]:
             self._rewrite(whole)
         return records
@@ -91,8 +89,15 @@ def _checksum(text: bytes) -> bytes:
     return digest(text)[:_CHECKSUM_DIGITS].encode()
 
 
-def _content(line: bytes) -> dict[str, Any] | None:
-    """The content of a line, or None if it does not agree with its checksum or is of another form."""
+class _Entry(NamedTuple):
+    """A line of the journal: the fingerprint of its sweep, and finished points."""
+
+    sweep: str
+    records: list[Record]
+
+
+def _entry(line: bytes) -> _Entry | None:
+    """A line's entry, or None if it does not agree with its checksum or is of another form."""
     checksum, space, text = line.partition(b" ")
     if not space or checksum != _checksum(text):
         return None
@@ -100,7 +105,7 @@ def _content(line: bytes) -> dict[str, Any] | None:
         content = json.loads(text)
     except (ValueError, RecursionError):
         return None
-    return content if _is_entry(content) else None
+    return _Entry(content["sweep"], content["records"]) if _is_entry(content) else None
 
 
 def _is_entry(content: Any) -> bool:
