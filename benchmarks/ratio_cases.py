@@ -132,11 +132,11 @@ def _one_of_the_solid() -> Callable[[], object]:
     return lambda: predict("", PAPER, [0.012], model="solid")
 
 
-def order_zero(folder: Path) -> Pair:
+def order_zero(folder: Path, friction: float = 0.0) -> Pair:
     from pneutouch.mechanics.models.choice import model_named
     from pneutouch.mechanics.paper_sensor import material_sensor
 
-    pressed = material_sensor(LIBRARY.load("materials", "TangoPlus"))
+    pressed = material_sensor(LIBRARY.load("materials", "TangoPlus")).replace(friction=friction)
     pressures = np.array([0.0, 12.0, 22.0]) * KPA
     harmonic, solid = model_named("harmonic"), model_named("solid")
     return lambda: harmonic.answer_one(pressed, pressures), lambda: solid.answer_one(pressed, pressures)

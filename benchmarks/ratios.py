@@ -22,6 +22,7 @@ import tempfile  # noqa: E402
 import time  # noqa: E402
 from collections.abc import Callable, Iterator  # noqa: E402
 from contextlib import contextmanager  # noqa: E402
+from functools import partial  # noqa: E402
 from pathlib import Path  # noqa: E402
 
 from benchmarks import ratio_cases as cases  # noqa: E402
@@ -37,6 +38,7 @@ RATIOS: dict[str, tuple[Callable[[Path], cases.Pair], float]] = {
     "budgets of 200 sensors / their responses": (cases.budgets, 40.0),
     "relaxation and two loops / one response": (cases.relaxation_and_loops, 40.0),
     "harmonic model of order 0 / the solid": (cases.order_zero, 4.0),
+    "the same with friction": (partial(cases.order_zero, friction=0.5), 4.0),
     "1,000 responses of the atlas / one of the solid": (cases.atlas_batch, 2.0),
     "one response of the atlas / one of the solid": (cases.atlas_single, 0.1),
     "solid with the check for sway and lobes / without": (cases.sway, 1.3),
