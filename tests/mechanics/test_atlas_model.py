@@ -196,7 +196,7 @@ def test_the_document_is_complete():
     assert document["model"] == "atlas" and document["limit_point"] is not None
 
 
-@pytest.mark.parametrize("depth", [0.005, 0.02, 0.05, 0.08])
+@pytest.mark.parametrize("depth", [0.005, 0.02, 0.08, 0.19])
 def test_a_shallow_press_is_left_to_the_solid(depth):
     """A dome pressed by 6.5 thousandths of its radius, where the table reads 0.435 kPa/N and the solid 0.341."""
     wall = WallMaterial(0.59, 0.49)
@@ -215,7 +215,7 @@ def test_a_shallow_press_is_left_to_the_solid(depth):
     st.floats(0.15, 2.0),
     st.integers(0, 50).map(lambda percent: percent / 100),
     st.floats(0.0, 2.0),
-    st.floats(SHALLOW, 0.3),
+    st.floats(SHALLOW, 0.4),
 )
 @settings(max_examples=12, deadline=None)
 def test_from_the_least_range_on_the_sensitivity_is_within_the_stated_error(radius, ratio, mu, share, dead_mL, depth):

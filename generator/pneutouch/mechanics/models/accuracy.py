@@ -14,7 +14,7 @@ event ends it."""
 
 TABULATION = 0.0075
 """Greatest relative error of the atlas's sensitivity against the solid where `auto` takes it: away from buckling,
-tearing and ranges below 0.1 R0 (docs/background/atlas.md); held by `make check-slow`."""
+tearing and ranges below 0.2 R0 (docs/background/atlas.md); held by `make check-slow`."""
 
 _MEMBRANE = 17.0
 """Greatest relative error of the membrane's sensitivity against the solid: no bending stiffness."""
