@@ -16,7 +16,7 @@ from pneutouch.evaluation.uncertainty import known, uncertainties
 from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, DEAD, FIGURES, INPUTS, SENSITIVITY, log_figures
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.corrected import figures as corrected
-from pneutouch.mechanics.corrected.figures import under_plate
+from pneutouch.mechanics.corrected.figures import CorrectedAtlas, state_logs, under_plate
 from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indenter import ball, cone
@@ -97,6 +97,20 @@ def test_the_shift_of_a_contact_is_taken_at_a_softer_and_a_stiffer_wall(evaluate
     nodes = ContactModel.shift(stub, 0.3).nodes[:, list(CONTACT_FIGURES)]
     expected = 0.5 + np.array([math.exp(-0.3), 0.0, math.exp(0.3)])
     np.testing.assert_allclose(nodes, np.broadcast_to(expected[:, None, None], nodes.shape))
+
+
+def test_the_ratio_makes_the_plates_figures_those_of_the_contact(evaluated):
+    """At the pressures that are solved, and in its logarithm straight between them."""
+    sensor, pressures = (
+        evaluated("paper-dome", model="atlas").sensor.replace(friction=0.6, steps=6),
+        (0.0, 0.011, 0.022),
+    )
+    found = CorrectedAtlas(sensor, pressures, least=2)
+    solved = state_logs(solid_states(sensor, np.array([pressures[0], pressures[2]])))
+    contact = found.ratio + found.plate(pressures)
+    rows = list(CONTACT_FIGURES)
+    assert contact[rows][:, [0, 2]] == pytest.approx(solved[rows], abs=1e-9)
+    assert found.ratio[rows, 1] == pytest.approx(0.5 * (found.ratio[rows, 0] + found.ratio[rows, 2]), abs=1e-9)
 
 
 @pytest.mark.parametrize(

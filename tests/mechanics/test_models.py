@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 import sys
-from dataclasses import replace
+from dataclasses import asdict, replace
 from types import ModuleType
 
 import numpy as np
@@ -249,6 +249,9 @@ def test_a_batch_of_the_atlas_answers_as_each_sensor_alone():
         alone = atlas.answer_one(sensor, driven)
         assert len(answer.result.states) == driven.size
         assert answer.result.limits.limit_point == pytest.approx(alone.result.limits.limit_point, rel=1e-12)
+        for name in ("apex_inner", "apex_outer", "volume", "pressure"):
+            assert getattr(answer.result.inflation, name) == pytest.approx(getattr(alone.result.inflation, name), 1e-9)
+        assert asdict(answer.result.limit_point) == pytest.approx(asdict(alone.result.limit_point), rel=1e-9)
         for one, other in zip(answer.result.states, alone.result.states, strict=True):
             assert one.force == pytest.approx(other.force, rel=1e-9)
             assert one.figures.sensitivity_kPa_per_N == pytest.approx(other.figures.sensitivity_kPa_per_N, rel=1e-9)

@@ -13,6 +13,7 @@ from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject, ProfiledObject
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.pressed_face import PressedFace
+from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.indenter import RigidBase, RigidObject, ball, edge
 from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
@@ -176,3 +177,12 @@ def test_between_few_contact_angles_the_pressure_is_smoothed_over_one_edge_along
     pressure = replace(face, forces=forces, touching=face.areas).pressure(rows, angles)[:, 0]
     share = np.exp(-0.5 * (rows[:, None] - np.arange(face.edges + 1.0)) ** 2) * face.areas.sum(axis=1)
     np.testing.assert_allclose(pressure, share[:, ring] / share.sum(axis=1), rtol=0.15)
+
+
+def test_a_calibrations_factor_on_the_force_is_one_on_the_face(evaluated):
+    """Pressed nodes stay where they are, and bear as much more."""
+    state = evaluated("paper-dome", "pneumatics.driving_pressures_kPa=[0]").prediction.states[0]
+    factor = state.corrected(ResponseCorrection((0.0,), (1.25,), (0.9,)))
+    own, other = state.face(), factor.face()
+    assert other.forces == pytest.approx(1.25 * own.forces, rel=1e-12) and own.forces.any()
+    assert np.array_equal(other.coefficients, own.coefficients)

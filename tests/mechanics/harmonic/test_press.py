@@ -1,5 +1,6 @@
 """Presses beside the axis and by leaning plates: symmetry, balance, and the axisymmetric solid as a limit."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -10,6 +11,7 @@ from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress, OffAxisState
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject, Surface
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.solid.cavity import Liquid
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent, shut_in
 from pneutouch.mechanics.solid.indenter import RigidBase, RigidObject, ball, cylinder, edge
 from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
@@ -152,3 +154,15 @@ def test_a_leaning_plate_is_a_plane_and_has_its_rim() -> None:
         up, down = plate.over(x + dx, y + dy), plate.over(x - dx, y - dy)
         np.testing.assert_allclose(under.slope[:, k], (up.height - down.height) / (2 * step), atol=1e-8)
         np.testing.assert_allclose(under.curve[:, k], (up.slope - down.slope) / (2 * step), atol=1e-7)
+
+
+@pytest.mark.parametrize("base", [RigidBase(opening=9.1, flange=10.65), RigidBase(ring=10.2, ring_height=0.4)])
+def test_derivatives_on_the_rounded_edges_of_a_base(base: RigidBase) -> None:
+    """The whole wall stands below the plane, by more on one side: both faces meet edges and ring, which are curved."""
+    mesh = dome(Hemisphere(RADIUS, 1.5), 12, 1)
+    sunk = SolidModel(replace(mesh, nodes=mesh.nodes - [0.0, 2.5]), neo_hookean(0.17), base=base)
+    model, rng = HarmonicModel(sunk, 1), np.random.default_rng(3)
+    x = model.rest.copy()
+    x[:, 3] += 0.05 * x[:, 0]
+    (support,) = assert_derivatives(SolidScene(model, Liquid(2.0, 3.0), None), x, rng, step=1e-8, rel=1e-6).terms
+    assert support.blocks is not None and support.blocks.any() and support.energy > 0.0
