@@ -242,10 +242,11 @@ def test_the_atlas_asked_by_name_says_what_its_answer_lacks():
 def test_a_batch_of_the_atlas_answers_as_each_sensor_alone():
     """Sensors of other walls, resins, steps and driving pressures in one pass; one of them beyond its limit point."""
     atlas = model_named("atlas")
-    sensors = [PAPER, PAPER.replace(wall_thickness=1.1, steps=9), PAPER.replace(shear_modulus=0.4), PAPER]
-    pressures = [np.array(some) * KPA for some in ([0.0, 12.0], [5.0], [0.0, 20.0, 40.0], [50.0])]
+    thin, other_steps = PAPER.replace(wall_thickness=1.1), PAPER.replace(wall_thickness=1.3, steps=9)
+    sensors = [PAPER, thin, other_steps, PAPER.replace(shear_modulus=0.4), PAPER]
+    pressures = [np.array(some) * KPA for some in ([0.0, 12.0], [5.0], [0.0, 3.0], [0.0, 20.0, 40.0], [50.0])]
     together = atlas.answer(sensors, pressures)
-    for sensor, driven, answer in zip(sensors[:3], pressures[:3], together[:3], strict=True):
+    for sensor, driven, answer in zip(sensors[:4], pressures[:4], together[:4], strict=True):
         alone = atlas.answer_one(sensor, driven)
         assert len(answer.result.states) == driven.size
         assert answer.result.limits.limit_point == pytest.approx(alone.result.limits.limit_point, rel=1e-12)
@@ -255,7 +256,7 @@ def test_a_batch_of_the_atlas_answers_as_each_sensor_alone():
         for one, other in zip(answer.result.states, alone.result.states, strict=True):
             assert one.force == pytest.approx(other.force, rel=1e-9)
             assert one.figures.sensitivity_kPa_per_N == pytest.approx(other.figures.sensitivity_kPa_per_N, rel=1e-9)
-    assert isinstance(together[3], BeyondLimitError) and together[3].pressure == pytest.approx(50.0 * KPA)
+    assert isinstance(together[4], BeyondLimitError) and together[4].pressure == pytest.approx(50.0 * KPA)
 
 
 class _Halved(SensorModel):

@@ -13,7 +13,7 @@ import pytest
 from pneutouch.catalogue import load_scene
 from pneutouch.evaluation.anywhere import contact_chart
 from pneutouch.report import curves, prose
-from pneutouch.report.chart import PlotLine
+from pneutouch.report.chart import Chart, PlotLine, chart_figure
 from pneutouch.results.record import plain as data
 
 SECTIONS = [
@@ -249,6 +249,8 @@ def test_axes_carry_quantities_and_units(evaluated):
     presses = [curves.predicted_press(state, PlotLine()) for state in prediction.states]
     for panel in (curves.inflation(prediction), curves.rises(presses), curves.forces(presses)):
         assert all(re.search(r"\w+  \((kPa|N|mm|kPa/N)\)$", label) for label in (panel.x, panel.y))
+        with chart_figure(Chart((panel,))) as drawn:
+            assert [(ax.get_xlabel(), ax.get_ylabel()) for ax in drawn.axes] == [(panel.x, panel.y)]
 
 
 def test_curves_end_where_the_range_ends(evaluated):
