@@ -113,8 +113,8 @@ class Membrane(SparseTable):
             raise FieldsError(
                 f"wall_thickness_mm = {self.wall_thickness_mm:g} must be less than "
                 f"inner_radius_mm = {self.inner_radius_mm:g}",
-                "inner_radius_mm",
                 "wall_thickness_mm",
+                "inner_radius_mm",
             )
         return self
 

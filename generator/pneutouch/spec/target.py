@@ -137,8 +137,8 @@ class Given(Table):
         if radius is not None and wall is not None and wall >= radius:
             raise FieldsError(
                 f"wall_thickness_mm = {wall:g} must be less than inner_radius_mm = {radius:g}",
-                "inner_radius_mm",
                 "wall_thickness_mm",
+                "inner_radius_mm",
             )
         return self
 
