@@ -17,12 +17,13 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.results.record import plain
+from pneutouch.spec.options import ScanOptions
 from pneutouch.texture.scalogram import scalogram
 from pneutouch.texture.separate import BarPattern, amplitudes, noise_amplitude, recommend
 from pneutouch.texture.sliding import scan
 from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate, amplitude
 from pneutouch.units import KPA
-from pneutouch.workflows.scan import ScanOptions, run_scan
+from pneutouch.workflows.scan import run_scan
 from pneutouch.workflows.scan_separate import separating
 from pneutouch.workflows.scanned import scanned
 

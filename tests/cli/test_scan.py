@@ -12,8 +12,8 @@ from typer.testing import CliRunner
 from pneutouch.cli import scan as command
 from pneutouch.cli.app import app
 from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.spec.options import ScanOptions
 from pneutouch.units import KPA
-from pneutouch.workflows.scan import ScanOptions
 from pneutouch.workflows.scan_separate import separating
 from tests.schemas.held import hold, hold_folder
 
@@ -184,11 +184,11 @@ def test_specimens_that_cannot_be_scanned(tmp_path, length, kind, period, more, 
         ([*ASKED, "--pressures", ""], "nothing to scan"),
         ([*ASKED, "--pressures", "60"], "limit point"),
         ([*ASKED, "--preload", "1000"], "reaches"),
-        ([*ASKED, "--preload", "-1"], "must be a force above 0 N"),
+        ([*ASKED, "--preload", "-1"], "must be from 1e-06 to 1000 N"),
         ([*ASKED, "--preload", "9"], "times the patch, whose radius is"),
         ([*ASKED, "--speed", "0"], "--speed 0"),
         ([*ASKED, "--noise", "-1"], "noise"),
-        ([*ASKED, "--control", "forc"], "Did you mean force?"),
+        ([*ASKED, "--control", "forc"], 'must be "height" or "force"'),
         ([*ASKED, "--data", "nowhere.csv"], "nowhere.csv: no such file"),
         ([*ASKED, "--separate", "3@0"], "PITCH1@DEPTH1"),
         ([*ASKED, "--separate", "3@0,3@0"], "the same"),
@@ -210,7 +210,7 @@ def test_wrong_input_is_said_so(arguments, said, tmp_path):
         (["--separate", "3@0,6@2", "--pressures", "0"], "--pressures cannot be given with --separate"),
         (["--speed", "1e-4"], "must be from 0.01 to 1000 mm/s"),
         (["--noise", "-1"], "--noise -1: must be from 0 to 100 kPa"),
-        (["--pressures", "nan"], "--pressures nan: must be numbers in kPa with commas between, such as 0,22"),
+        (["--pressures", "nan"], "--pressures nan: must be numbers with commas between, such as 20,6"),
     ],
 )
 def test_options_that_no_scan_can_have_are_refused(command, words, said):

@@ -16,7 +16,7 @@ from pneutouch.mechanics.models.atlas import outside_atlas
 from pneutouch.mechanics.models.choice import USUAL, models_for
 from pneutouch.parts import assemble
 from pneutouch.report.blocks import SheetTable, found
-from pneutouch.report.conditions import shear_rows
+from pneutouch.report.conditions import off_axis, shear_rows
 from pneutouch.results.record import plain as data
 from pneutouch.workflows.select.base import check_central
 
@@ -158,19 +158,19 @@ def test_a_central_press_with_friction_by_name_is_the_solids():
 @pytest.mark.slow
 def test_a_shear_is_reported_in_the_document_the_text_and_the_sheets_table():
     prediction = evaluate("paper-dome", {**SHEAR, **SHORT}, model=USUAL).prediction
-    document = data(by_model(prediction))
-    (state,) = document["states"]
-    sheared, off_axis = state["off_axis"]["shear"], state["off_axis"]
+    record = by_model(prediction)
+    (state,) = data(record)["states"]
+    sheared, last = state["off_axis"]["shear"], state["off_axis"]["moment_N_mm"][-1]
     assert prediction.model == "harmonic" and any("then 1 mm sideways" in line for line in prediction.assumptions)
     lists = [value for value in sheared.values() if isinstance(value, list)]
     assert len(lists) == 6 and {len(values) for values in lists} == {11}
     # It begins at the end of the press, and a level plate that has slipped has the coefficient times the force.
     assert sheared["contact_force_N"][0] == pytest.approx(state["curve"]["contact_force_N"][-1], rel=1e-9)
-    assert sheared["moment_N_mm"][0] == pytest.approx(off_axis["moment_N_mm"][-1], abs=1e-6)
+    assert sheared["moment_N_mm"][0] == pytest.approx(last, abs=1e-6)
     assert sheared["sideways_force_N"][-1] == pytest.approx(-0.3 * sheared["contact_force_N"][-1], rel=1e-3)
     assert sheared["ended"] is None and 0.0 < sheared["slips_throughout_mm"] < 1.0
     assert sheared["peak_sideways_force_N"] == min(sheared["sideways_force_N"])
-    (line,) = _sheared(document["states"])
+    (line,) = _sheared(record.states)
     assert "0 kPa" in line and f"{sheared['slips_throughout_mm']:.2f} mm" in line
     (row,) = shear_rows(prediction.states)
     tables = found(off_axis(prediction.states), SheetTable)

@@ -5,18 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.catalogue import Library
+from pneutouch.spec.options import SimulationOptions
 from pneutouch.workflows.simulate import simulate
-from pneutouch.workflows.simulate_inputs import SimulationOptions
 
 SMALL = SimulationOptions(
-    specimens=1,
-    driving_pressures_kPa=(0.0, 22.0),
-    runs=1,
-    kinds=("steps", "injection"),
-    model="atlas",
-    truth=SimulationTruth(rest=5.0),
+    specimens=1, driving_pressures_kPa=[0.0, 22.0], runs=1, kinds=["steps", "injection"], model="atlas", rest_s=5.0
 )
 NAME = "paper-dome-campaign"
 SENSOR = "TangoPlus-1"

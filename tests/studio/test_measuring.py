@@ -117,7 +117,7 @@ def test_text_that_is_no_run_is_refused_in_the_words_of_the_command(tmp_path, as
 
 @pytest.mark.parametrize("value", [10**400, float("nan"), True, "12"])
 def test_a_pressure_that_is_no_number_is_refused_by_its_key(campaign, ask, value):
-    with pytest.raises(InputError, match=r"hold_out_kPa( = .*)?: must be a finite number"):
+    with pytest.raises(InputError, match=r"hold_out_kPa\[1\]( = .*)?: must be "):
         ask(measuring.calibrate, uploaded(campaign), hold_out_kPa=[12, value])
 
 

@@ -184,10 +184,11 @@ def test_separation_takes_the_states_that_lean_most():
 
 @pytest.mark.parametrize("seed", range(1, 6))
 def test_the_stiff_state_shows_both_patterns_whatever_the_noise(seed, library):
-    from pneutouch.workflows.scan import ScanOptions, run_scan
+    from pneutouch.spec.options import ScanOptions
+    from pneutouch.workflows.scan import run_scan
 
     (seen,) = run_scan(
-        "texture-specimen", "paper-dome", ScanOptions(pressures=(0.022,), seed=seed), library=library
+        "texture-specimen", "paper-dome", ScanOptions(driving_pressures_kPa=[22.0], seed=seed), library=library
     ).seen
     for found, true in zip(seen.detections, (4 / 3, 2 / 3, 2 / 3), strict=True):
         assert found.detected
@@ -195,9 +196,12 @@ def test_the_stiff_state_shows_both_patterns_whatever_the_noise(seed, library):
 
 
 def test_a_sensor_held_at_a_force_rises_over_a_bar(library):
-    from pneutouch.workflows.scan import ScanOptions, run_scan
+    from pneutouch.spec.options import ScanOptions
+    from pneutouch.workflows.scan import run_scan
 
-    run = run_scan("texture-specimen", "paper-dome", ScanOptions(pressures=(0.022,), control="force"), library=library)
+    run = run_scan(
+        "texture-specimen", "paper-dome", ScanOptions(driving_pressures_kPa=[22.0], control="force"), library=library
+    )
     scan = run.seen[0].scan
     over = scan.pattern(run.bars[2]) > 0.5
     late = scan.place > 34.0

@@ -17,11 +17,11 @@ from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.models.accuracy import NUMERICAL
 from pneutouch.mechanics.uncertainty.sources.calibrated import FORCE_GAUGE
 from pneutouch.mechanics.uncertainty.sources.model_error import GAUGE
+from pneutouch.spec.options import CalibrationOptions, SimulationOptions
 from pneutouch.spec.read import assignments
 from pneutouch.spec.toml_text import toml_text
-from pneutouch.workflows.calibrate.calibrate import CalibrationOptions, run_calibration
+from pneutouch.workflows.calibrate.calibrate import run_calibration
 from pneutouch.workflows.simulate import simulate
-from pneutouch.workflows.simulate_inputs import SimulationOptions
 
 MEASURED, UNSEEN = (0.0, 6.0, 12.0), 9.0
 DESIGN, DEAD = "paper-dome", {"pneumatics.dead_volume_mL": 0.3}
@@ -83,16 +83,15 @@ def campaign(seed: int, folder) -> dict[float, Outcome]:
     """Simulate, calibrate without the runs at `UNSEEN`, and compare with the truth; ``folder`` is the user's."""
     options = SimulationOptions(
         specimens=1,
-        driving_pressures_kPa=(*MEASURED, UNSEEN),
+        driving_pressures_kPa=[*MEASURED, UNSEEN],
         runs=2,
-        kinds=("steps",),
-        rate=50.0,
+        kinds=["steps"],
+        rate_Hz=50.0,
         seed=seed,
         model="atlas",
-        truth=TRUTH,
     )
     radius = RADIUS + RADIUS_ERROR * np.random.default_rng([seed, 8]).uniform(-1, 1)
-    place = simulate(DESIGN, folder / str(seed), {**DEAD, "membrane.inner_radius_mm": radius}, options)
+    place = simulate(DESIGN, folder / str(seed), {**DEAD, "membrane.inner_radius_mm": radius}, options, truth=TRUTH)
     path = place / "campaign.toml"
     content = tomllib.loads(path.read_text())
     # The specimen has a radius of its own; what is calibrated is the design.
@@ -100,8 +99,8 @@ def campaign(seed: int, folder) -> dict[float, Outcome]:
     content["runs"] = [run for run in content["runs"] if run.get("driving_pressure_kPa", 0.0) != UNSEEN]
     path.write_text(toml_text(content))
     name = f"seed-{seed}"
-    fitted = ("modulus", "wall", "dead-volume", "offset")
-    run_calibration(CalibrationOptions(place, None, None, fitted, (), True, name, False, folder / str(seed)))
+    fitted = ["modulus", "wall", "dead-volume", "offset"]
+    run_calibration(place, None, CalibrationOptions(fit=fitted, save=name), folder / str(seed))
     (truth,) = json.loads((place / "truth.json").read_text())["specimens"].values()
     return _outcomes(name, truth["pressures"], np.random.default_rng([seed, 7]))
 

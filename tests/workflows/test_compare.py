@@ -9,28 +9,22 @@ from dataclasses import asdict
 import pypdfium2
 import pytest
 
-from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.catalogue import DesignSource, Library
 from pneutouch.cli.compare_text import comparison_text
 from pneutouch.errors import InputError
 from pneutouch.report import comparison_words
 from pneutouch.results.comparison import ColumnRecord, ComparisonRecord
+from pneutouch.spec.options import SimulationOptions
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.characterize.campaign import characterize
 from pneutouch.workflows.characterize.campaign import write as write_measured
 from pneutouch.workflows.compare import compare, write
 from pneutouch.workflows.simulate import simulate
-from pneutouch.workflows.simulate_inputs import SimulationOptions
 from tests.mechanics.test_rating import calibrated
 from tests.refusals import refused
 
 RIG = SimulationOptions(
-    specimens=2,
-    driving_pressures_kPa=(0.0, 22.0),
-    runs=1,
-    kinds=("steps",),
-    model="atlas",
-    truth=SimulationTruth(rest=5.0),
+    specimens=2, driving_pressures_kPa=[0.0, 22.0], runs=1, kinds=["steps"], model="atlas", rest_s=5.0
 )
 THICK = DesignSource("thick", {"membrane": {"wall_thickness_mm": 2.0}, "pneumatics": {"dead_volume_mL": 0.0}}, "thick")
 

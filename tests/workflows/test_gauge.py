@@ -7,13 +7,13 @@ from pneutouch.catalogue import Library, load_scene
 from pneutouch.evaluation.gauge import reading_of
 from pneutouch.mechanics.gauge_reading import gauge_reading
 from pneutouch.spec.gauge import Gauge
+from pneutouch.spec.options import SimulationOptions
 from pneutouch.spec.read import validate
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 from pneutouch.workflows.plan import PAPER, paper_rig
 from pneutouch.workflows.select.processes import select
 from pneutouch.workflows.simulate import simulate
-from pneutouch.workflows.simulate_inputs import SimulationOptions
 from tests.refusals import refused
 
 AMBIENT = 101.325 * KPA
@@ -40,7 +40,7 @@ def test_a_perfect_rig_stays_perfect():
 
 def test_a_simulation_faster_than_its_gauge_is_refused(tmp_path):
     with refused("rate_Hz", 100.0):
-        simulate("paper-dome", tmp_path, {"pneumatics.gauge": "bosch-bmp390"}, SimulationOptions(rate=100.0))
+        simulate("paper-dome", tmp_path, {"pneumatics.gauge": "bosch-bmp390"}, SimulationOptions(rate_Hz=100.0))
     assert list(tmp_path.iterdir()) == []
 
 

@@ -14,6 +14,7 @@ from pneutouch.bench.simulate.curve import PressCurve
 from pneutouch.errors import InputError
 from pneutouch.evaluation.resins import pressed, resins_of
 from pneutouch.spec.campaign import Campaign, Rig
+from pneutouch.spec.options import PlanOptions
 from pneutouch.spec.read import validate
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.plan import make_plan, plated_tests, rig_of, steps_of, write_plan
@@ -36,7 +37,7 @@ def rating(subject):
 
 @pytest.fixture(scope="module")
 def plan(library):
-    return make_plan("long-tube", specimens=2, library=library)
+    return make_plan("long-tube", None, PlanOptions(specimens=2), library=library)
 
 
 @pytest.fixture(scope="module")
@@ -200,7 +201,7 @@ def test_what_the_plan_chooses_stays_below_the_rating_and_the_design_s_own_press
     tests = plated_tests(subject, subject.rating.pressure_kPa)
     assert subject.rating.pressure_kPa == 19.7 and tests["saturation"][1] == (0.0, 12.0)
     changes = {"membrane.wall_thickness_mm": 0.8, "pneumatics.driving_pressures_kPa": [0, 20]}
-    thin = make_plan("long-tube", changes, specimens=1, library=library).record
+    thin = make_plan("long-tube", changes, PlanOptions(specimens=1), library=library).record
     (resin,) = thin.resins
     rated = resin.rating.rated_pressure_kPa
     assert 9.0 < rated < 12.0
@@ -217,7 +218,7 @@ def test_a_driving_pressure_above_the_nominal_limit_is_refused_with_key_and_rati
     with pytest.raises(
         InputError, match=r"driving_pressures_kPa\[1\] = 105.*gauge range, 100\.0 kPa.*at most 90\.0 kPa"
     ):
-        make_plan("paper-dome", changes, specimens=1, library=library)
+        make_plan("paper-dome", changes, PlanOptions(specimens=1), library=library)
 
 
 def test_rig_file_is_read_and_refused_with_its_name(tmp_path):
@@ -236,6 +237,6 @@ def test_pressure_beyond_the_limit_point_is_the_inputs_fault(library):
     with pytest.raises(
         InputError, match=r"\[0\] = 45.*TangoPlus: 45 kPa is above the limit point, 39\.6 kPa .* at most 19\.7 kPa"
     ):
-        make_plan("paper-dome", {"pneumatics.driving_pressures_kPa": [45]}, specimens=1, library=library)
+        make_plan("paper-dome", {"pneumatics.driving_pressures_kPa": [45]}, PlanOptions(specimens=1), library=library)
     with refused("resins", "TangoPlu"):
-        make_plan("paper-dome", resins=("TangoPlu",), library=library)
+        make_plan("paper-dome", None, PlanOptions(resins=["TangoPlu"]), library=library)

@@ -9,18 +9,17 @@ import tomllib
 import numpy as np
 import pytest
 
-from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.spec.options import CalibrationOptions, SimulationOptions
 from pneutouch.spec.read import assignments
 from pneutouch.spec.toml_text import toml_text
-from pneutouch.workflows.calibrate.calibrate import CalibrationOptions, run_calibration
+from pneutouch.workflows.calibrate.calibrate import run_calibration
 from pneutouch.workflows.export_reader import make_reader
 from pneutouch.workflows.simulate import simulate
-from pneutouch.workflows.simulate_inputs import SimulationOptions
 
 UNSEEN_KPA, REST = 9.0, 25
 DEAD = {"pneumatics.dead_volume_mL": 0.3}
-FITTED = ("modulus", "wall", "dead-volume", "offset")
+FITTED = ["modulus", "wall", "dead-volume", "offset"]
 
 MAIN = """
 #include <stdio.h>
@@ -73,13 +72,12 @@ def test_the_compiled_reader_holds_its_uncertainty_on_the_held_out_runs(tmp_path
     monkeypatch.setenv("PNEUTOUCH_HOME", str(tmp_path))
     options = SimulationOptions(
         specimens=1,
-        driving_pressures_kPa=(0.0, 6.0, UNSEEN_KPA, 12.0),
+        driving_pressures_kPa=[0.0, 6.0, UNSEEN_KPA, 12.0],
         runs=2,
-        kinds=("steps",),
-        rate=20.0,
+        kinds=["steps"],
+        rate_Hz=20.0,
         seed=1,
         model="atlas",
-        truth=SimulationTruth(),
     )
     place = simulate("paper-dome", tmp_path / "campaign", DEAD, options)
     content = tomllib.loads((place / "campaign.toml").read_text())
@@ -87,7 +85,7 @@ def test_the_compiled_reader_holds_its_uncertainty_on_the_held_out_runs(tmp_path
     content["assignments"] = assignments(DEAD)
     content["runs"] = [run for run in content["runs"] if run["file"] not in unseen]
     (place / "campaign.toml").write_text(toml_text(content))
-    run_calibration(CalibrationOptions(place, None, None, FITTED, (), True, "held", False, tmp_path / "fit"))
+    run_calibration(place, None, CalibrationOptions(fit=FITTED, save="held"), tmp_path / "fit")
     result = make_reader(evaluate("paper-dome@held", DEAD, model="auto"))
     (tmp_path / "paper_dome_held_reader.h").write_bytes(result.files["paper_dome_held_reader.h"])
     (tmp_path / "main.c").write_text(MAIN)

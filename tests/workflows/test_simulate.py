@@ -15,29 +15,35 @@ from pneutouch.bench.protocol import protocol
 from pneutouch.bench.simulate import SimulationTruth, press_curves
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign, campaign_of, design_of
+from pneutouch.spec.options import PlanOptions, SimulationOptions, options_of
 from pneutouch.spec.read import validate
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows import simulate as simulation
 from pneutouch.workflows.plan import make_plan, write_plan
 from pneutouch.workflows.simulate import simulate
-from pneutouch.workflows.simulate_inputs import KINDS, SimulationOptions
+from pneutouch.workflows.simulate_inputs import KINDS
 from tests.refusals import refused
 
 R0 = 9.25
 ASKED = SimulationOptions(
     specimens=2,
-    driving_pressures_kPa=(0.0, 22.0),
+    driving_pressures_kPa=[0.0, 22.0],
     runs=2,
-    kinds=("steps", "loop", "leak", "injection"),
-    rate=50.0,
+    kinds=["steps", "loop", "leak", "injection"],
+    rate_Hz=50.0,
+    rest_s=2.0,
     model="atlas",
-    truth=SimulationTruth(rest=2.0, specimens=400),
 )
+TRUTH, FEW = SimulationTruth(specimens=400), SimulationTruth(specimens=100)
+
+
+def changed(options, **changes):
+    return options_of(SimulationOptions, {**options.model_dump(), **changes})
 
 
 @pytest.fixture(scope="module")
 def folder(library, tmp_path_factory):
-    return simulate("paper-dome", tmp_path_factory.mktemp("one"), None, ASKED, library)
+    return simulate("paper-dome", tmp_path_factory.mktemp("one"), None, ASKED, library, truth=TRUTH)
 
 
 @pytest.fixture(scope="module")
@@ -66,16 +72,16 @@ def test_manifest_has_the_digest_of_every_file(folder):
 
 
 def test_same_seed_gives_the_same_bytes_and_another_other_noise(folder, library, tmp_path):
-    again = simulate("paper-dome", tmp_path / "same", None, ASKED, library)
+    again = simulate("paper-dome", tmp_path / "same", None, ASKED, library, truth=TRUTH)
     for path in (p for p in folder.rglob("*") if p.is_file()):
         assert path.read_bytes() == (again / path.relative_to(folder)).read_bytes(), path.name
-    small = replace(ASKED, specimens=1, runs=1, kinds=("steps",))
+    small = changed(ASKED, specimens=1, runs=1, kinds=["steps"])
     name = "runs/TangoPlus-1-0kPa-steps-1.csv"
     # A run does not depend on what else is simulated.
     assert (simulate("paper-dome", tmp_path / "small", None, small, library) / name).read_bytes() == (
         folder / name
     ).read_bytes()
-    other = replace(small, seed=1)
+    other = changed(small, seed=1)
     assert (simulate("paper-dome", tmp_path / "other", None, other, library) / name).read_bytes() != (
         folder / name
     ).read_bytes()
@@ -119,7 +125,7 @@ def test_truth_of_populations_covers_its_specimens(truth):
 
 
 def test_age_stiffens_the_same_specimen_as_its_hardness_says(library, tmp_path):
-    asked = replace(ASKED, specimens=1, driving_pressures_kPa=(0.0,), kinds=("loop",), ages_days=(0.0, 365.0))
+    asked = changed(ASKED, specimens=1, driving_pressures_kPa=[0.0], kinds=["loop"], ages_days=[0.0, 365.0])
     found = json.loads((simulate("paper-dome", tmp_path, None, asked, library) / "truth.json").read_text())
     new, old = (found["specimens"][f"TangoPlus-1-{age}d"] for age in (0, 365))
     ageing = found["parameters"]["TangoPlus"]["scatter"]["ageing"]["value"]
@@ -130,7 +136,7 @@ def test_age_stiffens_the_same_specimen_as_its_hardness_says(library, tmp_path):
 
 def test_parquet_holds_the_same_numbers_and_the_label(folder, library, tmp_path):
     parquet = pytest.importorskip("pyarrow.parquet")
-    there = simulate("paper-dome", tmp_path, None, replace(ASKED, specimens=1, parquet=True, kinds=("loop",)), library)
+    there = simulate("paper-dome", tmp_path, None, changed(ASKED, specimens=1, parquet=True, kinds=["loop"]), library)
     table = parquet.read_table(there / "runs/TangoPlus-1-22kPa-loop-1.parquet")
     csv = pandas.read_csv(folder / "runs/TangoPlus-1-22kPa-loop-1.csv", comment="#")
     assert table.schema.metadata[b"comment"] == b"simulated by pneutouch"
@@ -139,8 +145,14 @@ def test_parquet_holds_the_same_numbers_and_the_label(folder, library, tmp_path)
 
 @pytest.mark.slow
 def test_what_stops_short_is_said(library, tmp_path):
-    asked = replace(
-        ASKED, specimens=1, driving_pressures_kPa=(0.0,), runs=1, kinds=("steps", "relaxation"), model="auto", rate=20.0
+    asked = changed(
+        ASKED,
+        specimens=1,
+        driving_pressures_kPa=[0.0],
+        runs=1,
+        kinds=["steps", "relaxation"],
+        model="auto",
+        rate_Hz=20.0,
     )
     found = json.loads((simulate("long-tube", tmp_path, None, asked, library) / "truth.json").read_text())
     assert len(found["notes"]) == 2 and all("stops at 6." in note and "buckling" in note for note in found["notes"])
@@ -149,19 +161,19 @@ def test_what_stops_short_is_said(library, tmp_path):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"kinds": ("stps",)}, 'kinds = "stps": unknown. Did you mean steps'),
-        ({"driving_pressures_kPa": (22.0, 22.0)}, "each once"),
-        ({"driving_pressures_kPa": (45.0,)}, "beyond the limit point"),
-        ({"rate": 1.0}, "rate_Hz = 1.0: must be from 10"),
+        ({"kinds": ["stps"]}, 'kinds[0] = "stps": must be "steps"'),
+        ({"driving_pressures_kPa": [22.0, 22.0]}, "driving_pressures_kPa[1] = 22.0: every entry may appear once"),
+        ({"driving_pressures_kPa": [45.0]}, "beyond the limit point"),
+        ({"rate_Hz": 1.0}, "rate_Hz = 1.0: must be from 10"),
         ({"specimens": 0}, "specimens = 0: must be from 1"),
-        ({"resins": ("TangoPlus", "TangoPlus")}, "named twice"),
-        ({"truth": SimulationTruth(rest=-1.0)}, "rest = -1"),
-        ({"kinds": KINDS, "model": "atlas"}, 'model = "atlas"'),
+        ({"resins": ["TangoPlus", "TangoPlus"]}, "resins[1]"),
+        ({"rest_s": -1.0}, "rest_s = -1"),
+        ({"kinds": [*KINDS], "model": "atlas"}, 'model = "atlas"'),
     ],
 )
 def test_what_cannot_be_is_refused_and_leaves_nothing(change, words, library, tmp_path):
     with pytest.raises(InputError) as error:
-        simulate("paper-dome", tmp_path / "out", None, replace(ASKED, **change), library)
+        simulate("paper-dome", tmp_path / "out", None, changed(ASKED, **change), library)
     assert words in str(error.value)
     assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
 
@@ -188,7 +200,7 @@ def test_a_design_that_is_not_there_names_the_plan(planned, tmp_path):
         simulate(str(tmp_path), tmp_path / "out", None, QUICK)
 
 
-QUICK = SimulationOptions(rate=20.0, model="atlas", truth=SimulationTruth(rest=0.2, specimens=100))
+QUICK = SimulationOptions(rate_Hz=20.0, rest_s=0.2, model="atlas")
 
 
 def test_without_a_model_a_sensor_off_the_axis_is_pressed_by_the_harmonic_one(tmp_path, monkeypatch):
@@ -199,7 +211,7 @@ def test_without_a_model_a_sensor_off_the_axis_is_pressed_by_the_harmonic_one(tm
         return press_curves(sensor.replace(offset=0.0), driving, depth, "atlas")
 
     monkeypatch.setattr(simulation, "pressed", answered)
-    options = replace(QUICK, model=SimulationOptions().model, specimens=1, runs=1, kinds=("steps",))
+    options = changed(QUICK, model=None, specimens=1, runs=1, kinds=["steps"])
     for offset, model in ((0.0, "solid"), (3.0, "harmonic")):
         folder = simulate("paper-dome", tmp_path, {"contact.offset_mm": offset}, options)
         assert models and {*models} == {(offset, model)}
@@ -208,13 +220,13 @@ def test_without_a_model_a_sensor_off_the_axis_is_pressed_by_the_harmonic_one(tm
 
 
 def test_a_plan_is_simulated_run_by_run(planned, library, tmp_path):
-    made = simulate(str(planned), tmp_path, None, QUICK, library)
+    made = simulate(str(planned), tmp_path, None, QUICK, library, truth=FEW)
     there, here = (campaign_of(path)[0] for path in (planned, made))
     assert len(here.runs) == 14 == len(list((made / "runs").iterdir()))
     keys = [[(r.kind, r.sensor, r.driving_pressure_kPa, r.run) for r in one.runs] for one in (there, here)]
     assert keys[0] == keys[1] and here.simulated
     # The first specimen is that of a simulation without the plan, and so is its run.
-    alone = simulate("paper-dome", tmp_path / "alone", None, replace(QUICK, kinds=("loop",), specimens=1), library)
+    alone = simulate("paper-dome", tmp_path / "alone", None, changed(QUICK, kinds=["loop"], specimens=1), library)
     name = "runs/TangoPlus-1-12kPa-loop-1.csv"
     assert (made / name).read_bytes() == (alone / name).read_bytes()
     assert (made / "runs/tip 2-b-0kPa-injection-1.csv").is_file()
@@ -223,12 +235,12 @@ def test_a_plan_is_simulated_run_by_run(planned, library, tmp_path):
 
 def test_the_air_that_a_plan_states_is_pushed(library, tmp_path):
     """As many rows as the plan has pushes, at its volumes, with the pressures that its sheet foretells."""
-    plan = make_plan("paper-dome", specimens=1, library=library)
+    plan = make_plan("paper-dome", None, PlanOptions(specimens=1), library=library)
     expected = plan.record.resins[0].injection.sensor
     (run,) = [run for run in plan.campaign.runs if run.kind == "injection"]
     assert run.volumes_mL == pytest.approx([row.volume_mL for row in expected])
     alone = plan.campaign.model_copy(update={"runs": [run]})
-    made = simulate(str(write_plan(replace(plan, campaign=alone), tmp_path)), tmp_path, None, QUICK, library)
+    made = simulate(str(write_plan(replace(plan, campaign=alone), tmp_path)), tmp_path, None, QUICK, library, truth=FEW)
     (written,) = campaign_of(made)[0].runs
     rows = np.loadtxt(made / written.file, delimiter=",", skiprows=2)
     assert written.volumes_mL == run.volumes_mL
@@ -243,12 +255,12 @@ def test_volumes_are_stated_of_an_injection_alone(planned, library, tmp_path):
     folder.mkdir()
     (folder / "campaign.toml").write_text(content.replace('kind = "leak"', 'kind = "leak"\nvolumes_mL = [1, 2, 3]', 1))
     with refused("runs[0]"):
-        simulate(str(folder), tmp_path / "out", None, QUICK, library)
+        simulate(str(folder), tmp_path / "out", None, QUICK, library, truth=FEW)
 
 
 def test_what_a_plan_states_is_not_requested_again(planned, library, tmp_path):
     with pytest.raises(InputError, match=r"the plan in .* states it") as caught:
-        simulate(str(planned), tmp_path, None, replace(QUICK, runs=2), library)
+        simulate(str(planned), tmp_path, None, changed(QUICK, runs=2), library)
     assert caught.value.key == "runs"
     content = (planned / "campaign.toml").read_text()
     for spoilt, said in (
@@ -259,7 +271,7 @@ def test_what_a_plan_states_is_not_requested_again(planned, library, tmp_path):
         folder.mkdir(exist_ok=True)
         (folder / "campaign.toml").write_text(spoilt)
         with pytest.raises(InputError, match=said):
-            simulate(str(folder), tmp_path / "out", None, QUICK, library)
+            simulate(str(folder), tmp_path / "out", None, QUICK, library, truth=FEW)
     assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
 
 

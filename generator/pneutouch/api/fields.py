@@ -12,7 +12,8 @@ from pydantic import BaseModel
 
 from pneutouch.errors import InputError, PneutouchError, nearest, shown
 from pneutouch.spec.design import DesignFile
-from pneutouch.spec.fields import table_of
+from pneutouch.spec.fields import is_one_of_list, table_of
+from pneutouch.spec.options import AnyOptions, options_of
 from pneutouch.spec.values import finite_numbers, is_finite
 
 WHERE = "the keyword arguments"
@@ -121,6 +122,16 @@ def changes(model: type[BaseModel], arguments: Mapping[str, Any]) -> dict[str, A
             raise InputError(f"{key} is given twice", key=name, value=value)
         fields |= entries
     return fields
+
+
+def keyword_options(model: type[AnyOptions], arguments: Mapping[str, Any]) -> AnyOptions:
+    """The options of a command among the arguments of its function; one number or text is a list of one."""
+    content = {}
+    for key in model.model_fields.keys() & arguments.keys():
+        value = _of_keyword(key, _entries(arguments[key]))
+        alone = isinstance(value, PathLike) or is_one_of_list(model, key, value)
+        content[key] = [value] if alone else value
+    return options_of(model, content)
 
 
 @contextmanager

@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.api.design import Design, source_of
-from pneutouch.api.fields import named_by_keyword, number_of, numbers_of, path_of, paths_of, texts_of
+from pneutouch.api.fields import keyword_options, named_by_keyword, number_of, path_of, paths_of
 from pneutouch.api.results import Result
 from pneutouch.errors import InputError, shown
 from pneutouch.results.record import plain
-from pneutouch.units import KPA
+from pneutouch.spec.options import CalibrationOptions, FitOptions, PlanOptions, ScanOptions, SimulationOptions
 
 if TYPE_CHECKING:
     from pneutouch.workflows.calibrate.calibrate import CalibrationOutcome
@@ -42,16 +42,11 @@ def scan(
     ``speed_mm_per_s`` None: the specimen's. ``noise_kPa`` is rms of a sample, None: a step of the recorder. ``data``
     are measured signals (CSV). Raises InputError if the scan cannot be.
     """
-    from pneutouch.texture.sliding import NOISE
-    from pneutouch.workflows.scan import ScanOptions, run_scan
+    from pneutouch.workflows.scan import run_scan
     from pneutouch.workflows.scanned import scanned, write_scan
 
-    pressures_kPa = numbers_of(driving_pressures_kPa, "driving_pressures_kPa", alone=True)
-    noises_kPa = () if noise_kPa is None else numbers_of([noise_kPa], "noise_kPa")
-    pressures, noise = tuple(p * KPA for p in pressures_kPa), noises_kPa[0] * KPA if noises_kPa else NOISE
-    files = paths_of(data, "data", "give the path of a CSV file, or a list of such paths")
+    options = keyword_options(ScanOptions, locals())
     with named_by_keyword():
-        options = ScanOptions(pressures, preload_N, speed_mm_per_s, control, noise, seed, files)
         run = run_scan(str(specimen), source_of(design), options)
         record = scanned(run)
     return Result(f"Scan {run.name}", plain(record), partial(write_scan, run, record))
@@ -63,14 +58,11 @@ def plan(
     """Plan a measurement campaign: runs, steps, and what to expect. ``rig`` is a TOML file; None: the paper's rig."""
     from pneutouch.workflows.plan import make_plan, rig_of, write_plan
 
+    options = keyword_options(PlanOptions, locals())
     file = None if rig is None else path_of(rig, "rig", "give the path of a TOML file")
     with named_by_keyword():
         outcome = make_plan(
-            source_of(design),
-            resins=texts_of(resins, "resins"),
-            specimens=specimens,
-            rig=rig_of(file),
-            rig_name="" if file is None else file.name,
+            source_of(design), None, options, rig=rig_of(file), rig_name="" if file is None else file.name
         )
     return Result(f"Plan {outcome.name}", plain(outcome.record), partial(write_plan, outcome))
 
@@ -95,29 +87,9 @@ def simulate(
 
     ``model`` None: the solid, and harmonic for contact off the axis.
     """
-    from pneutouch.bench.simulate import SimulationTruth
-    from pneutouch.mechanics.models.choice import USUAL
     from pneutouch.workflows.simulate import simulate as run
-    from pneutouch.workflows.simulate_inputs import SimulationOptions
 
-    pressures_kPa = (
-        None
-        if driving_pressures_kPa is None
-        else numbers_of(driving_pressures_kPa, "driving_pressures_kPa", alone=True)
-    )
-    options = SimulationOptions(
-        texts_of(resins, "resins"),
-        specimens,
-        pressures_kPa,
-        runs,
-        texts_of(kinds, "kinds"),
-        rate_Hz,
-        seed,
-        model or USUAL,
-        numbers_of(ages_days, "ages_days"),
-        parquet,
-        SimulationTruth(rest=rest_s),
-    )
+    options = keyword_options(SimulationOptions, locals())
     with named_by_keyword():
         return run(source_of(design), Path(out), None, options)
 
@@ -199,15 +171,13 @@ def calibrate(
     the name ``save`` (None: of design and sensor), never over another unless ``replace``. The design with it is
     ``design.replace(calibration=result.name)``. ``columns`` and ``file_format`` are as for `characterize`.
     """
-    from pneutouch.workflows.calibrate.calibrate import CalibrationOptions, run_calibration
+    from pneutouch.workflows.calibrate.calibrate import run_calibration
 
-    source = None if design is None else source_of(design)
-    names, held = texts_of(fit, "fit"), numbers_of(hold_out_kPa, "hold_out_kPa")
+    options = keyword_options(CalibrationOptions, locals())
     with named_by_keyword():
-        options = CalibrationOptions(
-            path_of(data, "data", _DATA), source, sensor, names, held, priors, save, replace, Path(out)
-        )
-        return FittedSensor(run_calibration(options, reading=_reading(columns, file_format)))
+        source, campaign = None if design is None else source_of(design), path_of(data, "data", _DATA)
+        reading = _reading(columns, file_format)
+        return FittedSensor(run_calibration(campaign, source, options, Path(out), reading=reading))
 
 
 def _reading(
@@ -275,17 +245,11 @@ def fit_material(
     ``puck_mm`` is its diameter and thickness. Nothing is written before `Result.save`, which writes the material file
     into the user's folder and plot and figures into the folder given. Raises InputError for data that make no law.
     """
-    from pneutouch.bench.tensile.puck import PuckSize
-    from pneutouch.bench.tensile.read import SpecimenSize
     from pneutouch.workflows.fit_material import fit_material as run
     from pneutouch.workflows.fit_material import fit_report, write_material
-    from pneutouch.workflows.fitted_material import FitOptions, MaterialFacts
 
-    files = paths_of(data, "data", "give the path of a table, or a list of such paths")
-    size = SpecimenSize(gauge_length_mm, width_mm, thickness_mm)
-    puck = None if puck_mm is None else PuckSize(*puck_mm, bonded)
-    facts = MaterialFacts(like, density_g_per_cm3, tuple(shore_a), lab)
+    options = keyword_options(FitOptions, locals())
     with named_by_keyword():
-        fitted = run(FitOptions(files, name, size, puck, stretch_to, slack, facts))
+        fitted = run(paths_of(data, "data", "give the path of a table, or a list of such paths"), options)
         report = fit_report(fitted)
     return Result(f"Material {name}", plain(report), partial(write_material, fitted, report))

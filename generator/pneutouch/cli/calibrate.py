@@ -10,10 +10,18 @@ import typer
 
 from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
 from pneutouch.cli.complete import names
-from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, reading_of, reading_text, with_fields
-from pneutouch.cli.simulate import numbers
+from pneutouch.cli.declared import (
+    READING_FIELDS,
+    ColumnsOption,
+    given,
+    reading_of,
+    reading_text,
+    with_fields,
+    with_options,
+)
 from pneutouch.cli.terminal import echo, notify, report_next, set_words, table_text
 from pneutouch.spec.campaign import Campaign
+from pneutouch.spec.options import CalibrationOptions
 from pneutouch.wording import counted
 
 if TYPE_CHECKING:
@@ -21,6 +29,7 @@ if TYPE_CHECKING:
 
 
 @app.command()
+@with_options(CalibrationOptions)
 @with_fields(Campaign, READING_FIELDS)
 def calibrate(
     data: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="Folder of a campaign, or its campaign file.")],
@@ -33,23 +42,6 @@ def calibrate(
             autocompletion=names("designs"),
         ),
     ] = None,
-    sensor: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Sensor of the campaign.", show_default="its only one")
-    ] = None,
-    fit: Annotated[
-        str, typer.Option(metavar="NAMES", help="What to fit: modulus, wall, dead-volume, offset, friction.")
-    ] = "modulus,dead-volume,wall,offset",
-    hold_out: Annotated[
-        list[str] | None, typer.Option(metavar="KPA,KPA", help="Driving pressures to predict by the others.")
-    ] = None,
-    no_priors: Annotated[bool, typer.Option("--no-priors", help="Fit to the measurements alone.")] = False,
-    save: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAME", help="Name of the calibration in the user's folder.", show_default="design and sensor"
-        ),
-    ] = None,
-    replace: Annotated[bool, typer.Option("--force", help="Replace a calibration of that name.")] = False,
     columns: ColumnsOption = None,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
@@ -59,14 +51,11 @@ def calibrate(
     with reporting():
         from pneutouch.cli.progress import bar
         from pneutouch.results.record import plain
-        from pneutouch.workflows.calibrate.calibrate import CalibrationOptions, run_calibration
+        from pneutouch.workflows.calibrate.calibrate import run_calibration
 
-        held = numbers("--hold-out", ",".join(hold_out or ()))
-        options = CalibrationOptions(
-            data, design, sensor, tuple(fit.split(",")), held, not no_priors, save, replace, out
-        )
+        asked = given(CalibrationOptions, fields)
         with bar("reading runs", unit="MB") as progress:
-            outcome = run_calibration(options, progress=progress, reading=reading_of(columns, fields))
+            outcome = run_calibration(data, design, asked, out, progress=progress, reading=reading_of(columns, fields))
         record = outcome.record
         if record.read_as:
             notify(reading_text(record.read_as))

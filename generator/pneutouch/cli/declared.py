@@ -1,33 +1,41 @@
-"""Options of a command made from the declared fields of a file, so that unit, type and help stand in one place.
+"""Options of a command made from its declared options, or the fields of a file: unit, type and help stand once.
 
 Options of the commands that read measured files, and the text on how they read them.
 """
 
 import inspect
+import operator
 import types
 import typing
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cache, partial
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 from pydantic import BaseModel
 
 from pneutouch.cli.complete import names
-from pneutouch.errors import PneutouchError
-from pneutouch.spec.fields import Declaration, declaration, table_of
+from pneutouch.errors import InputError, PneutouchError
+from pneutouch.spec.fields import Declaration, declaration, declarations, entries_of, extra_of, table_of
+from pneutouch.spec.options import AnyOptions, Options, flag_of, options_of
+from pneutouch.spec.values import plain_number
 
 if TYPE_CHECKING:
     from pneutouch.results.measured import ReadFiles
 
 
 class FieldOption(NamedTuple):
-    """The field ``table.key`` behind an option; ``parse`` where the option is a text in its own form, ``metavar``."""
+    """The field ``table.key`` behind an option; ``parse`` where the option is a text in its own form, ``metavar``.
+
+    ``table`` is empty for a field of the model itself; ``flag`` None: named as the parameter.
+    """
 
     table: str
     key: str
     parse: Callable[[str], Any] | None = None
     metavar: str | None = None
+    flag: str | None = None
 
 
 def with_fields(model: type[BaseModel], options: Mapping[str, FieldOption]) -> Callable[[Callable[..., None]], Any]:
@@ -35,11 +43,15 @@ def with_fields(model: type[BaseModel], options: Mapping[str, FieldOption]) -> C
 
     def decorate(command: Callable[..., None]) -> Callable[..., None]:
         hints = typing.get_type_hints(command, include_extras=True)
-        written = [p.replace(annotation=hints[p.name]) for p in inspect.signature(command).parameters.values()]
+        written = [
+            p.replace(annotation=hints.get(p.name, p.annotation))
+            for p in inspect.signature(command).parameters.values()
+        ]
         made = [_parameter(model, name, option) for name, option in options.items()]
         arguments = [p for p in written if "ArgumentInfo" in str(p.annotation) or p.annotation is typer.Context]
         others = [p for p in written if p not in arguments and p.kind is not inspect.Parameter.VAR_KEYWORD]
-        command.__signature__ = inspect.Signature([*arguments, *made, *others])  # type: ignore[attr-defined]
+        in_order = sorted([*arguments, *made, *others], key=lambda p: p.default is not inspect.Parameter.empty)
+        command.__signature__ = inspect.Signature(in_order)  # type: ignore[attr-defined]
         return command
 
     return decorate
@@ -50,8 +62,8 @@ def field_tables(options: Mapping[str, FieldOption], values: Mapping[str, Any]) 
     tables: dict[str, dict[str, Any]] = {}
     for name, value in values.items():
         if value is not None:
-            table, key, parse, _ = options[name]
-            if isinstance(value, list):
+            table, key, parse, *_ = options[name]
+            if isinstance(value, list) and parse is None and table:
                 # Names with commas between, as everywhere; the option may be repeated as well.
                 value = [word.strip() for text in value for word in str(text).split(",") if word.strip()]
             tables.setdefault(table, {})[key] = parse(value) if parse else value
@@ -78,23 +90,91 @@ def named_by_flag(given: Mapping[str, str], where: str, *, alone: bool) -> Itera
         raise
 
 
+def with_options(model: type[Options]) -> Callable[[Callable[..., None]], Any]:
+    """Give a command an option for each field of its options, which `given` turns into these."""
+    return with_fields(model, _flags(model))
+
+
+def given(model: type[AnyOptions], values: Mapping[str, Any]) -> AnyOptions:
+    """The options of a command as they were given. Raises InputError that names the field, as the parameter is."""
+    options = _flags(model)
+    stated = {name: value for name, value in values.items() if name in options}
+    return options_of(model, field_tables(options, stated).get("", {}))
+
+
+@cache
+def _flags(model: type[Options]) -> dict[str, FieldOption]:
+    """The options of a command by their parameters, which are named as the fields."""
+    options = {}
+    for field in declarations(model):
+        flag, metavar = flag_of(model, field.key), extra_of(model, field.key)["metavar"]
+        options[field.key] = FieldOption("", field.key, _parser(model, field.key, flag), metavar, flag)
+    return options
+
+
+def _parser(model: type[Options], key: str, flag: str) -> Callable[[Any], Any] | None:
+    if flag.startswith("no_"):
+        return operator.not_
+    entries = entries_of(model, key)
+    if entries == "numbers":
+        return partial(_numbers, parameter=key, separator=str(extra_of(model, key)["separator"]))
+    return _words if entries in ("names", "texts") else None
+
+
+def _words(texts: Iterable[str], separator: str = ",") -> list[str]:
+    """Words with commas between, of an option that may be repeated."""
+    return [word.strip() for text in texts for word in text.split(separator) if word.strip()]
+
+
+def _numbers(texts: Sequence[str], parameter: str, separator: str) -> list[float]:
+    try:
+        return [plain_number(word.removesuffix("mm")) for word in _words(texts, separator)]
+    except ValueError:
+        between = "commas" if separator == "," else separator
+        problem = f"must be numbers with {between} between, such as {separator.join(('20', '6'))}"
+        raise InputError(problem, key=parameter, value=",".join(texts)) from None
+
+
 def _parameter(model: type[BaseModel], name: str, option: FieldOption) -> inspect.Parameter:
-    table = table_of(model, option.table)
+    table = table_of(model, option.table) if option.table else model
     assert table is not None
     field = declaration(table, option.key)
-    kind: Any = str if option.parse else _kind(table, option.key)
-    flags = [f"--{name.replace('_', '-')}"] if kind is bool else []
+    kind: Any = _kind(table, option.key)
+    if option.parse and kind is not bool:
+        kind = str if option.table else list[str]
+    flags = [f"--{(option.flag or name).replace('_', '-')}"] if option.flag or kind is bool else []
     known = names(field.registry, listed=kind is not str) if field.registry else None
-    info = typer.Option(*flags, metavar=option.metavar, help=_help(field), autocompletion=known)
-    annotation: Any = Annotated[kind | None, info]
-    return inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD, default=None, annotation=annotation)
+    default = None if option.table else _default(table, field)
+    shown = extra_of(table, option.key).get("shown") or default is not None
+    info = typer.Option(*flags, metavar=option.metavar, help=_help(field), autocompletion=known, show_default=shown)
+    annotation: Any = Annotated[kind if default is inspect.Parameter.empty else kind | None, info]
+    return inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD, default=default, annotation=annotation)
+
+
+def _default(table: type[BaseModel], field: Declaration) -> Any:
+    """The default of an option as it would be typed; None where nothing would."""
+    if table.model_fields[field.key].is_required():
+        return inspect.Parameter.empty
+    if field.default is None or isinstance(field.default, bool) or field.default == []:
+        return None
+    if not isinstance(field.default, list):
+        return field.default
+    return [",".join(entry if isinstance(entry, str) else f"{entry:g}" for entry in field.default)]
 
 
 def _kind(table: type[BaseModel], key: str) -> Any:
-    """The type of a field without None and without its bounds."""
+    """The type of a field without None and without its bounds; words stand for str."""
     annotation = table.model_fields[key].annotation
     if typing.get_origin(annotation) in (typing.Union, types.UnionType):
         (annotation,) = (kind for kind in typing.get_args(annotation) if kind is not types.NoneType)
+    if typing.get_origin(annotation) is typing.Literal:
+        return str
+    if typing.get_origin(annotation) is list:
+        return list[_bare(typing.get_args(annotation)[0])]  # type: ignore[misc]
+    return _bare(annotation)
+
+
+def _bare(annotation: Any) -> Any:
     return typing.get_args(annotation)[0] if typing.get_origin(annotation) is Annotated else annotation
 
 
@@ -134,7 +214,8 @@ def reading_of(columns: Sequence[str] | None, fields: Mapping[str, Any]) -> dict
     """The tables [columns] and [format] that the options state."""
     from pneutouch.workflows.characterize import parse_columns
 
-    return {"columns": parse_columns(columns or []), **field_tables(READING_FIELDS, fields)}
+    stated = {name: value for name, value in fields.items() if name in READING_FIELDS}
+    return {"columns": parse_columns(columns or []), **field_tables(READING_FIELDS, stated)}
 
 
 def reading_words(columns: Sequence[str] | None, fields: Mapping[str, Any]) -> list[str]:

@@ -7,27 +7,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
 import typer
 
 from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
-from pneutouch.cli.complete import names
+from pneutouch.cli.declared import given, with_options
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify, report_next, table_text
 from pneutouch.results.fit import MaterialFit
 from pneutouch.results.record import plain
-
-if TYPE_CHECKING:
-    from pneutouch.bench.tensile.puck import PuckSize
-
-
-_LengthOption = Annotated[
-    float | None, typer.Option(metavar="MM", help="Of the tensile specimen.", show_default="as the file states")
-]
+from pneutouch.spec.options import FitOptions
 
 
 @app.command("fit-material")
+@with_options(FitOptions)
 def fit_material(
     data: Annotated[
         list[Path],
@@ -35,45 +29,18 @@ def fit_material(
             metavar="DATA...", help="CSV of a tensile test, one file a specimen; with --puck of a puck test."
         ),
     ],
-    name: Annotated[str, typer.Option("--name", metavar="NAME", help="Name of the material, as designs name it.")],
-    like: Annotated[
-        str | None,
-        typer.Option(
-            autocompletion=names("materials"), help="Known material whose density, hardness and casting are kept."
-        ),
-    ] = None,
-    density: Annotated[float | None, typer.Option(metavar="G/CM3", help="Density of a material that is new.")] = None,
-    shore_a: Annotated[str | None, typer.Option(metavar="N,N,...", help="Readings of the hardness, Shore A.")] = None,
-    gauge_length: _LengthOption = None,
-    width: _LengthOption = None,
-    thickness: _LengthOption = None,
-    puck: Annotated[
-        str | None,
-        typer.Option(metavar="DxT", help="A puck pressed between plates: diameter and thickness in mm, such as 20x6."),
-    ] = None,
-    bonded: Annotated[bool, typer.Option("--bonded", help="The puck's faces cannot slide on the plates.")] = False,
-    stretch_to: Annotated[
-        float | None, typer.Option(metavar="STRETCH", help="Fit up to there.", show_default="what a sensor reaches")
-    ] = None,
-    slack: Annotated[
-        float | None, typer.Option(metavar="STRAIN", help="Strain before the specimen pulls.", show_default="found")
-    ] = None,
-    lab: Annotated[str | None, typer.Option(help="Who measured, for the sources.")] = None,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
+    **options: Any,
 ) -> None:
     """Fit a hyperelastic law to a tensile or puck test and write it as a material of your own."""
     with reporting():
-        from pneutouch.bench.tensile.read import SpecimenSize
         from pneutouch.workflows.fit_material import fit_material as fit
         from pneutouch.workflows.fit_material import fit_report, write_material
-        from pneutouch.workflows.fitted_material import FitOptions, MaterialFacts
 
-        facts = MaterialFacts(like, density, _readings(shore_a), lab)
-        size = SpecimenSize(gauge_length, width, thickness)
-        options = FitOptions(tuple(data), name, size, _puck(puck, bonded), stretch_to, slack, facts)
+        asked = given(FitOptions, options)
         with bar("fitting laws"):
-            fitted = fit(options)
+            fitted = fit(data, asked)
             report = fit_report(fitted)
             folder = write_material(fitted, report, out)
         for note in report.notes:
@@ -84,7 +51,7 @@ def fit_material(
 
         echo(fit_text(report))
         echo(f"\nwritten: {report.file}\n{folder}")
-        _report_next(name, report.profile)
+        _report_next(asked.name, report.profile)
 
 
 def _report_next(name: str, profile: str | None) -> None:
@@ -93,38 +60,6 @@ def _report_next(name: str, profile: str | None) -> None:
     first = "" if profile else f"add {name} to the resins of a profile of your own ({copied})"
     made = ("--set", f"print.profile={profile or 'PROFILE'}")
     report_next("predict", "paper-dome", "--set", f"membrane.material={name}", *made, first=first)
-
-
-def _puck(text: str | None, bonded: bool) -> PuckSize | None:
-    """The size of a puck. Raises InputError for a text that is no size."""
-    from pneutouch.bench.tensile.puck import PuckSize
-    from pneutouch.errors import InputError
-    from pneutouch.spec.values import plain_number
-
-    if text is None:
-        if bonded:
-            raise InputError("is of a puck", key="bonded", remedy="give `puck` too")
-        return None
-    parts = text.lower().replace("mm", "").split("x")
-    try:
-        diameter, thick = (plain_number(part) for part in parts)
-    except ValueError:
-        raise InputError("diameter and thickness in mm, such as 20x6", key="puck", value=text) from None
-    return PuckSize(diameter, thick, bonded)
-
-
-def _readings(text: str | None) -> tuple[float, ...]:
-    """Readings of hardness. Raises InputError for a text that is no list of readings."""
-    from pneutouch.errors import InputError
-    from pneutouch.spec.values import plain_number
-
-    try:
-        readings = tuple(plain_number(part) for part in (text or "").split(",") if part.strip())
-    except ValueError:
-        readings = (-1.0,)
-    if any(not 0 < reading < 100 for reading in readings):
-        raise InputError("numbers from 0 to 100, separated by commas, such as 19,20,21", key="shore_a", value=text)
-    return readings
 
 
 def fit_text(report: MaterialFit) -> str:

@@ -5,7 +5,7 @@ A test plan as text for people.
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -20,9 +20,10 @@ from pneutouch.cli.app import (
     print_json,
     reporting,
 )
+from pneutouch.cli.declared import given, with_options
 from pneutouch.cli.progress import bar
-from pneutouch.cli.simulate import SPECIMENS, ResinsOption, SpecimensOption, words
 from pneutouch.cli.terminal import echo, notify, report_next, table_text
+from pneutouch.spec.options import PlanOptions
 from pneutouch.wording import counted
 
 if TYPE_CHECKING:
@@ -30,10 +31,9 @@ if TYPE_CHECKING:
 
 
 @app.command()
+@with_options(PlanOptions)
 def plan(
     design: DesignArgument,
-    resins: ResinsOption = "",
-    specimens: SpecimensOption = SPECIMENS,
     rig: Annotated[
         Path | None,
         typer.Option("--rig", metavar="RIG.toml", help="File with a [rig] table; left out: the paper's rig."),
@@ -42,6 +42,7 @@ def plan(
     calibration: CalibrationOption = None,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
+    **options: Any,
 ) -> None:
     """Plan a measurement campaign: every run and step, what it must read, and where the rig cannot follow."""
     with reporting():
@@ -52,8 +53,7 @@ def plan(
             result = make_plan(
                 design,
                 changes(set_, calibration),
-                resins=words(resins),
-                specimens=specimens,
+                given(PlanOptions, options),
                 rig=rig_of(rig),
                 rig_name="" if rig is None else rig.name,
             )

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -23,14 +23,12 @@ from pneutouch.cli.app import (
     reporting,
 )
 from pneutouch.cli.complete import names
+from pneutouch.cli.declared import given, with_options
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, table_text
 from pneutouch.results.record import plain
 from pneutouch.results.scan import FavouringState, ScanRecord, SeparationRecord, SimulatedSignal, SoughtPattern
-
-if TYPE_CHECKING:
-    from pneutouch.workflows.scan import ScanOptions
-
+from pneutouch.spec.options import ScanOptions, flag_of
 
 SpecimenArgument = Annotated[
     str,
@@ -39,10 +37,13 @@ SpecimenArgument = Annotated[
     ),
 ]
 
-_NOT_SEPARATING = {key: f"--{key}" for key in ("pressures", "control", "seed", "data")}
+_NOT_SEPARATING = {
+    key: f"--{flag_of(ScanOptions, key)}" for key in ("driving_pressures_kPa", "control", "seed", "data")
+}
 
 
 @app.command()
+@with_options(ScanOptions)
 def scan(
     context: typer.Context,
     specimen: SpecimenArgument,
@@ -50,22 +51,6 @@ def scan(
         str,
         typer.Option("--design", help="Sensor that scans: name of a design, or path.", autocompletion=names("designs")),
     ],
-    pressures: Annotated[
-        str, typer.Option(metavar="KPA,KPA", help="Driving pressures, kPa; empty: measured data alone.")
-    ] = "0,22",
-    preload: Annotated[float, typer.Option(help="Normal force at which the height is set, N.")] = 0.5,
-    speed: Annotated[float | None, typer.Option(help="Speed along the path, mm/s; left out: the specimen's.")] = None,
-    control: Annotated[str, typer.Option(help="Quantity held constant along the path: height or force.")] = "height",
-    noise: Annotated[
-        float | None, typer.Option(help="White noise of a sample, kPa rms; left out: one step of the recorder.")
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the noise.")] = 0,
-    data: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--data", metavar="FILE", help="Measured signal, CSV with time_s and pressure_kPa; may be repeated."
-        ),
-    ] = None,
     separate: Annotated[
         str | None,
         typer.Option(
@@ -78,19 +63,20 @@ def scan(
     calibration: CalibrationOption = None,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
+    **options: Any,
 ) -> None:
     """Scan a specimen with a sensor: signals, scalograms and which pattern each state shows."""
     with reporting():
-        options = _options(pressures, preload, speed, control, noise, seed, data or [])
+        asked = given(ScanOptions, options)
         if separate is not None:
             refuse_flags(context, _NOT_SEPARATING, "--separate, which scans nothing", specimen)
-            _separate(specimen, design, separate, options, changes(set_, calibration), json=json)
+            _separate(specimen, design, separate, asked, changes(set_, calibration), json=json)
             return
         from pneutouch.workflows.scan import run_scan
         from pneutouch.workflows.scanned import scanned, write_scan
 
         with bar("scanning"):
-            run = run_scan(specimen, design, options, changes(set_, calibration))
+            run = run_scan(specimen, design, asked, changes(set_, calibration))
             record = scanned(run)
             folder = write_scan(run, record, out)
         if json:
@@ -98,22 +84,6 @@ def scan(
         else:
             echo(scan_text(record))
             echo(f"\n{folder}")
-
-
-def _options(
-    pressures: str, preload: float, speed: float | None, control: str, noise: float | None, seed: int, data: list[Path]
-) -> ScanOptions:
-    from pneutouch.errors import InputError
-    from pneutouch.spec.values import plain_number
-    from pneutouch.texture.sliding import NOISE
-    from pneutouch.units import KPA
-    from pneutouch.workflows.scan import ScanOptions
-
-    try:
-        listed = tuple(plain_number(part) * KPA for part in pressures.split(",") if part.strip())
-    except ValueError:
-        raise InputError(f"--pressures {pressures}: must be numbers in kPa with commas between, such as 0,22") from None
-    return ScanOptions(listed, preload, speed, control, NOISE if noise is None else noise * KPA, seed, tuple(data))
 
 
 def _separate(

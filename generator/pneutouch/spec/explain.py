@@ -37,7 +37,7 @@ def table_form(owner: type[BaseModel] | None, key: str) -> str:
 _FORMS: dict[typing.Any, str] = {str: '"..."'}
 
 
-def explained(model: type[BaseModel], detail: Any, where: str) -> InputError:
+def explained(model: type[BaseModel], detail: Any, where: str | None) -> InputError:
     """The error for one of pydantic's: the key, the value, and what would be right."""
     # Names in angle brackets distinguish the kinds of a value that may be of several; they are no keys.
     path = [str(step) for step in detail["loc"] if not isinstance(step, int) and not str(step).startswith("<")]

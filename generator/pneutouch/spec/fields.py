@@ -6,7 +6,7 @@ declaration; nothing repeats it.
 
 import types
 import typing
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
@@ -115,7 +115,7 @@ def name(default: str, *, registry: str, help: str) -> Any:
 def declaration(model: type[BaseModel], key: str) -> Declaration:
     """Return the declaration of ``key`` in ``model``."""
     info: FieldInfo = model.model_fields[key]
-    extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
+    extra = extra_of(model, key)
 
     def entry(word: str) -> Any:
         return extra.get(word)
@@ -130,6 +130,12 @@ def declaration(model: type[BaseModel], key: str) -> Declaration:
         registry=entry("registry"),
         one_of=next((known for known in info.metadata if isinstance(known, OneOf)), None),
     )
+
+
+def extra_of(model: type[BaseModel], key: str) -> Mapping[str, Any]:
+    """What the declaration of a field says beyond pydantic's own words."""
+    extra = model.model_fields[key].json_schema_extra
+    return extra if isinstance(extra, dict) else {}
 
 
 def declarations(model: type[BaseModel]) -> list[Declaration]:

@@ -92,8 +92,8 @@ _MOST_PROBLEMS = 20
 """Problems of one file that are reported: a user mends some and tries again, and each costs a search for its key."""
 
 
-def validate(model: type[Model], content: dict[str, Any], where: str) -> Model:
-    """Validate ``content`` against ``model``; ``where`` names the file in the message."""
+def validate(model: type[Model], content: dict[str, Any], where: str | None) -> Model:
+    """Validate ``content`` against ``model``; ``where`` names the file in the message, None: no file."""
     try:
         return model.model_validate(content)
     except ValidationError as error:

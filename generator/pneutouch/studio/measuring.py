@@ -16,12 +16,12 @@ from pneutouch.report.measured.head import tiles
 from pneutouch.results.calibration import OutcomeRecord
 from pneutouch.results.measured import MeasuredCampaign
 from pneutouch.spec.campaign import CAMPAIGN, Campaign, CampaignRun, RunKind, campaign_of
-from pneutouch.spec.values import finite_numbers
+from pneutouch.spec.options import CalibrationOptions, options_of
 from pneutouch.studio.job import Report
 from pneutouch.studio.measured import PageGroup, PageRun, page_group, page_run, page_runs, placed, write_runs
 from pneutouch.studio.question import Question
 from pneutouch.studio.repeating import CommandWords, calibrate_words, characterize_words
-from pneutouch.workflows.calibrate.calibrate import CalibrationOptions, CalibrationOutcome, run_calibration
+from pneutouch.workflows.calibrate.calibrate import CalibrationOutcome, run_calibration
 from pneutouch.workflows.characterize import Reading, load_curves, parse_columns, read_as, recognise
 from pneutouch.workflows.characterize.campaign import characterize as run_characterize
 from pneutouch.workflows.characterize.campaign import write
@@ -250,20 +250,17 @@ def calibrate(arguments: Mapping[str, Any], folder: Path, report: Report) -> Cal
     save = _text(arguments, "save")
     with _given(arguments, folder) as given:
         _plan(given, arguments)
-        options = CalibrationOptions(
+        stated = {key: value for key, value in arguments.items() if value not in (None, "", [])}
+        options = options_of(CalibrationOptions, {**stated, "save": save})
+        outcome = run_calibration(
             given.data,
             given.source,
-            _text(arguments, "sensor"),
-            tuple(_texts(arguments, "fit")) or USUAL,
-            tuple(_numbers(arguments, "hold_out_kPa")),
-            arguments.get("priors") is not False,
-            save,
-            arguments.get("replace") is True,
+            options,
             folder,
+            given.library,
+            lambda done, total: report(done, total, _READ),
+            given.reading,
             folder if save is None else given.root,
-        )
-        outcome = run_calibration(
-            options, given.library, lambda done, total: report(done, total, _READ), reading=given.reading
         )
         words = _noted(given, calibrate_words(given.data, given.question, arguments, options))
     paths = [Path(path) for path in outcome.record.written]
@@ -355,10 +352,3 @@ def _texts(arguments: Mapping[str, Any], key: str) -> list[str]:
     if not isinstance(values, list) or not all(isinstance(value, str) for value in values):
         raise InputError("must be a list of texts", key=key)
     return values
-
-
-def _numbers(arguments: Mapping[str, Any], key: str) -> list[float]:
-    values = arguments.get(key) or []
-    if not isinstance(values, list):
-        raise InputError("must be a list of numbers", key=key)
-    return finite_numbers(values, key)

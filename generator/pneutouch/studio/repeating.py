@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pneutouch.bench.calibrate import USUAL
+from pneutouch.spec.options import CalibrationOptions, option_words
 from pneutouch.studio.question import Question
-from pneutouch.workflows.calibrate.calibrate import CalibrationOptions
 
 _MARKS = {"\t": "tab", " ": "space"}
 
@@ -47,15 +46,7 @@ def calibrate_words(
     parameters: Parameters = []
     if question is not None:
         parameters.append(("design", "DESIGN" if changed else arguments["bases"][question.base]))
-    stated = {
-        "sensor": options.sensor,
-        "fit": None if options.names == USUAL else ",".join(options.names),
-        "hold_out": ",".join(f"{pressure:g}" for pressure in options.hold_out) or None,
-        "no_priors": None if options.priors else "",
-        "save": options.save,
-        "force": "" if options.save is not None and options.replace else None,
-    }
-    parameters += [(name, text) for name, text in stated.items() if text is not None]
+    parameters += option_words(options if options.save else options.model_copy(update={"replace": False}))
     return _words(
         "calibrate", data, [*parameters, *_reading_words(arguments)], _saving(question, arguments) if changed else ""
     )

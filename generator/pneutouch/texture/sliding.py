@@ -23,11 +23,6 @@ from pneutouch.texture.substrate import BarRow, Substrate
 from pneutouch.units import GAUGE_LIMIT, KPA
 
 Control = Literal["height", "force"]
-CONTROLS: tuple[Control, ...] = ("height", "force")
-
-PRELOAD = 0.5
-"""N; paper, section 5."""
-
 RATE = RECORDER_RATE_HZ
 """Samples a second, Hz; paper, Supplement C."""
 

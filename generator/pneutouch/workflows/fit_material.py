@@ -1,24 +1,20 @@
-"""``fit-material``: the law of a material from the tensile or puck test of a laboratory, and its file.
-
-Fit a material: curves or a puck in, law, modulus and material file out.
-
-Result of a fit, as data and as files.
-"""
+"""``fit-material``: the law of a material from the tensile or puck test of a laboratory, and the material file."""
 
 from __future__ import annotations
 
 import tomllib
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from pneutouch.bench.tensile.choose import MISFIT, NEO_HOOKEAN, LawChoice, choose_law
 from pneutouch.bench.tensile.law_fit import LawFit, difference
-from pneutouch.bench.tensile.puck import fit_puck
-from pneutouch.bench.tensile.read import read_tension
-from pneutouch.catalogue import Library, user_folder
+from pneutouch.bench.tensile.puck import PuckFit, PuckSize, fit_puck
+from pneutouch.bench.tensile.read import SpecimenSize, read_tension
+from pneutouch.catalogue import KINDS, Library, user_folder
 from pneutouch.catalogue.printers import makers
 from pneutouch.errors import InputError
 from pneutouch.formats import versioned
@@ -30,9 +26,11 @@ from pneutouch.results.fit import LawRecord, MaterialFit, PulledSpecimen, TriedL
 from pneutouch.results.record import plain
 from pneutouch.rounding import rounded
 from pneutouch.spec.files import read_bytes
-from pneutouch.spec.material import Material, density_problem
-from pneutouch.spec.values import plain_name
-from pneutouch.workflows.fitted_material import FitOptions, FittedMaterial, material_file
+from pneutouch.spec.material import HyperelasticLaw, Material, density_problem
+from pneutouch.spec.options import FitOptions
+from pneutouch.spec.read import read_toml
+from pneutouch.spec.toml_text import toml_text
+from pneutouch.spec.values import Quantity, file_name, plain_name
 
 HARDNESS_SHARE = (0.4, 0.65)
 """Young's modulus over that of Gent's relation where nothing is odd: TangoPlus by the paper's modulus has 0.50, eight
@@ -152,22 +150,31 @@ def _chart(fitted: FittedMaterial) -> str:
     return law_chart(points, curves, fitted.largest)
 
 
-def fit_material(options: FitOptions, library: Library | None = None) -> FittedMaterial:
+def fit_material(data: Sequence[Path], options: FitOptions, library: Library | None = None) -> FittedMaterial:
     """Read, check and fit; nothing is written. Raises InputError for data of no law and for a file of others."""
     plain_name(options.name, key="name")
-    _check(options)
+    size = puck_of(options)
+    if not data:
+        raise InputError("no file of data", key="data", remedy="give the CSV of a tensile or puck test")
+    if size is not None and len(data) > 1:
+        raise InputError("one puck, and more than one file", key="puck_mm", remedy="give one file")
+    density = options.density_g_per_cm3
+    problem = None if density is None else density_problem(density)
+    if problem is not None:
+        raise InputError(problem, key="density_g_per_cm3", value=density)
     path = user_folder() / "printprofiles/materials" / f"{options.name}.toml"
     library = library or Library.default()
     choice, puck = None, None
-    if options.puck is not None:
-        puck = fit_puck(options.data[0], options.puck)
+    if size is not None:
+        puck = fit_puck(data[0], size)
         law = LawFit(NEO_HOOKEAN, (puck.modulus,), (puck.error,), puck.misfit, puck.misfit)
         neo, largest = law, puck.largest
     else:
-        curves = [read_tension(file, options.size) for file in options.data]
-        choice = choose_law(curves, options.largest, options.slack)
+        lengths = SpecimenSize(options.gauge_length_mm, options.width_mm, options.thickness_mm)
+        curves = [read_tension(file, lengths) for file in data]
+        choice = choose_law(curves, options.stretch_to, options.slack)
         law, neo, largest = choice.law, choice.neo_hookean, choice.largest
-    fitted = FittedMaterial(options, law, neo, largest, choice, puck, path, "")
+    fitted = FittedMaterial(tuple(data), options, law, neo, largest, choice, puck, path, "")
     return replace(fitted, text=material_file(fitted, library))
 
 
@@ -176,8 +183,8 @@ def write_material(fitted: FittedMaterial, report: MaterialFit, out: Path) -> Pa
     folder = out / f"fit-{fitted.options.name}"
     check_writable(folder)
     inputs = {
-        "data": {path.name: digest(read_bytes(path, _MOST_BYTES, "data")) for path in fitted.options.data},
-        "stretch_to": fitted.options.largest,
+        "data": {path.name: digest(read_bytes(path, _MOST_BYTES, "data")) for path in fitted.data},
+        "stretch_to": fitted.options.stretch_to,
         "slack": fitted.options.slack,
         "material": fitted.text,
     }
@@ -188,31 +195,168 @@ def write_material(fitted: FittedMaterial, report: MaterialFit, out: Path) -> Pa
     return folder
 
 
-def _check(options: FitOptions) -> None:
-    """Raise InputError for options that do not go together."""
-    if not options.data:
-        raise InputError("no file of data", key="data", remedy="give the CSV of a tensile or puck test")
-    if options.puck is not None and len(options.data) > 1:
-        raise InputError("one puck, and more than one file", key="puck", remedy="give one file")
-    for key, low, high in (("largest", 1.1, 20.0), ("slack", 0.0, 0.5)):
-        value = getattr(options, key)
-        if value is not None and not low <= value <= high:
-            shown = "stretch_to" if key == "largest" else key
-            raise InputError(f"must be from {low:g} to {high:g}", key=shown, value=value)
-    _check_sizes(_lengths(options))
-    density = options.facts.density
-    problem = None if density is None else density_problem(density)
-    if problem is not None:
-        raise InputError(problem, key="density", value=density)
+def puck_of(options: FitOptions) -> PuckSize | None:
+    """The size of the puck, where the test is one."""
+    if options.puck_mm is None:
+        return None
+    diameter, thickness = options.puck_mm
+    return PuckSize(diameter, thickness, options.bonded)
 
 
-def _lengths(options: FitOptions) -> Sequence[tuple[str, float | None]]:
-    size, puck = options.size, options.puck
-    lengths = [("gauge_length", size.gauge_length), ("width", size.width), ("thickness", size.thickness)]
-    return lengths if puck is None else [*lengths, ("puck", puck.diameter), ("puck", puck.thickness)]
+@dataclass(frozen=True, slots=True)
+class FittedMaterial:
+    """Result of a fit.
+
+    Attributes:
+        data: Tensile files, one a specimen; of a puck one file.
+        options: As given.
+        law: The law taken.
+        neo_hookean: The neo-Hookean law over the same stretches.
+        largest: Stretch of tension up to which they were fitted.
+        choice: The fits of all laws; None of a puck.
+        puck: The fit of a puck; None of tension.
+        path: The material file.
+        text: Its content.
+    """
+
+    data: tuple[Path, ...]
+    options: FitOptions
+    law: LawFit
+    neo_hookean: LawFit
+    largest: float
+    choice: LawChoice | None
+    puck: PuckFit | None
+    path: Path
+    text: str
 
 
-def _check_sizes(lengths: Sequence[tuple[str, float | None]]) -> None:
-    for key, value in lengths:
-        if value is not None and not 0.05 <= value <= 1000.0:
-            raise InputError("must be from 0.05 to 1000 mm", key=key, value=value)
+HEAD = "# Written by pneutouch fit-material"
+"""First words of every file that is ours to overwrite."""
+
+_COLOUR = "#C8BFB4"
+_POISSON = {
+    "value": 0.49,
+    "source": "modelling value of the paper, Supplement B, for nearly incompressible elastomers; not measured",
+}
+
+
+def material_file(fitted: FittedMaterial, library: Library) -> str:
+    """The text of the file, checked as a material. Raises InputError if a file of that name is not of a fit."""
+    _check_ours(fitted.path)
+    content = _base(fitted, library)
+    measured: dict[str, Quantity | HyperelasticLaw] = {"shear_modulus_MPa": _modulus(fitted), "law": _law(fitted)}
+    facts, given = fitted.options, "as given to pneutouch fit-material"
+    if facts.density_g_per_cm3 is not None:
+        measured["density_g_per_cm3"] = Quantity(value=facts.density_g_per_cm3, source=f"{given}{_by(fitted)}")
+    if facts.shore_a:
+        readings = np.asarray(facts.shore_a)
+        spread = _four(float(readings.std(ddof=1))) if readings.size > 1 else None
+        source = f"{given}, {readings.size} readings{_by(fitted)}"
+        measured["shore_a"] = Quantity(value=_four(float(readings.mean())), spread=spread, source=source)
+    content |= {key: table.model_dump(exclude_none=True) for key, table in measured.items()}
+    KINDS["materials"].validate(content, str(fitted.path))
+    names = ", ".join(file_name(path.name) for path in fitted.data)
+    head = (
+        f"{HEAD} from {names}.\n"
+        "# Edit this line away and the command will no longer overwrite the file; delete the file to go back.\n"
+    )
+    return head + toml_text(content)
+
+
+def _four(value: float) -> float:
+    """A value to four significant digits, more than a test has."""
+    return float(f"{value:.4g}")
+
+
+def _check_ours(path: Path) -> None:
+    if not (path.exists() or path.is_symlink()):
+        return
+    if path.is_file() and not path.is_symlink():
+        with path.open(encoding="utf-8", errors="replace") as file:
+            if file.read(len(HEAD)) == HEAD:
+                return
+    problem = "was not written by pneutouch fit-material, so it is left as it is"
+    raise InputError(problem, file=path, remedy="give another `name`, or move it away")
+
+
+def _base(fitted: FittedMaterial, library: Library) -> dict[str, Any]:
+    """Known numbers of the material: of the one it is like, of a shipped one of its name, else those that a file
+    needs."""
+    name, facts = fitted.options.name, fitted.options
+    known = library.paths("materials")
+    like = facts.like or (name if name in known and known[name] != fitted.path else None)
+    if like is not None:
+        material = library.load("materials", like, key=None if facts.like is None else "like")
+        if material.kind != "elastomer":
+            raise InputError(f"{material.label} is rigid", key="like", value=like, remedy="name an elastomer")
+        kept = read_toml(known[like])
+        for key in ("measured", "along", "mix", "relaxation", "shear_modulus_is", "shore_a_one_year"):
+            kept.pop(key, None)
+        if facts.like is not None and like != name:
+            kept |= {"title": name, "code": _code(name)}
+        return kept
+    if facts.density_g_per_cm3 is None:
+        problem = f"no material is called {name}, so that its density is not known"
+        raise InputError(
+            problem, key="density_g_per_cm3", remedy="give it in g/cm3, or name a material that it is `like`"
+        )
+    return {
+        "title": name,
+        "code": _code(name),
+        "kind": "elastomer",
+        "base_resins": [name],
+        "colour": _COLOUR,
+        "poisson_ratio": _POISSON,
+    }
+
+
+def _code(name: str) -> str:
+    return "".join(letter for letter in name if letter.isalnum())[:8].upper() or "OWN"
+
+
+def _by(fitted: FittedMaterial) -> str:
+    return "" if fitted.options.lab is None else f"; {fitted.options.lab}"
+
+
+def _modulus(fitted: FittedMaterial) -> Quantity:
+    neo, value = fitted.neo_hookean, _four(fitted.neo_hookean.constants[0])
+    how = f"neo-Hookean fit to a stretch of {fitted.largest:.3g}, misfit {100 * neo.misfit:.3g} %"
+    each = () if fitted.choice is None else fitted.choice.each
+    low = high = spread = None
+    if len(each) > 1:
+        low, high = _four(min(*each, value)), _four(max(*each, value))
+        spread = _four(float(np.std(each, ddof=1)))
+        how += f"; low, high and spread: of {len(each)} specimens"
+    return Quantity(value=value, low=low, high=high, spread=spread, source=f"{_test(fitted)}: {how}{_by(fitted)}")
+
+
+def _law(fitted: FittedMaterial) -> HyperelasticLaw:
+    law = fitted.law
+    slack = "" if fitted.choice is None else f", {_slack(fitted)} of slack taken off"
+    # Not checked here: the whole file is, with its path in the message.
+    return HyperelasticLaw.model_construct(
+        name=law.form.name,
+        constants=[_four(constant) for constant in law.constants],
+        largest_stretch=_four(fitted.largest),
+        misfit_percent=float(f"{100 * law.misfit:.3g}"),
+        source=f"{_test(fitted)}: {law.form.label}{slack}; misfit: largest relative difference of nominal stress, "
+        f"running mean over 0.1 of stretch, from 10 % strain on{_by(fitted)}",
+    )
+
+
+def _slack(fitted: FittedMaterial) -> str:
+    assert fitted.choice is not None
+    return ", ".join(f"{100 * curve.slack:.2g} %" for curve in fitted.choice.curves)
+
+
+def _test(fitted: FittedMaterial) -> str:
+    """Description of the test, in words."""
+    names = ", ".join(file_name(path.name) for path in fitted.data)
+    puck = puck_of(fitted.options)
+    if puck is not None:
+        held = "faces held" if puck.bonded else "faces free to slide"
+        return f"puck of {puck.diameter:g} mm x {puck.thickness:g} mm pressed, {held} ({names})"
+    assert fitted.choice is not None
+    facts = fitted.choice.curves[0].facts
+    stated = [f"{key}: {facts[key]}" for key in ("Speed (mm/min)", "Strain Measurement", "Standard") if key in facts]
+    return f"uniaxial tension, {names}" + (f" ({', '.join(stated)})" if stated else "")

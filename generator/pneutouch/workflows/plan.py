@@ -35,6 +35,7 @@ from pneutouch.results.plan import (
 )
 from pneutouch.results.record import plain
 from pneutouch.spec.campaign import Campaign, CampaignRun, Rig, RunKind
+from pneutouch.spec.options import PlanOptions
 from pneutouch.spec.read import Changes, assignments, read_toml, validate
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.plan_expected import (
@@ -150,18 +151,15 @@ def paper_rig(scene: ResolvedDesign) -> Rig:
 def make_plan(
     design: str | DesignSource,
     changes: Changes | None = None,
+    options: PlanOptions = PlanOptions(),  # noqa: B008 - immutable
     *,
-    resins: tuple[str, ...] = (),
-    specimens: int = 3,
     rig: Rig = PAPER,
     rig_name: str = "",
     library: Library | None = None,
 ) -> CampaignPlan:
     """Plan a campaign of the paper's tests for a design in each resin. Raises InputError if that is impossible."""
-    if not 1 <= specimens <= 1000:
-        raise InputError("must be from 1 to 1000", key="specimens", value=specimens)
     library = library or Library.default()
-    subjects = resins_of(design, changes, resins, library=library)
+    subjects = resins_of(design, changes, options.resins, library=library)
     named, copied = named_design(design, library)
     scene = subjects[0].scene
     if rig == PAPER and not rig_name:
@@ -172,7 +170,7 @@ def make_plan(
     curves = {s.name: _pressed(s, tests) for s in subjects}
     listed: list[PlannedRun] = []
     for subject in subjects:
-        for k in range(specimens):
+        for k in range(options.specimens):
             listed += _runs(subject, f"{subject.name}-{k + 1}", tests, curves[subject.name], rig, len(listed))
     warnings = [w for s in subjects for w in _warnings(s, curves[s.name], tests, rig)]
     depths = tuple(depth for test, _ in tests.values() for depth in test.depths)
@@ -191,7 +189,7 @@ def make_plan(
         clearance_mm=CLEARANCE,
         plate_diameter_mm=scene.design.indentation.plate_diameter_mm,
         rig={**rig.model_dump(mode="json"), "file": rig_name or None},
-        sensors=tuple(PlannedSpecimen(f"{s.name}-{k + 1}", s.name) for s in subjects for k in range(specimens)),
+        sensors=tuple(PlannedSpecimen(f"{s.name}-{k + 1}", s.name) for s in subjects for k in range(options.specimens)),
         resins=tuple(_expected(s, curves[s.name], tests, rig) for s in subjects),
         tests={kind: _test(kind, *test) for kind, test in tests.items()},
         runs=tuple(listed),

@@ -3,54 +3,32 @@
 A sensor's scan over a specimen: both loaded, scanned at each driving pressure, patterns looked for, all written.
 """
 
-import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
-from pneutouch.errors import InputError, nearest
+from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.gauge import reading_of
 from pneutouch.mechanics import Sensor
 from pneutouch.parts import assemble
 from pneutouch.parts.specimen.bars import places
+from pneutouch.spec.options import ScanOptions
 from pneutouch.spec.read import Changes
 from pneutouch.spec.specimen import Bars
 from pneutouch.texture.contact import PreloadContact, touch
 from pneutouch.texture.detect import Detection, detect, least_duration
 from pneutouch.texture.signal import Signal, read_signal
-from pneutouch.texture.sliding import CONTROLS, NOISE, PRELOAD, Recorder, ScanPath, TextureScan, scan
+from pneutouch.texture.sliding import NOISE, Recorder, ScanPath, TextureScan, scan
 from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate
 from pneutouch.units import KPA
 from pneutouch.workflows.specimen import ResolvedSpecimen, draw, load_specimen
 
 KEPT = 20.0
 """Highest frequency of signals in CSV files, Hz, or twice the highest pattern's; with five times as many samples."""
-
-SPEEDS = (0.01, 1000.0)
-"""Slowest and fastest scan, mm/s: a 60 mm path then lasts 1.7 h and 0.06 s."""
-
-MOST_NOISE = 100.0 * KPA
-"""Noise as large as the gauge's range, MPa rms."""
-
-PRESSURES = (0.0, 22.0 * KPA)
-"""The soft and the stiff state of the paper's section 5, MPa."""
-
-
-@dataclass(frozen=True)
-class ScanOptions:
-    """The options of a scan: pressures in MPa, N, mm/s (None: the specimen's), MPa rms, measured signals."""
-
-    pressures: tuple[float, ...] = PRESSURES
-    preload: float = PRELOAD
-    speed: float | None = None
-    control: str = "height"
-    noise: float = NOISE
-    seed: int = 0
-    data: tuple[Path, ...] = field(default=())
 
 
 @dataclass(frozen=True)
@@ -67,7 +45,7 @@ class AnalysedSignal:
 
 @dataclass(frozen=True)
 class ScanRun:
-    """A whole run; ``frequencies`` are the patterns' at the speed of the scan, Hz, by name."""
+    """A whole run; ``frequencies`` are the patterns' at the speed of the scan, Hz, by name; ``noise`` in MPa rms."""
 
     specimen: ResolvedSpecimen
     design: ResolvedDesign
@@ -75,6 +53,7 @@ class ScanRun:
     matrix: MatrixLayer
     bars: tuple[BarRow, ...]
     options: ScanOptions
+    noise: float
     path: ScanPath
     frequencies: dict[str, float]
     seen: tuple[AnalysedSignal, ...]
@@ -93,7 +72,7 @@ class ScanRun:
 def run_scan(
     specimen: str,
     design: str | DesignSource,
-    options: ScanOptions = ScanOptions(),
+    options: ScanOptions = ScanOptions(),  # noqa: B008 - immutable
     changes: Changes | None = None,
     library: Library | None = None,
 ) -> ScanRun:
@@ -102,20 +81,18 @@ def run_scan(
     Raises InputError if that is impossible: see `texture.contact`, `texture.sliding`, `texture.detect`.
     """
     library = library or Library.default()
-    check_options(options)
     context, scene, sensor = load_both(specimen, design, changes, library)
-    if options.speed is not None:
-        context = replace(context, specimen=_at_speed(context, options.speed))
+    if options.speed_mm_per_s is not None:
+        context = replace(context, specimen=_at_speed(context, options.speed_mm_per_s))
     reading = reading_of(scene)
-    if scene.gauge is not None and options.noise == NOISE and reading.noise is not None:
-        options = replace(options, noise=reading.noise)
-    recorder = Recorder(noise=options.noise, step=reading.step or 0.0, limit=reading.limit, seed=options.seed)
+    noise = noise_of(options, reading.noise if scene.gauge is not None else None)
+    recorder = Recorder(noise=noise, step=reading.step or 0.0, limit=reading.limit, seed=options.seed)
     speed = context.specimen.scan.speed_mm_per_s
     bars, matrix = bars_of(context), matrix_of(context)
-    states = [touch(sensor, pressure, options.preload) for pressure in options.pressures]
+    states = [touch(sensor, at_kPa * KPA, options.preload_N) for at_kPa in options.driving_pressures_kPa]
     margin = max((state.contact_radius for state in states), default=0.0)
     length = context.specimen.block.length_mm
-    scan_path = ScanPath(margin, length - margin, speed, options.control)  # type: ignore[arg-type]
+    scan_path = ScanPath(margin, length - margin, speed, options.control)
     frequencies = {row.name: speed / row.pitch for row in bars}
     _check_length(context, scan_path, frequencies)
     simulated = [
@@ -123,7 +100,9 @@ def run_scan(
         for state in states
     ]
     measured = [_measured(path, frequencies) for path in options.data]
-    return ScanRun(context, scene, sensor, matrix, bars, options, scan_path, frequencies, (*simulated, *measured))
+    return ScanRun(
+        context, scene, sensor, matrix, bars, options, noise, scan_path, frequencies, (*simulated, *measured)
+    )
 
 
 def load_both(
@@ -202,18 +181,11 @@ def _at_speed(context: ResolvedSpecimen, speed: float) -> Any:
     return context.specimen.model_copy(update=update)
 
 
-def check_options(options: ScanOptions) -> None:
-    """Raise InputError for an option that no scan can have, in the words of the command line."""
-    if options.control not in CONTROLS:
-        raise InputError(f"unknown.{nearest(options.control, CONTROLS)}", key="control", value=options.control)
-    if not math.isfinite(options.preload) or options.preload <= 0:
-        raise InputError("must be a force above 0 N", key="preload_N", value=options.preload)
-    if options.speed is not None and not SPEEDS[0] <= options.speed <= SPEEDS[1]:
-        raise InputError(f"must be from {SPEEDS[0]:g} to {SPEEDS[1]:g} mm/s", key="speed_mm_per_s", value=options.speed)
-    if not 0 <= options.noise <= MOST_NOISE:
-        raise InputError(f"must be from 0 to {MOST_NOISE / KPA:g} kPa", key="noise_kPa", value=options.noise / KPA)
-    if not options.pressures and not options.data:
-        raise InputError("none given, and no `data`", key="driving_pressures_kPa", remedy="nothing to scan")
+def noise_of(options: ScanOptions, gauge: float | None = None) -> float:
+    """Noise of a sample, MPa rms: as stated, else the ``gauge``'s, else a step of the recorder."""
+    if options.noise_kPa is not None:
+        return options.noise_kPa * KPA
+    return NOISE if gauge is None else gauge
 
 
 def _check_length(context: ResolvedSpecimen, scan_path: ScanPath, frequencies: dict[str, float]) -> None:

@@ -20,10 +20,11 @@ from pneutouch.mechanics.uncertainty.propagate import limit_spread
 from pneutouch.results.scan import FavouringState, SeparatingDome, SeparationRecord, TellablePattern
 from pneutouch.rounding import rounded, tenths_below
 from pneutouch.spec.material import Material
+from pneutouch.spec.options import ScanOptions
 from pneutouch.spec.read import Changes
 from pneutouch.texture.separate import BarPattern, Separation, noise_amplitude, separate
 from pneutouch.units import KPA
-from pneutouch.workflows.scan import ScanOptions, check_options, load_both, matrix_of
+from pneutouch.workflows.scan import load_both, matrix_of, noise_of
 
 _RADII, _RATIOS, _PRESSURES = 8, 8, 9
 _SMALLEST, _LARGEST = 4.0, 20.0
@@ -69,19 +70,20 @@ def separating(
 ) -> SeparationRecord:
     """The domes that best distinguish two patterns; the specimen gives matrix and speed, the design the rest."""
     library = library or Library.default()
-    check_options(options)
     patterns = parse_patterns(text)
     context, scene, sensor = load_both(specimen, design, changes, library, scanned=False)
-    speed = context.specimen.scan.speed_mm_per_s if options.speed is None else options.speed
-    floor = tuple(noise_amplitude(speed / pattern.pitch, options.noise) for pattern in patterns)
+    speed = context.specimen.scan.speed_mm_per_s if options.speed_mm_per_s is None else options.speed_mm_per_s
+    floor = tuple(noise_amplitude(speed / pattern.pitch, noise_of(options)) for pattern in patterns)
     domes = candidates(scene, sensor, library)
-    separation = separate(domes.batch, domes.dome, options.preload, matrix_of(context), patterns, (floor[0], floor[1]))
+    separation = separate(
+        domes.batch, domes.dome, options.preload_N, matrix_of(context), patterns, (floor[0], floor[1])
+    )
     return SeparationRecord(
         tuple(
             TellablePattern(p.pitch, p.depth, speed / p.pitch, f / KPA) for p, f in zip(patterns, floor, strict=True)
         ),
         len(domes.batch),
-        options.preload,
+        options.preload_N,
         tuple(_dome(domes, separation, k) for k in range(min(_SHOWN, len(separation.dome)))),
     )
 

@@ -45,12 +45,12 @@ def scanned(run: ScanRun) -> ScanRecord:
         specimen=run.specimen.name,
         design=run.design.name,
         control=run.path.control,
-        preload_N=run.options.preload,
+        preload_N=run.options.preload_N,
         speed_mm_per_s=run.path.speed,
         path_mm=(run.path.start, run.path.end),
         sampling_Hz=RATE,
         kept_Hz=5 * run.kept,
-        noise_kPa=run.options.noise / KPA,
+        noise_kPa=run.noise / KPA,
         seed=run.options.seed,
         range_kPa=run.sensor.gas.gauge_limit / KPA,
         patterns=tuple(_bars(run, row) for row in run.bars),
@@ -69,11 +69,11 @@ def _inputs(run: ScanRun) -> Mapping[str, object]:
         "design": design.design.model_dump(mode="json"),
         "membrane": design.membrane_material.model_dump(mode="json"),
         "dead_volume_mm3": rounded(run.sensor.gas.dead_volume, _DIGITS),
-        "pressures_kPa": [rounded(p / KPA, _DIGITS) for p in options.pressures],
-        "preload_N": options.preload,
+        "pressures_kPa": [rounded(p, _DIGITS) for p in options.driving_pressures_kPa],
+        "preload_N": options.preload_N,
         "control": options.control,
         "speed_mm_per_s": run.path.speed,
-        "noise_kPa": options.noise / KPA,
+        "noise_kPa": run.noise / KPA,
         "seed": options.seed,
         "data": [path.name for path in options.data],
     }
@@ -114,7 +114,7 @@ def _bars(run: ScanRun, row: BarRow) -> BarsRecord:
         to_mm=float(row.edges.max()),
         frequency_Hz=frequency,
         bending_length_mm=None if young is None else row.bending_length(young.nominal, run.matrix.shear_modulus),
-        noise_amplitude_kPa=noise_amplitude(frequency, run.options.noise) / KPA,
+        noise_amplitude_kPa=noise_amplitude(frequency, run.noise) / KPA,
     )
 
 

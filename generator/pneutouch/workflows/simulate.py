@@ -16,6 +16,7 @@ from pneutouch.bench.simulate import (
     ModelDeviation,
     RecordSamples,
     SimulatedSpecimens,
+    SimulationTruth,
     population,
     simulate_leak,
     simulate_run,
@@ -36,15 +37,15 @@ from pneutouch.output.files import MANIFEST, entry, input_hash, json_bytes, mani
 from pneutouch.results.record import plain
 from pneutouch.results.simulation import CampaignTruth, ParameterValue, SimulatedPopulation, SimulatedSpecimen
 from pneutouch.spec.campaign import Campaign, CampaignRun, Rig
+from pneutouch.spec.options import SimulationOptions
 from pneutouch.spec.read import Changes, assignments, validate
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.simulate_inputs import (
     KINDS,
     PRESSED,
-    SimulationOptions,
+    RequestedRuns,
     as_planned,
-    check_options,
     driving_pressures_kPa,
     label,
     named_design,
@@ -55,8 +56,10 @@ from pneutouch.workflows.simulate_inputs import (
 PUSHED = np.linspace(0.0, 0.5, 11) * ML
 """Volumes of an injection run that no plan states, mm3: 0 to 0.5 mL, our choice."""
 
-_OPTIONS = ("specimens", "driving_pressures_kPa", "runs", "kinds", "rate", "seed", "model", "ages_days", "parquet")
-"""Options that a campaign depends on, in addition to its resins."""
+_OPTIONS = {"rate_Hz": "rate"} | {
+    key: key for key in ("specimens", "driving_pressures_kPa", "runs", "kinds", "seed", "model", "ages_days", "parquet")
+}
+"""Options that a campaign depends on, in addition to its resins, and their keys in what is hashed."""
 
 _DEVIATION = 1
 """Number of the random stream of a specimen's deviation, apart from that of its parameters."""
@@ -71,28 +74,29 @@ def simulate(
     options: SimulationOptions = SimulationOptions(),  # noqa: B008 - immutable
     library: Library | None = None,
     progress: Progress = lambda done, total: None,
+    truth: SimulationTruth = SimulationTruth(),  # noqa: B008 - immutable
 ) -> Path:
     """Write ``out/<design>-campaign/``: campaign.toml, runs, truth.json, manifest; the same input, the same bytes.
 
     ``design`` may be the folder of a plan, whose runs are simulated. Runs are written to a hidden folder next to the
     one to be as they are made. Raises InputError if that is impossible.
     """
-    check_options(options)
     library = library or Library.default()
-    design, changes, options = as_planned(design, changes, options, library)
-    subjects = resins_of(design, changes, options.resins, options.truth, library)
-    _check_rate(subjects[0].scene, options.rate)
-    if options.model == USUAL:
-        options = replace(options, model=usual_model(subjects[0].sensor))
+    design, changes, asked = as_planned(design, changes, options, library)
+    truth = truth if asked.rest_s is None else replace(truth, rest=asked.rest_s)
+    subjects = resins_of(design, changes, asked.resins, truth, library)
+    _check_rate(subjects[0].scene, asked.rate_Hz)
+    if asked.model == USUAL:
+        asked = asked.model_copy(update={"model": usual_model(subjects[0].sensor)})
     named, copied = named_design(design, library)
     name = f"{subjects[0].scene.name}-campaign"
     folder = out / name
     with replacing(folder) as fresh:
         writer = _Writer(fresh)
-        _write_all((named, assignments(changes or {})), subjects, options, writer, progress)
+        _write_all((named, assignments(changes or {})), subjects, asked, writer, progress)
         for path, content in copied.items():
             writer.put(path, content)
-        inputs = _inputs(subjects, options)
+        inputs = _inputs(subjects, asked)
         listed = dict(sorted(writer.files.items()))
         writer.put(MANIFEST, manifest(listed, name, inputs=inputs, input_hash=input_hash(inputs)))
     return folder
@@ -123,7 +127,7 @@ class _Truth:
 def _write_all(
     named: tuple[str, list[str]],
     subjects: list[SimulatedResin],
-    options: SimulationOptions,
+    options: RequestedRuns,
     writer: _Writer,
     progress: Progress,
 ) -> None:
@@ -147,7 +151,7 @@ def _write_all(
         assignments=named[1],
         simulated=True,
         ambient_pressure_kPa=scene.design.pneumatics.ambient_pressure_kPa,
-        rig=_rig(scene, options.rate),
+        rig=_rig(scene, options.rate_Hz),
         runs=runs,
     )
     writer.put("campaign.toml", campaign_toml(campaign, MARK))
@@ -156,7 +160,7 @@ def _write_all(
         design=scene.name,
         model=options.model,
         seed=options.seed,
-        rate_Hz=options.rate,
+        rate_Hz=options.rate_Hz,
         rest_s=model.rest,
         parameters={subject.name: _parameters(subject) for subject in subjects},
         specimens=truth.specimens,
@@ -203,29 +207,29 @@ def campaign_toml(campaign: Campaign, comment: str) -> bytes:
     return f"{comment}\n{toml_text(content)}".encode()
 
 
-def _depth(subject: SimulatedResin, options: SimulationOptions) -> float:
+def _depth(subject: SimulatedResin, options: RequestedRuns) -> float:
     """The deepest plate travel of the chosen kinds, mm."""
     reach = subject.sensor.dome.shape.height
     kinds = [kind for kind in options.kinds if kind in PRESSED] or ["steps"]
     return max(max(subject.truth.protocol(kind, reach, np.inf).depths) for kind in kinds)
 
 
-def _pressed(subject: SimulatedResin, sensor: Sensor, options: SimulationOptions, who: str) -> PressCurves:
+def _pressed(subject: SimulatedResin, sensor: Sensor, options: RequestedRuns, who: str) -> PressCurves:
     driving = [p * KPA for p in driving_pressures_kPa(subject, options)]
     return pressed(who, sensor, driving, _depth(subject, options), options.model)
 
 
-def _populations(subject: SimulatedResin, age: float, options: SimulationOptions) -> Iterator[SimulatedPopulation]:
+def _populations(subject: SimulatedResin, age: float, options: RequestedRuns) -> Iterator[SimulatedPopulation]:
     nominal = _pressed(subject, aged(subject.sensor, subject.truth, age), options, subject.name)
     seeds = options.seed, _number(subject.name)
     for k, pressure_kPa in enumerate(driving_pressures_kPa(subject, options)):
-        known = population(nominal, k, subject.truth, options.rate, seeds)
+        known = population(nominal, k, subject.truth, options.rate_Hz, seeds)
         about = known.figures, known.spread, known.count, known.basis
         yield SimulatedPopulation(subject.name, age, pressure_kPa, *about)
 
 
 def _specimen(
-    subject: SimulatedResin, name: str, k: int, age: float, options: SimulationOptions, truth: _Truth
+    subject: SimulatedResin, name: str, k: int, age: float, options: RequestedRuns, truth: _Truth
 ) -> Iterator[tuple[CampaignRun, bytes]]:
     """Every run of one specimen, the resin's k-th, at one age, and its true values."""
     rng = np.random.default_rng([options.seed, _number(subject.name), k])
@@ -240,7 +244,7 @@ def _specimen(
         shear_modulus_MPa=sensor.wall.hyperelastic.mu,
         pressures={
             f"{pressure_kPa:g}": {
-                **specimen_figures(curve, subject.truth, sensor.dome.shape.height, options.rate),
+                **specimen_figures(curve, subject.truth, sensor.dome.shape.height, options.rate_Hz),
                 "range_end_mm": curve.reach,
                 "range_ends_by": None if curve.ends is None else curve.ends[0],
             }
@@ -274,7 +278,7 @@ def _columns(
     subject: SimulatedResin,
     pressed_curves: PressCurves,
     place: int,
-    options: SimulationOptions,
+    options: RequestedRuns,
     rng: np.random.Generator,
 ) -> dict[str, Array]:
     """The columns of one run in the units of its file."""
@@ -282,15 +286,15 @@ def _columns(
     if run.kind == "injection":
         gas, pushed = sensor.gas, PUSHED if run.volumes_mL is None else np.array(run.volumes_mL) * ML
         pressure = sensor_pressure(pushed, pressed_curves.inflation, gas.dead_volume, gas.ambient_pressure)
-        read = pressure + truth.rig.noise(options.rate)[1] * rng.standard_normal(pushed.size)
+        read = pressure + truth.rig.noise(options.rate_Hz)[1] * rng.standard_normal(pushed.size)
         keep = np.isfinite(pressure)
         return {"volume_mL": pushed[keep] / ML, "pressure_kPa": truth.rig.stepped(read[keep]) / KPA}
     if run.kind == "leak":
-        still = simulate_leak(curve.driving, LEAK_SECONDS, truth.rig, options.rate, rng)
+        still = simulate_leak(curve.driving, LEAK_SECONDS, truth.rig, options.rate_Hz, rng)
         return {"time_s": still.time, "pressure_kPa": still.pressure / KPA}
     protocol = truth.protocol(run.kind, sensor.dome.shape.height, curve.reach)
     record: RecordSamples = simulate_run(
-        curve, protocol, truth.rig, options.rate, rng, wall=truth.wall, scatter=truth.scatter
+        curve, protocol, truth.rig, options.rate_Hz, rng, wall=truth.wall, scatter=truth.scatter
     )
     return {
         "time_s": record.time,
@@ -305,10 +309,10 @@ def _number(name: str) -> int:
     return zlib.crc32(name.encode())
 
 
-def _inputs(subjects: list[SimulatedResin], options: SimulationOptions) -> dict[str, object]:
+def _inputs(subjects: list[SimulatedResin], options: RequestedRuns) -> dict[str, object]:
     first = subjects[0]
     stated = ("specimens", "runs") if options.planned else ()
-    chosen = {key: getattr(options, key) for key in _OPTIONS if key not in stated}
+    chosen = {name: getattr(options, key) for key, name in _OPTIONS.items() if key not in stated}
     planned = [
         [run.sensor, run.kind, run.driving_pressure_kPa, run.run, run.age_days, *(run.volumes_mL or ())]
         for run in options.planned

@@ -1,6 +1,4 @@
-"""The options of a simulation, and the check of them.
-
-The runs that are simulated: those of a plan, or those that options request.
+"""The runs that are simulated: those of a plan, or those that options request.
 
 The design of a campaign: by its name, or as a file in the campaign's folder, which holds all that its file names.
 
@@ -8,23 +6,24 @@ A plan in place of a design: its campaign file names the design, and every run t
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import get_args
 
-from pneutouch.bench.simulate import SimulationTruth
+from pydantic import Field
+
 from pneutouch.catalogue import DesignSource, Library
 from pneutouch.catalogue.campaign import known_design
 from pneutouch.catalogue.scene import split_calibration
-from pneutouch.errors import InputError, nearest
+from pneutouch.errors import InputError
 from pneutouch.evaluation.resins import SimulatedResin
 from pneutouch.mechanics.models.choice import USUAL
 from pneutouch.spec.campaign import CAMPAIGN, CampaignRun, RunKind, campaign_of
 from pneutouch.spec.files import is_file, read_bytes
+from pneutouch.spec.options import SimulationOptions
 from pneutouch.spec.read import Changes, parse_changes
 from pneutouch.spec.values import file_name
 
-KINDS: tuple[str, ...] = get_args(RunKind)
+KINDS: tuple[RunKind, ...] = get_args(RunKind)
 PRESSED = ("steps", "saturation", "loop", "relaxation")
 """Kinds of run with a plate."""
 
@@ -32,71 +31,31 @@ REPEATED = ("steps", "saturation")
 """Kinds that are run as often as the user asks; the others once."""
 
 
-@dataclass(frozen=True)
-class SimulationOptions:
-    """Options of a simulation. Pressures in kPa (None: the design's), rate in Hz, ages in days; ``model`` USUAL for the
-    solid, or harmonic off the axis.
+class RequestedRuns(SimulationOptions):
+    """The options of a simulation; ``planned`` are the runs of a plan, which then states specimens and kinds."""
 
-    ``planned`` are the runs of a plan; specimens, pressures, runs and kinds then follow from them.
-    """
-
-    resins: tuple[str, ...] = ()
-    specimens: int = 3
-    driving_pressures_kPa: tuple[float, ...] | None = None
-    runs: int = 3
-    kinds: tuple[str, ...] = ("steps", "loop", "relaxation")
-    rate: float = 100.0
-    seed: int = 0
     model: str = USUAL
-    ages_days: tuple[float, ...] = (0.0,)
-    parquet: bool = False
-    truth: SimulationTruth = field(default_factory=SimulationTruth)
-    planned: tuple[CampaignRun, ...] = ()
+    planned: list[CampaignRun] = Field(default=[])
 
 
-def check_options(options: SimulationOptions) -> None:
-    """Raise InputError for a simulation that is impossible."""
-    bounds = (
-        ("specimens", options.specimens, 1, 1000),
-        ("runs", options.runs, 1, 1000),
-        ("rate_Hz", options.rate, 10.0, 1e5),
-        *(("driving_pressures_kPa", p, 0.0, 1000.0) for p in options.driving_pressures_kPa or ()),
-        *(("ages", a, 0.0, 36_500.0) for a in options.ages_days),
-        *((("rest", options.truth.rest, 0.2, 3600.0),) if options.truth.rest is not None else ()),
-    )
-    for key, value, low, high in bounds:
-        if not low <= value <= high:
-            raise InputError(f"must be from {low:g} to {high:g}", key=key, value=value)
-    for key, values in (
-        ("driving_pressures_kPa", options.driving_pressures_kPa),
-        ("ages", options.ages_days),
-        ("kinds", options.kinds),
-    ):
-        if values is not None and (not values or len(set(values)) != len(values)):
-            raise InputError("must name at least one, and each once", key=key, value=",".join(map(str, values)))
-    for kind in options.kinds:
-        if kind not in KINDS:
-            raise InputError(f"unknown.{nearest(kind, KINDS)}", key="kinds", value=kind)
-
-
-def driving_pressures_kPa(subject: SimulatedResin, options: SimulationOptions) -> list[float]:
+def driving_pressures_kPa(subject: SimulatedResin, options: RequestedRuns) -> list[float]:
     """Driving pressures of a resin's runs, ascending."""
     given_kPa = options.driving_pressures_kPa
     if options.planned:
         listed = [run for run in options.planned if run.resin == subject.name]
         # An injection begins at ambient pressure whatever the others are driven at.
-        given_kPa = tuple({run.driving_pressure_kPa for run in listed if run.kind != "injection"}) or (0.0,)
+        given_kPa = list({run.driving_pressure_kPa for run in listed if run.kind != "injection"}) or [0.0]
     return sorted(subject.scene.design.pneumatics.driving_pressures_kPa if given_kPa is None else given_kPa)
 
 
-def sensors_of(resin: str, options: SimulationOptions) -> list[str]:
+def sensors_of(resin: str, options: RequestedRuns) -> list[str]:
     """Names of the specimens of a resin."""
     if options.planned:
         return list(dict.fromkeys(run.sensor for run in options.planned if run.resin == resin))
     return [f"{resin}-{k + 1}" for k in range(options.specimens)]
 
 
-def runs_of(sensor: str, subject: SimulatedResin, age: float, options: SimulationOptions) -> Iterator[CampaignRun]:
+def runs_of(sensor: str, subject: SimulatedResin, age: float, options: RequestedRuns) -> Iterator[CampaignRun]:
     """Every run of one specimen at one age, with the file that it is written to."""
     suffix = "parquet" if options.parquet else "csv"
     for kind, at_kPa, number, volumes_mL in _keys(sensor, subject, age, options):
@@ -113,13 +72,13 @@ def runs_of(sensor: str, subject: SimulatedResin, age: float, options: Simulatio
         )
 
 
-def label(sensor: str, age: float, options: SimulationOptions) -> str:
+def label(sensor: str, age: float, options: RequestedRuns) -> str:
     """A specimen with its age, where there are several."""
-    return sensor if options.ages_days == (0.0,) else f"{sensor}-{age:g}d"
+    return sensor if options.ages_days == [0.0] else f"{sensor}-{age:g}d"
 
 
 def _keys(
-    sensor: str, subject: SimulatedResin, age: float, options: SimulationOptions
+    sensor: str, subject: SimulatedResin, age: float, options: RequestedRuns
 ) -> Iterator[tuple[str, float, int, list[float] | None]]:
     """Kind, driving pressure in kPa, number, and the injected volumes that a plan states, of each run."""
     if options.planned:
@@ -155,32 +114,32 @@ _STATED = ("resins", "specimens", "driving_pressures_kPa", "runs", "kinds", "age
 
 def as_planned(
     design: str | DesignSource, changes: Changes | None, options: SimulationOptions, library: Library
-) -> tuple[str | DesignSource, Changes | None, SimulationOptions]:
+) -> tuple[str | DesignSource, Changes | None, RequestedRuns]:
     """Design, changes and options of a plan, where ``design`` is the folder of one; else as they are.
 
     Raises InputError for options that the plan states, and for a plan that cannot be simulated.
     """
     if isinstance(design, DesignSource) or not is_file(Path(design) / CAMPAIGN):
-        return design, changes, options
+        return design, changes, RequestedRuns(**options.model_dump(exclude_none=True))
     campaign, folder = campaign_of(Path(design))
+    usual = SimulationOptions()
     for key in _STATED:
-        if getattr(options, key) != getattr(SimulationOptions(), key):
+        if getattr(options, key) != getattr(usual, key):
             raise InputError(f"the plan in {folder} states it", key=key, remedy="leave it out, or name the design")
     named, file = known_design(campaign, folder, library), folder / CAMPAIGN
     if named is None:
         raise InputError("names no design", file=file, key="design", remedy='write design = "..." into it')
     for place, run in enumerate(campaign.runs):
         if run.kind == "injection" and run.driving_pressure_kPa:
-            remedy = "must be 0: an injection begins at ambient pressure"
-            value = run.driving_pressure_kPa
-            raise InputError("", file=file, key=f"runs[{place}].driving_pressure_kPa", value=value, remedy=remedy)
+            problem, value = "must be 0: an injection begins at ambient pressure", run.driving_pressure_kPa
+            raise InputError(problem, file=file, key=f"runs[{place}].driving_pressure_kPa", value=value)
     _check_names([run.sensor for run in campaign.runs], file)
-    planned = replace(
-        options,
-        planned=tuple(campaign.runs),
-        resins=tuple(dict.fromkeys(run.resin for run in campaign.runs)),
-        kinds=tuple(kind for kind in KINDS if any(run.kind == kind for run in campaign.runs)),
-        ages_days=tuple(sorted({run.age_days for run in campaign.runs})),
+    planned = RequestedRuns(
+        **options.model_dump(exclude=set(_STATED), exclude_none=True),
+        planned=campaign.runs,
+        resins=list(dict.fromkeys(run.resin for run in campaign.runs)),
+        kinds=[kind for kind in KINDS if any(run.kind == kind for run in campaign.runs)],
+        ages_days=sorted({run.age_days for run in campaign.runs}),
     )
     return named, {**parse_changes(campaign.assignments), **(changes or {})}, planned
 

@@ -20,6 +20,18 @@ PRESS = "Compression (mm),Force (N)\n" + "".join(
 )
 
 
+ABOUT = {
+    "name": "small",
+    "input_hash": "",
+    "printer": "a printer",
+    "mode": "fine",
+    "orientation": "upright",
+    "versions": {},
+    "print_frame_offset_mm": [0.0, 0.0, 0.0],
+}
+"""What a voxel stack says of its design."""
+
+
 def make_base(folder: Path, built: Path) -> None:
     """Fill ``folder``; ``built`` is the output folder of the paper's sensor."""
     run("new", "mine", cwd=folder)
@@ -74,4 +86,4 @@ def _stack(folder: Path) -> None:
     from pneutouch.workflows.build_voxels import plan_voxels, write_stack
     from tests.export.voxels.small import small_assembly
 
-    write_stack(plan_voxels(small_assembly(), coarser=4.0).job, folder, "small_", {"name": "small"})
+    write_stack(plan_voxels(small_assembly(), coarser=4.0).job, folder, "small_", ABOUT)

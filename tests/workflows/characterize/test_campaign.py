@@ -5,28 +5,26 @@ from __future__ import annotations
 import json
 import shutil
 import tomllib
-from dataclasses import replace
 
 import pandas
 import pytest
 
-from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign
+from pneutouch.spec.options import SimulationOptions
 from pneutouch.spec.read import parse_changes
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.characterize import campaign as characterizing
 from pneutouch.workflows.characterize.campaign import characterize
 from pneutouch.workflows.simulate import simulate
-from pneutouch.workflows.simulate_inputs import SimulationOptions
 
 ASKED = SimulationOptions(
     specimens=2,
-    driving_pressures_kPa=(0.0, 22.0),
+    driving_pressures_kPa=[0.0, 22.0],
     runs=1,
-    kinds=("steps", "injection", "leak"),
+    kinds=["steps", "injection", "leak"],
     model="atlas",
-    truth=SimulationTruth(rest=5.0),
+    rest_s=5.0,
 )
 FIRST = "runs/TangoPlus-1-0kPa-steps-1.csv"
 
@@ -90,7 +88,11 @@ def test_a_shallower_test_is_set_beside_the_prediction_over_its_own_range(folder
 
 def test_what_changes_the_design_is_kept_in_the_campaign(tmp_path, library):
     made = simulate(
-        "paper-dome", tmp_path, {"membrane.wall_thickness_mm": 2.2}, replace(ASKED, kinds=("steps",)), library
+        "paper-dome",
+        tmp_path,
+        {"membrane.wall_thickness_mm": 2.2},
+        ASKED.model_copy(update={"kinds": ["steps"]}),
+        library,
     )
     content = tomllib.loads((made / "campaign.toml").read_text())
     assert Campaign.model_validate(content).assignments == ["membrane.wall_thickness_mm=2.2"]

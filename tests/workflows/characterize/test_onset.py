@@ -9,20 +9,17 @@ import numpy as np
 from pneutouch.bench.indents import find_indents
 from pneutouch.bench.protocol import protocol
 from pneutouch.bench.reading import PLATE, read_blocks
-from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.bench.source import identify
 from pneutouch.spec.campaign import ColumnMap, Rig
+from pneutouch.spec.options import SimulationOptions
 from pneutouch.workflows.simulate import simulate
-from pneutouch.workflows.simulate_inputs import SimulationOptions
 
 RADIUS = 8.73
 SOFT = {"membrane.inner_radius_mm": RADIUS, "membrane.wall_thickness_mm": 0.9}
 
 
 def test_the_lightest_steps_do_not_decide_where_a_run_begins(tmp_path, library):
-    options = SimulationOptions(
-        kinds=("steps",), driving_pressures_kPa=(0.0,), model="atlas", truth=SimulationTruth(rest=10.0)
-    )
+    options = SimulationOptions(kinds=["steps"], driving_pressures_kPa=[0.0], model="atlas", rest_s=10.0)
     folder = simulate("paper-dome", tmp_path, SOFT, options, library=library)
     campaign = tomllib.loads((folder / "campaign.toml").read_text())
     deepest, off = max(protocol("steps", RADIUS).depths), []

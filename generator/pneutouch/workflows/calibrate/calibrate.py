@@ -24,6 +24,7 @@ from pneutouch.results.record import extended
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.campaign import CAMPAIGN
 from pneutouch.spec.design import CALIBRATION
+from pneutouch.spec.options import CalibrationOptions
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.calibrate.calibration_files import (
     CampaignSource,
@@ -68,24 +69,17 @@ def _rated(calibration: Calibration, source: CampaignSource) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class CalibrationOptions:
-    """Options of a calibration: see the command. ``into`` holds ``calibrations``; None: the user's folder."""
+class CalibrationJob:
+    """A calibration to make: the campaign's folder or file, the design (None: the campaign's), the folder of the fit.
+
+    ``root`` is the folder that the calibration goes into, below ``calibrations``.
+    """
 
     data: Path
     design: str | DesignSource | None
-    sensor: str | None
-    names: tuple[str, ...]
-    hold_out: tuple[float, ...]
-    priors: bool
-    save: str | None
-    replace: bool
     out: Path
-    into: Path | None = None
-
-    @property
-    def root(self) -> Path:
-        """The folder that the calibration goes into, below ``calibrations``."""
-        return user_folder() if self.into is None else self.into
+    options: CalibrationOptions
+    root: Path
 
 
 @dataclass(frozen=True)
@@ -108,24 +102,29 @@ class CalibrationOutcome:
 
 
 def run_calibration(
+    data: Path,
+    design: str | DesignSource | None,
     options: CalibrationOptions,
+    out: Path,
     library: Library | None = None,
     progress: Progress = lambda done, total: None,
     reading: Reading | None = None,
+    root: Path | None = None,
 ) -> CalibrationOutcome:
-    """Read, fit and write.
+    """Read, fit and write; the fit into ``out``, the calibration into ``root`` (None: the user's folder).
 
     The places of all files are checked before the fit. A fit that cannot be a calibration is reported: without ``save``
     the record's ``calibration`` is None and its last note says why. Raises InputError.
     """
     library = library or Library.default()
+    job = CalibrationJob(data, design, out, options, user_folder() if root is None else root)
     if options.save is not None:
-        check_place(options.save, options.root)
-    loaded = load_curves(options.data, progress=progress, reading=reading)
+        check_place(options.save, job.root)
+    loaded = load_curves(data, progress=progress, reading=reading)
     sensor = chosen_sensor(loaded.campaign, options.sensor)
-    design = options.design or known_design(loaded.campaign, loaded.folder, library)
+    design = design or known_design(loaded.campaign, loaded.folder, library)
     if design is None:
-        raise InputError("names no design", file=options.data, remedy="give `design`")
+        raise InputError("names no design", file=data, remedy="give `design`")
     # A design that is calibrated already is fitted from its drawing again, or the prior would hold the data twice.
     changes = {**parse_changes(loaded.campaign.assignments), CALIBRATION: None}
     scene = load_scene(design, changes, library)
@@ -134,25 +133,25 @@ def run_calibration(
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
     expected = answers(design, changes, pairs, "solid" if built.protocol.other_contact else "atlas", library)
     curves, refused, questions = sound(loaded, expected)
-    _check_left(options.data, loaded, sensor, curves, refused)
+    _check_left(data, loaded, sensor, curves, refused)
     _, observations, notes = observations_of(loaded.campaign, curves, loaded.injections, scene, sensor)
     used_files = {curve.run.file for curve in observations.curves}
     notes = [*notes, *(f"{file}: {text}" for file, text in questions if file in used_files)]
-    source = _source(options.data, loaded, sensor, observations)
+    source = _source(data, loaded, sensor, observations)
     name = options.save or default_name(scene.name, sensor)
-    _check_places(options, name, folder_of(scene.name, sensor, options.out), source)
+    _check_places(job, name, folder_of(scene.name, sensor, out), source)
     calibration = calibrate(
         observations,
         scene,
-        options.names,
+        tuple(options.fit),
         priors=options.priors,
-        hold_out_kPa=options.hold_out,
+        hold_out_kPa=tuple(options.hold_out_kPa),
         sensor=sensor,
         title=loaded.campaign.title,
         notes=notes,
     )
     calibration = with_further_tests(calibration, source)
-    written, unsaved = _write(options, calibration, name, source)
+    written, unsaved = _write(job, calibration, name, source)
     record = extended(
         OutcomeRecord,
         calibration.record,
@@ -178,7 +177,7 @@ def _check_left(
 
 
 def _write(
-    options: CalibrationOptions, calibration: Calibration, name: str, source: CampaignSource
+    job: CalibrationJob, calibration: Calibration, name: str, source: CampaignSource
 ) -> tuple[list[Path], list[str]]:
     """Write the fit's report and the calibration: the written files, and a note if there is no calibration.
 
@@ -189,24 +188,24 @@ def _write(
         savable(calibration, source)
     except InputError as error:
         unsaved.append(f"no calibration was saved: {error.problem}; {error.remedy}")
-        if options.save is not None:
-            folder = write_calibration(calibration, options.out, source, unsaved)
+        if job.options.save is not None:
+            folder = write_calibration(calibration, job.out, source, unsaved)
             problem = f"{error.problem} (the fit is in {folder})"
-            file = None if error.key else options.data
+            file = None if error.key else job.data
             raise InputError(problem, file=file, key=error.key, remedy=error.remedy) from None
-    written = [write_calibration(calibration, options.out, source, unsaved)]
+    written = [write_calibration(calibration, job.out, source, unsaved)]
     if not unsaved:
-        written.append(_saved(calibration, name, options.root, source, replace=options.replace))
+        written.append(_saved(calibration, name, job.root, source, replace=job.options.replace))
     return written, unsaved
 
 
-def _check_places(options: CalibrationOptions, name: str, folder: Path, source: CampaignSource) -> None:
+def _check_places(job: CalibrationJob, name: str, folder: Path, source: CampaignSource) -> None:
     """Raise InputError, before the fit, where its output or its calibration could not be written."""
     check_writable(folder)
-    path = check_place(name, options.root)
+    path = check_place(name, job.root)
     # An unknown parameter is refused by the fit, before it computes.
-    if not options.replace and set(options.names) <= set(NAMES):
-        check_unlike(path, source.digest, options.names, options.hold_out)
+    if not job.options.replace and set(job.options.fit) <= set(NAMES):
+        check_unlike(path, source.digest, job.options.fit, job.options.hold_out_kPa)
 
 
 def _saved(calibration: Calibration, name: str, root: Path, source: CampaignSource, *, replace: bool) -> Path:
