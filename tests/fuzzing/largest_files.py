@@ -138,6 +138,7 @@ def empty_lists(path: Path) -> None:
 def dataset(path: Path) -> None:
     import xarray
 
+    from pneutouch.formats import KEY, format_of
     from pneutouch.workflows.sweep.dataset import _CONTENT_HASH, _content_hash, netcdf
 
     count = 250_000
@@ -146,6 +147,7 @@ def dataset(path: Path) -> None:
     content = xarray.Dataset(
         columns | words, {"point": ("point", np.arange(count, dtype=np.int32))}, {"input_hash": "ab"}
     )
+    content.attrs[KEY] = format_of("dataset")
     content.attrs[_CONTENT_HASH] = _content_hash(content)
     path.write_bytes(netcdf(content))
 
