@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pneutouch.evaluation.evaluate import evaluate
-from pneutouch.evaluation.uncertainty import known
+from pneutouch.evaluation.uncertainty import spread
 from pneutouch.mechanics.atlas.figures import FIGURES
 from pneutouch.mechanics.uncertainty import monte_carlo
 from pneutouch.report.certainty import SENSITIVITY
@@ -144,9 +144,9 @@ def test_correlated_parameters_spread_as_samples_of_them_do(place):
     """The limit pressure follows modulus and wall, whose errors cancel in part: 2000 samples agree within 5 %."""
     evaluation = predicted(place, {**DEAD, "pneumatics.driving_pressures_kPa": [5.0]})
     scene, sensor = evaluation.scene, evaluation.sensor
-    estimate = known(
+    estimate = spread(
         sensor, [5.0 * KPA], scene.membrane_material, [], scene.printer, "atlas", calibration=scene.calibration
-    )
+    ).combined()
     (joint,) = (source for source in estimate.budget.sources if source.name == "calibrated parameters")
     root = np.array([joint.loads[name] for name in ("shear_modulus", "wall_thickness", "dead_volume")])
     # Logarithms of modulus and wall; the dead volume in mm3, which the file has in mL.

@@ -19,7 +19,7 @@ from pneutouch.evaluation.comparison import (
     labelled,
     variance_of_ratio,
 )
-from pneutouch.evaluation.uncertainty import known
+from pneutouch.evaluation.uncertainty import spread
 from pneutouch.mechanics.atlas.figures import DEAD, FIGURES, INPUTS, log_figures, moved
 from pneutouch.mechanics.uncertainty.source import FIGURE
 from pneutouch.mechanics.uncertainty.sources.model_error import MODEL_CORRELATION, table_s1_errors
@@ -76,7 +76,7 @@ def _sampled(evaluation, side, figure, count=1500):
     scene, state = evaluation.scene, evaluation.prediction.states[0]
     resins = list(evaluation.resins.values())
     pressures = [state.driving_pressure]
-    estimate = known(evaluation.sensor, pressures, scene.membrane_material, resins, scene.printer, "atlas")
+    estimate = spread(evaluation.sensor, pressures, scene.membrane_material, resins, scene.printer, "atlas").combined()
     batch, on_figure = estimate.batch.take(np.zeros(count, int)), np.zeros(count)
     for number, source in enumerate(estimate.budget.sources):
         shared = source.name in ("published modulus", "ageing of the modulus", "ageing")

@@ -12,7 +12,7 @@ import pytest
 from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.charts import curve, under_contact
 from pneutouch.evaluation.result import by_model
-from pneutouch.evaluation.uncertainty import known, uncertainties
+from pneutouch.evaluation.uncertainty import spread, uncertainties
 from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, DEAD, FIGURES, INPUTS, SENSITIVITY, log_figures
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.corrected import figures as corrected
@@ -221,7 +221,7 @@ def test_the_interval_is_that_of_all_derivatives_by_the_solid(evaluated, library
     pressure = float(draw.uniform(0.05, 0.3)) * wall * modulus
     materials = list(library.all("materials", Material).values())
     scene = base.scene
-    budget = known(sensor, [pressure], scene.membrane_material, materials, scene.printer, "solid").budget
+    budget = spread(sensor, [pressure], scene.membrane_material, materials, scene.printer, "solid").combined().budget
     slopes = solid_slopes(sensor, pressure, budget.derivatives.slopes)
     exact = np.sqrt(sum(source.variance(slopes) for source in budget.sources))
     assert budget.standard[SENSITIVITY, 0] == pytest.approx(exact[SENSITIVITY, 0], rel=0.03)

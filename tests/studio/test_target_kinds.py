@@ -41,7 +41,7 @@ def test_the_best_of_each_process_is_a_card_that_is_the_row_saved(command, tmp_p
     printed = json.loads(said.stdout)
     assert {**json.loads(json.dumps(content["selection"])), "written": printed["written"]} == printed
     assert opened(second["state"], library) == DesignSource.of(printed["written"], library).changed({})
-    assert second["passes"] and ("Profile", "Stratasys Objet260 Connex", "") in second["rows"]
+    assert second["passes"] and ["Profile", "Stratasys Objet260 Connex", ""] in second["rows"]
     assert steps[0] == (0, 12, "casting, base") and [done for done, _, _ in steps] == sorted(
         done for done, _, _ in steps
     )

@@ -75,15 +75,6 @@ def number_of(value: Any, name: str) -> float | None:
     return None if value is None else numbers_of([value], name)[0]
 
 
-def texts_of(values: Any, name: str) -> tuple[str, ...]:
-    """Texts that were given as the keyword ``name``; one is a list of one. Raises InputError."""
-    given = _of_keyword(name, _entries(values))
-    texts = [given] if isinstance(given, str) else given
-    if not isinstance(texts, list) or not all(isinstance(text, str) for text in texts):
-        raise InputError("must be a list of texts", key=name, value=given)
-    return tuple(texts)
-
-
 def paths_of(values: Any, name: str, remedy: str) -> tuple[Path, ...]:
     """Paths that were given as the keyword ``name``; one is a list of one. Raises InputError."""
     given = _entries(values)

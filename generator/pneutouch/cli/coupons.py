@@ -13,6 +13,7 @@ import typer
 
 from pneutouch.cli.app import JsonOption, app, print_json, reporting
 from pneutouch.cli.complete import coupon_names, names
+from pneutouch.cli.declared import words
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, report_next, table_text
 from pneutouch.results.coupons import CouponReport
@@ -115,20 +116,15 @@ def _options(given: dict[str, Any]) -> CouponOptions:
     from pneutouch.workflows.coupons.order import CouponOptions
 
     copies = {}
-    for word in _words(given.get("copies")):
+    for word in words(given.get("copies", [])):
         name, equals, number = word.partition("=")
         if not equals or not number.strip().isdecimal():
             raise InputError(f"--copies {word}: write COUPON=N, such as puck=4")
         copies[name.strip()] = int(number)
-    materials, only = _words(given.get("material")), _words(given.get("only"))
+    materials, only = words(given.get("material", [])), words(given.get("only", []))
     return CouponOptions(
-        given.get("profile"), materials, given.get("design"), only, copies, _words(given.get("mixing"))
+        given.get("profile"), materials, given.get("design"), only, copies, words(given.get("mixing", []))
     )
-
-
-def _words(given: list[str] | None) -> list[str]:
-    """Words of a flag that may be repeated or hold several, parted by commas."""
-    return [word.strip() for text in given or [] for word in text.split(",") if word.strip()]
 
 
 def results_text(report: CouponReport) -> str:

@@ -118,17 +118,17 @@ def _parser(model: type[Options], key: str, flag: str) -> Callable[[Any], Any] |
     entries = entries_of(model, key)
     if entries == "numbers":
         return partial(_numbers, parameter=key, separator=str(extra_of(model, key)["separator"]))
-    return _words if entries in ("names", "texts") else None
+    return words if entries in ("names", "texts") else None
 
 
-def _words(texts: Iterable[str], separator: str = ",") -> list[str]:
+def words(texts: Iterable[str], separator: str = ",") -> list[str]:
     """Words with commas between, of an option that may be repeated."""
     return [word.strip() for text in texts for word in text.split(separator) if word.strip()]
 
 
 def _numbers(texts: Sequence[str], parameter: str, separator: str) -> list[float]:
     try:
-        return [plain_number(word.removesuffix("mm")) for word in _words(texts, separator)]
+        return [plain_number(word.removesuffix("mm")) for word in words(texts, separator)]
     except ValueError:
         between = "commas" if separator == "," else separator
         problem = f"must be numbers with {between} between, such as {separator.join(('20', '6'))}"

@@ -25,7 +25,7 @@ from pneutouch.cli.app import (
     reporting,
 )
 from pneutouch.cli.complete import percent_of
-from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, with_fields
+from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, with_fields, words
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify, report_next, report_written
 from pneutouch.errors import InputError, RuleBrokenError
@@ -43,10 +43,6 @@ def _pressures(text: str) -> list[float]:
         return plain_numbers(text)
     except ValueError:
         raise InputError("write two driving pressures in kPa, such as 0,22", key="same_at", value=text) from None
-
-
-def _names(text: str) -> list[str]:
-    return [name.strip() for name in text.split(",") if name.strip()]
 
 
 _PERCENT = "PERCENT"
@@ -72,7 +68,7 @@ SELECT_FIELDS = {
     "widest_range": FieldOption("target", "widest_range"),
     "base": FieldOption("setting", "base"),
     "profile": FieldOption("setting", "profile"),
-    "process": FieldOption("setting", "processes", _names, "PROCESS,...|any"),
+    "process": FieldOption("setting", "processes", lambda text: words([text]), "PROCESS,...|any"),
     "tube_length": FieldOption("setting", "tube_length_mm"),
     "dead_volume": FieldOption("setting", "dead_volume_mL"),
     "gauge": FieldOption("setting", "gauge", metavar="NAME|any"),

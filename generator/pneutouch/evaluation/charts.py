@@ -13,7 +13,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.evaluation.sheet_data import ChartPoint, SensitivityCurve, TradeOff, TuningChart
-from pneutouch.evaluation.uncertainty import known
+from pneutouch.evaluation.uncertainty import spread
 from pneutouch.mechanics import Sensor, SensorState, predict
 from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, SENSITIVITY
 from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
@@ -94,9 +94,9 @@ def interval(
     contact than a plate without friction.
     """
     at = np.linspace(drawn.driving_pressure_kPa[0], drawn.driving_pressure_kPa[-1], _BUDGETS)
-    estimate = known(
+    estimate = spread(
         sensor, (at * KPA).tolist(), material, materials, printer, model, calibration, states, anywhere=anywhere
-    )
+    ).combined()
     widths = estimate.budget.expanded[SENSITIVITY]
     good = np.isfinite(widths)
     width = np.interp(drawn.driving_pressure_kPa, at[good], widths[good])

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -28,6 +29,7 @@ from pneutouch.units import KPA
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.dynamics import SensorBandwidth
+    from pneutouch.mechanics.models.interface import Answered
     from pneutouch.mechanics.prediction import CurveOutcome
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.viscous.describe import ViscousRuns
@@ -182,18 +184,49 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
 
     Raises InputError if the scene cannot work.
     """
+    return evaluate_drawn(drawn(scene, options), find_resins)
+
+
+class DrawnScene(NamedTuple):
+    """A scene with its bodies and sensor, the options with a model's name, and assumptions of its age."""
+
+    scene: ResolvedDesign
+    assembly: Assembly
+    sensor: Sensor
+    options: PredictionOptions
+    aged: tuple[str, ...]
+
+
+def drawn(scene: ResolvedDesign, options: PredictionOptions) -> DrawnScene:
+    """Draw a scene, so that a model can be asked for its sensor. Raises InputError if it cannot work."""
     if options.model == USUAL:
         options = replace(options, model="harmonic" if scene.design.contact.off_axis else "solid")
     check_options(scene, options.model, options.clamp)
     assembly = assemble(scene)
     sensor = sensor_of(assembly, options.clamp)
+    notes: list[str] = []
     if options.aged:
-        sensor, shift = _aged(scene, sensor)
+        sensor, *notes = _aged(scene, sensor)
     check_object(scene, sensor)
+    return DrawnScene(scene, assembly, sensor, options, tuple(notes))
+
+
+def evaluate_drawn(
+    drawn: DrawnScene, find_resins: Callable[[], Resins], answers: Mapping[str, Answered] = MappingProxyType({})
+) -> Evaluation:
+    """Predict a scene that is drawn, with the ``answers`` that models gave already. Raises InputError if it cannot
+    work."""
+    scene, assembly, sensor, options, aged = drawn
     pressures = [p * KPA for p in scene.design.pneumatics.driving_pressures_kPa]
     try:
         prediction = predict(
-            scene.name, sensor, pressures, model=options.model, closure=options.closure, tolerance=options.tolerance
+            scene.name,
+            sensor,
+            pressures,
+            model=options.model,
+            closure=options.closure,
+            tolerance=options.tolerance,
+            answers=answers,
         )
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None
@@ -205,7 +238,7 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
     prediction = replace(prediction, error_estimate=prediction.error_estimate.with_sensitivity(known))
     check_plate(scene, prediction)
     check_first_touch(scene, prediction)
-    more = [shift] if options.aged else []
+    more = [*aged]
     if scene.calibration:
         deepest = max(state.range_end for state in prediction.states)
         more = [assumption(scene), *unmeasured(scene, deepest), *more]

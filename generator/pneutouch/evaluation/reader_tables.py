@@ -13,7 +13,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, ReaderGrid
-from pneutouch.evaluation.uncertainty import known, unknown
+from pneutouch.evaluation.uncertainty import spread, unknown
 from pneutouch.export.reader.reading import NOISES, UNSTEADY
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.predict import contact_words
@@ -55,7 +55,7 @@ def force_uncertainty(evaluation: Evaluation, grid: ReaderGrid) -> Array | None:
     from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
 
     rows = grid.driving_pressure[grid.computed :]
-    budget = known(
+    sensor_spread = spread(
         sensor,
         [float(p) for p in rows],
         scene.membrane_material,
@@ -65,11 +65,11 @@ def force_uncertainty(evaluation: Evaluation, grid: ReaderGrid) -> Array | None:
         calibration=scene.calibration,
         anywhere=scene.design.contact.anywhere,
     )
-    slopes = _slopes(budget.batch)
+    slopes = _slopes(sensor_spread.batch)
     relative = np.empty((rows.size, UNCERTAINTY_COLUMNS))
     for column in range(UNCERTAINTY_COLUMNS):
         one = np.repeat(slopes[:, None, :, column], len(FIGURES), axis=1)
-        variance = sum(source.variance(one)[SENSITIVITY] for source in budget.budget.sources)
+        variance = sum(source.variance(one)[SENSITIVITY] for source in sensor_spread.sources)
         relative[:, column] = np.sqrt(variance)
     return np.concatenate([np.repeat(relative[:1], grid.computed, axis=0), relative])
 

@@ -6,12 +6,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from pneutouch.arrays import Array
 from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.evaluation.dynamics import dynamics
 from pneutouch.evaluation.gauge import gauge_record
 from pneutouch.evaluation.relaxation import viscous
 from pneutouch.evaluation.uncertainty import uncertainties
+from pneutouch.mechanics.prediction import InflationCurve
 from pneutouch.mechanics.response import tangent_stiffness
 from pneutouch.mechanics.viscous.prony import AGED, ageing_ratio
 from pneutouch.results.behaviour import Aged, CalibratedBy
@@ -91,9 +94,10 @@ def predicted_in_full(evaluation: Evaluation, samples: int = 0) -> PredictionRec
     )
 
 
-def by_model(prediction: SensorPrediction) -> PredictionRecord:
-    """A prediction by the model alone, without rating and uncertainty."""
-    inflation = prediction.inflation
+def by_model(prediction: SensorPrediction, *, curves: bool = True) -> PredictionRecord:
+    """A prediction by the model alone, without rating and uncertainty; ``curves`` False: without central contact's
+    curves either, which take the most time."""
+    inflation = prediction.inflation if curves else InflationCurve(*[np.empty(0)] * 4)
     record = PredictionRecord(
         design=prediction.design,
         model=prediction.model,
@@ -108,14 +112,15 @@ def by_model(prediction: SensorPrediction) -> PredictionRecord:
             cavity_volume_mL=_numbers(inflation.volume / ML),
             driving_pressure_kPa=_numbers(inflation.pressure / KPA),
         ),
-        states=tuple(_state(state) for state in prediction.states),
+        states=tuple(_state(state, curves=curves) for state in prediction.states),
         assumptions=prediction.assumptions,
     )
     return rounded(record, _MODEL_DIGITS, _NOTHING)
 
 
-def _state(state: SensorState) -> StateRecord:
+def _state(state: SensorState, *, curves: bool) -> StateRecord:
     f = state.figures
+    without = not curves and state.beyond_axis is None
     return StateRecord(
         driving_pressure_kPa=state.driving_pressure / KPA,
         apex_height_inner_mm=state.apex_inner,
@@ -129,7 +134,7 @@ def _state(state: SensorState) -> StateRecord:
         stiffness_N_per_mm=f.stiffness if f else None,
         force_range_N=f.force_range if f else None,
         saturation_force_N=f.saturation_force if f else None,
-        curve=_curve(state),
+        curve=Curve(*[()] * 7) if without else _curve(state),
         events=tuple(EventRecord(e.kind, e.indentation, e.ends_range, e.message) for e in state.events),
         off_axis=None if state.beyond_axis is None else off_axis(state.beyond_axis),
     )

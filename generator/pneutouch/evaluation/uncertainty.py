@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -32,9 +32,11 @@ from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
+    from pneutouch.evaluation.evaluate import Evaluation
     from pneutouch.mechanics.atlas.press import SensorBatch
     from pneutouch.mechanics.uncertainty import Budget
     from pneutouch.mechanics.uncertainty.contact_model import ContactModel
+    from pneutouch.mechanics.uncertainty.source import UncertaintySource
 
 
 GAP, STEEP_GAP = 0.2, 0.45
@@ -126,7 +128,21 @@ def _soft_note(sensor: Sensor) -> str:
     )
 
 
-def known(
+class SensorSpread(NamedTuple):
+    """A sensor at n driving pressures as the atlas takes it, its sources, and its contact if the atlas has another."""
+
+    batch: SensorBatch
+    sources: list[UncertaintySource]
+    contact: ContactModel | None
+
+    def combined(self) -> SensorBudget:
+        """The budget of these sources."""
+        from pneutouch.mechanics.uncertainty.propagate import propagate
+
+        return SensorBudget(self.batch, propagate(*self), self.contact)
+
+
+def spread(
     sensor: Sensor,
     pressures: Sequence[float],
     material: Material,
@@ -137,8 +153,8 @@ def known(
     states: Sequence[SensorState] = (),
     *,
     anywhere: bool = False,
-) -> SensorBudget:
-    """The budget of a sensor at ascending driving pressures (MPa) that the atlas covers under a plate without friction.
+) -> SensorSpread:
+    """The sources of a sensor at ascending driving pressures (MPa); the atlas covers it under a plate without friction.
 
     ``materials`` are all that there are: the model's error is taken from those that were measured. ``model`` gives the
     numerical error. ``states`` are the solid's of another contact, at the pressures where it has been solved already.
@@ -146,30 +162,89 @@ def known(
     """
     from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.corrected.figures import under_plate
-    from pneutouch.mechanics.uncertainty import budget, model_errors
+    from pneutouch.mechanics.uncertainty.sources import sources
+    from pneutouch.mechanics.uncertainty.sources.model_error import model_errors
 
     contact = None
     anywhere = anywhere and sensor.protocol.other_contact is None
     if sensor.protocol.other_contact is not None:
         from pneutouch.mechanics.uncertainty.contact_model import ContactModel
 
-        spread = None if calibration is None else friction_spread(calibration)
-        contact = ContactModel(sensor, tuple(float(p) for p in pressures), states, fitted_spread=spread)
+        of_friction = None if calibration is None else friction_spread(calibration)
+        contact = ContactModel(sensor, tuple(float(p) for p in pressures), states, fitted_spread=of_friction)
     batch = batch_of(under_plate(sensor), pressures)
     numerical = {"sensitivity_kPa_per_N": stated_error(model, sensor), "limit_pressure_kPa": LIMIT_DISCRETISATION}
-    near, errors = is_near_paper(sensor), model_errors(material, materials)
-    estimate = budget(
+    of_sensor = sources(
         batch,
         material,
         printer,
-        near_paper=near,
-        errors=errors,
+        near_paper=is_near_paper(sensor),
+        errors=model_errors(material, materials),
         numerical=numerical,
         calibration=calibration,
         contact=contact,
         anywhere=anywhere,
     )
-    return SensorBudget(batch, estimate, contact)
+    return SensorSpread(batch, of_sensor, contact)
+
+
+Intervals = list[tuple[float, float] | None]
+"""Ends of the interval of each state, or None where it is unknown."""
+
+
+def sensitivity_intervals(evaluations: Sequence[Evaluation]) -> list[Intervals]:
+    """Ends of the k = 2 interval of each state's sensitivity, kPa/N, for each evaluation, as `uncertainties` states
+    them; None where it is unknown. All sensors in one pass through the atlas."""
+    from pneutouch.mechanics.uncertainty.propagate import propagate_groups
+
+    spreads = [_spread_of(each, even_wall(each.sensor)) for each in evaluations]
+    together = [(each.batch, each.sources) for each in spreads if each is not None and each.contact is None]
+    budgets = iter(propagate_groups(together) if together else ())
+    intervals: list[Intervals] = []
+    for evaluation, each in zip(evaluations, spreads, strict=True):
+        if each is None:
+            intervals.append([None] * len(evaluation.prediction.states))
+        else:
+            budget = next(budgets) if each.contact is None else each.combined().budget
+            intervals.append(_intervals(evaluation.prediction, budget))
+    return intervals
+
+
+def _spread_of(evaluation: Evaluation, sensor: Sensor) -> SensorSpread | None:
+    """The sources of an evaluation's sensor; None where its uncertainty is unknown."""
+    prediction, scene = evaluation.prediction, evaluation.scene
+    if _why_unknown(sensor, prediction.model) is not None:
+        return None
+    return spread(
+        sensor,
+        [state.driving_pressure for state in prediction.states],
+        scene.membrane_material,
+        list(evaluation.resins.values()),
+        scene.printer,
+        prediction.model,
+        scene.calibration,
+        prediction.states,
+        anywhere=scene.design.contact.anywhere,
+    )
+
+
+def _intervals(prediction: SensorPrediction, budget: Budget) -> Intervals:
+    from pneutouch.mechanics.atlas.figures import SENSITIVITY
+
+    ends: Intervals = []
+    for state, width in zip(prediction.states, budget.expanded[SENSITIVITY].tolist(), strict=True):
+        value = _values(prediction, state).get("sensitivity_kPa_per_N")
+        known = value is not None and np.isfinite(width)
+        ends.append(rounded((value * np.exp(-width), value * np.exp(width)), _DIGITS, _NOTHING) if known else None)
+    return ends
+
+
+def _why_unknown(sensor: Sensor, model: str) -> str | None:
+    """`unknown`, or None for a wall too soft for the atlas whose derivatives its tables still have."""
+    why = unknown(sensor, model)
+    if why is not None and model == "solid" and sensor.protocol.other_contact is None:
+        return _softer_unknown(sensor)
+    return why
 
 
 def uncertainties(
@@ -186,18 +261,17 @@ def uncertainties(
     """
     states, model = prediction.states, prediction.model
     notes_of_wall, sensor = notes_on(sensor), even_wall(sensor)
-    why = unknown(sensor, model)
-    if why is not None and model == "solid" and sensor.protocol.other_contact is None:
-        why = _softer_unknown(sensor)
-        notes_of_wall += (_soft_note(sensor),)
+    why = _why_unknown(sensor, model)
     if why is not None:
         return tuple(UncertaintyRecord(unknown=why) for _ in states)
+    if unknown(sensor, model) is not None:
+        notes_of_wall += (_soft_note(sensor),)
     from pneutouch.mechanics.atlas.figures import FIGURES
     from pneutouch.mechanics.uncertainty import document, gas_text, text
 
     pressures, materials = [state.driving_pressure for state in states], list(resins().values())
     calibrated = scene.calibration is not None
-    estimate = known(
+    estimate = spread(
         sensor,
         pressures,
         scene.membrane_material,
@@ -207,7 +281,7 @@ def uncertainties(
         calibration=scene.calibration,
         states=states,
         anywhere=scene.design.contact.anywhere,
-    )
+    ).combined()
     friction = None if estimate.contact is None else estimate.contact.friction
     notes_of_wall += contact_notes(sensor, estimate.contact)
     if scene.design.contact.anywhere:

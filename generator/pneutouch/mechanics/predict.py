@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 
-from pneutouch.arrays import Array
-from pneutouch.errors import InputError, nearest
+from pneutouch.errors import InputError, PneutouchError, nearest
 from pneutouch.mechanics.models.choice import (
     CLOSURES,
     DEFAULT_TOLERANCE,
@@ -17,7 +18,7 @@ from pneutouch.mechanics.models.choice import (
     remedy,
     usual_model,
 )
-from pneutouch.mechanics.models.interface import ModelAnswer, SensorModel
+from pneutouch.mechanics.models.interface import Answered, ModelAnswer, SensorModel
 from pneutouch.mechanics.prediction import SensorPrediction
 from pneutouch.mechanics.sensor import IndentationProtocol, ResponseCorrection, Sensor
 from pneutouch.units import KPA, ML
@@ -41,10 +42,12 @@ def predict(
     model: str = "solid",
     closure: str = "variational",
     tolerance: float = DEFAULT_TOLERANCE,
+    answers: Mapping[str, Answered] = MappingProxyType({}),
 ) -> SensorPrediction:
     """Predict a sensor at ascending driving pressures (MPa) with one model; ``closure`` is the membrane's.
 
-    ``auto`` takes the cheapest model whose stated error meets the tolerance (a fraction) and gives the reason. Raises
+    ``auto`` takes the cheapest model whose stated error meets the tolerance (a fraction) and gives the reason.
+    ``answers`` are those that models gave already, in a batch of many sensors, by the model's name. Raises
     InputError for an unknown model or closure and for a sensor that the model does not cover, BeyondLimitError beyond
     the limit point, ComputationError if no equilibrium is found.
     """
@@ -52,9 +55,14 @@ def predict(
         raise InputError(f"unknown closure.{nearest(closure, CLOSURES)}", key="closure", value=closure)
     pressures = np.array(driving_pressures, float)
     name = usual_model(sensor) if model == USUAL else model
-    chosen, answer, why = (
-        _cheapest(sensor, pressures, closure, tolerance) if name == "auto" else _named(name, sensor, pressures, closure)
-    )
+
+    def ask(model: SensorModel) -> ModelAnswer:
+        given = answers.get(model.name)
+        if isinstance(given, PneutouchError):
+            raise given
+        return given or model.closed(closure).answer_one(sensor, pressures)
+
+    chosen, answer, why = _cheapest(sensor, tolerance, ask) if name == "auto" else _named(name, sensor, ask)
     errors, result = chosen.errors(sensor, pressures), answer.result
     if answer.limitation is not None and answer.limitation.beyond_error:
         errors = replace(errors, sensitivity_tabulation_relative=None, summary=())
@@ -95,26 +103,27 @@ def contact_words(protocol: IndentationProtocol) -> str:
     return f"rigid {body}, {hold}, {' and '.join(places) or 'central'}, straight down{moved}"
 
 
-def _named(name: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[SensorModel, ModelAnswer, str | None]:
+_Ask = Callable[[SensorModel], ModelAnswer]
+
+
+def _named(name: str, sensor: Sensor, ask: _Ask) -> tuple[SensorModel, ModelAnswer, str | None]:
     """A model asked for by name, its answer, and its limitation in words, or None."""
     model = model_named(name)
     why = model.covers(sensor)
-    answer = None if why is not None else model.closed(closure).answer_one(sensor, pressures)
+    answer = None if why is not None else ask(model)
     lacking = None if answer is None else answer.limitation
     if answer is None or (lacking is not None and lacking.fatal):
         raise InputError(why or (lacking.why if lacking else ""), key="model", value=name, remedy=remedy(sensor))
     return model, answer, None if lacking is None else f"asked for by name, although {lacking.why}"
 
 
-def _cheapest(
-    sensor: Sensor, pressures: Array, closure: str, tolerance: float
-) -> tuple[SensorModel, ModelAnswer, str | None]:
+def _cheapest(sensor: Sensor, tolerance: float, ask: _Ask) -> tuple[SensorModel, ModelAnswer, str | None]:
     """The cheapest model that meets a tolerance, its answer, and why it and no other."""
     sequence = models_for(sensor, tolerance)
     passed = list(sequence.passed)
     for name in sequence.models:
         model = model_named(name)
-        answer = model.closed(closure).answer_one(sensor, pressures)
+        answer = ask(model)
         if answer.limitation is None:
             break
         passed.append(f"{name}: {answer.limitation.why}")

@@ -113,7 +113,7 @@ BAD = {
 
 @pytest.mark.parametrize("case", BAD)
 def test_a_bad_file_is_refused_before_any_work(case, library, tmp_path, monkeypatch):
-    monkeypatch.setattr(work, "evaluate", None)
+    monkeypatch.setattr(work, "evaluate_drawn", None)
     text, words = BAD[case]
     path, out = tmp_path / "bad.toml", tmp_path / "out" / "x.nc"
     path.write_text(text)

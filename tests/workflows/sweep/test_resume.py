@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from pneutouch.errors import ComputationError, InputError
 from pneutouch.workflows.sweep import journal, sweep
 from pneutouch.workflows.sweep.journal import Journal
+from pneutouch.workflows.sweep.work import chunks, study
 from tests.running import in_new_process
 from tests.workflows.sweep.conftest import (
     ALONE,
@@ -241,3 +242,13 @@ def test_another_hash_seed_and_process_give_the_same_bytes(library, tmp_path):
     done = in_new_process(["sweep", *over, "--out", str(out), "--workers", "1"], tmp_path, {"PYTHONHASHSEED": "7"})
     assert done.returncode == 0, done.stderr
     assert out.read_bytes() == (tmp_path / "plain.nc").read_bytes()
+
+
+@pytest.mark.parametrize("missing", [[0], [31, 32], [5, 127, 128], list(range(300))])
+def test_a_chunk_is_cut_alike_whatever_is_missing(missing, library):
+    """Points that are answered together are the same ones in a sweep that goes on, so that its bytes are the same."""
+    whole = study(small(["membrane.wall_thickness_mm=1:1.8:300"], model="atlas"), library)
+    every = {chunk.points[0].index: chunk for chunk in chunks(whole, list(range(300)))}
+    for chunk in chunks(whole, missing):
+        assert chunk == every[chunk.points[0].index]
+    assert set(missing) <= {point.index for chunk in chunks(whole, missing) for point in chunk.points}

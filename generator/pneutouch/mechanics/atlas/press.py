@@ -223,7 +223,8 @@ def _inflated(slices: AtlasSlices, k: Index, pressure: Array, groups: Index) -> 
         gap = point.pressure - pressure
         low, high = np.where(gap < 0, nu, low), np.where(gap < 0, high, nu)
         newton = nu - gap / np.where(slope > 0, slope, 1.0)
-        inside = (newton > low) & (newton < high) & (slope > 0)
+        # The ends count as inside: a step of nothing ends on the root, half of the bracket would leave it.
+        inside = (newton >= low) & (newton <= high) & (slope > 0)
         step = np.where(inside, newton, 0.5 * (low + high)) - nu
         nu = nu + np.where(moving, step, 0.0)
         moving = moving & waiting(groups, np.abs(step) < _CLOSE)

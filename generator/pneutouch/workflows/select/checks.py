@@ -27,7 +27,7 @@ from pneutouch.evaluation.evaluate import Evaluation, PredictionOptions, evaluat
 from pneutouch.evaluation.sheet_data import SensitivityCurve
 from pneutouch.evaluation.subject import subject_of
 from pneutouch.evaluation.table_s1 import is_near_paper
-from pneutouch.evaluation.uncertainty import even_wall, known, unknown
+from pneutouch.evaluation.uncertainty import even_wall, spread, unknown
 from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.models.accuracy import NUMERICAL
@@ -259,7 +259,7 @@ class CandidateSolver:
             return np.nan
         material, printer = scene.membrane_material, scene.printer
         at = [state.driving_pressure]
-        estimate = known(sensor, at, material, self._materials, printer, "solid", states=[state])
+        estimate = spread(sensor, at, material, self._materials, printer, "solid", states=[state]).combined()
         return float(estimate.budget.expanded[SENSITIVITY, 0])
 
     def interval(

@@ -1,34 +1,34 @@
 """The variables of a sweep's dataset: each declared once, with its place in a prediction, unit and meaning."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-Document = Mapping[str, Any]
-"""A state or a prediction, as data of its record."""
+from pneutouch.results.prediction import PredictionRecord, StateRecord
+
+Interval = tuple[float, float] | None
 
 
 @dataclass(frozen=True, slots=True)
 class SweepVariable:
-    """One variable: how it is read from a state or a prediction, as ``predict`` prints them."""
+    """One variable: how it is read from a state or a prediction, records of `results`."""
 
     name: str
     units: str
     long_name: str
-    read: Callable[[Document], Any]
+    read: Callable[[Any], Any]
     text: bool = False
 
 
-def _at(*keys: str) -> Callable[[Document], Any]:
-    """Reads a nested entry; None if a key is missing or null."""
+def _at(*keys: str) -> Callable[[Any], Any]:
+    """Reads a nested entry; None if one on the way is None."""
 
-    def read(document: Document) -> Any:
-        value: Any = document
+    def read(record: Any) -> Any:
         for key in keys:
-            value = None if value is None else value.get(key)
-        return value
+            record = None if record is None else getattr(record, key)
+        return record
 
     return read
 
@@ -37,16 +37,16 @@ def _number(name: str, units: str, long_name: str, *keys: str) -> SweepVariable:
     return SweepVariable(name, units, long_name, _at(*(keys or (name,))))
 
 
-def _force(end: int) -> Callable[[Document], Any]:
-    return lambda state: None if state["force_range_N"] is None else state["force_range_N"][end]
+def _force(end: int) -> Callable[[StateRecord], Any]:
+    return lambda state: None if state.force_range_N is None else state.force_range_N[end]
 
 
 def _off_axis(name: str, units: str, long_name: str) -> SweepVariable:
     """A curve of contact off the axis at the end of the range."""
 
-    def read(state: Document) -> Any:
-        values, travel = _at("off_axis", name)(state), state["curve"]["indentation_mm"]
-        return None if values is None else float(np.interp(state["range_end_mm"], travel, values))
+    def read(state: StateRecord) -> Any:
+        values, travel = _at("off_axis", name)(state), state.curve.indentation_mm
+        return None if values is None else float(np.interp(state.range_end_mm, travel, values))
 
     return SweepVariable(name, units, f"{long_name}, at the end of the range; central contact: NaN", read)
 
@@ -56,11 +56,15 @@ def _shear(name: str, units: str, long_name: str) -> SweepVariable:
     return SweepVariable(f"shear_{name}", units, f"{long_name}, where the object moves sideways; else NaN", read)
 
 
-def _range_event(state: Document) -> str:
-    return next((event["kind"] for event in state["events"] if event["ends_range"]), "depth")
+def _range_event(state: StateRecord) -> str:
+    return next((event.kind for event in state.events if event.ends_range), "depth")
 
 
-_INTERVAL = ("uncertainty", "figures", "sensitivity_kPa_per_N")
+def _unread(state: StateRecord) -> None:
+    """The interval stands beside the state."""
+
+
+_ENDS = "sensitivity_low_kPa_per_N", "sensitivity_high_kPa_per_N"
 _END = "end of the interval of the sensitivity, k = 2; unknown: NaN"
 
 STATE: tuple[SweepVariable, ...] = (
@@ -69,8 +73,8 @@ STATE: tuple[SweepVariable, ...] = (
     ),
     SweepVariable("message", "", "why a state is refused or failed", lambda _: "", True),
     _number("sensitivity_kPa_per_N", "kPa/N", "slope of pressure rise over contact force, first contact to range end"),
-    _number("sensitivity_low_kPa_per_N", "kPa/N", f"lower {_END}", *_INTERVAL, "low"),
-    _number("sensitivity_high_kPa_per_N", "kPa/N", f"upper {_END}", *_INTERVAL, "high"),
+    SweepVariable(_ENDS[0], "kPa/N", f"lower {_END}", _unread),
+    SweepVariable(_ENDS[1], "kPa/N", f"upper {_END}", _unread),
     _number("sensitivity_through_origin_kPa_per_N", "kPa/N", "the same slope of a line through the origin"),
     _number("r_squared", "1", "coefficient of determination of the straight line"),
     _number("nonlinearity_percent", "percent", "greatest distance from the straight line over the full-scale rise"),
@@ -120,11 +124,12 @@ POINT: tuple[SweepVariable, ...] = (
 """Variables of every point."""
 
 
-def state_values(state: Document) -> dict[str, float | str | None]:
-    """Values of a state of a prediction that a dataset keeps, its uncertainty included."""
-    return {variable.name: variable.read(state) for variable in STATE}
+def state_values(state: StateRecord, interval: Interval) -> dict[str, float | str | None]:
+    """Values of a state that a dataset keeps, with the interval of its sensitivity."""
+    ends = dict(zip(_ENDS, interval or (None, None), strict=True))
+    return {variable.name: ends.get(variable.name, variable.read(state)) for variable in STATE}
 
 
-def point_values(prediction: Document) -> dict[str, float | str | None]:
+def point_values(prediction: PredictionRecord) -> dict[str, float | str | None]:
     """Values of a prediction that a dataset keeps, apart from its states."""
     return {variable.name: variable.read(prediction) for variable in POINT}

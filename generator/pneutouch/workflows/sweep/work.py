@@ -1,24 +1,28 @@
 """The work itself: a chunk of points in, a list of records out. Runs in this process, in others, or on a cluster.
 
-A model that takes many points at once has its place in ``compute``.
-
 A plan with every name in it resolved: checked before any work starts, and carrying all that the work reads.
 """
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+
+import numpy as np
 
 from pneutouch import __version__
 from pneutouch.catalogue import KINDS, DesignSource, Library, load_scene
 from pneutouch.catalogue.library import CachedLibrary, elastomers
 from pneutouch.errors import InputError, PneutouchError, StatedPressureError
-from pneutouch.evaluation.evaluate import evaluate
-from pneutouch.evaluation.result import predicted
-from pneutouch.mechanics.models.choice import USUAL
+from pneutouch.evaluation.evaluate import DrawnScene, Evaluation, PredictionOptions, drawn, evaluate_drawn
+from pneutouch.evaluation.result import by_model, rating_record
+from pneutouch.evaluation.uncertainty import Intervals, sensitivity_intervals
+from pneutouch.mechanics.models.choice import USUAL, model_named
+from pneutouch.mechanics.models.interface import Answered
 from pneutouch.output.files import digest, json_bytes
-from pneutouch.results.record import plain
 from pneutouch.spec.contact import LYING
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import declaration, table_of
@@ -125,11 +129,11 @@ def _names(plan: SweepPlan, base: DesignFile) -> set[tuple[str, str]]:
         table = table_of(DesignFile, table_name)
         if table is None:
             continue
-        for field in table.model_fields:
-            kind, key = declaration(table, field).registry, f"{table_name}.{field}"
+        for name in table.model_fields:
+            kind, key = declaration(table, name).registry, f"{table_name}.{name}"
             if kind is not None:
-                given = plan.settings.get(key, getattr(getattr(base, table_name), field))
-                names |= {(kind, name) for name in _chosen(plan, key, given) if name is not None}
+                given = plan.settings.get(key, getattr(getattr(base, table_name), name))
+                names |= {(kind, word) for word in _chosen(plan, key, given) if word is not None}
     calibration = plan.settings.get(CALIBRATION, base.calibration_name)
     return names if calibration in (None, NO_CALIBRATION) else names | {("calibrations", str(calibration))}
 
@@ -195,8 +199,9 @@ def _fault(plan: SweepPlan, index: int, library: Library) -> InputError | None:
     return None
 
 
-CHUNK_POINTS = {"membrane": 32}
-"""Points handed out at once: about half a second of work, so that a stop loses and a slow machine delays little."""
+CHUNK_POINTS = {"membrane": 32, "atlas": 128, "auto": 32}
+"""Points handed out at once: about a second of work, so that a stop loses and a slow machine delays little. The atlas
+answers them together."""
 
 Record = dict[str, Any]
 """A finished point as plain data: ``point`` (its number), ``states`` in order of driving pressure, ``values``."""
@@ -204,28 +209,20 @@ Record = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class SweepChunk:
-    """Points to compute alike: which design and model."""
+    """Points to compute alike: which design and options."""
 
     points: tuple[SweepPoint, ...]
     design: str
-    model: str
-    closure: str
-    clamp: str
+    options: PredictionOptions
 
 
 def chunks(study: SweepStudy, indices: list[int]) -> list[SweepChunk]:
-    """The points of these numbers, cut into chunks."""
+    """Every chunk that holds one of these numbers: cut alike whatever is missing, so that the bytes stay the same."""
     plan, size = study.plan, CHUNK_POINTS.get(study.plan.model, 1)
-    return [
-        SweepChunk(
-            tuple(study.point(i) for i in indices[start : start + size]),
-            study.name,
-            plan.model,
-            plan.closure,
-            plan.clamp,
-        )
-        for start in range(0, len(indices), size)
-    ]
+    starts = dict.fromkeys(index - index % size for index in indices)
+    options = PredictionOptions(plan.model, plan.closure, plan.clamp)
+    numbers = (range(start, min(start + size, plan.count)) for start in starts)
+    return [SweepChunk(tuple(map(study.point, some)), study.name, options) for some in numbers]
 
 
 def unpack(files: dict[str, str], folder: Path) -> None:
@@ -237,50 +234,121 @@ def unpack(files: dict[str, str], folder: Path) -> None:
 
 
 def compute(chunk: SweepChunk, folder: Path) -> list[Record]:
-    """Predict every point of a chunk from the files in ``folder``; a point that cannot be is a record too."""
+    """Predict every point of a chunk from the files in ``folder``; a point that cannot be is a record too.
+
+    Driving pressures beyond the limit are refused one by one, and the rest is predicted.
+    """
     library = CachedLibrary((folder,))
-    return [_record(chunk, point, library) for point in chunk.points]
+    works = [_PointWork(point, point) for point in chunk.points]
+    left = works
+    while left:
+        drawn_scenes = [_tried(partial(_drawn, chunk.design, work.left, chunk.options, library)) for work in left]
+        for work, scene, answers in zip(left, drawn_scenes, _answers(drawn_scenes, chunk.options.model), strict=True):
+            work.take(scene if isinstance(scene, Exception) else _tried(partial(_evaluated, scene, answers, library)))
+        left = [work for work in left if work.result is None and work.left.driving_pressures_kPa]
+    done = [work.result for work in works if isinstance(work.result, Evaluation)]
+    values = iter(_values(done))
+    return [
+        work.record(next(values) if isinstance(work.result, Evaluation) else work.result, library) for work in works
+    ]
 
 
-def _record(chunk: SweepChunk, point: SweepPoint, library: Library) -> Record:
-    """One point. Driving pressures beyond the limit are refused one by one, and the rest is predicted."""
-    left = point
-    states: list[dict[str, Any]] = []
-    refused: list[dict[str, Any]] = []
-    values: dict[str, Any] = {}
-    while left.driving_pressures_kPa:
-        try:
-            states, values = _predicted(chunk, left, library)
-            break
-        except StatedPressureError as beyond:
-            kept_kPa = [p for p in left.driving_pressures_kPa[:-1] if p * KPA < min(beyond.limit, beyond.pressure)]
-            text = (
-                f"driving pressure beyond the limit point, where the dome snaps: at most {beyond.limit / KPA:.2f} kPa"
-            )
-            refused += _stopped("refused", text, len(left.driving_pressures_kPa) - len(kept_kPa), library)
-            values = {"limit_point_kPa": float(f"{beyond.limit / KPA:.12g}")}
-            left = replace(left, driving_pressures_kPa=tuple(kept_kPa))
-        except PneutouchError as error:
-            status = "refused" if isinstance(error, InputError) else "failed"
-            states = _stopped(status, str(error), len(left.driving_pressures_kPa), library)
-            break
-        except (MemoryError, OSError):
-            raise
-        except Exception as error:
-            # One point that meets a fault of ours must not cost the others, which may be hours of work.
-            text = f"internal fault ({type(error).__name__}: {error}); please report it with the design"
-            states = _stopped("failed", text, len(left.driving_pressures_kPa), library)
-            break
-    return {"point": point.index, "states": states + refused, "values": values}
+@dataclass
+class _PointWork:
+    """A point in work: what is left of it, the limits that it met, and its evaluation or error."""
+
+    point: SweepPoint
+    left: SweepPoint
+    beyond: list[tuple[StatedPressureError, int]] = field(default_factory=list)
+    result: Evaluation | Exception | None = None
+
+    def take(self, outcome: Evaluation | Exception) -> None:
+        """Keep an outcome; driving pressures beyond the limit leave the others to be computed again."""
+        if not isinstance(outcome, StatedPressureError):
+            self.result = outcome
+            return
+        pressures_kPa = self.left.driving_pressures_kPa
+        kept_kPa = [p for p in pressures_kPa[:-1] if p * KPA < min(outcome.limit, outcome.pressure)]
+        self.beyond.append((outcome, len(pressures_kPa) - len(kept_kPa)))
+        self.left = replace(self.left, driving_pressures_kPa=tuple(kept_kPa))
+
+    def record(self, outcome: _Values | Exception | None, library: Library) -> Record:
+        """The point as plain data."""
+        states: list[dict[str, Any]] = []
+        values: dict[str, Any] = {}
+        refused: list[dict[str, Any]] = []
+        for error, count in self.beyond:
+            text = f"driving pressure beyond the limit point, where the dome snaps: at most {error.limit / KPA:.2f} kPa"
+            refused += _stopped("refused", text, count, library)
+            values = {"limit_point_kPa": float(f"{error.limit / KPA:.12g}")}
+        if isinstance(outcome, Exception):
+            states = _failure(outcome, len(self.left.driving_pressures_kPa), library)
+        elif outcome is not None:
+            states, values = outcome
+        return {"point": self.point.index, "states": states + refused, "values": values}
 
 
-def _predicted(chunk: SweepChunk, point: SweepPoint, library: Library) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+_Values = tuple[list[dict[str, Any]], dict[str, Any]]
+"""Values of the states of a point, and of the point."""
+
+_T = TypeVar("_T")
+
+
+def _tried(work: Callable[[], _T]) -> _T | Exception:
+    """What a point's work gives, or its error: one that fails must not cost the others, which may be hours of work."""
+    try:
+        return work()
+    except (MemoryError, OSError):
+        raise
+    except Exception as error:
+        return error
+
+
+def _drawn(design: str, point: SweepPoint, options: PredictionOptions, library: Library) -> DrawnScene:
     changes = {**point.settings, PRESSURES: list(point.driving_pressures_kPa)}
-    evaluation = evaluate(
-        chunk.design, changes, model=chunk.model, closure=chunk.closure, clamp=chunk.clamp, library=library
-    )
-    prediction = plain(predicted(evaluation))
-    return [state_values(state) for state in prediction["states"]], point_values(prediction)
+    return drawn(load_scene(design, changes, library), options)
+
+
+def _answers(scenes: Sequence[DrawnScene | Exception], model: str) -> list[dict[str, Answered]]:
+    """The answers of the atlas by its name, for the scenes that it covers: all in one pass."""
+    found: list[dict[str, Answered]] = [{} for _ in scenes]
+    if model not in ("atlas", "auto"):
+        return found
+    atlas = model_named("atlas")
+    covered = {
+        row: one for row, one in enumerate(scenes) if isinstance(one, DrawnScene) and atlas.covers(one.sensor) is None
+    }
+    sensors = [one.sensor for one in covered.values()]
+    pressures = [np.array(one.scene.design.pneumatics.driving_pressures_kPa) * KPA for one in covered.values()]
+    for row, answer in zip(covered, atlas.answer(sensors, pressures), strict=True):
+        found[row] = {"atlas": answer}
+    return found
+
+
+def _evaluated(scene: DrawnScene, answers: dict[str, Answered], library: Library) -> Evaluation:
+    return evaluate_drawn(scene, partial(elastomers, library, scene.scene.printer.is_casting), answers)
+
+
+def _values(evaluations: Sequence[Evaluation]) -> list[_Values | Exception]:
+    """Values of every evaluation; their intervals in one pass, and one by one where that fails."""
+    every = _tried(lambda: sensitivity_intervals(evaluations))
+    if not isinstance(every, Exception):
+        return [_tried(partial(_of_evaluation, *pair)) for pair in zip(evaluations, every, strict=True)]
+    return [every] if len(evaluations) == 1 else [one for each in evaluations for one in _values([each])]
+
+
+def _of_evaluation(evaluation: Evaluation, intervals: Intervals) -> _Values:
+    record = by_model(evaluation.prediction, curves=False)
+    rating = rating_record(evaluation.rating, [])
+    states = [state_values(*pair) for pair in zip(record.states, intervals, strict=True)]
+    return states, point_values(replace(record, rating=rating))
+
+
+def _failure(error: Exception, count: int, library: Library) -> list[dict[str, Any]]:
+    if isinstance(error, PneutouchError):
+        return _stopped("refused" if isinstance(error, InputError) else "failed", str(error), count, library)
+    text = f"internal fault ({type(error).__name__}: {error}); please report it with the design"
+    return _stopped("failed", text, count, library)
 
 
 def _stopped(status: str, message: str, count: int, library: Library) -> list[dict[str, Any]]:

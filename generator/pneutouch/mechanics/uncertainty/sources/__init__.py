@@ -39,7 +39,24 @@ def sources(
     contact: ContactModel | None = None,
     anywhere: bool = False,
 ) -> list[UncertaintySource]:
-    """Sources that count for at least one figure of one sensor; see `budget` for the arguments."""
+    """Sources that count for at least one figure of one of n sensors that share a resin and a printer.
+
+    Args:
+        batch: The sensors, mm, MPa, mm3; see `batch_of`.
+        material: Their resin; must have a shear modulus.
+        printer: Who prints them.
+        near_paper: Those to which the model's error on the paper's sensor applies, one flag or (n,).
+        errors: The model's relative errors against Table S1; see `model_errors`.
+        numerical: Greatest relative errors of discretisation and interpolation by figure (`FIGURES`).
+        aged: True if the sensor may be up to a year old; else it is fresh, or of the age at which it was calibrated.
+        calibration: Of the sensor in hand; its parameters and its model error take the place of those of design and
+            resin.
+        contact: Contact at the n driving pressures, if that is no plate without friction.
+        anywhere: True if object and place of contact are unknown; see `sources.place`.
+
+    Raises:
+        InputError: ``numerical`` names a figure that there is not.
+    """
     size = len(batch)
     near = np.broadcast_to(np.asarray(near_paper, dtype=bool), size)
     source_list = [*modulus_sources(material, near & bool(errors.resin_errors)), *build_sources(batch, printer)]
