@@ -11,11 +11,10 @@ from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.limits import Limits
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import Rating, rated_pressure, rating
-from pneutouch.mechanics.uncertainty import ModelErrors
+from pneutouch.mechanics.uncertainty import ModelErrors, budget
 from pneutouch.mechanics.uncertainty.propagate import LIMIT
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.units import KPA
-from tests.mechanics.uncertainty.budgets import budget
 from tests.mechanics.uncertainty.designs import NUMERICAL, materials
 
 

@@ -7,10 +7,9 @@ from typing import Any, NamedTuple
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.uncertainty import Budget, model_errors
+from pneutouch.mechanics.uncertainty import Budget, budget, model_errors
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
-from tests.mechanics.uncertainty.budgets import budget
 
 NUMERICAL = {"sensitivity_kPa_per_N": 0.011, "limit_pressure_kPa": 0.002}
 

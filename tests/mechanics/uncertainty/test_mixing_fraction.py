@@ -10,13 +10,12 @@ from pneutouch.catalogue.mixture import mixed_material
 from pneutouch.mechanics.atlas.figures import FIGURES
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.uncertainty import model_errors
+from pneutouch.mechanics.uncertainty import budget, model_errors
 from pneutouch.mechanics.uncertainty.sources.modulus import modulus_sources
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 from tests.conftest import ROOT
-from tests.mechanics.uncertainty.budgets import budget
 
 LIBRARY = Library((ROOT,))
 AWAY = np.array([False])

@@ -127,19 +127,26 @@ def run(batch: SensorBatch, steps: int, atlas: Atlas, groups: Index, names: tupl
     share = np.linspace(0.0, 1.0, steps + 1)
     travel = share * (batch.depth / batch.inner_radius)[:, None]
     whole = press.march(travel)
-    end, ends = _first_end(press, travel, whole)
+    stretch, radius = press.several(_FIELDS, whole)
+    end, ends = _first_end(press, travel, whole, _margins(press, whole, stretch, radius))
     track = whole
     cut = np.flatnonzero(ends != DEPTH)
     if cut.size:
-        track, again = whole.each(np.copy), press.rows(cut).march(share * end[cut, None])
+        part = press.rows(cut)
+        track, again = whole.each(np.copy), part.march(share * end[cut, None])
         pairs = zip((*track[:2], *track.point, *track[3:]), (*again[:2], *again.point, *again[3:]), strict=True)
-        for used, part in pairs:
-            used[cut] = part
-    return AtlasRun(_read_off(press, track, end, np.where(good, ends, OUTSIDE), good), press, whole)
+        for used, solved in pairs:
+            used[cut] = solved
+        stretch[cut], radius[cut] = part.several(_FIELDS, again)
+    ends = np.where(good, ends, OUTSIDE)
+    return AtlasRun(_read_off(press, track, end, ends, good, (stretch, radius)), press, whole)
 
 
-def _read_off(press: AtlasPress, track: PressTrack, end: Array, ends: Index, good: Flags) -> AtlasResponse:
-    """The answers along presses to the travel ``end`` in R0, (n,); ``good`` are the sensors that the atlas covers."""
+def _read_off(
+    press: AtlasPress, track: PressTrack, end: Array, ends: Index, good: Flags, known: tuple[Array, Array]
+) -> AtlasResponse:
+    """The answers along presses to the travel ``end`` in R0, (n,); ``good`` are the sensors that the atlas covers,
+    ``known`` are stretch and contact radius along the presses, (n, m) each."""
     batch = press.batch
     limit = press.limit * batch.shear_modulus
     share = np.linspace(0.0, 1.0, track.nu.shape[1])
@@ -150,8 +157,7 @@ def _read_off(press: AtlasPress, track: PressTrack, end: Array, ends: Index, goo
     infeasible = ~good | (batch.driving_pressure >= limit) | (end <= 0.0)
     for array in (indentation, force, rise):
         array[infeasible] = np.nan
-    stretch = press.field("stretch", track).max(axis=1)
-    contact = press.field("contact_radius", track.each(lambda column: column[:, -1:]))[:, 0]
+    stretch, contact = known[0].max(axis=1), known[1][:, -1]
     return AtlasResponse(
         lines=lines(indentation, force, rise / KPA),
         ends=ends,
@@ -176,17 +182,16 @@ def _near(press: AtlasPress, track: PressTrack) -> Flags:
     return np.asarray(press.slices.folded(press.k, nu, height) | (track.margin[:, -1] <= 0))
 
 
-def _margins(press: AtlasPress, track: PressTrack) -> Array:
+def _margins(press: AtlasPress, track: PressTrack, stretch: Array, radius: Array) -> Array:
     """Margins that turn positive at the end of a range, in the order of `ENDS` from EDGE to BREAK; (3, n, m)."""
     batch = press.batch
     gauge = (track.point.pressure - (batch.gauge_limit / batch.shear_modulus)[:, None]) / press.limit[:, None]
-    stretch, radius = press.several(_FIELDS, track)
     return np.stack([radius - batch.flat_radius[:, None], gauge, stretch - batch.break_stretch[:, None]])
 
 
-def _first_end(press: AtlasPress, indentation: Array, track: PressTrack) -> tuple[Array, Index]:
+def _first_end(press: AtlasPress, indentation: Array, track: PressTrack, margins: Array) -> tuple[Array, Index]:
     """Plate travel (R0) at which each range ends, and why."""
-    broken = (_margins(press, track) > 0.0).any(axis=0) | ~track.ok
+    broken = (margins > 0.0).any(axis=0) | ~track.ok
     hit = np.flatnonzero(broken.any(axis=1))
     end, ends = indentation[:, -1].copy(), np.full(len(press.batch), DEPTH)
     at_once = hit[broken[hit, 0]]
@@ -232,7 +237,7 @@ def _worst(press: AtlasPress, nu: Array, indentation: Array) -> tuple[Array, Ind
     height = press.apex - indentation
     solved = press.solve(nu, height)
     one = PressTrack(solved.nu, height, solved.point, solved.margin, solved.ok).each(lambda column: column[:, None])
-    margins = _margins(press, one)[..., 0]
+    margins = _margins(press, one, *press.several(_FIELDS, one))[..., 0]
     unknown = (solved.margin > 0.0) & ~solved.point.supported & ~solved.point.folded
     reason = np.where(solved.ok, EDGE + margins.argmax(axis=0), np.where(unknown, OUTSIDE, BUCKLING))
     return np.where(solved.ok, margins.max(axis=0), np.inf), reason, np.where(solved.ok, solved.nu, nu)

@@ -1,6 +1,6 @@
 """The uncertainty of a prediction: stated sources, their shares, expanded uncertainties with k = 2 (JCGM 100)."""
 
-from pneutouch.mechanics.uncertainty.budget import monte_carlo
+from pneutouch.mechanics.uncertainty.budget import budget, monte_carlo
 from pneutouch.mechanics.uncertainty.document import GasNotes, document, gas_notes, gas_text, shares, text
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
@@ -12,6 +12,7 @@ __all__ = [
     "GasNotes",
     "ModelErrors",
     "UncertaintySource",
+    "budget",
     "document",
     "gas_notes",
     "gas_text",

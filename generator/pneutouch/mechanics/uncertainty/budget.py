@@ -4,17 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.figures import FIGURES, log_figures, moved
 from pneutouch.mechanics.atlas.press import SensorBatch
+from pneutouch.mechanics.uncertainty.propagate import Budget, propagate
 from pneutouch.mechanics.uncertainty.source import FIGURE, JOINT, UncertaintySource
+from pneutouch.mechanics.uncertainty.sources import sources
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.uncertainty.contact_model import ContactShift
+
+
+def budget(batch: SensorBatch, material: Material, printer: Printer, **facts: Any) -> Budget:
+    """The uncertainty of the figures of n sensors of one resin and printer; ``facts`` are those of `sources`."""
+    return propagate(batch, sources(batch, material, printer, **facts), facts.get("contact"))
 
 
 _COVERED = 0.9545
