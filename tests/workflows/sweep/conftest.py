@@ -61,9 +61,9 @@ PATIENCE = 600
 HELD = """
 import os, sys
 from pneutouch.cli import run
-from pneutouch.workflows.sweep import cluster
+from pneutouch.workflows.sweep import workers
 from pneutouch.workflows.sweep.journal import Journal
-cluster._PATIENCE = {patience}
+workers._PATIENCE = {patience}
 keep, left = Journal.append, iter([*[False] * ({after} - 1), True])
 def append(self, records):
     keep(self, records)
