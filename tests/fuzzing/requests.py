@@ -61,6 +61,7 @@ def _body(path: Path) -> Any:
 
 def read_measured(path: Path) -> object:
     """What the page states of measured files: the arguments of a job."""
+    from pneutouch.spec.options import CalibrationOptions, options_of
     from pneutouch.studio import measuring
 
     content = _body(path)
@@ -71,7 +72,7 @@ def read_measured(path: Path) -> object:
         measuring._text(content, key)
     for key in ("fit", "paths"):
         measuring._texts(content, key)
-    measuring._numbers(content, "hold_out_kPa")
+    options_of(CalibrationOptions, content)
     runs = content.get("runs")
     if isinstance(runs, list) and all(isinstance(run, dict) for run in runs):
         from pneutouch.studio.measured import write_runs

@@ -74,7 +74,7 @@ def test_what_is_missed_is_in_percent_of_what_is_required(wanted):
         "force range": (150.0 - nearest.pool.force[0]) / 150.0,
         "stiffness": (lines.stiffness[0] - 0.2) / 0.2,
     }
-    assert len(missed) == 2 and missed.keys() <= off.keys()
+    assert len(missed) >= 2 and missed.keys() <= off.keys()
     assert missed == pytest.approx({name: 100 * off[name] for name in missed})
     assert document(found)["nearest"]["misses_percent"] == missed
     said = selection_text(found).split("it misses: ")[1].split("\n")[0]

@@ -32,7 +32,6 @@ from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
-    from pneutouch.evaluation.evaluate import Evaluation
     from pneutouch.mechanics.atlas.press import SensorBatch
     from pneutouch.mechanics.uncertainty import Budget
     from pneutouch.mechanics.uncertainty.contact_model import ContactModel
@@ -76,7 +75,7 @@ def _fitted(sensor: Sensor) -> bool:
 
 # The uncertainty, through the atlas, loads scipy; a prediction by the membrane alone must not pay for that.
 
-_DIGITS = 6
+DIGITS = 6
 """Significant digits of an uncertainty: more than it has, fewer than differ between processors."""
 
 _NOTHING = 1e-9
@@ -188,58 +187,7 @@ def spread(
     return SensorSpread(batch, of_sensor, contact)
 
 
-Intervals = list[tuple[float, float] | None]
-"""Ends of the interval of each state, or None where it is unknown."""
-
-
-def sensitivity_intervals(evaluations: Sequence[Evaluation]) -> list[Intervals]:
-    """Ends of the k = 2 interval of each state's sensitivity, kPa/N, for each evaluation, as `uncertainties` states
-    them; None where it is unknown. All sensors in one pass through the atlas."""
-    from pneutouch.mechanics.uncertainty.propagate import propagate_groups
-
-    spreads = [_spread_of(each, even_wall(each.sensor)) for each in evaluations]
-    together = [(each.batch, each.sources) for each in spreads if each is not None and each.contact is None]
-    budgets = iter(propagate_groups(together) if together else ())
-    intervals: list[Intervals] = []
-    for evaluation, each in zip(evaluations, spreads, strict=True):
-        if each is None:
-            intervals.append([None] * len(evaluation.prediction.states))
-        else:
-            budget = next(budgets) if each.contact is None else each.combined().budget
-            intervals.append(_intervals(evaluation.prediction, budget))
-    return intervals
-
-
-def _spread_of(evaluation: Evaluation, sensor: Sensor) -> SensorSpread | None:
-    """The sources of an evaluation's sensor; None where its uncertainty is unknown."""
-    prediction, scene = evaluation.prediction, evaluation.scene
-    if _why_unknown(sensor, prediction.model) is not None:
-        return None
-    return spread(
-        sensor,
-        [state.driving_pressure for state in prediction.states],
-        scene.membrane_material,
-        list(evaluation.resins.values()),
-        scene.printer,
-        prediction.model,
-        scene.calibration,
-        prediction.states,
-        anywhere=scene.design.contact.anywhere,
-    )
-
-
-def _intervals(prediction: SensorPrediction, budget: Budget) -> Intervals:
-    from pneutouch.mechanics.atlas.figures import SENSITIVITY
-
-    ends: Intervals = []
-    for state, width in zip(prediction.states, budget.expanded[SENSITIVITY].tolist(), strict=True):
-        value = _values(prediction, state).get("sensitivity_kPa_per_N")
-        known = value is not None and np.isfinite(width)
-        ends.append(rounded((value * np.exp(-width), value * np.exp(width)), _DIGITS, _NOTHING) if known else None)
-    return ends
-
-
-def _why_unknown(sensor: Sensor, model: str) -> str | None:
+def why_unknown(sensor: Sensor, model: str) -> str | None:
     """`unknown`, or None for a wall too soft for the atlas whose derivatives its tables still have."""
     why = unknown(sensor, model)
     if why is not None and model == "solid" and sensor.protocol.other_contact is None:
@@ -261,7 +209,7 @@ def uncertainties(
     """
     states, model = prediction.states, prediction.model
     notes_of_wall, sensor = notes_on(sensor), even_wall(sensor)
-    why = _why_unknown(sensor, model)
+    why = why_unknown(sensor, model)
     if why is not None:
         return tuple(UncertaintyRecord(unknown=why) for _ in states)
     if unknown(sensor, model) is not None:
@@ -304,7 +252,7 @@ def uncertainties(
             summary=text(estimate.budget, row, calibrated=calibrated),
             monte_carlo=_sampled(estimate, row, samples, entry.known) if samples else None,
         )
-        content.append(rounded(entry, _DIGITS, _NOTHING))
+        content.append(rounded(entry, DIGITS, _NOTHING))
     return tuple(content)
 
 

@@ -216,11 +216,85 @@ def scan(problem: SelectionProblem) -> CandidateGrid:
     return CandidateGrid(*blocks)
 
 
+_STARTS, _HALVINGS, _FIRST_STEP = 6, 12, 0.15
+"""Candidates of each resin from which a nearer one is looked for, how often the step is halved, and the first one:
+of the logarithms of radius and wall, and of the pressure in rated pressures."""
+
+
+_ENOUGH = 0.02
+"""Margin that rounding to a hundredth of a millimetre does not use up, if there is as much."""
+
+
+def nearer(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
+    """Candidates that break the limits less than those of a scan, or meet them: steps to the best of all neighbours.
+
+    A scan has no point in every corner of what is possible, such as the least wall at the greatest diameter. The steps
+    start at the best of each resin, which differ, and are halved where no neighbour is better.
+    """
+    rows = _best_of_each(problem, pool)
+    here = pool.take(rows)
+    moves = _moves(problem)
+    step = np.full(rows.size, _FIRST_STEP)
+    top = rated(problem, here.resin, here.radius, here.wall)
+    for _ in range(2 * _HALVINGS):
+        by = step[:, None, None] * moves
+        radius, wall = here.radius[:, None] * np.exp(by[..., 0]), here.wall[:, None] * np.exp(by[..., 1])
+        pressure = np.maximum(here.pressure[:, None] + by[..., 2] * top[:, None], 0.0)
+        # Onto the limits, on which the best lies more often than not.
+        if problem.wall_thickness is None:
+            wall = np.maximum(wall, problem.least_wall)
+        if problem.max_diameter is not None and problem.inner_radius is None:
+            radius = np.minimum(radius, np.maximum(0.5 * problem.max_diameter - wall, wall))
+        resin = np.broadcast_to(here.resin[:, None], radius.shape)
+        around = evaluated(problem, *(part.ravel() for part in (resin, radius, wall, pressure)))
+        worst = _worst(problem, around).reshape(radius.shape)
+        best = worst.argmax(axis=1)
+        here = around.take(np.arange(rows.size) * len(moves) + best)
+        if (worst.max(axis=1) >= _ENOUGH).any():
+            break
+        step = np.where(best == 0, 0.5 * step, step)
+    return _round_sizes(problem, here)
+
+
+def _round_sizes(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
+    """The nine sizes in hundredths of a millimetre around each candidate."""
+    by = 0.01 * np.arange(-1.0, 2.0)
+    radius, wall = np.round(pool.radius, 2)[:, None, None] + by, np.round(pool.wall, 2)[:, None, None] + by[:, None]
+    if problem.inner_radius is not None:
+        radius = np.full((1, 1, 1), problem.inner_radius)
+    if problem.wall_thickness is not None:
+        wall = np.full((1, 1, 1), problem.wall_thickness)
+    parts = np.broadcast_arrays(pool.resin[:, None, None], radius, wall, pool.pressure[:, None, None])
+    return joined([pool, evaluated(problem, *(part.ravel() for part in parts))])
+
+
+def _moves(problem: SelectionProblem) -> Array:
+    """No step and those to all neighbours in radius, wall and pressure, as far as these are free, (m, 3)."""
+    fixed = (problem.inner_radius, problem.wall_thickness, problem.driving_pressure)
+    sides = [(0.0,) if value is not None else (0.0, -1.0, 1.0) for value in fixed]
+    return np.array(np.meshgrid(*sides, indexing="ij")).reshape(3, -1).T
+
+
+def _worst(problem: SelectionProblem, pool: CandidatePool) -> Array:
+    """The least margin of each candidate, (n,)."""
+    return np.asarray(np.min(list(margins(problem, pool).values()), axis=0))
+
+
+def _best_of_each(problem: SelectionProblem, pool: CandidatePool) -> Index:
+    worst = _worst(problem, pool)
+    order = np.argsort(-worst, kind="stable")
+    order = order[np.isfinite(worst[order])]
+    return np.concatenate([order[pool.resin[order] == resin][:_STARTS] for resin in distinct(pool.resin)])
+
+
 def _ratios(problem: SelectionProblem, count: int) -> Array:
     box = problem.recipe
     if problem.inner_radius is not None and problem.wall_thickness is not None:
         return np.array([problem.wall_thickness / problem.inner_radius])
     low, high = box.thinnest, box.thickest
+    if problem.max_diameter is not None and problem.inner_radius is None and problem.wall_thickness is None:
+        # The least wall at the greatest diameter: no smaller ratio has a size.
+        low = max(low, problem.least_wall / max(0.5 * problem.max_diameter - problem.least_wall, 1e-9))
     if problem.inner_radius is not None:
         low = max(low, problem.least_wall / problem.inner_radius)
         if problem.max_diameter is not None:

@@ -14,7 +14,16 @@ from pneutouch.mechanics.atlas.respond import ENDS, respond
 from pneutouch.mechanics.corrected.designs import ContactFigures
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE
 from pneutouch.mechanics.uncertainty.sources.place import place_uncertainties
-from pneutouch.selection.candidates import REQUIREMENTS, CandidatePool, evaluated, margins, rated, search
+from pneutouch.selection.candidates import (
+    REQUIREMENTS,
+    CandidatePool,
+    evaluated,
+    joined,
+    margins,
+    nearer,
+    rated,
+    search,
+)
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
 EACH = 3
@@ -101,18 +110,33 @@ def choose(
     pool = searched(problem)
     if pool is None:
         return SelectionResult([], None, [], 0)
-    margin_of = margins(problem, pool)
-    wide = margin_of if refine is None else margins(refinable(problem), pool)
+    good = _good(problem, pool, weights, uncertainty, refine)
+    if not good:
+        # Nothing on the scan, or nothing of it at round sizes.
+        pool = joined([nearer(problem, pool), pool])
+        good = _good(problem, pool, weights, uncertainty, refine)
+    if good:
+        return SelectionResult(ranked(good), None, [], pool.resin.size)
+    return _impossible(problem, pool, weights, uncertainty)
+
+
+def _good(
+    problem: SelectionProblem,
+    pool: CandidatePool,
+    weights: tuple[float, float],
+    uncertainty: Uncertainty,
+    refine: Refine | None,
+) -> list[Candidate]:
+    """The candidates on the shortlist that meet every limit at round sizes."""
+    wide = margins(problem if refine is None else refinable(problem), pool)
     fits = np.all([margin >= 0.0 for margin in wide.values()], axis=0)
     rows = shortlist(pool, wide, fits, preferred=_least_moved(problem, pool, weights, fits))
-    if rows.size:
-        close = rounded(problem, pool.take(rows))
-        refined_problem, close = (problem, close) if refine is None else refine(problem, close)
-        judged = _judged(refined_problem, close, weights, uncertainty)
-        good = [choice for choice in judged if min(choice.margins.values()) >= 0.0]
-        if good:
-            return SelectionResult(ranked(good), None, [], pool.resin.size)
-    return _impossible(problem, pool, margin_of, weights, uncertainty)
+    if not rows.size:
+        return []
+    close = rounded(problem, pool.take(rows))
+    refined_problem, close = (problem, close) if refine is None else refine(problem, close)
+    judged = _judged(refined_problem, close, weights, uncertainty)
+    return [choice for choice in judged if min(choice.margins.values()) >= 0.0]
 
 
 def searched(problem: SelectionProblem) -> CandidatePool | None:
@@ -187,7 +211,7 @@ def differ(pool: CandidatePool, a: int, b: int) -> bool:
 def rounded(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
     """The candidates at round sizes, still inside the atlas and the size limit; given sizes stay as given."""
     unit, box = 10.0**-_DIGITS, problem.recipe
-    radius = pool.radius if problem.inner_radius is not None else np.floor(pool.radius / unit) * unit
+    radius = pool.radius if problem.inner_radius is not None else np.floor(pool.radius / unit + 1e-6) * unit
     wall = pool.wall
     if problem.wall_thickness is None:
         low = np.maximum(box.thinnest * radius, problem.least_wall)
@@ -257,13 +281,10 @@ def ranked(choices: list[Candidate]) -> list[Candidate]:
 
 
 def _impossible(
-    problem: SelectionProblem,
-    pool: CandidatePool,
-    margin_of: dict[str, Array],
-    weights: tuple[float, float],
-    uncertainty: Uncertainty,
+    problem: SelectionProblem, pool: CandidatePool, weights: tuple[float, float], uncertainty: Uncertainty
 ) -> SelectionResult:
     """The candidate that breaks the least, and each requirement without which there is a design."""
+    margin_of = margins(problem, pool)
     every = np.array(list(margin_of.values()))
     worst = np.where(np.isneginf(every), _UNKNOWN, every).min(axis=0)
     nearest = int(np.argmax(worst))

@@ -133,7 +133,7 @@ def declaration(model: type[BaseModel], key: str) -> Declaration:
 
 
 def extra_of(model: type[BaseModel], key: str) -> Mapping[str, Any]:
-    """What the declaration of a field says beyond pydantic's own words."""
+    """The entries of a field's declaration beyond pydantic's own."""
     extra = model.model_fields[key].json_schema_extra
     return extra if isinstance(extra, dict) else {}
 

@@ -1,12 +1,18 @@
 """The variables of a sweep's dataset: each declared once, with its place in a prediction, unit and meaning."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from pneutouch.evaluation.evaluate import Evaluation
+from pneutouch.evaluation.uncertainty import DIGITS, SensorSpread, even_wall, spread, why_unknown
+from pneutouch.mechanics import Sensor, SensorState
+from pneutouch.mechanics.atlas.figures import SENSITIVITY
+from pneutouch.mechanics.uncertainty.propagate import propagate_groups
 from pneutouch.results.prediction import PredictionRecord, StateRecord
+from pneutouch.rounding import rounded
 
 Interval = tuple[float, float] | None
 
@@ -133,3 +139,46 @@ def state_values(state: StateRecord, interval: Interval) -> dict[str, float | st
 def point_values(prediction: PredictionRecord) -> dict[str, float | str | None]:
     """Values of a prediction that a dataset keeps, apart from its states."""
     return {variable.name: variable.read(prediction) for variable in POINT}
+
+
+def sensitivity_intervals(evaluations: Sequence[Evaluation]) -> list[list[Interval]]:
+    """Ends of the k = 2 interval of each state's sensitivity, kPa/N, for each evaluation, as ``predict`` states them;
+    None where it is unknown. All sensors in one pass through the atlas."""
+    spreads = [_spread(each, even_wall(each.sensor)) for each in evaluations]
+    together = [(each.batch, each.sources) for each in spreads if each is not None and each.contact is None]
+    budgets = iter(propagate_groups(together) if together else ())
+    intervals: list[list[Interval]] = []
+    for evaluation, each in zip(evaluations, spreads, strict=True):
+        states = evaluation.prediction.states
+        if each is None:
+            intervals.append([None] * len(states))
+        else:
+            budget = next(budgets) if each.contact is None else each.combined().budget
+            widths = budget.expanded[SENSITIVITY].tolist()
+            intervals.append([_interval(*pair) for pair in zip(states, widths, strict=True)])
+    return intervals
+
+
+def _spread(evaluation: Evaluation, sensor: Sensor) -> SensorSpread | None:
+    """The sources of an evaluation's sensor; None where its uncertainty is unknown."""
+    prediction, scene = evaluation.prediction, evaluation.scene
+    if why_unknown(sensor, prediction.model) is not None:
+        return None
+    return spread(
+        sensor,
+        [state.driving_pressure for state in prediction.states],
+        scene.membrane_material,
+        list(evaluation.resins.values()),
+        scene.printer,
+        prediction.model,
+        scene.calibration,
+        prediction.states,
+        anywhere=scene.design.contact.anywhere,
+    )
+
+
+def _interval(state: SensorState, width: float) -> Interval:
+    if state.figures is None or not np.isfinite(width):
+        return None
+    value = state.figures.sensitivity_kPa_per_N
+    return rounded((value * float(np.exp(-width)), value * float(np.exp(width))), DIGITS)

@@ -19,7 +19,6 @@ from pneutouch.catalogue.library import CachedLibrary, elastomers
 from pneutouch.errors import InputError, PneutouchError, StatedPressureError
 from pneutouch.evaluation.evaluate import DrawnScene, Evaluation, PredictionOptions, drawn, evaluate_drawn
 from pneutouch.evaluation.result import by_model, rating_record
-from pneutouch.evaluation.uncertainty import Intervals, sensitivity_intervals
 from pneutouch.mechanics.models.choice import USUAL, model_named
 from pneutouch.mechanics.models.interface import Answered
 from pneutouch.output.files import digest, json_bytes
@@ -29,7 +28,7 @@ from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.units import KPA
 from pneutouch.workflows.sweep.grid import PRESSURES, Settings, SweepPlan
-from pneutouch.workflows.sweep.variables import point_values, state_values
+from pneutouch.workflows.sweep.variables import Interval, point_values, sensitivity_intervals, state_values
 
 
 @dataclass(frozen=True, slots=True)
@@ -295,7 +294,7 @@ _T = TypeVar("_T")
 
 
 def _tried(work: Callable[[], _T]) -> _T | Exception:
-    """What a point's work gives, or its error: one that fails must not cost the others, which may be hours of work."""
+    """The outcome of a point's work, or its error: one that fails must not cost the others, perhaps hours of work."""
     try:
         return work()
     except (MemoryError, OSError):
@@ -337,7 +336,7 @@ def _values(evaluations: Sequence[Evaluation]) -> list[_Values | Exception]:
     return [every] if len(evaluations) == 1 else [one for each in evaluations for one in _values([each])]
 
 
-def _of_evaluation(evaluation: Evaluation, intervals: Intervals) -> _Values:
+def _of_evaluation(evaluation: Evaluation, intervals: list[Interval]) -> _Values:
     record = by_model(evaluation.prediction, curves=False)
     rating = rating_record(evaluation.rating, [])
     states = [state_values(*pair) for pair in zip(record.states, intervals, strict=True)]
