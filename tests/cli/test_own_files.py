@@ -59,16 +59,33 @@ def pulled(path: Path) -> None:
     path.write_text("\n".join(["stretch,stress (MPa)", *rows]) + "\n")
 
 
+def given(campaign: Path, folder: Path) -> None:
+    """What the commands read."""
+    shutil.copytree(campaign, folder / "campaign")
+    pulled(folder / "tension.csv")
+
+
 @pytest.mark.parametrize("line", LINES)
 def test_a_command_replaces_no_file_that_a_person_changed(line, campaign, command, tmp_path):
     sheet = annotated(tmp_path / "made" / LINES[line])
-    shutil.copytree(campaign, tmp_path / "campaign")
-    pulled(tmp_path / "tension.csv")
+    given(campaign, tmp_path)
     before = everything(tmp_path)
     done = command(*line.split(), "--out", "made")
     assert done.returncode == 2, done.stderr
     last = done.stderr.splitlines()[-1]
     assert str(sheet.relative_to(tmp_path)) in last and "--out" in last
+    assert everything(tmp_path) == before
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("line", LINES)
+def test_a_command_writes_the_same_again_over_its_own_output(line, campaign, command, tmp_path):
+    given(campaign, tmp_path)
+    first = command(*line.split(), "--out", "made")
+    before = everything(tmp_path)
+    assert before.keys() > {f"made/{LINES[line]}", f"made/{LINES[line]}/manifest.json"}, first.stderr
+    again = command(*line.split(), "--out", "made")
+    assert (again.returncode, again.stdout) == (first.returncode, first.stdout), again.stderr
     assert everything(tmp_path) == before
 
 

@@ -158,17 +158,13 @@ def make_plan(
     library: Library | None = None,
     out: Path | None = None,
 ) -> CampaignPlan:
-    """Plan a campaign of the paper's tests for a design in each resin. Raises InputError if that is impossible.
-
-    So it is where it could not be written into a folder of ``out``: that is found before anything is computed.
-    """
+    """Plan the paper's tests for a design in each resin. Raises InputError, also where ``out`` cannot take the plan."""
     library = library or Library.default()
     subjects = resins_of(design, changes, options.resins, library=library)
     named, copied = named_design(design, library)
     scene = subjects[0].scene
-    name = f"{scene.name}-plan"
     if out is not None:
-        check_writable(out / name)
+        check_writable(out / f"{scene.name}-plan")
     if rig == PAPER and not rig_name:
         rig = paper_rig(scene)
     for subject in subjects:
@@ -183,7 +179,7 @@ def make_plan(
     depths = tuple(depth for test, _ in tests.values() for depth in test.depths)
     pneumatics, membrane = scene.design.pneumatics, scene.design.membrane
     record = PlannedCampaign(
-        name=name,
+        name=f"{scene.name}-plan",
         design=scene.name,
         title=scene.design.document.title,
         inner_radius_mm=membrane.inner_radius_mm,
