@@ -141,6 +141,26 @@ def test_what_a_person_put_out_of_the_way_stays(folder: Path) -> None:
     assert written == {**NEW, **own}
 
 
+def test_a_recording_in_the_folder_goes_on(folder: Path) -> None:
+    with (folder / "runs/mine.csv").open("w") as recording:
+        recording.write("1\n")
+        recording.flush()
+        write_folder(folder, NEW)
+        recording.write("2\n")
+    assert (folder / "runs/mine.csv").read_text() == "1\n2\n"
+
+
+def test_a_place_without_second_names_of_files_keeps_them_too(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(os, "link", refuse)
+    measured(folder / "runs/mine.csv")
+    (folder / "link").symlink_to("nowhere")
+    write_folder(folder, NEW)
+    assert (folder / "runs/mine.csv").read_bytes() == b"measured" and (folder / "link").is_symlink()
+
+
 def test_an_output_as_it_was_written_is_replaced_by_any_other(folder: Path) -> None:
     for files in (OLD, NEW, with_manifest({"runs": b"a file now"}, "x", {}), OLD):
         write_folder(folder, files)

@@ -229,7 +229,7 @@ def _of_others(path: Path) -> InputError:
 
 
 def _keep_foreign(folder: Path, fresh: Path) -> None:
-    """Copy files, links and empty folders of others; raises InputError where one is in the way or cannot be copied."""
+    """Bring over files, links and empty folders of others; raises InputError where one is in the way or is a pipe."""
     listed = _our_files(folder)
     for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder).as_posix()
@@ -244,7 +244,11 @@ def _keep_foreign(folder: Path, fresh: Path) -> None:
             raise _of_others(path) from None
         if is_folder:
             target.mkdir()
-        else:
+            continue
+        try:
+            # Who has the file open goes on writing into the same one.
+            os.link(path, target, follow_symlinks=False)
+        except OSError:
             shutil.copy2(path, target, follow_symlinks=False)
 
 
