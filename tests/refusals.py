@@ -10,11 +10,14 @@ from pneutouch.errors import InputError
 
 
 @contextmanager
-def refused(key: str, value: Any = None, *, remedy: str = "", fields: Collection[str] = ()) -> Iterator[None]:
-    """An input is refused at a key; where they are given also with its value, a word of its remedy, and its fields."""
+def refused(
+    key: str | None, value: Any = None, *, file: object = None, remedy: str = "", fields: Collection[str] = ()
+) -> Iterator[None]:
+    """An input is refused at a key; where they are given also with its value, file, a word of its remedy, and fields."""
     with pytest.raises(InputError) as caught:
         yield
     assert caught.value.key == key, caught.value
     assert value is None or caught.value.value == value, caught.value
+    assert file is None or caught.value.file == str(file), caught.value
     assert remedy in (caught.value.remedy or ""), caught.value
     assert set(fields) <= set(caught.value.fields), caught.value

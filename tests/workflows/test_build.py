@@ -12,8 +12,7 @@ from pathlib import Path
 import pytest
 
 from pneutouch.errors import InputError, RuleBrokenError
-from pneutouch.formats import format_of
-from pneutouch.output.files import check_writable, replacing, write_folder
+from pneutouch.output.files import check_writable, replacing, with_manifest, write_folder
 from pneutouch.workflows.build import STEPS, build
 from tests.refusals import refused
 
@@ -49,13 +48,13 @@ def test_every_named_file_is_there_and_in_the_manifest(built):
         assert 0 < mesh["measured_deviation_mm"] <= mesh["tolerance_mm"]
 
 
-def listing(files: str) -> bytes:
-    """A manifest that lists files."""
-    stated = format_of("manifest")
-    return f'{{"format": "{stated}", "files": {files}}}'.encode()
+def listed(**files: bytes) -> dict[str, bytes]:
+    """Files and their manifest; in a name ``__`` stands for a slash and ``_`` for a point."""
+    named = {name.replace("__", "/").replace("_", "."): data for name, data in files.items()}
+    return with_manifest(named, "x", {})
 
 
-OLD = {"manifest.json": listing('{"old.txt": {}}'), "old.txt": b"old"}
+OLD = listed(old_txt=b"old")
 
 
 @pytest.mark.slow
@@ -130,21 +129,21 @@ def test_a_build_killed_while_it_writes_leaves_the_previous_output_whole(moment,
 
 def test_a_new_build_replaces_our_files_and_keeps_other_peoples(tmp_path):
     folder = tmp_path / "x"
-    write_folder(folder, {"manifest.json": listing('{"a.txt": {}, "b/c.txt": {}}'), "a.txt": b"1", "b/c.txt": b"1"})
+    write_folder(folder, listed(a_txt=b"1", b__c_txt=b"1"))
     (folder / "notes").mkdir()
     (folder / "notes/mine.csv").write_text("measured")
-    write_folder(folder, {"manifest.json": listing('{"a.txt": {}}'), "a.txt": b"2"})
-    assert content(folder) == {"manifest.json": listing('{"a.txt": {}}'), "a.txt": b"2", "notes/mine.csv": b"measured"}
+    write_folder(folder, listed(a_txt=b"2"))
+    assert content(folder) == {**listed(a_txt=b"2"), "notes/mine.csv": b"measured"}
     assert list(tmp_path.iterdir()) == [folder]
 
 
 def test_links_and_empty_folders_of_other_people_are_kept(tmp_path):
     folder, elsewhere = tmp_path / "x", tmp_path / "data"
     elsewhere.mkdir()
-    write_folder(folder, {"manifest.json": listing("{}")})
+    write_folder(folder, listed())
     (folder / "link").symlink_to(elsewhere)
     (folder / "empty").mkdir()
-    write_folder(folder, {"manifest.json": listing("{}"), "a.txt": b"1"})
+    write_folder(folder, listed(a_txt=b"1"))
     assert (folder / "link").is_symlink()
     assert (folder / "empty").is_dir()
     (tmp_path / "alias").symlink_to(folder)

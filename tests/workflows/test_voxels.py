@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from pneutouch.catalogue import load_scene
 from pneutouch.cli.app import app
 from pneutouch.errors import InputError, RuleBrokenError
-from pneutouch.export.voxels.stack import MANIFEST, read_stack
+from pneutouch.export.voxels.stack import MANIFEST, read_stack, slice_name, whole_hash
 from pneutouch.output.files import digest
 from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes
@@ -73,7 +73,11 @@ def test_the_picture_is_the_right_way_up(written):
 
 def test_same_input_same_bytes_in_the_place_of_an_earlier_stack(written, stack):
     plan, folder = written
-    (stack / "graded-dome_9999.png").write_bytes(b"left over from a taller one")
+    # A taller one, with a slice more.
+    manifest, content = json.loads((stack / MANIFEST).read_text()), b"a slice"
+    slices = [*manifest["slices"], digest(content)]
+    (stack / slice_name("graded-dome_", len(slices) - 1)).write_bytes(content)
+    (stack / MANIFEST).write_text(json.dumps(manifest | {"slices": slices, "sha256": whole_hash(slices)}))
     again, _ = write_voxels(plan, stack.parent, "abc")
     assert again == stack
     assert list(stack.parent.iterdir()) == [stack]
@@ -112,7 +116,7 @@ def test_a_full_disk_leaves_nothing_and_keeps_the_earlier_stack(written, stack, 
 def test_foreign_files_are_left_alone(written, stack):
     for name in ("notes.txt", "section.png"):
         (stack / name).write_text("mine")
-        with pytest.raises(InputError, match=rf"{name} is not of the stack"):
+        with refused(None, file=stack / name):
             write_voxels(written[0], stack.parent, "abc")
         (stack / name).unlink()
     other = stack.parent / "other"
@@ -122,6 +126,25 @@ def test_foreign_files_are_left_alone(written, stack):
     (stack / "a.png").write_text("mine")
     with refused("out"):
         write_voxels(written[0], stack.parent, "abc")
+
+
+@pytest.mark.parametrize("name", ["graded-dome_3.png", "graded-dome_100000.png"])
+def test_a_slice_that_a_person_changed_or_added_is_left_alone(written, stack, name):
+    (stack / name).write_bytes(b"mine")
+    before = {path.name: path.read_bytes() for path in stack.iterdir()}
+    with refused(None, file=stack / name):
+        write_voxels(written[0], stack.parent, "abc")
+    assert {path.name: path.read_bytes() for path in stack.iterdir()} == before
+
+
+def test_a_slice_that_is_changed_while_the_next_stack_is_made_is_left_alone(written, stack):
+    def changed(done, total):
+        (stack / "graded-dome_3.png").write_bytes(b"mine")
+
+    with refused(None, file=stack / "graded-dome_3.png"):
+        write_voxels(written[0], stack.parent, "abc", changed)
+    assert (stack / "graded-dome_3.png").read_bytes() == b"mine"
+    assert list(stack.parent.iterdir()) == [stack]
 
 
 def test_a_printer_without_voxels_is_refused_before_anything_is_written(library, tmp_path):

@@ -56,6 +56,7 @@ def plan(
                 given(PlanOptions, options),
                 rig=rig_of(rig),
                 rig_name="" if rig is None else rig.name,
+                out=out,
             )
             folder = write_plan(result, out)
         for warning in result.record.warnings:

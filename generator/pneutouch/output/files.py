@@ -20,7 +20,7 @@ from pneutouch.errors import InputError
 from pneutouch.formats import check_format, versioned
 from pneutouch.results.folder import FileEntry, Manifest
 from pneutouch.results.record import plain
-from pneutouch.spec.files import read_bytes
+from pneutouch.spec.files import check_plain, read_bytes
 from pneutouch.stopping import parent_folders, refuse_stopped, temporary_folder, uninterrupted
 
 MANIFEST = "manifest.json"
@@ -32,6 +32,16 @@ _MOST_MANIFEST = 100_000_000
 def digest(content: bytes) -> str:
     """SHA-256 of a file's content, hexadecimal."""
     return hashlib.sha256(content).hexdigest()
+
+
+def file_digest(path: Path) -> str | None:
+    """SHA-256 of a plain file, hexadecimal; None of all else, and of what cannot be read."""
+    try:
+        check_plain(path, "file")
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except (InputError, OSError):
+        return None
 
 
 def json_bytes(document: object) -> bytes:
@@ -122,7 +132,10 @@ def _refused(path: Path, error: OSError, key: str) -> InputError:
 
 
 def check_writable(folder: Path, key: str = "out") -> None:
-    """Raise InputError where an output folder cannot be made or written, or holds files of others; ``key`` names it."""
+    """Raise InputError where an output folder cannot be made or written, or is of others; ``key`` names it.
+
+    So it is where a file of it is no longer as its manifest states: that is a person's now.
+    """
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is a file", key=key, remedy="it must be a folder")
     if folder.is_symlink():
@@ -139,8 +152,8 @@ def check_writable(folder: Path, key: str = "out") -> None:
 def write_folder(folder: Path, files: dict[str, bytes]) -> None:
     """Replace ``folder`` by ``files`` (path inside it to content); what others put there is kept.
 
-    Everything is written to a hidden folder next to it first. A run that stops before the last renames
-    leaves the previous output as it was.
+    Raises InputError as `replacing`. Everything is written to a hidden folder next to it first. A run that stops before
+    the last renames leaves the previous output as it was.
     """
     with replacing(folder) as fresh:
         for name, content in files.items():
@@ -153,7 +166,8 @@ def write_folder(folder: Path, files: dict[str, bytes]) -> None:
 def replacing(folder: Path) -> Iterator[Path]:
     """A hidden folder to write into, put in the place of ``folder`` when the block ends; what others put there is kept.
 
-    Raises InputError if it cannot be written, half way too; the previous output then stays and nothing else does.
+    Raises InputError if it cannot be written, half way too, and rather than replace or remove a file that is not as
+    the folder's manifest states; the previous output then stays and nothing else does.
     """
     check_writable(folder)
     try:
@@ -191,43 +205,51 @@ def exchange(folder: Path, fresh: Path) -> None:
 
 
 def _our_files(folder: Path) -> set[str]:
-    """The files that the folder's manifest lists; raises InputError where the folder is not one of ours."""
+    """The files that the folder's manifest lists; raises InputError where the folder or one of these is not ours."""
     try:
         manifest = json.loads(read_bytes(folder / MANIFEST, _MOST_MANIFEST, "manifest"))
-        names = {*manifest["files"], MANIFEST}
-    except (InputError, ValueError, KeyError, TypeError, RecursionError):
+        listed = {name: str(entry["sha256"]) for name, entry in manifest["files"].items()}
+    except (InputError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         if not os.path.lexists(folder / MANIFEST):
             text = f"holds files but no {MANIFEST}: not written by pneutouch"
             raise InputError(f"{folder} {text}", key="out", remedy="give another folder, or empty this one") from None
         text = f"has a {MANIFEST} that pneutouch did not write or that is damaged"
     else:
         check_format("manifest", manifest, folder / MANIFEST)
-        return names
+        for path, stated in ((folder / name, digest_) for name, digest_ in listed.items()):
+            if os.path.lexists(path) and (path.is_symlink() or file_digest(path) != stated):
+                raise _of_others(path)
+        return {*listed, MANIFEST}
     raise InputError(f"{folder} {text}", key="out", remedy="give another folder, or empty this one")
 
 
-def stated_digest(folder: Path, name: str) -> str | None:
-    """The SHA-256 that the folder's manifest gives of a file; None if it gives none."""
-    try:
-        digest_ = json.loads(read_bytes(folder / MANIFEST, _MOST_MANIFEST, "manifest"))["files"][name]["sha256"]
-    except (InputError, ValueError, KeyError, TypeError, RecursionError):
-        return None
-    return str(digest_)
+def _of_others(path: Path) -> InputError:
+    problem = "is not as pneutouch wrote it, or not of pneutouch, and would be lost"
+    return InputError(problem, file=path, remedy="move it away, or give another folder with `out`")
 
 
 def _keep_foreign(folder: Path, fresh: Path) -> None:
-    """Copy files, links and empty folders that the previous manifest does not list and whose names are free."""
+    """Bring over files, links and empty folders of others; raises InputError where one is in the way or is a pipe."""
     listed = _our_files(folder)
     for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder).as_posix()
-        target = fresh / name
-        if name in listed or target.exists() or target.is_symlink():
+        target, is_folder = fresh / name, path.is_dir() and not path.is_symlink()
+        if name in listed or (is_folder and (target.is_dir() or any(path.iterdir()))):
             continue
-        if path.is_symlink() or path.is_file():
+        if os.path.lexists(target) or not (is_folder or path.is_symlink() or path.is_file()):
+            raise _of_others(path)
+        try:
             target.parent.mkdir(parents=True, exist_ok=True)
+        except (FileExistsError, NotADirectoryError):
+            raise _of_others(path) from None
+        if is_folder:
+            target.mkdir()
+            continue
+        try:
+            # Who has the file open goes on writing into the same one.
+            os.link(path, target, follow_symlinks=False)
+        except OSError:
             shutil.copy2(path, target, follow_symlinks=False)
-        elif path.is_dir() and not any(path.iterdir()):
-            target.mkdir(parents=True)
 
 
 LIBRARIES = ("numpy", "manifold3d", "trimesh", "lib3mf", "cadquery", "cadquery-ocp", "matplotlib", "jinja2", "typst")

@@ -226,7 +226,7 @@ CAMPAIGN = "campaign.toml"
 def campaign_of(data: Path) -> tuple[Campaign, Path]:
     """The campaign of a folder or of its campaign file, whose runs lie in that folder. Raises InputError."""
     path = data / CAMPAIGN if data.is_dir() else data
-    if data.is_dir() and not path.is_file():
+    if data.is_dir() and not path.exists():
         raise InputError(f"holds no {CAMPAIGN}", file=data, remedy="`pneutouch plan` writes one to be filled in")
     campaign = validate(Campaign, read_toml(path), str(path))
     for place, run in enumerate(campaign.runs):

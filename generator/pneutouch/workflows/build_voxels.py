@@ -1,6 +1,5 @@
 """A voxel stack of a design: the bodies printed with the membrane, one PNG a layer, in a folder of its own."""
 
-import re
 import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -13,9 +12,9 @@ from pneutouch.errors import InputError, nearest
 from pneutouch.export.voxels.png import encode, table
 from pneutouch.export.voxels.raster import BACKGROUND, VoxelBody, VoxelJob, blend, raster
 from pneutouch.export.voxels.slices import VoxelSlicer
-from pneutouch.export.voxels.stack import MANIFEST, shortfalls, slice_name, stack_record
+from pneutouch.export.voxels.stack import MANIFEST, shortfalls, slice_name, stack_record, stated_slices
 from pneutouch.formats import versioned
-from pneutouch.output.files import check_writable, digest, exchange, json_bytes
+from pneutouch.output.files import check_writable, digest, exchange, file_digest, json_bytes
 from pneutouch.parts import Assembly
 from pneutouch.printability import Finding, refuse
 from pneutouch.printability.rules.voxels import check_stack
@@ -27,8 +26,6 @@ Progress = Callable[[int, int], None]
 """Called with the slices written and all of them."""
 
 SEED = 1
-
-_SLICE = re.compile(r".*_[0-9]+\.png")
 
 
 @dataclass(frozen=True)
@@ -131,6 +128,7 @@ def write_stack(
             with uninterrupted():
                 fresh.chmod(0o755)
                 if folder.exists():
+                    check_stack_folder(folder)
                     exchange(folder, fresh)
                 else:
                     fresh.rename(folder)
@@ -144,7 +142,7 @@ def write_stack(
 
 
 def check_stack_folder(folder: Path) -> None:
-    """Raise InputError where a stack cannot be written into ``folder`` or foreign files lie in it."""
+    """Raise InputError where a stack cannot be written into ``folder``, or a file in it is not as one was written."""
     if not folder.is_dir() or folder.is_symlink() or not any(folder.iterdir()):
         check_writable(folder)
         return
@@ -152,11 +150,11 @@ def check_stack_folder(folder: Path) -> None:
         raise InputError(
             f"{folder} holds files but no {MANIFEST}: not written by pneutouch", key="out", remedy="give another folder"
         )
-    foreign = next(
-        (path for path in sorted(folder.iterdir()) if path.name != MANIFEST and not _SLICE.fullmatch(path.name)), None
-    )
-    if foreign is not None:
-        raise InputError(f"{foreign} is not of the stack that is to be replaced", key="out", remedy="move it elsewhere")
+    stated = stated_slices(folder)
+    for path in sorted(folder.iterdir()):
+        ours = not path.is_symlink() and file_digest(path) == stated.get(path.name, "none")
+        if path.name != MANIFEST and not ours:
+            raise InputError("is not of the stack that is to be replaced", file=path, remedy="move it elsewhere")
 
 
 def _mode(assembly: Assembly, name: str | None) -> Mode:

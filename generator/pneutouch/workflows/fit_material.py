@@ -190,8 +190,8 @@ def write_material(fitted: FittedMaterial, report: MaterialFit, out: Path) -> Pa
     }
     made = {"fit.json": json_bytes(versioned("fit", plain(report))), "fit.svg": _chart(fitted).encode()}
     files = with_manifest(made, folder.name, inputs)
-    replace_files({fitted.path: fitted.text.encode()})
     write_folder(folder, files)
+    replace_files({fitted.path: fitted.text.encode()})
     return folder
 
 

@@ -156,12 +156,15 @@ def make_plan(
     rig: Rig = PAPER,
     rig_name: str = "",
     library: Library | None = None,
+    out: Path | None = None,
 ) -> CampaignPlan:
-    """Plan a campaign of the paper's tests for a design in each resin. Raises InputError if that is impossible."""
+    """Plan the paper's tests for a design in each resin. Raises InputError, also where ``out`` cannot take the plan."""
     library = library or Library.default()
     subjects = resins_of(design, changes, options.resins, library=library)
     named, copied = named_design(design, library)
     scene = subjects[0].scene
+    if out is not None:
+        check_writable(out / f"{scene.name}-plan")
     if rig == PAPER and not rig_name:
         rig = paper_rig(scene)
     for subject in subjects:
@@ -229,7 +232,6 @@ def _test(kind: str, test: RunProtocol, driving_pressures_kPa: tuple[float, ...]
 def write_plan(plan: CampaignPlan, out: Path) -> Path:
     """Write ``out/<design>-plan/``: plan.json, plan.md, campaign.toml, manifest; the same input, the same bytes."""
     folder = out / plan.name
-    check_writable(folder)
     note = "# Fill in lab, and date and age_days of every run; measured files go to the path in `file`."
     document = plain(plan.record)
     files = {

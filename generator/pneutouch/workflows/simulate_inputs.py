@@ -18,7 +18,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.resins import SimulatedResin
 from pneutouch.mechanics.models.choice import USUAL
 from pneutouch.spec.campaign import CAMPAIGN, CampaignRun, RunKind, campaign_of
-from pneutouch.spec.files import is_file, read_bytes
+from pneutouch.spec.files import exists, read_bytes
 from pneutouch.spec.options import SimulationOptions
 from pneutouch.spec.read import Changes, parse_changes
 from pneutouch.spec.values import file_name
@@ -119,7 +119,7 @@ def as_planned(
 
     Raises InputError for options that the plan states, and for a plan that cannot be simulated.
     """
-    if isinstance(design, DesignSource) or not is_file(Path(design) / CAMPAIGN):
+    if isinstance(design, DesignSource) or not exists(Path(design) / CAMPAIGN):
         return design, changes, RequestedRuns(**options.model_dump(exclude_none=True))
     campaign, folder = campaign_of(Path(design))
     usual = SimulationOptions()

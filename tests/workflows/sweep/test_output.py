@@ -74,6 +74,6 @@ def test_a_lock_file_of_a_dead_process_holds_nobody(library, tmp_path):
 def test_a_folder_of_another_program_is_left_alone(library, tmp_path):
     (tmp_path / "sweep.nc.parts").mkdir()
     (tmp_path / "sweep.nc.parts/thesis.tex").write_text("mine")
-    with refused("out"):
+    with refused(None, file=tmp_path / "sweep.nc.parts/thesis.tex"):
         sweep(small(), tmp_path / "sweep.nc", ALONE, library=library)
     assert names(tmp_path / "sweep.nc.parts") == ["thesis.tex"]

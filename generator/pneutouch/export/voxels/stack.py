@@ -187,6 +187,12 @@ def read_stack(folder: Path) -> VoxelStack:
     return VoxelStack(folder, manifest, counts, np.array(middle))
 
 
+def stated_slices(folder: Path) -> dict[str, str]:
+    """SHA-256 of every slice of a stack by its name, as its manifest states them. Raises InputError."""
+    stated = _manifest(folder)
+    return {slice_name(stated["prefix"], number): str(each) for number, each in enumerate(stated["slices"])}
+
+
 def _manifest(folder: Path) -> dict[str, Any]:
     path = folder / MANIFEST
     try:

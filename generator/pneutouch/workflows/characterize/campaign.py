@@ -3,7 +3,6 @@
 The small tables of a characterization: points, segments, and the results of leak and injection runs.
 """
 
-import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -23,7 +22,16 @@ from pneutouch.evaluation.calibrated import check_fitted
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.formats import versioned
 from pneutouch.mechanics.models.choice import USUAL, usual_model
-from pneutouch.output.files import MANIFEST, check_writable, entry, input_hash, json_bytes, manifest, write_folder
+from pneutouch.output.files import (
+    MANIFEST,
+    check_writable,
+    entry,
+    file_digest,
+    input_hash,
+    json_bytes,
+    manifest,
+    write_folder,
+)
 from pneutouch.parts import assemble
 from pneutouch.report.measured import CampaignReport
 from pneutouch.results.measured import InjectionFigure, MeasuredCampaign, ReadFiles
@@ -274,17 +282,9 @@ def sound(
 
 
 def _hash(loaded: CampaignData, design: Any) -> str:
-    files = {run.file: _file_digest(loaded.folder / run.file) for run in loaded.campaign.runs}
+    # Of a file that cannot be read there is none: it is among the failures.
+    files = {run.file: file_digest(loaded.folder / run.file) for run in loaded.campaign.runs}
     return input_hash({"campaign": loaded.campaign.model_dump(mode="json"), "design": design, "files": files})
-
-
-def _file_digest(path: Path) -> str | None:
-    try:
-        with path.open("rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest()
-    except OSError:
-        # A file that cannot be read is among the failures.
-        return None
 
 
 def write(outcome: CharacterizationResult, out: Path, evidence: str = "doubtful") -> Path:

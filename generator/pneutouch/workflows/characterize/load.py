@@ -22,7 +22,7 @@ from pneutouch.errors import InputError, PneutouchError
 from pneutouch.evaluation.resins import resin_of
 from pneutouch.results.measured import ReadFiles
 from pneutouch.spec.campaign import Campaign, CampaignRun, ColumnMap, FileFormat, campaign_of
-from pneutouch.spec.files import is_file
+from pneutouch.spec.files import exists, is_file
 from pneutouch.spec.read import validate
 from pneutouch.spec.values import file_name
 from pneutouch.tables.unit_words import UNITS, unit_of
@@ -266,7 +266,7 @@ def _read(
 def recognise(run: CampaignRun, campaign: Campaign, folder: Path) -> MeasuredFile:
     """The file of a run with its columns; no sample is read. Raises InputError if one is not found."""
     path = folder / run.file
-    if not is_file(path):
+    if not exists(path):
         raise InputError("no such file", file=path, remedy=f"the campaign names it as {run.label}")
     channels = {"injection": INJECTION, "leak": LEAK}.get(run.kind, PLATE)
     columns, written = campaign.reading(run)

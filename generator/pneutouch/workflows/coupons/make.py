@@ -18,11 +18,10 @@ from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.export.scene import stl
 from pneutouch.export.threemf import threemf
-from pneutouch.output.files import check_writable, digest, input_hash, stated_digest, with_manifest, write_folder
+from pneutouch.output.files import check_writable, input_hash, with_manifest, write_folder
 from pneutouch.packing import PackingArea, in_rows
 from pneutouch.parts.coupons import Coupon, Nominal
 from pneutouch.results.coupons import CouponSet, PrintedCoupon
-from pneutouch.spec.files import read_bytes
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.workflows.coupons.order import CouponItem, CouponOptions, CouponOrder, order, results_template
 
@@ -251,7 +250,6 @@ def build_coupons(options: CouponOptions, out: Path, library: Library | None = N
     ordered = order(options, library)
     folder = out / ordered.name
     check_writable(folder)
-    _check_unfilled(folder)
     trays = {name: lay(name, items) for name, items in ordered.machines().items()}
     follows_from, files = inputs(ordered), dict[str, bytes]()
     for name, pieces in trays.items():
@@ -285,15 +283,6 @@ def inputs(ordered: CouponOrder) -> Mapping[str, object]:
         ],
         "printers": {name: items[0].printer.model_dump(mode="json") for name, items in ordered.machines().items()},
     }
-
-
-def _check_unfilled(folder: Path) -> None:
-    """Refuse to write over a results file that a user has filled in."""
-    path = folder / RESULTS
-    if not path.is_file():
-        return
-    if digest(read_bytes(path)) != stated_digest(folder, RESULTS):
-        raise InputError(f"{path} has been filled in", key="out", remedy="move it away first, or give another folder")
 
 
 def _metadata(name: str, count: int, hashed: str) -> dict[str, str]:

@@ -159,11 +159,10 @@ class WorkFolder:
         while self._lock is None:
             self._made = self._made or [folder for folder in self.path.absolute().parents if not folder.exists()]
             self.path.mkdir(parents=True, exist_ok=True)
-            foreign = sorted(path.name for path in self.path.iterdir() if path.name not in _WRITTEN)
-            if foreign:
-                raise InputError(
-                    f"{self.path} holds {foreign[0]}, which no sweep wrote", key="out", remedy="give another `out`"
-                )
+            for path in sorted(self.path.iterdir()):
+                # To open, or even to remove, a pipe as if it were a folder waits for ever.
+                if path.name not in _WRITTEN or not (path.is_file() or path.is_dir()):
+                    raise InputError("no sweep wrote it", file=path, remedy="move it away, or give another `out`")
             self._lock = self._take()
 
     def __exit__(

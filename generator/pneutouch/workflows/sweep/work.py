@@ -84,9 +84,9 @@ def study(plan: SweepPlan, library: Library) -> SweepStudy:
         casting = any(library.load("printers", name).is_casting for kind, name in names if kind == "printers")
         names |= {("materials", name) for name in elastomers(library, casting)}
     for kind, name in sorted(names):
-        path = library.paths(kind)[name]
-        files[f"{KINDS[kind].folder}/{name}.toml"] = path.read_text(encoding="utf-8-sig")
+        # Loading refuses what is no plain file.
         things[f"{kind}/{name}"] = library.load(kind, name).model_dump(mode="json")
+        files[f"{KINDS[kind].folder}/{name}.toml"] = library.paths(kind)[name].read_text(encoding="utf-8-sig")
     facts = {
         "version": __version__,
         "model": plan.model,
