@@ -126,8 +126,11 @@ def joined(errors: Sequence[PneutouchError]) -> PneutouchError:
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """Return ``" Did you mean X?"`` for the known word nearest to ``word``, or the known words."""
-    candidates = sorted(known)
+    """Return ``" Did you mean X?"`` for the first known word that ends in ``word``, or the nearest; else the words."""
+    words = list(known)
+    if longer := [one for one in words if one.endswith(f"_{word}")]:
+        return f" Did you mean {longer[0]}?"
+    candidates = sorted(words)
     folded = {candidate.lower(): candidate for candidate in candidates}
     match = difflib.get_close_matches(word.lower(), list(folded), n=1, cutoff=0.5)
     if match:

@@ -188,3 +188,30 @@ def test_one_kind_and_one_resin_are_lists_of_one():
 def test_data_that_are_no_path_are_refused(call):
     with pytest.raises(pt.InputError, match="data = 5: must be a path; give a campaign's folder"):
         call(5)
+
+
+def test_a_keyword_without_its_first_word_is_told_the_whole_one():
+    with pytest.raises(pt.InputError, match="Did you mean inner_radius_mm") as caught:
+        pt.Design(radius_mm=6)
+    assert caught.value.key == "radius_mm"
+
+
+def test_an_unknown_material_is_refused_at_once():
+    with pytest.raises(pt.InputError) as caught:
+        pt.Design(material="TangoPlu")
+    assert (caught.value.key, caught.value.value) == ("material", "TangoPlu")
+
+
+def test_results_of_several_things_are_walked_through():
+    prediction = pt.load("paper-dome").predict([0, 12], model="atlas")
+    assert [state.driving_pressure_kPa for state in prediction] == [0, 12] and len(prediction) == 2
+    found = pt.select(sensitivity_kPa_per_N=1.9, driving_pressure_kPa=12, materials=["TangoPlus"])
+    assert tuple(found) == found.designs and len(found) == len(found.designs) > 0
+    assert not pt.select(sensitivity_kPa_per_N=50, materials=["TangoPlus"])
+
+
+def test_a_home_of_nobody_is_refused(monkeypatch):
+    monkeypatch.setenv("PNEUTOUCH_HOME", "~nobody-of-this-name/x")
+    with pytest.raises(pt.InputError) as caught:
+        pt.load("paper-dome")
+    assert caught.value.key == "PNEUTOUCH_HOME"

@@ -19,6 +19,7 @@ from pneutouch.api.prediction import Prediction
 from pneutouch.api.results import CheckResult
 from pneutouch.body import Body
 from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
+from pneutouch.catalogue.scene import membrane_material_of
 from pneutouch.errors import InputError, shown
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.evaluation.result import by_mixing_curve
@@ -106,6 +107,8 @@ class Design(show.Shown):
                 whole["print"] = {**whole.get("print", {}), "profile": _printer(self.file)}
             self.source = DesignSource(name, whole, WHERE)
             self.file = self.source.changed({})
+            if "material" in fields:
+                membrane_material_of(self.file, WHERE, Library.default())
 
     @classmethod
     def of(cls, source: DesignSource) -> Design:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -124,6 +125,12 @@ class Prediction(show.Documented):
     def states(self) -> tuple[PredictedState, ...]:
         """The states in order of driving pressure."""
         return tuple(PredictedState(state) for state in predicted(self.evaluation).states)
+
+    def __iter__(self) -> Iterator[PredictedState]:
+        return iter(self.states)
+
+    def __len__(self) -> int:
+        return len(self.states)
 
     @property
     def rating(self) -> Rating:

@@ -137,6 +137,12 @@ class Selection(show.Documented):
     def __init__(self, designs: tuple[Design, ...], record: SelectedRecord) -> None:
         self.designs, self._record = designs, record
 
+    def __iter__(self) -> Iterator[Design]:
+        return iter(self.designs)
+
+    def __len__(self) -> int:
+        return len(self.designs)
+
     @property
     def met(self) -> bool:
         """True if a design meets the target."""

@@ -49,7 +49,10 @@ def user_folder() -> Path:
     """
     named = os.environ.get(HOME)
     if named:
-        return Path(named).expanduser()
+        try:
+            return Path(named).expanduser()
+        except RuntimeError:
+            raise InputError("no such user", key=HOME, value=named, remedy="give the path of a folder") from None
     return Path(IN_CHECKOUT) if _is_checkout(Path()) else Path()
 
 

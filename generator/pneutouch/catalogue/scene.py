@@ -151,7 +151,7 @@ def _resolved(name: str, where: str, design: DesignFile, library: Library) -> Re
         name=name,
         where=where,
         design=design,
-        membrane_material=_membrane_material(design, where, library),
+        membrane_material=membrane_material_of(design, where, library),
         connector_material=find("materials", "connector", "material"),
         printer=printer,
         connector_printer=find("printers", "print", "connector_profile"),
@@ -168,7 +168,7 @@ def _resolved(name: str, where: str, design: DesignFile, library: Library) -> Re
     return scene
 
 
-def _membrane_material(design: DesignFile, where: str, library: Library) -> Material:
+def membrane_material_of(design: DesignFile, where: str, library: Library) -> Material:
     """The resin that the design names, or the mix that it describes."""
     chosen = design.membrane.material
     if isinstance(chosen, Grade):

@@ -232,6 +232,8 @@ def nearer(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
     start at the best of each resin, which differ, and are halved where no neighbour is better.
     """
     rows = _best_of_each(problem, pool)
+    if not rows.size:
+        return pool
     here = pool.take(rows)
     moves = _moves(problem)
     step = np.full(rows.size, _FIRST_STEP)
