@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from pathlib import Path
 from typing import Annotated
 
 import pytest
@@ -89,3 +90,26 @@ def test_the_words_of_options_give_these_options(fit, held, priors):
     words = [word for name, text in option_words(options) for word in (f"--{name.replace('_', '-')}", text) if word]
     assert CliRunner().invoke(small, words).exit_code == 0
     assert found == [options]
+
+
+@pytest.mark.parametrize(
+    ("words", "key"),
+    [
+        (["simulate", "paper-dome", "--kinds", "steps,step"], "--kinds"),
+        (["simulate", "paper-dome", "--ages", "0,40000"], "--ages"),
+        (["simulate", "paper-dome", "--seed", "-1"], "--seed"),
+        (["fit-material", "x.csv", "--name", "A", "--bonded"], "--bonded"),
+        (["fit-material", "x.csv", "--name", "A", "--shore-a", "20,200"], "--shore-a"),
+        (["calibrate", ".", "--hold-out", "5,5"], "--hold-out"),
+    ],
+)
+def test_an_error_names_the_flag_as_it_is_typed(words, key):
+    refused = CliRunner().invoke(app, words)
+    assert refused.exit_code == 2 and refused.stderr.splitlines()[-1].startswith(f"error: {key}")
+
+
+@pytest.mark.parametrize("given_as", ["none.csv", Path("none.csv"), ["none.csv"], (Path("none.csv"),)])
+def test_one_file_is_a_list_of_one(given_as):
+    with pytest.raises(InputError) as caught:
+        pt.scan("texture-specimen", "paper-dome", data=given_as)
+    assert caught.value.file is not None and str(caught.value.file).endswith("none.csv")

@@ -1,5 +1,6 @@
 """Fields of a file as keyword arguments: their names alone where they are unique, else with their table's in front."""
 
+import typing
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
@@ -120,7 +121,8 @@ def keyword_options(model: type[AnyOptions], arguments: Mapping[str, Any]) -> An
     content = {}
     for key in model.model_fields.keys() & arguments.keys():
         value = _of_keyword(key, _entries(arguments[key]))
-        alone = isinstance(value, PathLike) or is_one_of_list(model, key, value)
+        listed = typing.get_origin(model.model_fields[key].annotation) is list
+        alone = (listed and isinstance(value, str | PathLike)) or is_one_of_list(model, key, value)
         content[key] = [value] if alone else value
     return options_of(model, content)
 

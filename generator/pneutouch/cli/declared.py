@@ -96,10 +96,11 @@ def with_options(model: type[Options]) -> Callable[[Callable[..., None]], Any]:
 
 
 def given(model: type[AnyOptions], values: Mapping[str, Any]) -> AnyOptions:
-    """The options of a command as they were given. Raises InputError that names the field, as the parameter is."""
+    """The options of a command as they were given. Raises InputError that names the parameter, which is the field's."""
     options = _flags(model)
     stated = {name: value for name, value in values.items() if name in options}
-    return options_of(model, field_tables(options, stated).get("", {}))
+    with named_by_flag({key: key for key in options}, "", alone=False):
+        return options_of(model, field_tables(options, stated).get("", {}))
 
 
 @cache

@@ -158,7 +158,7 @@ class SimulationOptions(PlanOptions):
     rest_s: float | None = option(
         None, "Longest rest, s; left out: the paper's 30 s and 2 s.", unit="s", low=0.2, high=3600, metavar="S"
     )
-    seed: int = option(0, "Seed of scatter and noise.", low=0, high=2**63)
+    seed: int = option(0, "Seed of scatter and noise.", low=0, high=1e9)
     ages_days: Annotated[list[float], _AGES, _AT_LEAST_ONE] = option(
         [0.0], "Ages at which every specimen is measured, days.", unit="days", metavar="DAYS,DAYS"
     )
@@ -188,7 +188,7 @@ class ScanOptions(Options):
     noise_kPa: float | None = option(
         None, "White noise of a sample, kPa rms; left out: one step of the recorder.", unit="kPa", low=0, high=100
     )
-    seed: int = option(0, "Seed of the noise.", low=0, high=2**63)
+    seed: int = option(0, "Seed of the noise.", low=0, high=1e9)
     data: list[FilePath] = option(
         [], "Measured signal, CSV with time_s and pressure_kPa; may be repeated.", metavar="FILE"
     )
