@@ -177,7 +177,7 @@ def test_what_is_no_list_of_texts_is_refused_by_its_keyword(given):
 
 @pytest.mark.slow
 def test_one_kind_and_one_resin_are_lists_of_one():
-    with pytest.raises(pt.InputError, match='must be "steps" or') as caught:
+    with pytest.raises(pt.InputError, match='must be "steps"') as caught:
         pt.simulate("paper-dome", "nowhere", kinds="step")
     assert (caught.value.key, caught.value.value) == ("kinds[0]", "step")
     one, listed = pt.plan("paper-dome", resins="TangoPlus"), pt.plan("paper-dome", resins=["TangoPlus"])
