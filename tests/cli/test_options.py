@@ -113,3 +113,11 @@ def test_one_file_is_a_list_of_one(given_as):
     with pytest.raises(InputError) as caught:
         pt.scan("texture-specimen", "paper-dome", data=given_as)
     assert caught.value.file is not None and str(caught.value.file).endswith("none.csv")
+
+
+@pytest.mark.parametrize("reading", [0.0, 100.0])
+def test_the_ends_of_the_hardness_scale_are_no_readings(reading):
+    """At 100 there is no modulus."""
+    with pytest.raises(InputError) as caught:
+        options_of(FitOptions, {"name": "A", "shore_a": [20.0, reading]})
+    assert caught.value.key == "shore_a[1]"

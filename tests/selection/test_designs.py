@@ -9,6 +9,7 @@ import pytest
 
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics import predict
+from pneutouch.selection.candidates import margins, nearer, search
 from pneutouch.spec.read import parse_changes
 from pneutouch.units import KPA
 from pneutouch.workflows.select.select import SelectionRun, select
@@ -172,3 +173,20 @@ def test_a_depth_stated_in_the_base_follows_the_size_into_the_design(tmp_path):
     assert state.figures.sensitivity_kPa_per_N == pytest.approx(
         float(choice.pool.response.lines.sensitivity_kPa_per_N[0]), rel=2e-3
     )
+
+
+@pytest.mark.parametrize(("diameter_mm", "sensitivity", "resin"), [(10.0, 4.6, "TangoPlus"), (10.0, 4.8, "TangoPlus")])
+def test_the_corner_of_least_wall_and_greatest_diameter_is_searched(diameter_mm, sensitivity, resin):
+    found = answer({"sensitivity_kPa_per_N": sensitivity, "max_diameter_mm": diameter_mm}).answer.designs
+    assert resin in {design.resin.name for design in found}
+    assert all(min(design.margins.values()) >= 0.0 for design in found)
+
+
+def test_steps_on_from_a_scan_come_nearer_to_a_target():
+    """Of TangoPlus, at 10 mm, 5.2 kPa/N: the scan's best misses by more than what the steps from it reach."""
+    problem = answer({"sensitivity_kPa_per_N": 5.2, "max_diameter_mm": 10.0}).problem
+    scanned = search(problem)
+    worst, reached = (
+        np.min(list(margins(problem, pool).values()), axis=0).max() for pool in (scanned, nearer(problem, scanned))
+    )
+    assert worst < reached < 0.0

@@ -68,12 +68,12 @@ def option(
     )
 
 
-def _each(low: float, high: float, unit: str, *, once: bool = True) -> AfterValidator:
-    """Every entry of a list within bounds, and there once."""
+def _each(low: float, high: float, unit: str, *, once: bool = True, ends: bool = True) -> AfterValidator:
+    """Every entry of a list within bounds, with the ends or without, and there once."""
 
     def check(values: list[Any]) -> list[Any]:
         for index, value in enumerate(values):
-            if not isinstance(value, str) and not low <= value <= high:
+            if not isinstance(value, str) and not (low <= value <= high if ends else low < value < high):
                 raise EntryError(f"must be from {low:g} to {high:g} {unit}".rstrip(), index, value)
             if once and value in values[:index]:
                 raise EntryError("every entry may appear once only", index, value)
@@ -92,7 +92,7 @@ _AT_LEAST_ONE = AfterValidator(_some)
 _PRESSURES = _each(0.0, 1000.0, "kPa")
 _AGES = _each(0.0, 36_500.0, "days")
 _ONCE = _each(0.0, 0.0, "")
-_READINGS = _each(0.0, 100.0, "", once=False)
+_READINGS = _each(0.0, 100.0, "", once=False, ends=False)
 _PUCK = _each(0.05, 1000.0, "mm", once=False)
 FilePath = Annotated[Path, BeforeValidator(lambda value: Path(value) if isinstance(value, str) else value)]
 """Path of a file, which may be given as text."""

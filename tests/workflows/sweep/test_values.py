@@ -21,7 +21,8 @@ from pneutouch.workflows.sweep.variables import state_values
 from tests.workflows.sweep.conftest import load, small
 
 ALONE = ComputeResources(workers=1)
-SIX_DIGITS = 1.1e-5
+TWELVE_DIGITS, SIX_DIGITS = 2e-12, 1.1e-5
+"""Figures and intervals of a batch may be rounded to the other side of a half."""
 
 FIGURES = (
     "sensitivity_kPa_per_N",
@@ -37,29 +38,28 @@ FIGURES = (
 )
 
 
-def same(found, expected, rel=2e-12):
-    """Both have twelve digits; those of a batch may end on the other side of a half."""
-    return np.isnan(found) if expected is None else float(found) == pytest.approx(expected, rel=rel, abs=1e-12)
+def same(found, expected, rel=0.0):
+    return np.isnan(found) if expected is None else float(found) == pytest.approx(expected, rel=rel, abs=0.0)
 
 
-def agrees(point, document):
+def agrees(point, document, figures=0.0, intervals=0.0):
     """Every figure of one point of a dataset with a document of ``predict --json``."""
     for state in document["states"]:
         here = point.sel(driving_pressure_kPa=state["driving_pressure_kPa"])
         assert (str(here.status.values), str(here.message.values)) == ("ok", "")
         for name in FIGURES:
-            assert same(here[name], state[name]), name
+            assert same(here[name], state[name], figures), name
         interval = state["uncertainty"].get("figures", {}).get("sensitivity_kPa_per_N", {})
-        assert same(here.sensitivity_low_kPa_per_N, interval.get("low"), SIX_DIGITS)
-        assert same(here.sensitivity_high_kPa_per_N, interval.get("high"), SIX_DIGITS)
+        assert same(here.sensitivity_low_kPa_per_N, interval.get("low"), intervals)
+        assert same(here.sensitivity_high_kPa_per_N, interval.get("high"), intervals)
         low, high = state["force_range_N"] or (None, None)
-        assert same(here.force_range_low_N, low)
-        assert same(here.force_range_high_N, high)
+        assert same(here.force_range_low_N, low, figures)
+        assert same(here.force_range_high_N, high, figures)
         ends = [event["kind"] for event in state["events"] if event["ends_range"]]
         assert str(here.range_end_event.values) == (ends[0] if ends else "depth")
     limits, top = document["limits"], document["limit_point"]
     for name in ("limit_point_kPa", "break_strain_kPa", "gauge_range_kPa"):
-        assert same(point[name], limits[name])
+        assert same(point[name], limits[name], figures)
     assert str(point.binding_limit.values) == limits["binding"]
     assert same(point.limit_point_apex_height_inner_mm, top and top["apex_height_inner_mm"])
     assert same(point.limit_point_apex_height_outer_mm, top and top["apex_height_outer_mm"])
@@ -94,7 +94,8 @@ def test_every_figure_is_that_of_predict(model, resins, walls, evaluated, librar
     for resin, wall in itertools.product(resins, walls):
         words = [f"membrane.material={resin}", f"membrane.wall_thickness_mm={wall}", "pneumatics.dead_volume_mL=0.3"]
         document = plain(predicted(evaluated("paper-dome", *words, model=model)))
-        agrees(data.sel(membrane_material=resin, membrane_wall_thickness_mm=wall), document)
+        digits = (TWELVE_DIGITS, SIX_DIGITS) if model == "atlas" else (0.0, 0.0)
+        agrees(data.sel(membrane_material=resin, membrane_wall_thickness_mm=wall), document, *digits)
 
 
 def test_a_state_off_the_axis_has_its_forces_at_the_end_of_the_range_and_those_of_a_shear():
