@@ -238,3 +238,17 @@ def test_what_is_no_sensor_or_outside_the_box_has_no_answer_and_its_neighbour_ha
     found = respond(batch(**{field: [usual, value]}))
     assert np.isfinite(found.lines.sensitivity_kPa_per_N[0])
     assert np.isnan(found.lines.sensitivity_kPa_per_N[1]) and np.isnan(found.range_end[1])
+
+
+def test_inflation_ends_on_the_root_wherever_its_bracket_lies():
+    """A root on an end of its bracket is kept; half of the bracket away it would be off by some 1e-10."""
+    from pneutouch.mechanics.atlas.press import _inflated
+    from pneutouch.mechanics.atlas.table import shipped
+
+    draw = np.random.default_rng(3)
+    ratio = np.sort(draw.uniform(0.1, 0.2, 200))
+    slices, k = shipped().slices(ratio), np.repeat(np.arange(200), 20)
+    pressure = draw.uniform(0.05, 0.9, k.size) * slices.limit_pressure[k]
+    nu = _inflated(slices, k, pressure, np.arange(k.size))
+    reached = slices.point(k, nu, slices.free_apex(k, nu)[:, 0]).pressure
+    assert np.abs(reached / pressure - 1.0).max() < 1e-12

@@ -249,6 +249,7 @@ def test_a_chunk_is_cut_alike_whatever_is_missing(missing, library):
     """Points that are answered together are the same ones in a sweep that goes on, so that its bytes are the same."""
     whole = study(small(["membrane.wall_thickness_mm=1:1.8:300"], model="atlas"), library)
     every = {chunk.points[0].index: chunk for chunk in chunks(whole, list(range(300)))}
+    assert sorted(point.index for chunk in every.values() for point in chunk.points) == list(range(300))
     for chunk in chunks(whole, missing):
         assert chunk == every[chunk.points[0].index]
     assert set(missing) <= {point.index for chunk in chunks(whole, missing) for point in chunk.points}
