@@ -10,7 +10,7 @@ _HOMES = {
     "api.driving": ("DrivingResult",),
     "api.prediction": ("FigureValue", "PredictedState", "Prediction"),
     "api.results": ("CheckResult", "Result"),
-    "api.search": ("Selection", "select", "sweep"),
+    "api.search": ("Selection", "map_sweep", "select", "sweep"),
     "api.comparison": ("Comparison", "compare"),
     "api.measuring": (
         "FittedSensor",

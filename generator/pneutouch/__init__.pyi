@@ -17,6 +17,7 @@ from pneutouch.api.prediction import Prediction as Prediction
 from pneutouch.api.results import CheckResult as CheckResult
 from pneutouch.api.results import Result as Result
 from pneutouch.api.search import Selection as Selection
+from pneutouch.api.search import map_sweep as map_sweep
 from pneutouch.api.search import select as select
 from pneutouch.api.search import sweep as sweep
 from pneutouch.api.show import Listing as Listing

@@ -231,3 +231,16 @@ def sweep(
 
 def _is_range(value: Any) -> bool:
     return isinstance(value, Mapping) and "count" in value
+
+
+def map_sweep(dataset: xarray.Dataset | str | Path, charts: str | Path) -> list[Path]:
+    """Draw contour maps of a sweep over two numeric fields of four values or more into a folder, SVG and PNG.
+
+    ``dataset`` is one that `sweep` returned, or the path of its file. Returns the files. A refused or failed state is
+    hatched, its reason in the legend. Raises InputError without two such fields.
+    """
+    from pneutouch.workflows.sweep.dataset import stored_dataset, write_maps
+
+    with named_by_keyword():
+        content = stored_dataset(Path(dataset)) if isinstance(dataset, str | Path) else dataset
+        return write_maps(content, Path(charts))

@@ -6,6 +6,7 @@ Output of ``sweep`` for people: the first rows of its table.
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,7 +15,7 @@ import typer
 from pneutouch.cli.app import CalibrationOption, JsonOption, SetOption, app, changes, print_json, reporting
 from pneutouch.cli.complete import assignment, names
 from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, notify, table_text
+from pneutouch.cli.terminal import echo, notify, report_next, table_text
 from pneutouch.errors import InputError
 from pneutouch.rounding import tenths_below
 
@@ -56,26 +57,38 @@ def sweep(
     fresh: Annotated[
         bool, typer.Option("--fresh", help="Forget progress and replace another sweep's dataset.")
     ] = False,
+    charts: Annotated[
+        Path | None,
+        typer.Option("--charts", metavar="DIR", help="Folder for contour maps over two fields, SVG and PNG."),
+    ] = None,
     json: JsonOption = False,
 ) -> None:
     """Predict a grid or a list of designs into one dataset (netCDF)."""
     with reporting():
         # Before numpy loads: the processes take the cores, and results must not depend on how many there are.
         os.environ["OMP_NUM_THREADS"] = "1"
+        from pneutouch.output.files import check_writable
         from pneutouch.workflows.sweep import sweep as run
-        from pneutouch.workflows.sweep.dataset import check_companions, write_companions
+        from pneutouch.workflows.sweep.dataset import check_companions, stored_dataset, write_companions, write_maps
         from pneutouch.workflows.sweep.execute import ComputeResources
+        from pneutouch.workflows.sweep.grid import check_dense, is_dense
 
         plan = _plan(
             file, design, over or [], changes(set_, calibration), {"model": model, "closure": closure, "clamp": clamp}
         )
         target = Path("outputs") / f"{plan.name}.nc" if out is None else out
         check_companions(target, plan)
+        if charts is not None:
+            check_dense({axis.key: axis.values for axis in plan.axes})
+            check_writable(charts / "chart", key="charts")
         with bar("computing points") as progress:
             done = run(plan, target, ComputeResources(workers, scheduler), fresh=fresh, progress=progress)
         with bar("drawing the sensitivity"):
             rows, written = write_companions(done.path)
-        _report(done, rows, written, json=json)
+            maps = [] if charts is None else write_maps(stored_dataset(done.path), charts)
+        _report(done, rows, written, maps, json=json)
+        if charts is None and not json and sum(is_dense(axis.values) for axis in plan.axes) > 1:
+            report_next(*sys.argv[1:], "--charts", done.path.with_name(f"{done.path.stem}-maps"))
 
 
 def _plan(
@@ -94,7 +107,9 @@ def _plan(
     return plan_of_flags(design, over, changed, **options)
 
 
-def _report(done: SweepResult, rows: list[dict[str, Any]], written: list[Path], *, json: bool) -> None:
+def _report(
+    done: SweepResult, rows: list[dict[str, Any]], written: list[Path], maps: list[Path], *, json: bool
+) -> None:
     """The table, and last the dataset, on stdout; on stderr what became of the states and the other files."""
     if json:
         print_json(
@@ -106,6 +121,7 @@ def _report(done: SweepResult, rows: list[dict[str, Any]], written: list[Path], 
                 "input_hash": done.input_hash,
                 "table": str(written[0]),
                 "pictures": [str(path) for path in written[1:]],
+                "maps": [str(path) for path in maps],
             }
         )
         return
@@ -114,7 +130,7 @@ def _report(done: SweepResult, rows: list[dict[str, Any]], written: list[Path], 
 
     echo(sweep_text(rows, written[0]))
     notify(f"{done.points} points, states: {counts}{there}")
-    for path in written:
+    for path in [*written, *maps]:
         notify(f"written: {path}")
     echo(f"\n{done.path}")
 

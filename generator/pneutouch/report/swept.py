@@ -1,9 +1,13 @@
-"""The pictures of a sweep: a figure over each swept parameter, lines with bands, and a map over two."""
+"""The pictures of a sweep: a figure over each swept parameter, lines with bands, and a map over two.
+
+Contour maps of a figure over two parameters, hatched by reason where it is missing.
+"""
 
 from __future__ import annotations
 
 import io
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -12,14 +16,17 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.report.chart import WIDE, Chart, Panel, PlotLine, bars_between, chart_figure, plain_text
-from pneutouch.report.style import INK, LINES, MARKERS, MUTED, figure, svg
+from pneutouch.report.style import HATCHES, INK, LINES, MARKERS, MUTED, figure, svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.patches import PathPatch
+    from matplotlib.transforms import Bbox
 
 _LINES, _PANELS = 6, 4
 _TONES = (INK, "#3F8FBF", "#B4631D", MUTED, "#0B5C8A", "#9A9A9A")
+_RATIOS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
 _OUTSIDE, _MOST_TEXTS = "#EFEFEF", 120
 
 
@@ -100,7 +107,7 @@ def _ordered(swept: SweptFigure, first: list[int]) -> SweptFigure:
     return swept
 
 
-def _some(count: int, most: int) -> list[int]:
+def spread_places(count: int, most: int = _PANELS) -> list[int]:
     """Places spread evenly over all."""
     return list(range(count)) if count <= most else sorted({round(k * (count - 1) / (most - 1)) for k in range(most)})
 
@@ -110,7 +117,7 @@ def _panels(swept: SweptFigure) -> list[tuple[str, SweptFigure]]:
     middle = tuple(len(axis.values) // 2 for axis in swept.axes[3:])
     fixed = [axis.named(k) for axis, k in zip(swept.axes[3:], middle, strict=True) if axis.key]
     panels = []
-    for place in _some(len(swept.axes[2].values), _PANELS):
+    for place in spread_places(len(swept.axes[2].values)):
         words = [swept.axes[2].named(place)] if swept.axes[2].key else []
         cut: tuple[Any, ...] = (slice(None), slice(None), place, *middle)
         arrays = (a[cut] for a in swept.arrays)
@@ -126,7 +133,7 @@ def _size(count: int) -> tuple[float, float]:
 def _over(swept: SweptFigure) -> tuple[str, bytes]:
     """Lines, or points over names, for values of the second axis that have a figure anywhere."""
     kept = [k for k in range(len(swept.axes[1].values)) if np.isfinite(swept.value[:, k]).any()]
-    kept = [kept[k] for k in _some(len(kept), _LINES)]
+    kept = [kept[k] for k in spread_places(len(kept), _LINES)]
     lines = replace(swept.axes[1], values=tuple(swept.axes[1].values[k] for k in kept))
     swept = SweptFigure(swept.label, (swept.axes[0], lines, *swept.axes[2:]), *(a[:, kept] for a in swept.arrays))
     known = np.concatenate([a[np.isfinite(a)].ravel() for a in swept.arrays])
@@ -163,15 +170,20 @@ def _mapped(swept: SweptFigure) -> tuple[str, bytes]:
     values = np.concatenate([one.value[np.isfinite(one.value)] for _, one in panels])
     span = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)
     with figure(*_size(len(panels))) as drawn:
-        grid = drawn.subplots(math.ceil(len(panels) / 2), min(len(panels), 2), squeeze=False)
-        axes = list(grid.flat)[: len(panels)]
-        for ax in list(grid.flat)[len(panels) :]:
-            ax.remove()
+        axes = _grid(drawn, len(panels))
         for ax, (title, one) in zip(axes, panels, strict=True):
             shown = _map(ax, one, span)
             ax.set_title(plain_text(title), fontsize=7.5, loc="left", pad=4)
         drawn.colorbar(shown, ax=axes, label=swept.label, shrink=0.9)
         return _files(drawn)
+
+
+def _grid(drawn: Figure, count: int) -> list[Axes]:
+    """Axes in rows of two at most."""
+    grid = list(drawn.subplots(math.ceil(count / 2), min(count, 2), squeeze=False).flat)
+    for ax in grid[count:]:
+        ax.remove()
+    return grid[:count]
 
 
 def _map(ax: Axes, swept: SweptFigure, span: tuple[float, float]) -> Any:
@@ -193,6 +205,136 @@ def _map(ax: Axes, swept: SweptFigure, span: tuple[float, float]) -> Any:
     ax.grid(visible=False)
     ax.set(xlabel=first.label, ylabel=second.label)
     return shown
+
+
+@dataclass(frozen=True)
+class MapPanel:
+    """A figure over both axes of a map, (n, m), NaN where it is missing, and the words of the reason there, else ""."""
+
+    title: str
+    value: Array
+    reasons: tuple[tuple[str, ...], ...]
+
+    @property
+    def heading(self) -> str:
+        """Title, with the least and the greatest value."""
+        known = self.value[np.isfinite(self.value)]
+        ends = f"{known.min():.3g} to {known.max():.3g}" if known.size else "not predicted"
+        return f"{self.title}: {ends}" if self.title else ends
+
+
+@dataclass(frozen=True)
+class SweptMap:
+    """A contour map: its caption, its axes, values ascending, and a panel for each driving pressure."""
+
+    caption: str
+    axes: tuple[SweptAxis, SweptAxis]
+    panels: tuple[MapPanel, ...]
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Missing states for each reason, most first."""
+        counted = Counter(word for panel in self.panels for row in panel.reasons for word in row if word)
+        return dict(sorted(counted.items(), key=lambda entry: (-entry[1], entry[0])))
+
+
+def contour_map(swept: SweptMap) -> tuple[str, bytes]:
+    """The map as SVG and PNG, the same contour lines in all panels."""
+    counts, known = swept.counts, np.concatenate([p.value[np.isfinite(p.value)] for p in swept.panels])
+    levels = contour_levels(known)
+    ground = {"facecolor": "white", "edgecolor": MUTED, "linewidth": 0.0}
+    looks = {reason: {**ground, "hatch": 2 * HATCHES[min(k, len(HATCHES) - 1)]} for k, reason in enumerate(counts)}
+    width, height = _size(len(swept.panels))
+    with figure(width, height + 5 + 4 * (len(counts) + bool(counts))) as drawn:
+        grid, lines = _grid(drawn, len(swept.panels)), []
+        for ax, panel in zip(grid, swept.panels, strict=True):
+            ax.set_title(plain_text(panel.heading), fontsize=7.5, loc="left", pad=4)
+            lines.append(_contours(ax, swept.axes, panel, levels, looks))
+        drawn.suptitle(plain_text(swept.caption), x=0.01, ha="left", fontsize=8)
+        _legend(drawn, counts, looks)
+        # The labels are laid along their lines: the axes have to have their size.
+        drawn.draw_without_rendering()
+        for ax, contours in zip(grid, lines, strict=True):
+            _label_lines(ax, contours)
+        return _files(drawn)
+
+
+def contour_levels(known: Array) -> Array:
+    """Round values that enclose all known ones (n,), at most ten steps, or in ratios where they differ much; two around
+    a constant."""
+    from matplotlib.ticker import MaxNLocator
+
+    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+    if high - low <= 1e-3 * abs(high):
+        return np.array([low - 1e-3 * abs(low) - 1e-9, high + 1e-3 * abs(high) + 1e-9])
+    if low > 0.0 and high > 7.0 * low:
+        first, last = math.floor(math.log10(low)), math.ceil(math.log10(high))
+        rounds = np.array([step * 10.0**k for k in range(first, last + 1) for step in _RATIOS])
+        return rounds[np.searchsorted(rounds, low, "right") - 1 : np.searchsorted(rounds, high) + 1]
+    levels: Array = np.asarray(MaxNLocator(10, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high), float)
+    return levels
+
+
+def _contours(
+    ax: Axes, axes: tuple[SweptAxis, SweptAxis], panel: MapPanel, levels: Array, looks: dict[str, dict[str, Any]]
+) -> Any:
+    """Shades and lines over the known points, above hatched cells around the missing ones; returns the lines."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    x, y = (np.array(axis.values, float) for axis in axes)
+    for reason, look in looks.items():
+        cells = missing_cells(panel, reason)
+        if cells.any():
+            ax.add_patch(_outline(x, y, cells, look))
+    shown = np.ma.masked_invalid(panel.value.T)
+    shades = LinearSegmentedColormap.from_list("shades", ["#F6F9FB", "#86A9BE"])
+    ax.contourf(x, y, shown, levels=levels, colors=shades(np.linspace(0.0, 1.0, len(levels) - 1)), zorder=2)
+    ax.grid(visible=False)
+    ax.set(xlabel=axes[0].label, ylabel=axes[1].label, xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+    return ax.contour(x, y, shown, levels=levels, colors=INK, linewidths=0.7, zorder=3)
+
+
+def _label_lines(ax: Axes, contours: Any) -> None:
+    """Values on the lines; a label that the frame would cut or another one covers is left out."""
+    taken: list[Bbox] = []
+    frame = ax.get_window_extent()
+    for label in ax.clabel(contours, fontsize=6.5, fmt="%g", colors=INK, inline=False):
+        label.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.3})
+        box = label.get_window_extent()
+        if box.count_overlaps(taken) or not all(frame.contains(*corner) for corner in box.corners().tolist()):
+            label.set_visible(False)
+        else:
+            taken.append(box)
+
+
+def missing_cells(panel: MapPanel, reason: str) -> Array:
+    """True for every cell between four points, (n - 1, m - 1), of which one or more is missing for the reason."""
+    at = np.array(panel.reasons) == reason
+    cells: Array = at[:-1, :-1] | at[1:, :-1] | at[:-1, 1:] | at[1:, 1:]
+    return cells
+
+
+def _outline(x: Array, y: Array, cells: Array, look: dict[str, Any]) -> PathPatch:
+    """Cells of a grid as one hatched shape."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    corners = (0, 0), (1, 0), (1, 1), (0, 1), (0, 0)
+    shapes = [Path([(x[i + a], y[j + b]) for a, b in corners], closed=True) for i, j in np.argwhere(cells).tolist()]
+    return PathPatch(Path.make_compound_path(*shapes), zorder=1, **look)
+
+
+def _legend(drawn: Figure, counts: dict[str, int], looks: dict[str, dict[str, Any]]) -> None:
+    """The reasons under the map, each with its hatch and the number of its states."""
+    from matplotlib.patches import Patch
+
+    if counts:
+        handles = [Patch(**{**looks[reason], "linewidth": 0.4}) for reason in counts]
+        words = [f"{plain_text(reason)} ({count})" for reason, count in counts.items()]
+        legend = drawn.legend(handles, words, loc="outside lower left", handlelength=2.6, handleheight=1.0)
+        legend.set_title("not predicted, number of states:")
+        legend.get_title().set_fontsize(7)
+        legend.set_alignment("left")
 
 
 def _files(drawn: Figure) -> tuple[str, bytes]:

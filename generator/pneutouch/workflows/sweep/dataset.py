@@ -2,7 +2,7 @@
 
 netCDF-3 with 64-bit offsets, by scipy: it needs no further library here, every tool reads it, and it holds no clock.
 
-Files next to a dataset: its table as CSV, and its pictures.
+Files next to a dataset: its table as CSV, and its pictures; its contour maps in a folder.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.files import check_plain, oversized
 from pneutouch.tables.csv_table import csv_bytes
-from pneutouch.workflows.sweep.grid import PRESSURES, SweepPlan, takes_words
+from pneutouch.workflows.sweep.grid import PRESSURES, SweepPlan, check_dense, takes_words
 from pneutouch.workflows.sweep.journal import check_output
-from pneutouch.workflows.sweep.variables import POINT, STATE, SweepVariable
+from pneutouch.workflows.sweep.variables import INTERVAL, MAPPED, POINT, STATE, SweepVariable, missing_reasons
 from pneutouch.workflows.sweep.work import Record, SweepStudy
 
 if TYPE_CHECKING:
     import xarray
 
-    from pneutouch.report.swept import SweptFigure
+    from pneutouch.report.swept import MapPanel, SweptFigure, SweptMap
 
 
 PRESSURE = "driving_pressure_kPa"
@@ -334,3 +334,58 @@ def _axis(content: xarray.Dataset, name: str) -> Any:
         return SweptAxis(name, "driving pressure", unit, plain)
     words = str(values.attrs.get("key", name)).replace(".", " ").replace("_", " ")
     return SweptAxis(name, words.removesuffix(f" {unit.replace('/', ' per ')}"), unit, plain)
+
+
+def write_maps(content: xarray.Dataset, folder: Path) -> list[Path]:
+    """Write the contour maps of a dataset into a folder, SVG and PNG; returns the files.
+
+    Raises InputError for a dataset without two dense fields of numbers, and a folder that cannot be written.
+    """
+    from pneutouch.report.swept import contour_map
+
+    files: dict[Path, bytes] = {}
+    for name, swept in sweep_maps(content).items():
+        text, image = contour_map(swept)
+        files |= {folder / f"{name}.svg": text.encode(), folder / f"{name}.png": image}
+    replace_files(files, key="charts")
+    return list(files)
+
+
+def sweep_maps(content: xarray.Dataset) -> dict[str, SweptMap]:
+    """The maps of every figure over the first two dense fields, by the names of their files.
+
+    Values of a third field, four at most, have maps of their own; what is left stays at its middle value.
+    """
+    from pneutouch.report.swept import SweptMap, spread_places
+
+    axes = {name: _axis(content, name) for name in map(str, content["status"].dims) if name != PRESSURE}
+    first, second = check_dense({name: axis.values for name, axis in axes.items() if name != "point"})
+    content = content.assign({INTERVAL: 50.0 * np.log(content[_ENDS[1]] / content[_ENDS[0]])}).sortby([first, second])
+    others = [name for name in axes if name not in (first, second)]
+    # Names before numbers, and last what does not vary.
+    others.sort(key=lambda name: (len(axes[name].values) == 1, axes[name].numeric))
+    at = {name: len(axes[name].values) // 2 for name in others}
+    maps = {}
+    for place in spread_places(len(axes[others[0]].values)) if others else [0]:
+        at |= dict.fromkeys(others[:1], place)
+        words = ", ".join([str(content.attrs["base_design"]), *(axes[name].named(k) for name, k in at.items())])
+        ending = "".join(f"-{_cell(axes[name].values[place])}" for name in others[:1])
+        cut = content.isel(at).transpose(first, second, ...)
+        for name, (label, variable) in MAPPED.items():
+            panels = _map_panels(cut, variable)
+            if name == "sensitivity" or any(np.isfinite(panel.value).any() for panel in panels):
+                caption = f"{label}: {words}; model {content.attrs['model']}"
+                maps[f"{name}{ending}"] = SweptMap(caption, (_axis(cut, first), _axis(cut, second)), tuple(panels))
+    return maps
+
+
+def _map_panels(content: xarray.Dataset, variable: str) -> list[MapPanel]:
+    """A figure at each driving pressure, four at most; one panel where it is of the points."""
+    from pneutouch.report.swept import MapPanel, spread_places
+
+    values, messages, axis = content[variable].values, content["message"].values, _axis(content, PRESSURE)
+    if PRESSURE not in content[variable].dims:
+        return [MapPanel("", values, missing_reasons(values, messages))]
+    places = spread_places(len(axis.values))
+    cuts = [(values[..., k], messages[..., k : k + 1]) for k in places]
+    return [MapPanel(axis.named(k), cut[0], missing_reasons(*cut)) for k, cut in zip(places, cuts, strict=True)]

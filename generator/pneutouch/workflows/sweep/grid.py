@@ -2,11 +2,11 @@
 
 A plan from a sweep file or from the flags of the command line.
 
-The kinds of value that a field of the design takes, for the axes of a sweep.
+The kinds of value that a field of the design takes, for the axes of a sweep; the fields that a map is drawn over.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, get_origin
@@ -161,6 +161,27 @@ def takes_words(key: str) -> bool:
     """True if the field is one of a few words, or true or false."""
     field = _field(key)
     return field is not None and (field.annotation is bool or get_origin(field.annotation) is Literal)
+
+
+DENSE = 4
+"""Fewest values of a field that a map is drawn over."""
+
+
+def is_dense(values: Sequence[Any]) -> bool:
+    """True for values that a map can be drawn over: enough numbers, all of them finite."""
+    numbers = all(isinstance(v, int | float) and not isinstance(v, bool) and math.isfinite(v) for v in values)
+    return numbers and len(values) >= DENSE
+
+
+def check_dense(axes: Mapping[str, Sequence[Any]]) -> tuple[str, str]:
+    """The fields of a map, the first two dense ones of a grid. Raises InputError without two."""
+    dense = [name for name, values in axes.items() if is_dense(values)]
+    if len(dense) < 2:
+        lengths = ", ".join(f"{name} with {len(values)}" for name, values in axes.items()) or "a list of points"
+        problem = f"a map needs a grid over two fields of numbers, with {DENSE} values each; this sweep has {lengths}"
+        remedy = "vary two fields in more steps, such as membrane.wall_thickness_mm=1:1.8:12"
+        raise InputError(problem, key="charts", remedy=remedy)
+    return dense[0], dense[1]
 
 
 KEYS = ("design", "model", "closure", "clamp", "set", "grid", "point")

@@ -1,11 +1,16 @@
-"""The variables of a sweep's dataset: each declared once, with its place in a prediction, unit and meaning."""
+"""The variables of a sweep's dataset: each declared once, with its place in a prediction, unit and meaning.
 
+The figures that are mapped, and short words for the message of a state that is not there.
+"""
+
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.uncertainty import DIGITS, SensorSpread, even_wall, spread, why_unknown
 from pneutouch.mechanics import Sensor, SensorState
@@ -182,3 +187,47 @@ def _interval(state: SensorState, width: float) -> Interval:
         return None
     value = state.figures.sensitivity_kPa_per_N
     return rounded((value * float(np.exp(-width)), value * float(np.exp(width))), DIGITS)
+
+
+INTERVAL = "sensitivity_interval_percent"
+"""Name of half the width of the interval of the sensitivity, which follows from its ends."""
+
+MAPPED = {
+    "sensitivity": ("sensitivity  (kPa/N)", "sensitivity_kPa_per_N"),
+    "force-range": ("greatest force of the range  (N)", "force_range_high_N"),
+    "rated-pressure": ("rated pressure  (kPa)", "rated_pressure_kPa"),
+    "interval": ("interval of the sensitivity, k = 2  (± %)", INTERVAL),
+}
+"""Label and variable of every figure that is mapped, by the name of its file."""
+
+_REASONS = (
+    ("beyond the limit point", "beyond the limit point"),
+    ("plate's edge", "contact reaches the plate's edge"),
+    ('model = "atlas": wall', "wall outside the atlas"),
+    ("must be less than inner_radius_mm", "wall not thinner than the inner radius"),
+    ("too small for the", "too small for the connector"),
+    ("no convergence", "no convergence"),
+    ("internal fault", "internal fault"),
+)
+"""Part of a message, and the words that stand for all messages with it."""
+
+_MOST_LETTERS = 60
+
+
+def reason_words(message: str) -> str:
+    """Short words for a state's message, the same for messages that differ in numbers alone."""
+    for part, words in _REASONS:
+        if part in message:
+            return words
+    problem = re.sub(r"^(?:[\w./\[\]-]+(?: = [^:]+)?: )+", "", message.split("; ")[0])
+    words = re.sub(r"(?<![A-Za-z])-?\d[\d.e+-]*", "…", problem)
+    return words if len(words) <= _MOST_LETTERS else f"{words[: _MOST_LETTERS - 1].rstrip()}…"
+
+
+def missing_reasons(values: Array, messages: Array) -> tuple[tuple[str, ...], ...]:
+    """Words for every value (n, m) that is NaN, from the first of its messages (n, m, k) that states one; else ""."""
+    known = np.isfinite(values)
+    words = np.full(known.shape, "", object)
+    for place in np.argwhere(~known).tolist():
+        words[tuple(place)] = next((reason_words(text) for text in messages[tuple(place)] if text), "not known")
+    return tuple(map(tuple, words.tolist()))
