@@ -120,10 +120,11 @@ charts: $(VENV)/.dev
 rule-pictures: $(VENV)/.dev
 	PYTHONPATH=docs/_ext OMP_NUM_THREADS=1 $(BIN)/python -m pictures.rules.draw
 
-# The studio's screens, in a browser, and the connectors.
+# The studio's screens, in a browser, the connectors, and the map of a sweep.
 pictures: $(VENV)/.dev
 	PYTHONPATH=docs/_ext $(BIN)/python -m pictures.studio
 	PYTHONPATH=docs/_ext $(BIN)/python -m pictures.connectors
+	PYTHONPATH=docs/_ext OMP_NUM_THREADS=1 $(BIN)/python -m pictures.sweeps
 
 # The shipped table of the solid's answers; goes on where it was stopped.
 atlas: $(VENV)/.dev

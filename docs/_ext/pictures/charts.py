@@ -9,7 +9,6 @@ from pictures.background import CHARTS as BACKGROUND
 from pictures.mixing import CHARTS as MIXING
 from pictures.presses import CHARTS as PRESSES
 from pictures.prints import CHARTS as PRINTS
-from pictures.sweeps import CHARTS as SWEEPS
 from pictures.texture import CHARTS as TEXTURE
 
-CHARTS: dict[str, Callable[[], str]] = {**ACCURACY, **BACKGROUND, **MIXING, **PRESSES, **PRINTS, **SWEEPS, **TEXTURE}
+CHARTS: dict[str, Callable[[], str]] = {**ACCURACY, **BACKGROUND, **MIXING, **PRESSES, **PRINTS, **TEXTURE}

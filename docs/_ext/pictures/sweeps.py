@@ -1,8 +1,7 @@
-"""The map of the page on sweeps, as the command of the page draws it."""
+"""Draw docs/howto/sweep-map.svg, as the command of the page draws it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 from pneutouch.catalogue import Library
@@ -23,7 +22,10 @@ def sweep_map() -> str:
     plan = plan_of_flags("paper-dome", OVER, {"pneumatics.driving_pressures_kPa": [0.0, 22.0]}, model="atlas")
     with temporary_folder() as folder:
         sweep(plan, folder / "map.nc", ComputeResources(workers=1), library=Library((ROOT,)))
-        return contour_map(sweep_maps(stored_dataset(folder / "map.nc"))["force-range"])[0]
+        text, _ = contour_map(sweep_maps(stored_dataset(folder / "map.nc"))["force-range"])
+    # The drawing has a ground of its own under the one of the file.
+    return text[text.index("<svg") :].replace('\n <rect width="100%" height="100%" fill="#ffffff"/>', "")
 
 
-CHARTS: dict[str, Callable[[], str]] = {"sweep-map": sweep_map}
+if __name__ == "__main__":
+    (ROOT / "docs" / "howto" / "sweep-map.svg").write_text(sweep_map(), encoding="utf-8")

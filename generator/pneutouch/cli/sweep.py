@@ -67,20 +67,15 @@ def sweep(
     with reporting():
         # Before numpy loads: the processes take the cores, and results must not depend on how many there are.
         os.environ["OMP_NUM_THREADS"] = "1"
-        from pneutouch.output.files import check_writable
         from pneutouch.workflows.sweep import sweep as run
-        from pneutouch.workflows.sweep.dataset import check_companions, stored_dataset, write_companions, write_maps
+        from pneutouch.workflows.sweep.dataset import stored_dataset, write_companions, write_maps
         from pneutouch.workflows.sweep.execute import ComputeResources
-        from pneutouch.workflows.sweep.grid import check_dense, is_dense
+        from pneutouch.workflows.sweep.grid import is_dense
 
         plan = _plan(
             file, design, over or [], changes(set_, calibration), {"model": model, "closure": closure, "clamp": clamp}
         )
-        target = Path("outputs") / f"{plan.name}.nc" if out is None else out
-        check_companions(target, plan)
-        if charts is not None:
-            check_dense({axis.key: axis.values for axis in plan.axes})
-            check_writable(charts / "chart", key="charts")
+        target = _free_place(plan, out, charts)
         with bar("computing points") as progress:
             done = run(plan, target, ComputeResources(workers, scheduler), fresh=fresh, progress=progress)
         with bar("drawing the sensitivity"):
@@ -105,6 +100,20 @@ def _plan(
     if design is None or not over:
         raise InputError("give a sweep file, or --design NAME with --over TABLE.KEY=VALUES")
     return plan_of_flags(design, over, changed, **options)
+
+
+def _free_place(plan: SweepPlan, out: Path | None, charts: Path | None) -> Path:
+    """The file of the dataset. Raises InputError where something that is asked for cannot be drawn or written."""
+    from pneutouch.output.files import check_writable
+    from pneutouch.workflows.sweep.dataset import check_companions
+    from pneutouch.workflows.sweep.grid import check_dense
+
+    target = Path("outputs") / f"{plan.name}.nc" if out is None else out
+    check_companions(target, plan)
+    if charts is not None:
+        check_dense({axis.key: axis.values for axis in plan.axes})
+        check_writable(charts / "chart", key="charts")
+    return target
 
 
 def _report(

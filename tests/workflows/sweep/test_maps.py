@@ -8,6 +8,8 @@ from collections import Counter
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from pictures.sweeps import OVER as DRAWN
+from pictures.sweeps import sweep_map
 
 import pneutouch as pt
 from pneutouch.errors import InputError
@@ -18,6 +20,8 @@ from pneutouch.workflows.sweep.dataset import stored_dataset, sweep_maps, write_
 from pneutouch.workflows.sweep.execute import ComputeResources
 from pneutouch.workflows.sweep.grid import is_dense
 from pneutouch.workflows.sweep.variables import MAPPED, missing_reasons, reason_words
+from tests.conftest import ROOT
+from tests.drawings import same_drawing
 from tests.workflows.sweep.conftest import load, small
 
 ALONE = ComputeResources(workers=1)
@@ -219,3 +223,9 @@ def test_a_list_of_points_has_no_map(library):
 
     with pytest.raises(InputError, match="a list of points"):
         check_dense({})
+
+
+def test_the_page_shows_the_map_of_its_command():
+    page = (ROOT / "docs/howto/sweep.md").read_text(encoding="utf-8")
+    assert "](sweep-map.svg)" in page and all(f"--over {over}" in page for over in DRAWN)
+    assert same_drawing(ROOT / "docs/howto/sweep-map.svg", sweep_map())
