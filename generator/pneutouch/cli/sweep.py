@@ -58,8 +58,7 @@ def sweep(
         bool, typer.Option("--fresh", help="Forget progress and replace another sweep's dataset.")
     ] = False,
     charts: Annotated[
-        Path | None,
-        typer.Option("--charts", metavar="DIR", help="Folder for contour maps over two fields, SVG and PNG."),
+        Path | None, typer.Option("--charts", metavar="DIR", help="Folder for contour maps over two fields.")
     ] = None,
     json: JsonOption = False,
 ) -> None:
@@ -83,7 +82,8 @@ def sweep(
             maps = [] if charts is None else write_maps(stored_dataset(done.path), charts)
         _report(done, rows, written, maps, json=json)
         if charts is None and not json and sum(is_dense(axis.values) for axis in plan.axes) > 1:
-            report_next(*sys.argv[1:], "--charts", done.path.with_name(f"{done.path.stem}-maps"))
+            words = [word for word in sys.argv[1:] if word != "--fresh"]
+            report_next(*words, "--charts", done.path.with_name(f"{done.path.stem}-maps"))
 
 
 def _plan(

@@ -271,8 +271,7 @@ def contour_levels(known: Array) -> Array:
         first, last = math.floor(math.log10(low)), math.ceil(math.log10(high))
         rounds = np.array([step * 10.0**k for k in range(first, last + 1) for step in _RATIOS])
         return rounds[np.searchsorted(rounds, low, "right") - 1 : np.searchsorted(rounds, high) + 1]
-    levels: Array = np.asarray(MaxNLocator(10, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high), float)
-    return levels
+    return np.asarray(MaxNLocator(10, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high), float)
 
 
 def _contours(

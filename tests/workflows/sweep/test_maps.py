@@ -72,6 +72,7 @@ def test_reasons_are_counted_as_the_dataset_states_them(mapped):
         ("driving pressure beyond the limit point, where the dome snaps: at most 21.96 kPa", "beyond the limit point"),
         ('model = "atlas": wall 0.05 R0, not 0.06 to 0.35; take `model` auto', "wall outside the atlas"),
         ("designs/a.toml: contact.depth_mm = 8: deeper than 7.5 mm; take less", "deeper than … mm"),
+        ("no equilibrium at driving pressure 3 kPa: x; try a finer mesh", "no equilibrium found"),
         ("internal fault (ValueError: x); please report it with the design", "internal fault"),
         ("designs/a.toml: " + "a word " * 20, f"{('a word ' * 20)[:59].rstrip()}…"),
     ],
@@ -181,9 +182,9 @@ WORDS = ["--design", "paper-dome", "--over", f"{WALL}=1:1.6:4", "--over", f"{RAD
 
 
 def test_the_command_draws_maps_and_later_ones_without_computing(command, tmp_path):
-    plain = command("sweep", *WORDS)
+    plain = command("sweep", *WORDS, "--fresh")
     assert plain.returncode == 0, plain.stderr
-    assert plain.stderr.splitlines()[-1].endswith("--charts outputs/paper-dome-sweep-maps")
+    assert plain.stderr.splitlines()[-1].endswith("--model membrane --charts outputs/paper-dome-sweep-maps")
     before = (tmp_path / "outputs/paper-dome-sweep.nc").read_bytes()
     result = command("sweep", *WORDS, "--charts", "maps", "--json")
     found = json.loads(result.stdout)

@@ -179,8 +179,7 @@ def check_dense(axes: Mapping[str, Sequence[Any]]) -> tuple[str, str]:
     if len(dense) < 2:
         lengths = ", ".join(f"{name} with {len(values)}" for name, values in axes.items()) or "a list of points"
         problem = f"a map needs a grid over two fields of numbers, with {DENSE} values each; this sweep has {lengths}"
-        remedy = "vary two fields in more steps, such as membrane.wall_thickness_mm=1:1.8:12"
-        raise InputError(problem, key="charts", remedy=remedy)
+        raise InputError(problem, key="charts", remedy="give more, such as membrane.wall_thickness_mm=1:1.8:12")
     return dense[0], dense[1]
 
 

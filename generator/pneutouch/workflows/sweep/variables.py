@@ -206,12 +206,10 @@ _REASONS = (
     ('model = "atlas": wall', "wall outside the atlas"),
     ("must be less than inner_radius_mm", "wall not thinner than the inner radius"),
     ("too small for the", "too small for the connector"),
-    ("no convergence", "no convergence"),
+    ("no equilibrium at", "no equilibrium found"),
     ("internal fault", "internal fault"),
 )
 """Part of a message, and the words that stand for all messages with it."""
-
-_MOST_LETTERS = 60
 
 
 def reason_words(message: str) -> str:
@@ -221,7 +219,7 @@ def reason_words(message: str) -> str:
             return words
     problem = re.sub(r"^(?:[\w./\[\]-]+(?: = [^:]+)?: )+", "", message.split("; ")[0])
     words = re.sub(r"(?<![A-Za-z])-?\d[\d.e+-]*", "…", problem)
-    return words if len(words) <= _MOST_LETTERS else f"{words[: _MOST_LETTERS - 1].rstrip()}…"
+    return words if len(words) <= 60 else f"{words[:59].rstrip()}…"
 
 
 def missing_reasons(values: Array, messages: Array) -> tuple[tuple[str, ...], ...]:
