@@ -21,7 +21,7 @@ from pneutouch.export.voxels.png import MOST_PIXELS
 from pneutouch.spec.files import MOST_BYTES
 from pneutouch.spec.tasks import MOST_TASKS
 from pneutouch.studio.guard import LARGEST_BODY, LARGEST_FILE
-from pneutouch.tables import parquet_table, xlsx_table
+from pneutouch.tables import binary_tables, xlsx_table
 from pneutouch.tables.read import MOST_NUMBERS
 from pneutouch.tables.text import LONGEST_LINE
 from pneutouch.workflows.sweep.dataset import MOST_BYTES as MOST_DATASET
@@ -44,7 +44,7 @@ def bounds() -> list[tuple[str, str]]:
         ),
         (
             "measured run, parquet",
-            f"{parquet_table.MOST_ROWS / mb:g} million rows, {parquet_table.MOST_UNPACKED // mib} MiB unpacked in a group of rows; {MOST_BLOCKS} blocks in memory",
+            f"{binary_tables.MOST_ROWS / mb:g} million rows, {binary_tables.MOST_UNPACKED // mib} MiB unpacked in a group of rows; {MOST_BLOCKS} blocks in memory",
         ),
         (
             "measured run, Excel",

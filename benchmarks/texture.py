@@ -23,8 +23,7 @@ from pneutouch.texture.separate import BarPattern, amplitudes, noise_amplitude, 
 from pneutouch.texture.sliding import scan
 from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate, amplitude
 from pneutouch.units import KPA
-from pneutouch.workflows.scan import run_scan
-from pneutouch.workflows.scan_separate import separating
+from pneutouch.workflows.scan import run_scan, separating
 from pneutouch.workflows.scanned import scanned
 
 CELL, LENGTH, HEIGHT = 0.5, 24.0, 8.0

@@ -21,8 +21,8 @@ from benchmarks.store import DOCS, LIBRARY, store
 from pneutouch.body import Solid
 from pneutouch.body.section import SolidSection
 from pneutouch.catalogue import load_scene
-from pneutouch.export.voxels.bluenoise import thresholds
 from pneutouch.export.voxels.raster import Raster, raster
+from pneutouch.export.voxels.slices import thresholds
 from pneutouch.export.voxels.stack import read_stack
 from pneutouch.parts import assemble
 from pneutouch.workflows.build_voxels import plan_voxels, write_voxels

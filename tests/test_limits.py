@@ -217,7 +217,7 @@ def test_parquet_states_its_rows_and_sizes_before_any_is_read(tmp_path, monkeypa
     pa = pytest.importorskip("pyarrow")
     import pyarrow.parquet as pq
 
-    from pneutouch.tables import parquet_table, read
+    from pneutouch.tables import binary_tables, read
 
     path = tmp_path / "a.parquet"
     pq.write_table(pa.table({"a": np.zeros(1000), "b": np.random.default_rng(1).random(1000)}), path)
@@ -225,9 +225,9 @@ def test_parquet_states_its_rows_and_sizes_before_any_is_read(tmp_path, monkeypa
     size = group.total_byte_size
     for limit, value, beyond in (("MOST_ROWS", 1000, 999), ("MOST_UNPACKED", size, size - 1)):
         with monkeypatch.context() as here:
-            here.setattr(parquet_table, limit, value)
+            here.setattr(binary_tables, limit, value)
             assert read.whole(path, ["b"])[1].shape == (1, 1000)
-            here.setattr(parquet_table, limit, beyond)
+            here.setattr(binary_tables, limit, beyond)
             with pytest.raises(
                 InputError, match="1000 rows; at most 999" if limit == "MOST_ROWS" else "in one group of rows"
             ):

@@ -19,7 +19,7 @@ import pneutouch
 from pneutouch.cli.app import app
 from pneutouch.cli.commands import COMMANDS
 from pneutouch.schemas import document_kinds, schema_of
-from pneutouch.schemas.files import _MODELS
+from pneutouch.schemas.catalogue import _MODELS
 from pneutouch.spec.fields import declarations, table_of
 from pneutouch.spec.values import Quantity
 from tests.schemas.test_files import tables

@@ -14,7 +14,7 @@ from pneutouch.cli.app import app
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.spec.options import ScanOptions
 from pneutouch.units import KPA
-from pneutouch.workflows.scan_separate import separating
+from pneutouch.workflows.scan import separating
 from tests.schemas.held import hold, hold_folder
 
 ASKED = ["scan", "texture-specimen", "--design", "paper-dome"]

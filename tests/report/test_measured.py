@@ -13,11 +13,9 @@ from pneutouch.bench.figures import FIGURES
 from pneutouch.bench.record import SuspectInterval
 from pneutouch.report.blocks import FramedBlocks, Heading, Plot, SheetTable, found
 from pneutouch.report.measured import tables
-from pneutouch.report.measured.groups import groups_of
-from pneutouch.report.measured.head import tiles, whole_verdict
 from pneutouch.report.measured.plots import loops, responses
-from pneutouch.report.measured.sheet import described, measured_datasheet
-from pneutouch.report.measured.tables import MOST, lists, resin_section, specimen_section
+from pneutouch.report.measured.sheet import described, measured_datasheet, tiles, whole_verdict
+from pneutouch.report.measured.tables import MOST, groups_of, lists, resin_section, specimen_section
 from pneutouch.report.numbers import MINUS, between, difference, number, signed
 from pneutouch.results.measured import Verdict
 

@@ -30,8 +30,7 @@ pytest.importorskip("httpx2")
 from playwright.sync_api import Page
 from starlette.testclient import TestClient
 
-from pneutouch.studio.application import application
-from pneutouch.studio.server import bases_of
+from pneutouch.studio.server import application, bases_of
 from tests.browser import Pages
 from tests.studio.served import Studio, served
 

@@ -13,8 +13,8 @@ from contextlib import ExitStack
 import pytest
 from starlette.requests import Request
 
-from pneutouch.studio.application import Studio
 from pneutouch.studio.guard import HEADERS
+from pneutouch.studio.server import Studio
 from tests.studio.attacks import ATTACKS
 from tests.studio.raw import answer, request, status
 

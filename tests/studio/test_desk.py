@@ -16,8 +16,7 @@ from starlette.testclient import TestClient
 
 from pneutouch.studio.building import build_design
 from pneutouch.studio.guard import HEADERS, SHEET, Guard
-from pneutouch.studio.job_routes import Desk
-from pneutouch.studio.jobs import Job, Jobs
+from pneutouch.studio.jobs import Desk, Job, Jobs
 from pneutouch.workflows.build import CONTENTS, described
 from tests.conftest import ROOT
 from tests.refusals import refused

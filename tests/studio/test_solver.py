@@ -8,8 +8,7 @@ import json
 
 import pytest
 
-from pneutouch.studio.solver import Solver, SupersededError
-from pneutouch.studio.worker import work
+from pneutouch.studio.solver import Solver, SupersededError, work
 
 
 class Held(Solver):

@@ -10,7 +10,7 @@ import pypdfium2
 import pytest
 
 from pneutouch.catalogue import DesignSource, Library
-from pneutouch.cli.compare_text import comparison_text
+from pneutouch.cli.compare import comparison_text
 from pneutouch.errors import InputError
 from pneutouch.report import comparison_words
 from pneutouch.results.comparison import ColumnRecord, ComparisonRecord

@@ -16,7 +16,7 @@ from pneutouch.catalogue import load_scene
 from pneutouch.parts.mould import mould_of
 from pneutouch.report.mould import mould_rows, mould_section
 from pneutouch.spec.read import parse_changes
-from pneutouch.workflows.build_mould import exploded, mould_files, mould_record
+from pneutouch.workflows.build import exploded, mould_files, mould_record
 from pneutouch.workflows.coupons.make import build_coupons
 from pneutouch.workflows.coupons.order import CouponOptions
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.catalogue.library import Library
-from pneutouch.catalogue.parts import check_cast_ring, mount_of, named_gauge, tube_of
 from pneutouch.catalogue.printers import cannot_run
 from pneutouch.errors import InputError, shown
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
@@ -16,7 +15,7 @@ from pneutouch.spec.fields import MaterialKind
 from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
-from pneutouch.spec.part import AnyMount, AnySeat, CastRing, GluedFlange, OnePiece, Port, Tube
+from pneutouch.spec.part import AnyMount, AnySeat, CastRing, GluedFlange, OnePiece, PerforatedRing, Port, Sleeve, Tube
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.spec.read import Changes, override, read_toml, validate
 from pneutouch.spec.values import name_of
@@ -155,12 +154,12 @@ def _resolved(name: str, where: str, design: DesignFile, library: Library) -> Re
         connector_material=find("materials", "connector", "material"),
         printer=printer,
         connector_printer=find("printers", "print", "connector_profile"),
-        tube=tube_of(design, where, library),
+        tube=_tube_of(design, where, library),
         port=find("ports", "connector", "port"),
         seat=find("seats", "connector", "seat"),
-        mount=mount_of(design, where, library),
+        mount=_mount_of(design, where, library),
         calibration=_calibration(design, where, library),
-        gauge=named_gauge(design, where, library),
+        gauge=_named_gauge(design, where, library),
         mould_printer=find("printers", "mould", "profile") if printer.is_casting else None,
         mould_material=find("materials", "mould", "material") if printer.is_casting else None,
     )
@@ -202,7 +201,7 @@ def check_scene(scene: ResolvedDesign, library: Library | None = None) -> None:
     _check_runs(scene, "print.connector_profile", scene.connector_printer, *rigid, library)
     _check_one_piece(scene)
     _check_glue(scene)
-    check_cast_ring(scene.design, scene.where, scene.seat, scene.printer)
+    _check_cast_ring(scene.design, scene.where, scene.seat, scene.printer)
     _check_calibration(scene)
     _check_mould(scene, library)
 
@@ -290,4 +289,80 @@ def _check_calibration(scene: ResolvedDesign) -> None:
             key=CALIBRATION,
             value=name,
             remedy="calibrate a sensor of this membrane, or take the calibration's resin, radius and wall",
+        )
+
+
+def _tube_of(design: DesignFile, where: str, library: Library) -> Tube:
+    """The tube that the design names, else the usual one of its port. Raises InputError if it does not fit."""
+    port = library.load("ports", design.connector.port, file=where, key="connector.port")
+    name = design.pneumatics.tube
+    if name is not None:
+        library.load("tubes", name, file=where, key="pneumatics.tube")
+        if name not in port.tubes:
+            raise InputError(
+                f"the port {design.connector.port} takes {', '.join(port.tubes)}",
+                file=where,
+                key="pneumatics.tube",
+                value=name,
+                remedy="give one of these, or another connector.port",
+            )
+    tube: Tube = library.load("tubes", name or port.tubes[0], file=where, key="tubes of connector.port")
+    return tube
+
+
+def _mount_of(design: DesignFile, where: str, library: Library) -> AnyMount:
+    """The mount that the design names; a sleeve for the finger that it gives."""
+    chosen, finger = design.connector.mount, design.connector.finger_diameter_mm
+    mount: AnyMount = library.load("mounts", chosen, file=where, key="connector.mount")
+    if finger is None:
+        return mount
+    if not isinstance(mount, Sleeve):
+        sleeves = [name for name in library.paths("mounts") if isinstance(library.load("mounts", name), Sleeve)]
+        raise InputError(
+            f"connector.mount = {shown(chosen)} goes over no finger",
+            file=where,
+            key="connector.finger_diameter_mm",
+            value=finger,
+            remedy=f"take connector.mount = {' or '.join(sleeves)}, or leave it out",
+        )
+    return mount.for_finger(finger)
+
+
+def _named_gauge(design: DesignFile, where: str, library: Library) -> Gauge | None:
+    """The gauge of a design, None without one. Raises InputError if it does not read above the ambient pressure."""
+    name, ambient_kPa = design.pneumatics.gauge, design.pneumatics.ambient_pressure_kPa
+    if name is None:
+        return None
+    gauge: Gauge = library.load("gauges", name, file=where, key="pneumatics.gauge")
+    if gauge.gauge_pressures_kPa(ambient_kPa)[1] <= 0:
+        raise InputError(
+            f"the {gauge.title} reads to {gauge.range_kPa.high:g} kPa absolute, not above the ambient "
+            f"{ambient_kPa:g} kPa",
+            file=where,
+            key="pneumatics.gauge",
+            value=name,
+            remedy="take another gauge",
+        )
+    return gauge
+
+
+def _check_cast_ring(design: DesignFile, where: str, seat: AnySeat, printer: Printer) -> None:
+    """Raise InputError for a ring around which nothing is cast, or a ring stated for a seat without one.
+
+    ``printer`` is that of the membrane, ``where`` the design's file.
+    """
+    chosen = design.connector.seat
+    if not isinstance(seat, CastRing):
+        if design.cast_ring != PerforatedRing():
+            problem = f"connector.seat = {shown(chosen)} has no ring that a flange is cast around"
+            remedy = "leave the table out, or take connector.seat = cast-ring"
+            raise InputError(problem, file=where, key="cast_ring", remedy=remedy)
+        return
+    if not printer.is_casting:
+        raise InputError(
+            f"the flange is cast around its ring; print.profile = {shown(design.print.profile)} prints the membrane",
+            file=where,
+            key="connector.seat",
+            value=chosen,
+            remedy="take print.profile = silicone-casting with a membrane.material that is cast, or another seat",
         )

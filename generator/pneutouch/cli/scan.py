@@ -89,7 +89,7 @@ def scan(
 def _separate(
     specimen: str, design: str, text: str, options: ScanOptions, changed: dict[str, Any], *, json: bool
 ) -> None:
-    from pneutouch.workflows.scan_separate import separating
+    from pneutouch.workflows.scan import separating
 
     with bar("ranking domes"):
         separation = separating(specimen, design, text, options, changed)

@@ -1,17 +1,124 @@
-"""All schemas by name.
+"""All schemas by name, those of the TOML files that the program reads among them: made from their declarations."""
 
-Unit, bounds and default of a field in words: for its description, and for the tables of the reference.
-"""
+from __future__ import annotations
 
+from functools import partial, reduce
+from importlib import import_module
+from operator import or_
 from typing import Any
 
 from pneutouch.errors import InputError, nearest
+from pneutouch.evaluation.evaluate import CLAMPS
 from pneutouch.formats import version_of
+from pneutouch.mechanics import MODEL_CHOICES
+from pneutouch.mechanics.models.choice import CLOSURES, USUAL
 from pneutouch.schemas.documents import written_kinds
-from pneutouch.schemas.files import file_kinds
-from pneutouch.schemas.pieces import DocumentKind
+from pneutouch.schemas.pieces import (
+    NUMBER,
+    TEXT,
+    DocumentKind,
+    Schema,
+    any_of,
+    described_by,
+    items,
+    model_schema,
+    record,
+)
+from pneutouch.spec.over import MAX_VALUES
 
-Schema = dict[str, Any]
+_SCALAR = {"type": ["number", "string", "boolean"]}
+_VALUE = any_of(_SCALAR, items({"anyOf": [_SCALAR, {"type": "array"}]}))
+
+
+def _fields(value: dict[str, Any], help: str) -> Schema:
+    """A table of fields of the design: keys in quotes as ``"table.key"``, or tables of keys."""
+    return {
+        "type": "object",
+        "additionalProperties": {"anyOf": [value, {"type": "object", "additionalProperties": value}]},
+        "description": help,
+    }
+
+
+def sweep_schema() -> Schema:
+    """The schema of a sweep file, see `workflows.sweep.read`."""
+    steps = record(
+        "A range of equal steps.",
+        {
+            "from": described_by("First value.", NUMBER),
+            "to": described_by("Last value.", NUMBER),
+            "count": {"type": "integer", "minimum": 2, "maximum": MAX_VALUES, "description": "Number of values."},
+        },
+    )
+    values = any_of({**items(_SCALAR), "minItems": 1, "maxItems": MAX_VALUES}, steps)
+    keys = {
+        "design": {
+            **described_by("Name of the base design, or a .toml in the folder of the sweep file.", TEXT),
+            "minLength": 1,
+        },
+        "model": {
+            **described_by("Model; left out: solid, and harmonic for contact off the axis.", TEXT),
+            "enum": [*MODEL_CHOICES, USUAL],
+        },
+        "closure": {
+            **described_by("Contact closure of the membrane model.", TEXT),
+            "enum": list(CLOSURES),
+            "default": "variational",
+        },
+        "clamp": {**described_by("Where the solid is held.", TEXT), "enum": list(CLAMPS), "default": "base"},
+        "set": _fields(_VALUE, 'Fields of every point: "table.key" = value.'),
+        "grid": _fields(values, 'Fields that are varied, every combination: "table.key" = values, or a range.'),
+        "point": described_by("Points in place of a grid, one [[point]] each.", items(_fields(_VALUE, "One point."))),
+    }
+    return record("Designs that differ in some fields.", keys, optional=[key for key in keys if key != "design"])
+
+
+_MODELS = {
+    "design": ("design.DesignFile", "A design", "`designs/`"),
+    "target": ("target.Target", "A target", "given to `select`"),
+    "tray": ("tray.Tray", "A tray", "given to `tray`"),
+    "tasks": ("tasks.TaskFile", "Tasks of a sensor", "given to `pneutouch predict --tasks`"),
+    "campaign": ("campaign.Campaign", "A measurement campaign", "given to `characterize` and `calibrate`"),
+    "calibration": ("calibration.SensorCalibration", "A calibration of one sensor", "`calibrations/`"),
+    "coupons": ("coupon.CouponResults", "What was measured on coupons", "given to `pneutouch coupons --results`"),
+    "material": ("material.Material", "A cured material", "`printprofiles/materials/`"),
+    "mixing": ("mixing.MixingCurve", "A mixing curve of two resins", "`printprofiles/mixing/`"),
+    "printer": ("printer.Printer", "A printer", "`printprofiles/`"),
+    "gauge": ("gauge.Gauge", "A pressure gauge", "`printprofiles/gauges/`"),
+    "tube": ("part.Tube", "A tube", "`parts/tubes/`"),
+    "port": ("part.Port", "A pneumatic port", "`parts/ports/`"),
+    "seat": ("part.AnySeat", "A seat of the membrane", "`parts/seats/`"),
+    "mount": ("part.AnyMount", "A mounting pattern", "`parts/mounts/`"),
+}
+"""The model of each file in `spec`, its title, and where such files lie."""
+
+
+def _of_model(path: str) -> Schema:
+    module, _, name = path.partition(".")
+    return model_schema(getattr(import_module(f"pneutouch.spec.{module}"), name))
+
+
+def _specimen() -> Schema:
+    """A specimen's file, whose layers are of several kinds."""
+    from pneutouch.spec.specimen import LAYERS, Specimen
+
+    kinds: Any = reduce(or_, dict.fromkeys(LAYERS.values()))
+    layers, whole = model_schema(kinds), model_schema(Specimen)
+    definitions = {key: one for key, one in {**whole["$defs"], **layers["$defs"]}.items() if key != "Layer"}
+    whole["properties"]["layer"]["items"] = {"anyOf": layers["anyOf"]}
+    return {**whole, "$defs": definitions}
+
+
+def _file_kinds() -> dict[str, DocumentKind]:
+    """Every file that is read, by name."""
+    declared = {
+        name: DocumentKind("TOML", title, where, partial(_of_model, path))
+        for name, (path, title, where) in _MODELS.items()
+    }
+    return {
+        **declared,
+        "specimen": DocumentKind("TOML", "A texture specimen", "`designs/specimens/`", _specimen),
+        "sweep": DocumentKind("TOML", "A sweep", "given to `sweep`", sweep_schema),
+    }
 
 
 def described(schema: Any) -> Any:
@@ -73,7 +180,7 @@ DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
 def document_kinds() -> dict[str, DocumentKind]:
     """Every kind of document with its schema: those that are read, then those that are written."""
-    return {**file_kinds(), **written_kinds()}
+    return {**_file_kinds(), **written_kinds()}
 
 
 def schema_of(name: str) -> Schema:

@@ -1,8 +1,17 @@
 """Schemas of the documents that the program writes: each from its record, with tables that are declared elsewhere."""
 
+import ast
+import dataclasses
+import inspect
+import itertools
 import json
-from collections.abc import Callable
+import sys
+import textwrap
+import types
+import typing
+from collections.abc import Callable, Mapping
 from functools import partial
+from typing import Any, Literal, Union
 
 from pneutouch.export.reader.render import SCHEMA
 from pneutouch.formats import FORMATS, KEY, format_of
@@ -20,7 +29,6 @@ from pneutouch.results.selection import GradedRecord, ProcessesRecord, Selection
 from pneutouch.results.simulation import CampaignTruth
 from pneutouch.results.specimen import SpecimenRecord
 from pneutouch.results.stack import StackRecord
-from pneutouch.schemas.models import model_schema
 from pneutouch.schemas.pieces import (
     NUMBER,
     NUMBERS,
@@ -31,19 +39,78 @@ from pneutouch.schemas.pieces import (
     any_of,
     choice,
     described_by,
+    items,
     mapping,
+    model_schema,
     or_null,
     record,
 )
-from pneutouch.schemas.record_schema import of_record
 from pneutouch.spec.campaign import Rig
 from pneutouch.spec.contact import SIZES, ContactTable
 from pneutouch.spec.target import Target
 
+_PLAIN: dict[Any, str] = {str: "string", float: "number", int: "integer", bool: "boolean"}
+
+
+def _of_record(kind: type, instead: Mapping[str, Schema] | None = None) -> Schema:
+    """The schema of a record; what its fields say of themselves describes its keys.
+
+    ``instead`` are schemas of keys whose values are no records, by ``Record.key``.
+    """
+    given = instead or {}
+    hints = typing.get_type_hints(kind, vars(sys.modules[kind.__module__]))
+    helps = {name: text for base in reversed(kind.__mro__) for name, text in _helps(base).items()}
+    keys, optional = {}, []
+    for field in dataclasses.fields(kind):
+        hint, has_default = hints[field.name], field.default is not dataclasses.MISSING
+        if has_default and field.default is None:
+            left = tuple(each for each in typing.get_args(hint) if each is not types.NoneType)
+            hint = Union[left]  # noqa: UP007
+        made = given.get(f"{kind.__name__}.{field.name}") or _of_hint(hint, given)
+        keys[field.name] = {**made, "description": helps[field.name]}
+        optional += [field.name] if has_default else []
+    help = " ".join((kind.__doc__ or "").replace("``", "`").split())
+    return record(help, keys, optional=optional)
+
+
+def _helps(kind: type) -> dict[str, str]:
+    """The texts below the fields of a class, by field."""
+    if not dataclasses.is_dataclass(kind):
+        return {}
+    (tree,) = ast.parse(textwrap.dedent(inspect.getsource(kind))).body
+    assert isinstance(tree, ast.ClassDef)
+    texts = {}
+    for one, below in itertools.pairwise(tree.body):
+        if isinstance(one, ast.AnnAssign) and isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant):
+            texts[ast.unparse(one.target)] = " ".join(str(below.value.value).split())
+    return texts
+
+
+def _of_hint(hint: Any, given: Mapping[str, Schema]) -> Schema:
+    origin, inner = typing.get_origin(hint), typing.get_args(hint)
+    if dataclasses.is_dataclass(hint):
+        assert isinstance(hint, type)
+        return _of_record(hint, given)
+    if origin is tuple:
+        if inner[-1] is Ellipsis:
+            return items(_of_hint(inner[0], given))
+        return {**items(_of_hint(inner[0], given)), "minItems": len(inner), "maxItems": len(inner)}
+    if isinstance(origin, type) and issubclass(origin, Mapping):
+        return mapping(_of_hint(inner[1], given))
+    if origin in (Union, types.UnionType):
+        kinds = [_of_hint(each, given) for each in inner if each is not types.NoneType]
+        one = kinds[0] if len(kinds) == 1 else any_of(*kinds)
+        return or_null(one) if types.NoneType in inner else one
+    if origin is Literal:
+        return {"enum": list(inner)}
+    if origin in (list, dict):
+        return items(_of_hint(inner[0], given)) if origin is list else mapping(_of_hint(inner[1], given))
+    return {"type": _PLAIN[hint]} if hint in _PLAIN else {}
+
 
 def _made(name: str, source: type | Callable[[], Schema]) -> Schema:
     """The schema of a document, from its record or by the function that makes it."""
-    schema = of_record(source) if isinstance(source, type) else source()
+    schema = _of_record(source) if isinstance(source, type) else source()
     return _with_format(name, schema) if name in FORMATS else schema
 
 
@@ -107,7 +174,7 @@ def plan() -> Schema:
         "PlannedCampaign.contact": contact(),
         "PlannedCampaign.rig": record("The rig.", {**rig, "file": described_by("Path of the file.", or_null(TEXT))}),
     }
-    return of_record(PlannedCampaign, instead)
+    return _of_record(PlannedCampaign, instead)
 
 
 def exported_design() -> Schema:
@@ -129,7 +196,7 @@ def prediction() -> Schema:
     keys |= {key: or_null(keys[key]) for key in unknown}
     calibration = record("The calibration that the prediction is of.", keys)
     instead = {"PredictionRecord.contact": contact(), "PredictionRecord.calibration": calibration}
-    return of_record(PredictionRecord, instead)
+    return _of_record(PredictionRecord, instead)
 
 
 def reader() -> Schema:
@@ -143,7 +210,7 @@ def selection() -> Schema:
     of_base = {"target": _target(), "contact": contact(notes=True)}
     kinds = ("SelectionRecord", "ProcessRecord", "GradedRecord")
     instead = {f"{kind}.{key}": schema for kind in kinds for key, schema in of_base.items()}
-    made = [of_record(kind, instead) for kind in (SelectionRecord, GradedRecord, ProcessesRecord)]
+    made = [_of_record(kind, instead) for kind in (SelectionRecord, GradedRecord, ProcessesRecord)]
     return {"anyOf": [_saved(schema) for schema in made], "description": "Designs for a target."}
 
 

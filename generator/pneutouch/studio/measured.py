@@ -16,7 +16,7 @@ from pneutouch.bench.figures import BY_KEY
 from pneutouch.bench.source import MeasuredFile
 from pneutouch.errors import InputError
 from pneutouch.report.measured import GroupComparison
-from pneutouch.report.measured.groups import some
+from pneutouch.report.measured.tables import some
 from pneutouch.report.numbers import overlap
 from pneutouch.results.measured import DoubtfulPart, RunOfSensor
 from pneutouch.rounding import rounded

@@ -12,7 +12,7 @@ from pneutouch.bench.calibrate import NAMES, USUAL
 from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.evaluation.resins import resin_of
-from pneutouch.report.measured.head import tiles
+from pneutouch.report.measured.sheet import tiles
 from pneutouch.results.calibration import OutcomeRecord
 from pneutouch.results.measured import MeasuredCampaign
 from pneutouch.spec.campaign import CAMPAIGN, Campaign, CampaignRun, RunKind, campaign_of

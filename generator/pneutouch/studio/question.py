@@ -1,11 +1,7 @@
-"""A question of the page: a design by its name, and the values of fields that differ from its file, as texts.
-
-The library of the page: files are read once, but for those that the page itself writes into the user's folder.
-
-JSON that a request holds.
-"""
+"""A question of the page: a design with the fields that differ from its file, and its saving as a file."""
 
 import json
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,11 +9,14 @@ from typing import Any
 
 from starlette.requests import Request
 
-from pneutouch.catalogue import DesignSource, Library
+from pneutouch.catalogue import KINDS, DesignSource, Library, user_folder
 from pneutouch.catalogue.library import CachedLibrary
 from pneutouch.errors import InputError
+from pneutouch.output.new import check_free, new_changed, write_design
 from pneutouch.spec.design import DesignFile
+from pneutouch.spec.files import read_bytes
 from pneutouch.spec.read import override, parse_changes
+from pneutouch.spec.values import plain_name
 
 PAGE = "the page"
 """Stands for the file where values come from the page."""
@@ -104,3 +103,57 @@ async def json_body(request: Request, what: str) -> Any:
     except (ValueError, RecursionError):
         raise InputError(f"the {what} is not JSON") from None
     return content
+
+
+_ENDING = ".toml"
+_KEYS = {"question", "name", "replace"}
+
+
+class NameTakenError(InputError):
+    """There is a file of this name already, and it is not to be replaced."""
+
+
+def save_design(request: Mapping[str, Any], bases: dict[str, str]) -> dict[str, str]:
+    """Write the design of ``question`` as ``name`` into the folder of the user's designs, and add it to ``bases``.
+
+    Over a file with ``replace`` alone. A design without changes is copied with its comments. Returns its name and
+    file. Raises NameTakenError if there is such a file, and InputError that names the key.
+    """
+    name, overwrite = _checked(request)
+    question, library = Question.of(request.get("question")), Library.default()
+    folder = user_folder() / KINDS["designs"].folder
+    path = folder / f"{name}{_ENDING}"
+    _check_open(name, path, bases, library)
+    source = question.source(bases, library)
+    source.changed({})
+    if not overwrite and os.path.lexists(path):
+        raise NameTakenError(
+            "there is such a file already", file=path, key="name", remedy="give another name, or replace it"
+        )
+    check_free(name, folder, overwrite=overwrite)
+    if question.values:
+        new_changed(source, name, folder, overwrite=overwrite)
+    else:
+        original = library.design_file(bases[question.base])
+        write_design(name, folder, read_bytes(original).decode("utf-8-sig"), overwrite=overwrite)
+    bases[name] = str(path.resolve())
+    return {"name": name, "file": str(path)}
+
+
+def _checked(request: Mapping[str, Any]) -> tuple[str, bool]:
+    """Name and whether a file is to be replaced."""
+    if not request.keys() <= {*_KEYS, "uploads"}:
+        raise InputError(f"a design to be saved has the keys {', '.join(sorted(_KEYS))}")
+    name, overwrite = request.get("name"), request.get("replace", False)
+    if not isinstance(name, str) or not isinstance(overwrite, bool):
+        raise InputError("name is a text and replace is true or false")
+    return plain_name(name.strip().removesuffix(_ENDING), key="name"), overwrite
+
+
+def _check_open(name: str, path: Path, bases: Mapping[str, str], library: Library) -> None:
+    """Refuse the name of a design that is open on the page from another place: it would mean two."""
+    if name not in bases or not Path(bases[name]).is_file():
+        return
+    if Path(bases[name]).resolve() != path.resolve():
+        problem = f"{bases[name]} is open by this name"
+        raise InputError(problem, key="name", value=name, remedy="give another name")

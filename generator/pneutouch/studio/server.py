@@ -1,16 +1,185 @@
-"""The studio served: a free port of 127.0.0.1, an address with a one-time token, a clean end."""
+"""The studio served on a free port of 127.0.0.1 with a one-time token: requests of the page and their answers."""
 
 import asyncio
+import contextlib
+import gzip
 import secrets
 import socket
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable
+from functools import partial
+from importlib.resources import files
 from pathlib import Path
+from typing import NamedTuple
 
 import uvicorn
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+from starlette.responses import JSONResponse, PlainTextResponse, Response
+from starlette.routing import Route
 
+from pneutouch import __version__
 from pneutouch.catalogue import DesignSource, Library
-from pneutouch.errors import InputError
-from pneutouch.studio.application import application
+from pneutouch.errors import ComputationError, InputError, PneutouchError
+from pneutouch.results.record import plain
+from pneutouch.studio.answer import Answers
+from pneutouch.studio.faults import fault_status, faults_of, too_little_memory
+from pneutouch.studio.form import design_form, designs_of, target_form
+from pneutouch.studio.guard import Application, Guard, TooLargeError, too_large
+from pneutouch.studio.jobs import Desk
+from pneutouch.studio.question import PageLibrary, Question, json_body
+from pneutouch.studio.solver import Solver, SupersededError
+
+_KINDS = {
+    "html": "text/html; charset=utf-8",
+    "css": "text/css; charset=utf-8",
+    "js": "text/javascript; charset=utf-8",
+    "svg": "image/svg+xml",
+}
+
+
+class PageFile(NamedTuple):
+    """A file of the page: its media type, and its bytes as they are and compressed."""
+
+    kind: str
+    plain: bytes
+    compressed: bytes
+
+
+def page_files() -> dict[str, PageFile]:
+    """The files by the path that they are requested at; ``/`` is the page."""
+    root = files("pneutouch.studio") / "static"
+    files_by_path = {}
+    for folder, prefix in ((root, "/"), (root / "vendor", "/vendor/")):
+        for entry in sorted(folder.iterdir(), key=lambda each: each.name):
+            kind = _KINDS.get(entry.name.rpartition(".")[2])
+            if kind is not None and entry.is_file():
+                content = entry.read_bytes()
+                files_by_path[f"{prefix}{entry.name}"] = PageFile(kind, content, gzip.compress(content, 9, mtime=0))
+    files_by_path["/"] = files_by_path.pop("/index.html")
+    return files_by_path
+
+
+def respond(known: dict[str, PageFile], request: Request) -> Response:
+    """The file at the path of a request, compressed where the browser takes it; 404 if there is none."""
+    file = known.get(request.url.path)
+    if file is None:
+        return PlainTextResponse("not found", 404)
+    packed = "gzip" in request.headers.get("accept-encoding", "")
+    headers = {"Vary": "Accept-Encoding"} | ({"Content-Encoding": "gzip"} if packed else {})
+    return Response(file.compressed if packed else file.plain, media_type=file.kind, headers=headers)
+
+
+_WAITING = 8
+"""Questions that may wait for an answer at once; a page sends two."""
+
+
+class Studio:
+    """Answers the page. ``bases`` are the designs that it may open, by name or path; ``first`` the one it begins with.
+
+    Kept between requests are the catalogue, one process, which starts with the first question for it, and what the desk
+    has.
+    """
+
+    def __init__(self, bases: dict[str, str], first: str) -> None:
+        self._bases, self._first = bases, first
+        self._library = PageLibrary(Library.default().folders)
+        self.answers = Answers(bases, self._library)
+        self._solver, self.desk = Solver(bases), Desk(bases)
+        self._one, self._waiting = asyncio.Lock(), 0
+
+    async def form(self, request: Request) -> Response:
+        """Content that the page is built from."""
+        form = await run_in_threadpool(design_form, self._library)
+        known = {"designs": designs_of(self._bases), "first": self._first, "version": __version__}
+        return JSONResponse({**plain(form), **known})
+
+    async def target_form(self, request: Request) -> Response:
+        """Content that the form of a target is built from."""
+        return JSONResponse(plain(await run_in_threadpool(target_form, self._library, self._bases)))
+
+    async def at_once(self, answer: Callable[[Question], object], request: Request) -> Response:
+        """An answer of ``answer``, which is computed in this process, one at a time."""
+        if self._waiting >= _WAITING:
+            return _fault(ComputationError("too many questions at once", remedy="wait for an answer"), 503)
+        self._waiting += 1
+        try:
+            question = await _question(request)
+            async with self._one:
+                content = await run_in_threadpool(answer, question)
+            return JSONResponse(plain(content))
+        except PneutouchError as error:
+            return _fault(error)
+        except MemoryError:
+            return _fault(too_little_memory())
+        finally:
+            self._waiting -= 1
+
+    async def solved(self, request: Request) -> Response:
+        """The answer of the process; 409 where a newer question took its place."""
+        try:
+            question = await _question(request)
+            answer = await self._solver.request(plain(question))
+        except PneutouchError as error:
+            return _fault(error)
+        except SupersededError:
+            return JSONResponse({"superseded": True}, 409)
+        return JSONResponse(answer["content"], answer["status"])
+
+    @contextlib.asynccontextmanager
+    async def running(self, application: Starlette) -> AsyncIterator[None]:
+        """Between start and stop of the server; the process ends with it."""
+        try:
+            yield
+        finally:
+            await self._solver.close()
+            await self.desk.close()
+
+
+def application(bases: dict[str, str], first: str, port: int, token: str) -> Application:
+    """The whole studio as an ASGI application that listens on ``port`` and is opened by ``token``."""
+    studio, known = Studio(bases, first), page_files()
+
+    async def page(request: Request) -> Response:
+        return respond(known, request)
+
+    async def echo(request: Request) -> Response:
+        """Echo of the request as it is: it measures the time that the page and the network take."""
+        return Response(await request.body(), media_type="application/json")
+
+    routes = [
+        Route("/api/form", studio.form),
+        Route("/api/form/target", studio.target_form),
+        Route("/api/quick", partial(studio.at_once, studio.answers.quick), methods=["POST"]),
+        Route("/api/intervals", partial(studio.at_once, studio.answers.intervals), methods=["POST"]),
+        Route("/api/view", partial(studio.at_once, studio.answers.view), methods=["POST"]),
+        Route("/api/solved", studio.solved, methods=["POST"]),
+        Route("/api/echo", echo, methods=["POST"]),
+        *studio.desk.routes(),
+        Route("/{path:path}", page),
+    ]
+    handlers = {TooLargeError: _refused, Exception: _failed}
+    return Guard(Starlette(routes=routes, lifespan=studio.running, exception_handlers=handlers), port, token)
+
+
+async def _question(request: Request) -> Question:
+    """The question in a body. Raises InputError if there is none."""
+    return Question.of(await json_body(request, "question"))
+
+
+def _fault(error: PneutouchError, status: int | None = None) -> Response:
+    return JSONResponse(plain(faults_of(error)), status or fault_status(error))
+
+
+async def _refused(request: Request, error: Exception) -> Response:
+    return too_large(request.url.path)
+
+
+async def _failed(request: Request, error: Exception) -> Response:
+    """A fault of ours, without a traceback."""
+    fault = ComputationError(f"internal fault ({type(error).__name__}: {error})", remedy="please report it")
+    return _fault(fault)
+
 
 HOST = "127.0.0.1"
 

@@ -4,9 +4,16 @@ import asyncio
 import contextlib
 import json
 import os
+import signal
 import sys
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterable, Mapping
+from typing import Any, BinaryIO
+
+from pneutouch.catalogue import Library
+from pneutouch.results.record import plain
+from pneutouch.studio.answer import full_answer
+from pneutouch.studio.faults import PageResponse, reported
+from pneutouch.studio.question import PageLibrary, Question
 
 _LONGEST_LINE = 1 << 26
 """Bytes of an answer; the longest of a design with fifty driving pressures are a tenth of it."""
@@ -116,7 +123,7 @@ class Solver:
             self._process = await asyncio.create_subprocess_exec(
                 sys.executable,
                 "-m",
-                "pneutouch.studio.worker",
+                "pneutouch.studio.solver",
                 stdin=asyncio.subprocess.PIPE,
                 stdout=asyncio.subprocess.PIPE,
                 stderr=asyncio.subprocess.DEVNULL,
@@ -126,3 +133,22 @@ class Solver:
                 start_new_session=True,
             )
         return self._process
+
+
+def answered(request: Mapping[str, Any], library: Library) -> PageResponse:
+    """Status and content of the answer to a request with ``question`` and ``bases``; an error is an answer too."""
+    return reported(lambda: full_answer(Question.of(request["question"]), request["bases"], library))
+
+
+def work(requests: Iterable[bytes], answers: BinaryIO) -> None:
+    """Answer every request in turn."""
+    library = PageLibrary(Library.default().folders)
+    for line in requests:
+        answers.write(json.dumps(plain(answered(json.loads(line), library))).encode() + b"\n")
+        answers.flush()
+
+
+if __name__ == "__main__":
+    # The studio ends this process: Ctrl-C in its terminal is no affair of this one.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    work(sys.stdin.buffer, sys.stdout.buffer)

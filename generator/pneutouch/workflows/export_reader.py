@@ -16,8 +16,14 @@ from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.reader import curve_of, reader_difference, reader_grid
 from pneutouch.evaluation.reader_tables import reader_tables
 from pneutouch.export.reader.render import reader_files, sketch_note
-from pneutouch.export.simulator.description import mjcf_files, urdf_files
-from pneutouch.export.simulator.model import PressTable, SimulatedSensor, press_table, simulated_sensor
+from pneutouch.export.simulator.model import (
+    PressTable,
+    SimulatedSensor,
+    mjcf_files,
+    press_table,
+    simulated_sensor,
+    urdf_files,
+)
 from pneutouch.formats import versioned
 from pneutouch.mechanics import predict
 from pneutouch.output.files import check_writable, digest, json_bytes, with_manifest, write_folder

@@ -9,10 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.ndimage import binary_erosion, generate_binary_structure
 
-from pneutouch.export.voxels.bluenoise import BLOCK, thresholds, void_and_cluster
 from pneutouch.export.voxels.raster import ResinBlend
 from pneutouch.export.voxels.skin import SkinCompensation, interior
-from pneutouch.export.voxels.slices import VoxelSlicer
+from pneutouch.export.voxels.slices import BLOCK, VoxelSlicer, thresholds, void_and_cluster
 from tests.export.voxels.small import ball, block, job, material
 
 PITCH = (25.4 / 600, 25.4 / 300, 0.027)

@@ -26,7 +26,7 @@ from pneutouch.printability.rules.feature_sizes import CHECKS
 from pneutouch.printability.subject import PrintSubject
 from pneutouch.printability.view import PrintView
 from pneutouch.report.mould import mould_rows, mould_section
-from pneutouch.workflows.build_mould import exploded
+from pneutouch.workflows.build import exploded
 from tests.parts.mould.random_moulds import checked, random_moulds
 
 CAST = {

@@ -9,10 +9,9 @@ import pytest
 
 from pneutouch.errors import InputError
 from pneutouch.parts.lettering.mark import read
-from pneutouch.workflows.tray.labels import subject
 from pneutouch.workflows.tray.lay import fill, lay
 from pneutouch.workflows.tray.order import TrayOrder, is_tray_file, order_of_file, order_of_flags
-from pneutouch.workflows.tray.write import inputs, tray_record, write_tray
+from pneutouch.workflows.tray.write import inputs, subject, tray_record, write_tray
 from tests.conftest import ROOT
 from tests.export.threemf_files import read_strictly
 from tests.workflows.tray.laid import RESINS, flags, table

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array, Index
-from pneutouch.mechanics.harmonic.assembly import HarmonicCavity, NodePairOperator
 from pneutouch.mechanics.harmonic.fields import AXIAL, FieldGroup, Harmonics
-from pneutouch.mechanics.harmonic.material import GradientLaw, LawFields
+from pneutouch.mechanics.harmonic.material import GradientLaw, HarmonicCavity, LawFields, NodePairOperator
 from pneutouch.mechanics.harmonic.object_contact import HarmonicContact, X, Y, Z, face_operator, upward
 from pneutouch.mechanics.harmonic.surface import revolved
 from pneutouch.mechanics.solid.base_contact import BaseContact, BaseFace, BaseMeeting

@@ -1,5 +1,5 @@
 """The measured datasheet: the measured figures compared with the predicted ones."""
 
-from pneutouch.report.measured.groups import CampaignReport, GroupComparison
+from pneutouch.report.measured.tables import CampaignReport, GroupComparison
 
 __all__ = ["CampaignReport", "GroupComparison"]

@@ -18,7 +18,7 @@ from pneutouch.bench.record import MeasuredCurve
 from pneutouch.report import curves
 from pneutouch.report.blocks import Plot
 from pneutouch.report.chart import SIZE, WIDE, Chart, Panel, PlotLine, bars_between, drawn_svg
-from pneutouch.report.measured.groups import CampaignReport, GroupComparison, ResinGroups, some
+from pneutouch.report.measured.tables import CampaignReport, GroupComparison, ResinGroups, some
 from pneutouch.report.style import INK, LINES, MARKERS, MUTED
 from pneutouch.units import KPA
 
