@@ -13,7 +13,7 @@ import tempfile
 from pathlib import Path
 
 from pneutouch.mechanics import Sensor
-from pneutouch.mechanics.inflation import RISING_BRANCH
+from pneutouch.mechanics.membrane import RISING_BRANCH
 from pneutouch.mechanics.solid.mesh import dome
 
 _INCREMENTS = "0.2,1.,0.002,0.3"

@@ -15,7 +15,7 @@ from tests.mutants.__main__ import FOLDERS
 from tests.mutants.sites import PARTS
 
 from benchmarks.store import DOCS, store, stored
-from pneutouch.bench.blocks import MOST_BLOCKS
+from pneutouch.bench.record import MOST_BLOCKS
 from pneutouch.export import threemf_read as package
 from pneutouch.export.voxels.png import MOST_PIXELS
 from pneutouch.spec.files import MOST_BYTES

@@ -18,8 +18,8 @@ from benchmarks.store import LIBRARY, store
 from pneutouch.catalogue import Library
 from pneutouch.evaluation.table_s1 import PRESSURES, SHIPPED, compute_errors, fingerprint, measured
 from pneutouch.mechanics import predict
-from pneutouch.mechanics.inflation import LIMIT_PRESSURE, RISING_BRANCH, limit_point_errors, relative_height
 from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean
+from pneutouch.mechanics.membrane import LIMIT_PRESSURE, RISING_BRANCH, limit_point_errors, relative_height
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.solid.inflate import inflate
 from pneutouch.mechanics.solid.mesh import dome

@@ -19,7 +19,7 @@ from benchmarks.scenes import PAPER
 from benchmarks.store import store
 from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.banded import solve
-from pneutouch.mechanics.solid.cavity import Regulator
+from pneutouch.mechanics.solid.elements import Regulator
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pneutouch.bench.blocks import blocks_of
-from pneutouch.bench.injection import INJECTION, dead_volume_of_cap, leak_of, leak_rate, read_injection
+from pneutouch.bench.reading import INJECTION, dead_volume_of_cap, leak_of, leak_rate, read_injection
+from pneutouch.bench.record import blocks_of
 from pneutouch.bench.source import identify
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Column, ColumnMap

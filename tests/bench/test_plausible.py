@@ -17,7 +17,7 @@ from pneutouch.bench.run_checks import ExpectedRun, check_leak, check_plausible,
 from pneutouch.bench.source import identify
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap, Rig
-from pneutouch.tables.unit_words import UNITS
+from pneutouch.tables.layout import UNITS
 from pneutouch.units import KPA
 from tests.bench.rig import HEADER, Sensor, run_of, small, write
 

@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.reading import LEAK, read_blocks
+from pneutouch.bench.record import blocks_of
 from pneutouch.bench.source import identify
 from pneutouch.spec.campaign import Column, ColumnMap
 from pneutouch.units import KPA

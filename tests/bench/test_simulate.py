@@ -23,8 +23,8 @@ from pneutouch.bench.simulate import (
     specimen_figures,
 )
 from pneutouch.bench.simulate.curve import line_pressure, sensor_pressure
+from pneutouch.bench.simulate.rig import parameters
 from pneutouch.bench.simulate.runs import _lagging, _shut_in, within
-from pneutouch.bench.simulate.scatter import parameters
 from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.units import KPA
 from tests.bench.truths import NO_WALL, R0, ends, line, rng

@@ -21,7 +21,7 @@ from pneutouch.bench.simulate import (
     specimen_figures,
 )
 from pneutouch.bench.simulate.curve import PressCurves
-from pneutouch.bench.simulate.scatter import ageing_factor, stiffened
+from pneutouch.bench.simulate.rig import ageing_factor, stiffened
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.units import KPA

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pneutouch.body import Body
-from pneutouch.body.mesh import corner_normals
+from pneutouch.body.solid import corner_normals
 
 
 @pytest.fixture(scope="module")

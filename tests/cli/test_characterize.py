@@ -10,8 +10,8 @@ import pytest
 from typer.testing import CliRunner
 
 import pneutouch as pt
+from pneutouch.cli.app import app
 from pneutouch.cli.characterize import _report_next
-from pneutouch.cli.entry import app
 from pneutouch.errors import InputError
 from pneutouch.mechanics.models.choice import USUAL
 from pneutouch.workflows.characterize import campaign as characterizing

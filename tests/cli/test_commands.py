@@ -196,7 +196,7 @@ def modules_after(*words):
 
 
 def rooms(modules):
-    """Second parts of the names of our own modules: pneutouch.mechanics.membrane_contact is of mechanics."""
+    """Second parts of the names of our own modules: pneutouch.mechanics.membrane is of mechanics."""
     return {name.split(".")[1] for name in modules if name.startswith("pneutouch.")}
 
 

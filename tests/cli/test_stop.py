@@ -199,7 +199,7 @@ def test_a_stop_is_held_back_while_files_move(tmp_path):
 
 STOPPED_WITH_SHAPES = """
 import os, signal
-from pneutouch.cli import entry, run
+from pneutouch.cli import app, run
 
 def invoked(words):
     from manifold3d import CrossSection
@@ -207,7 +207,7 @@ def invoked(words):
     shapes.append(shapes)
     os.kill(os.getpid(), signal.SIGTERM)
 
-entry.invoked = invoked
+app.invoked = invoked
 run()
 """
 

@@ -11,8 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.mechanics import predict as predict_with
-from pneutouch.mechanics.inflation import relative_height
-from pneutouch.mechanics.membrane_contact import TrappedGas, energy, press, pressed_cap
+from pneutouch.mechanics.membrane import TrappedGas, energy, press, pressed_cap, relative_height
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.shape.hemisphere import Hemisphere
 

@@ -9,10 +9,11 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from pneutouch.errors import ComputationError
-from pneutouch.mechanics.inflation import (
+from pneutouch.mechanics.membrane import (
     LIMIT_HEIGHT,
     LIMIT_PRESSURE,
     RISING_BRANCH,
+    energy_slope,
     height_errors,
     limit_point_errors,
     pressure,
@@ -20,8 +21,7 @@ from pneutouch.mechanics.inflation import (
     relative_pressure,
     thickness_stretch,
 )
-from pneutouch.mechanics.membrane_contact import energy as wall_energy
-from pneutouch.mechanics.membrane_contact import energy_slope
+from pneutouch.mechanics.membrane import energy as wall_energy
 from tests.mechanics.exact_membrane import inflated, limit_point
 
 MODULI = {

@@ -46,7 +46,7 @@ def test_the_limit_that_is_met_first_binds():
 
 
 def test_break_strain_is_met_at_its_own_stretch():
-    from pneutouch.mechanics.inflation import membrane_stretch, relative_height
+    from pneutouch.mechanics.membrane import membrane_stretch, relative_height
 
     brittle = PAPER.replace(break_stretch=1.2)
     p = limits(brittle).break_strain

@@ -65,7 +65,7 @@ def test_a_fault_changes_one_node_and_knows_its_function(tmp_path):
 
 
 def test_names_and_first_lines_are_those_of_the_compiled_code():
-    path = PACKAGE / "bench" / "blocks.py"
+    path = PACKAGE / "bench" / "record.py"
     code = compile(path.read_text(encoding="utf-8"), str(path), "exec")
     known, stack = set(), [code]
     while stack:

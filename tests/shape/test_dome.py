@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.cavity import Cavity
+from pneutouch.mechanics.solid.elements import Cavity
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome, nodes_along, printed_dome
 from pneutouch.mechanics.solid.model import SolidModel

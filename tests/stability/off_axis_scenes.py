@@ -15,12 +15,12 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError, InputError, PneutouchError
-from pneutouch.mechanics.harmonic import settling
+from pneutouch.mechanics.events import DETAIL, OBJECT_EDGE
+from pneutouch.mechanics.harmonic import model as harmonic
 from pneutouch.mechanics.harmonic.friction_path import ENDED_BEFORE, STEPS
 from pneutouch.mechanics.harmonic.press import OffAxisPath
 from pneutouch.mechanics.models.harmonic import off_axis_press
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.events import DETAIL, OBJECT_EDGE
 from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, RigidBase, RigidObject, ball, cylinder, edge
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
@@ -54,7 +54,7 @@ class OffAxisScene:
         inflated = inflate(solid, past_limit=1.0)
         assert inflated.limit is not None
         run: OffAxisPath | PneutouchError
-        with newton_steps(settling) as steps:
+        with newton_steps(harmonic) as steps:
             try:
                 free = state_at(solid, self.share * inflated.limit.pressure, inflated)
                 run = off_axis_press(sensor, StrainProbe(solid), free).run(order)

@@ -13,8 +13,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.banded import solve
-from pneutouch.mechanics.solid.cavity import Regulator, Supply
-from pneutouch.mechanics.solid.elements import IntegrationScheme
+from pneutouch.mechanics.solid.elements import IntegrationScheme, Regulator, Supply
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, SolverState, evaluate, full_tangent
 

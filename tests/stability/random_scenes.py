@@ -19,10 +19,10 @@ import numpy as np
 
 from pneutouch.catalogue import Library
 from pneutouch.errors import PneutouchError
+from pneutouch.mechanics.events import BREAKS_CURVE, DETAIL, OBJECT_EDGE
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid import friction_newton, newton
-from pneutouch.mechanics.solid.events import BREAKS_CURVE, DETAIL, OBJECT_EDGE
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent
 from pneutouch.mechanics.solid.indenter import (
     CELLS_PER_RADIUS,

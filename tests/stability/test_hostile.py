@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import ComputationError, InputError
+from pneutouch.mechanics.events import BREAKS_CURVE
 from pneutouch.mechanics.laws import mooney_rivlin, neo_hookean, ogden, yeoh
-from pneutouch.mechanics.solid.events import BREAKS_CURVE
 from pneutouch.mechanics.solid.indent import PressSettings
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome

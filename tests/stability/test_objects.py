@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from pneutouch.mechanics.events import BREAKS_CURVE, DETAIL, OBJECT_EDGE
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.events import BREAKS_CURVE, DETAIL, OBJECT_EDGE
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, ProfileVertex, ball, cone, profile, ring
 from pneutouch.mechanics.solid.inflate import inflate, state_at

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.cavity import Regulator
+from pneutouch.mechanics.solid.elements import Regulator
 from pneutouch.mechanics.solid.indent import PressSettings
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome

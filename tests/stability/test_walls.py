@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from pneutouch.mechanics.inflation import LIMIT_PRESSURE
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.membrane import LIMIT_PRESSURE
 from pneutouch.mechanics.solid.indent import PressSettings
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome

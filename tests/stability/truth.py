@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.solid.cavity import Gas, Regulator
-from pneutouch.mechanics.solid.events import SolidEvent
+from pneutouch.mechanics.events import SolidEvent
+from pneutouch.mechanics.solid.elements import Gas, Regulator
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
 from pneutouch.mechanics.solid.inflate import FreeState
 from pneutouch.mechanics.solid.model import SolidModel

@@ -11,9 +11,8 @@ from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.shape.hemisphere import Hemisphere
-from pneutouch.texture.contact import touch, touches
 from pneutouch.texture.separate import BarPattern, amplitudes, noise_amplitude, recommend, separate
-from pneutouch.texture.sliding import Recorder, ScanPath, gain, pressure_amplitude, record, scan
+from pneutouch.texture.sliding import Recorder, ScanPath, gain, pressure_amplitude, record, scan, touch, touches
 from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate
 from pneutouch.units import GAUGE_LIMIT, KPA, STANDARD_ATMOSPHERE
 

@@ -14,8 +14,8 @@ from pneutouch.arrays import Array, hermite
 from pneutouch.catalogue import Library
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.mechanics.atlas.press import batch_of
-from pneutouch.mechanics.inflation import LIMIT_HEIGHT, LIMIT_PRESSURE, RISING_BRANCH, relative_pressure
 from pneutouch.mechanics.line.transient import gain_at
+from pneutouch.mechanics.membrane import LIMIT_HEIGHT, LIMIT_PRESSURE, RISING_BRANCH, relative_pressure
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.uncertainty import budget, document, model_errors
 from pneutouch.mechanics.viscous.describe import LOOP_SPEEDS, RAMP_SPEED

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pneutouch.bench.blocks import GAP
 from pneutouch.bench.first_contact import (
     BEFORE,
     Baseline,
@@ -17,7 +16,7 @@ from pneutouch.bench.first_contact import (
     onsets,
     threshold,
 )
-from pneutouch.bench.record import Blocks, MeasuredIndentation
+from pneutouch.bench.record import GAP, Blocks, MeasuredIndentation
 
 READ, READ_LONGEST = 0.25, 1.0
 """The read window is the last quarter of the hold, at most its last second: our choice, the paper does not state it. A

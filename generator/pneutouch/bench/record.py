@@ -1,8 +1,6 @@
-"""A run between file and figures: blocks of samples, indentations, a curve.
+"""A run between file and figures: samples averaged into blocks of equal time, indentations, and a curve."""
 
-A run thinned for looking at: few enough points to plot, and where it was read.
-"""
-
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, NamedTuple
@@ -10,6 +8,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Indices
+from pneutouch.errors import InputError
 from pneutouch.spec.campaign import CampaignRun
 
 SuspectKind = Literal["gap", "clipped", "spike", "note", "other"]
@@ -151,3 +150,169 @@ def _span(values: Array, edges: Indices) -> Array:
     first_high = np.minimum.reduceat(np.where(values == high[within], place, never), starts)
     falls = first_high < first_low
     return np.stack([np.where(falls, high, low), np.where(falls, low, high)], axis=1).ravel()
+
+
+BLOCK_RATE = 100.0
+"""Blocks a second: our choice; a plate at 5 mm/s moves 0.05 mm in one, and ten minutes are 60 000 blocks."""
+
+SLOW = 200.0
+"""Hz: a file of this rate or less keeps one sample a block; averages of one or two would gain nothing."""
+
+MOST_BLOCKS = 400_000
+"""Largest number of blocks, so that a slow file of any length stays small in memory."""
+
+LEAST_STEP = 1e-9
+"""Least time between two samples, s: our choice, far below that of any converter of force or pressure."""
+
+_MOST_LOST = 2.0**53
+
+MISSED, GAP = 1.5, 0.1
+"""A step of more than so many sampling periods has lost samples; one longer than this, in s, is a gap of its own."""
+
+ISOLATED, RARE = 2, 1e-3
+"""Missed samples of which never more than the first are missed together, and in all less than the second as a share of
+the run's, are a note: our choice. No block loses more than a few of its samples, and its mean moves within its
+noise."""
+
+_NAMES = {"time": "time", "position": "position", "force": "force", "pressure": "pressure"}
+_EXTREMES = ("force_spread", "pressure_spread", "force_extreme", "pressure_extreme")
+_COLUMNS = ("first_row", "time", "position", "force", "pressure", *_EXTREMES)
+"""Fields of `Blocks` in the order of the averaged rows."""
+
+_ROUNDING = 1e-6
+"""Share of a block by which a time may miss the beginning of its block for rounding."""
+
+
+@dataclass
+class BlockCollector:
+    """Takes samples in internal units (s, mm, N, MPa) chunk by chunk, gives `Blocks`.
+
+    ``rate`` in Hz and samples a block ``size``: left out, found from the first chunk (the median step of time;
+    `BLOCK_RATE`); ``total`` is about how many samples will come. ``names`` are the columns' names for messages."""
+
+    file: Path
+    rate: float | None = None
+    size: int | None = None
+    total: int = 0
+    names: Mapping[str, str] = field(default_factory=lambda: _NAMES)
+    _parts: list[Array] = field(default_factory=list)
+    _held: Array = field(default_factory=lambda: np.empty((5, 0)))
+    _first: float | None = None
+    _last: float = 0.0
+    _samples: int = 0
+    _missed: list[tuple[float, float, int]] = field(default_factory=list)
+    _short: list[int] = field(default_factory=lambda: [0, 0, 0])
+
+    def take(self, rows: Array, samples: Array) -> None:
+        """Take samples (4, n) and their rows (n,). Raises InputError if time does not increase."""
+        if not rows.size:
+            return
+        time = samples[0]
+        self._check_time(rows, time)
+        if self._first is None:
+            self._first = float(time[0])
+        if self.rate is None:
+            if time.size < 2:
+                raise InputError("1 row", file=self.file, remedy="at least 2, for a sampling rate")
+            step = float(np.median(np.diff(time)))
+            if step < LEAST_STEP:
+                problem = f"column {self.names['time']}: rises by {step:.3g} s from row to row"
+                remedy = "no instrument samples as often: is its unit right?"
+                raise InputError(problem, file=self.file, remedy=remedy)
+            self.rate = 1 / step
+        if self.size is None:
+            usual = 1 if self.rate <= SLOW else round(self.rate / BLOCK_RATE)
+            self.size = max(usual, -(-self.total // MOST_BLOCKS))
+        self._find_missed(time)
+        self._samples, self._last = self._samples + time.size, float(time[-1])
+        self._average(np.concatenate([self._held, np.vstack([rows, samples])], axis=1))
+
+    def _check_time(self, rows: Array, time: Array) -> None:
+        before = np.concatenate([[self._last if self._samples else -np.inf], time[:-1]])
+        if (time > before).all():
+            return
+        at = int(np.flatnonzero(time <= before)[0])
+        does = "stands still" if time[at] == before[at] else "runs backwards"
+        raise InputError(
+            f"row {rows[at]:.0f}: column {self.names['time']}: time {does}: {time[at]:.9g} s after {before[at]:.9g} s",
+            file=self.file,
+            remedy="must rise from row to row (enough decimals written? two recordings in one file?)",
+        )
+
+    def _find_missed(self, time: Array) -> None:
+        assert self.rate is not None
+        period = 1 / self.rate
+        joined = np.concatenate([[self._last], time]) if self._samples else time
+        step = np.diff(joined)
+        at = np.flatnonzero(step > MISSED * period)
+        lost = np.minimum(np.round(step[at] * self.rate), _MOST_LOST).astype(int) - 1
+        long = step[at] > max(GAP, MISSED * period)
+        self._missed += [
+            (float(joined[k]), float(joined[k + 1]), max(int(n), 1)) for k, n in zip(at[long], lost[long], strict=True)
+        ]
+        short = np.maximum(lost[~long], 1)
+        self._short[0] += int(short.sum())
+        self._short[1] += short.size
+        self._short[2] = max(self._short[2], int(short.max(initial=0)))
+
+    def _average(self, samples: Array, end: bool = False) -> None:
+        """Average the blocks that are whole and hold the last one back, as more of it may come."""
+        assert self.size is not None and self.rate is not None and self._first is not None
+        if self.size == 1:
+            starts = np.arange(samples.shape[1])
+        else:
+            block = np.floor((samples[1] - self._first) * self.rate / self.size + _ROUNDING)
+            starts = np.concatenate([[0], np.flatnonzero(np.diff(block)) + 1])
+            if not end:
+                samples, self._held, starts = samples[:, : starts[-1]], samples[:, starts[-1] :], starts[:-1]
+        if not starts.size:
+            return
+        counts = np.diff(np.append(starts, samples.shape[1]))
+        means = np.add.reduceat(samples[1:], starts, axis=1) / counts
+        off = samples[3:] - np.repeat(means[2:], counts, axis=1)
+        spreads = np.sqrt(np.add.reduceat(off * off, starts, axis=1) / counts)
+        extremes = np.maximum.reduceat(np.abs(samples[3:]), starts, axis=1)
+        self._parts.append(np.vstack([samples[:1, starts], means, spreads, extremes]))
+
+    def blocks(self, warnings: tuple[SuspectInterval, ...] = ()) -> Blocks:
+        """The blocks, with gaps as warnings. Raises InputError if more than half of the record is missing."""
+        if self.rate is None or self.size is None or self._first is None:
+            raise InputError("no samples", file=self.file)
+        if self._held.size:
+            self._average(self._held, end=True)
+        lost = self._short[0] + sum(count for *_, count in self._missed)
+        if lost > self._samples:
+            raise InputError(
+                f"{self._samples} samples are there and {lost} are missing, at {self.rate:.4g} Hz: more than half",
+                file=self.file,
+                remedy=f"column {self.names['time']} must be that of one recording",
+            )
+        columns = dict(zip(_COLUMNS, np.concatenate(self._parts, axis=1), strict=True))
+        return Blocks(self.file, self.rate, self.size, warnings=(*self._gaps(), *warnings), **columns)
+
+    def _gaps(self) -> list[SuspectInterval]:
+        warnings = [
+            SuspectInterval(start, end, f"gap: {count} samples missing", False, "gap")
+            for start, end, count in self._missed
+        ]
+        count, times, longest = self._short
+        if count:
+            why = f"{count} of {self._samples + count} samples missed, in {times} places of at most {GAP:g} s"
+            rare = longest <= ISOLATED and count < RARE * (self._samples + count)
+            warnings.append(SuspectInterval(self._first or 0.0, self._last, why, True, "note" if rare else "other"))
+        return warnings
+
+
+def blocks_of(
+    file: Path,
+    time: Array,
+    position: Array,
+    force: Array,
+    pressure: Array,
+    rate: float | None = None,
+    size: int | None = None,
+) -> Blocks:
+    """Blocks of samples in memory, (n,) each, s, mm, N, MPa, without range checks. Raises as `BlockCollector`."""
+    collector = BlockCollector(file, rate, size, len(time))
+    collector.take(np.arange(len(time), dtype=float) + 2, np.vstack([time, position, force, pressure]).astype(float))
+    return collector.blocks()

@@ -16,7 +16,7 @@ from pneutouch.bench.record import Blocks, MeasuredCurve
 from pneutouch.errors import InputError
 from pneutouch.mechanics.response import figures
 from pneutouch.spec.campaign import CampaignRun, ColumnMap, Rig
-from pneutouch.tables.unit_words import UNITS
+from pneutouch.tables.layout import UNITS
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 
 __all__ = ["ExpectedRun", "check_leak", "check_plausible"]

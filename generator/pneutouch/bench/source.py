@@ -14,9 +14,8 @@ from pneutouch.results.measured import ReadColumn, ReadTables
 from pneutouch.results.record import plain
 from pneutouch.spec.campaign import Column, ColumnMap, FileFormat
 from pneutouch.spec.toml_text import value_text
-from pneutouch.tables.layout import TableFormat, TableLayout
+from pneutouch.tables.layout import BRACKETS, UNITS, TableFormat, TableLayout, unit_of
 from pneutouch.tables.read import layout_of
-from pneutouch.tables.unit_words import BRACKETS, UNITS, unit_of
 
 _WORDS = {
     "time": "time t zeit temps tiempo tempo x_value elapsed seconds millis",

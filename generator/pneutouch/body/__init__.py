@@ -1,7 +1,6 @@
 """Solids and their meshes: a closed mesh with a material and a role."""
 
-from pneutouch.body.mesh import Body
 from pneutouch.body.shapes import Bore, Feature, Frame, Prism, Turned, crossing
-from pneutouch.body.solid import Solid
+from pneutouch.body.solid import Body, Solid
 
 __all__ = ["Body", "Bore", "Feature", "Frame", "Prism", "Solid", "Turned", "crossing"]

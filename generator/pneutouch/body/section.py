@@ -12,9 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.body.mesh import Body
 from pneutouch.body.shapes import Bore, Prism, Shape, Turned
-from pneutouch.body.solid import Solid
+from pneutouch.body.solid import Body, Solid
 from pneutouch.shape.meridian import Meridian, RisingPiece, crossings, encloses, rises, sample
 
 

@@ -49,7 +49,7 @@ def command_line(stop: StopSignals) -> int:
     code = 0
     try:
         # Inside, so that a stop while the first modules load ends the same way.
-        from pneutouch.cli.entry import invoked
+        from pneutouch.cli.app import invoked
 
         code = invoked(sys.argv[1:])
     except (Exception, KeyboardInterrupt):

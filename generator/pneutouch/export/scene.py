@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from pneutouch.arrays import Array
 from pneutouch.body import Body
-from pneutouch.body.mesh import corner_normals
+from pneutouch.body.solid import corner_normals
 
 if TYPE_CHECKING:
     import trimesh

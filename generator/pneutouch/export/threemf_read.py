@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneutouch.arrays import Array, Indices
-from pneutouch.body.mesh import enclosed_volume
+from pneutouch.body.solid import enclosed_volume
 from pneutouch.errors import InputError
 from pneutouch.export.threemf import NAMESPACE, metadata_of, read_strictly
 from pneutouch.spec.files import read_bytes

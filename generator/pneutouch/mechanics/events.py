@@ -1,12 +1,95 @@
-"""Events under the plate: detected and located, never averaged over."""
+"""Events under the plate: detected and located, never averaged over.
+
+This file does not load the solver, and so not SciPy: the atlas detects the same events.
+"""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.membrane_contact import PressedStates
+from pneutouch.mechanics.membrane import PressedStates
 from pneutouch.mechanics.sensor import Sensor
+
+#: A neo-Hookean surface creases where the stretch across it is 2.4 times the least stretch along it, strain 0.35 in
+#: plane strain (Hong, Zhao & Suo 2009, Appl. Phys. Lett. 95, 111901; quoted, not derived here).  The smooth solution
+#: lives on, unsafely.
+CREASE = 2.4
+#: The wall has left the plate inside the contact when the gap there passes this share of the wall.
+SEPARATION = 1.0e-2
+#: The wall hangs over its clamp when it passes below the base plane by this share of itself.
+OVERHANG = 2.0e-2
+#: The wall lies on its base when it passes this share of the plate's force on to it.
+BASE_SHARE = 2.0e-2
+
+#: Kinds after which the path is another one: a straight-line fit ends before them.
+BREAKS_CURVE = ("unstable", "snap", "clamp_fold", "separation", "lost", "floor")
+
+PLATE_RIM, OBJECT_EDGE = "plate_rim", "object_edge"
+
+DETAIL = {
+    "gauge_range": "the pressure sensor's range ends",
+    "break": "the material's break strain is reached",
+    "crease": "a face of the wall is compressed enough to crease",
+    "separation": "the wall leaves the plate inside the contact",
+    PLATE_RIM: "the contact reaches the plate's rim",
+    OBJECT_EDGE: "the contact reaches the object's edge, or a flank of 60 degrees",
+    "floor": "the inner wall reaches the base plane",
+    "overhang": "the wall hangs below its base plane, where it has no support",
+    "base": "the outer wall lies down on the base next to its clamp",
+    "sway": "the dome is no longer stable on its axis and sways sideways where the contact slips; figures beyond are "
+    "of the axisymmetric path",
+    "lobes": "the dome is no longer stable as a body of revolution and takes {waves} lobes around the axis; figures "
+    "beyond are of the axisymmetric path",
+}
+
+OBJECT_DETAIL = {**DETAIL, "separation": "the wall leaves the object inside the contact"}
+"""Descriptions of the events under another object than a plate."""
+
+
+@dataclass(frozen=True)
+class SolidEvent:
+    """An event at an indentation (mm).
+
+    kind, of those that end the path: unstable (the inflated state itself), snap (a jump to another branch), clamp_fold
+    (the same, at the clamped edge), lost (no equilibrium found), floor (the inner wall reaches the base plane; a solid
+    with a base goes on). Of those that do not: base (the outer wall lies down next to its clamp), separation (the wall
+    leaves the plate inside the contact: buckling inward), crease, overhang (the wall hangs below its base plane where
+    the solid has no base), plate_rim and object_edge (the contact reaches where the object turns up), break,
+    gauge_range, sway and lobes (the axisymmetric path is unstable to one wave around the axis, or to more).
+    """
+
+    kind: str
+    indentation: float
+    detail: str
+
+
+class PathPoint(NamedTuple):
+    """A quantity y at plate travel x, with dy/dx where it is known."""
+
+    x: float
+    y: float
+    slope: float | None = None
+
+
+def crossing(a: PathPoint, b: PathPoint, level: float) -> float | None:
+    """Place at which y rises through a level between two points, on the Hermite cubic if slopes are known, else on a
+    line.
+
+    A point compared with itself: its x where the level is already passed, else None.
+    """
+    if a == b:
+        return a.x if a.y >= level else None
+    if not a.y < level <= b.y:
+        return None
+    span, rise = b.x - a.x, b.y - a.y
+    share = np.linspace(0.0, 1.0, 1001)
+    curve = a.y + share * rise
+    if a.slope is not None and b.slope is not None:
+        curve += share * (1.0 - share) * ((1.0 - share) * (a.slope * span - rise) + share * (rise - b.slope * span))
+    return float(a.x + span * share[int(np.argmax(curve >= level))])
+
 
 SWAY, LOBES = "sway", "lobes"
 """Kinds after which the path is that of a body of revolution only: the dome leaves its axis, or its round form."""

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pneutouch.mechanics.inflation import LIMIT_HEIGHT, LIMIT_PRESSURE, pressure, thickness_stretch
+from pneutouch.mechanics.membrane import LIMIT_HEIGHT, LIMIT_PRESSURE, pressure, thickness_stretch
 from pneutouch.mechanics.sensor import Sensor
 
 RATED_SHARE = 0.9

@@ -20,8 +20,8 @@ from pneutouch.spec.material import MixByCurve
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
+    from pneutouch.mechanics.harmonic.object_contact import PressedFace
     from pneutouch.mechanics.off_axis_curve import OffAxisCurve
-    from pneutouch.mechanics.pressed_face import PressedFace
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from pneutouch.catalogue import KINDS, DesignSource, Library, user_folder
 from pneutouch.catalogue.library import COMMANDS, examples, is_specimen
 from pneutouch.catalogue.printers import casting_missing, makers, own_profile, uncast
 from pneutouch.errors import InputError, nearest
-from pneutouch.mechanics.inflation import LIMIT_HEIGHT, pressure
+from pneutouch.mechanics.membrane import LIMIT_HEIGHT, pressure
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.output.files import create_file, replace_file
 from pneutouch.spec.design import DesignFile

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.parts.channel import side_volume
-from pneutouch.parts.connector import plug_neck, plug_radius
+from pneutouch.parts.connector import plug_neck, plug_radius, side_volume
 from pneutouch.parts.layout import Layout
 from pneutouch.spec.part import CastRing, ClampedFlange, GluedFlange, OnePiece
 

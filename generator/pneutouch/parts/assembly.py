@@ -13,9 +13,8 @@ from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.air_path import glue_volume, internal_volume
-from pneutouch.parts.connector import rigid_solids
+from pneutouch.parts.connector import SEAT, rigid_solids
 from pneutouch.parts.layout import Layout, lay_out, membrane_solid
-from pneutouch.parts.mount import SEAT
 from pneutouch.parts.space import check_space
 from pneutouch.spec.part import ClampedFlange, OnePiece
 from pneutouch.spec.printer import Mode, Printer

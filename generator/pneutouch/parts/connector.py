@@ -1,13 +1,14 @@
 """The rigid bodies: a connector with its seat, port and mount, and the ring or plug that some seats add."""
 
-from pneutouch.body import Solid
+import math
+from dataclasses import replace
+
+from pneutouch.body import Bore, Feature, Frame, Solid, Turned, crossing
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.parts.channel import inward, outward, rear_lugs, side_bore, side_boss
-from pneutouch.parts.layout import Layout
-from pneutouch.parts.mount import clamping_bores, clearing_bores, mount_cuts, mounting_bores, seat_faces, underside
+from pneutouch.parts.layout import Layout, finger_radius
 from pneutouch.parts.port import CHANNEL
-from pneutouch.shape.meridian import Meridian, TracedPath, trace
-from pneutouch.spec.part import ClampedFlange, OnePiece
+from pneutouch.shape.meridian import Meridian, Point, TracedPath, cylinder, trace
+from pneutouch.spec.part import AnySeat, BoltCircle, ClampedFlange, OnePiece, RobotFlange, Sleeve
 
 PLUG_SHOULDER = "shoulder"
 
@@ -18,22 +19,22 @@ _UNDER_PORT = 0.3
 def rigid_solids(scene: ResolvedDesign, layout: Layout) -> tuple[Solid, ...]:
     """The connector first, then the clamping ring, the ring in the flange or the plug."""
     material, seat = scene.connector_material, scene.seat
-    bores = (*mounting_bores(scene, layout), *clamping_bores(seat, layout, scene.hole_undersize))
-    adds, cuts = [], list(mount_cuts(scene, layout))
+    bores = (*_mounting_bores(scene, layout), *_clamping_bores(seat, layout, scene.hole_undersize))
+    adds, cuts = [], list(_mount_cuts(scene, layout))
     if layout.port_axis is not None:
-        adds += side_boss(layout)
-        cuts.append(side_bore(layout, layout.opening_radius or layout.channel_radius))
+        adds += _side_boss(layout)
+        cuts.append(_side_bore(layout, layout.opening_radius or layout.channel_radius))
     elif not isinstance(seat, OnePiece):
-        adds += rear_lugs(layout)
+        adds += _rear_lugs(layout)
     outline = carrier_meridian(scene, layout) if isinstance(seat, OnePiece) else connector_meridian(scene, layout)
     connector = Solid("connector", "connector", material, outline, tuple(bores), tuple(adds), tuple(cuts))
     if isinstance(seat, ClampedFlange):
-        holes = clearing_bores(seat, layout, scene.hole_undersize)
+        holes = _clearing_bores(seat, layout, scene.hole_undersize)
         return connector, Solid("ring", "ring", material, ring_meridian(seat, layout), holes)
     if layout.ring is not None:
         return connector, layout.ring.solid(material)
     if isinstance(seat, OnePiece):
-        lugs = () if layout.port_axis is not None else tuple(rear_lugs(layout))
+        lugs = () if layout.port_axis is not None else tuple(_rear_lugs(layout))
         return connector, Solid("plug", "plug", material, plug_meridian(scene, layout), adds=lugs)
     return (connector,)
 
@@ -42,14 +43,14 @@ def connector_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
     """A connector whose channel leads to the port behind it, or ends blind where a side port's bore meets it."""
     faces: TracedPath = [
         *underside(scene, layout),
-        *seat_faces(scene.seat, layout),
+        *_seat_faces(scene.seat, layout),
         ("spigot top", (layout.channel_radius, 0.0)),
     ]
     if layout.port_axis is not None:
         end = [(CHANNEL, (layout.channel_radius, layout.channel_low)), (CHANNEL, (0.0, layout.channel_low))]
         return trace((0.0, layout.under), [*faces, *end])
     start, port = outward(layout)
-    return trace(start, [*port, *faces, *inward(layout)])
+    return trace(start, [*port, *faces, *_inward(layout)])
 
 
 def carrier_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
@@ -61,7 +62,7 @@ def carrier_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
         (wide, layout.under),
         [
             *underside(scene, layout),
-            *seat_faces(seat, layout),
+            *_seat_faces(seat, layout),
             ("lip top", (opening, 0.0)),
             ("opening", (opening, high)),
             ("counterbore", (wide, high)),
@@ -91,7 +92,7 @@ def plug_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
         ]
         return trace((0.0, layout.under), [*faces[:-1], *relief])
     start, port = outward(layout)
-    return trace(start, [*port, *faces, ("plug top", (layout.channel_radius, 0.0)), *inward(layout)])
+    return trace(start, [*port, *faces, ("plug top", (layout.channel_radius, 0.0)), *_inward(layout)])
 
 
 def plug_radius(scene: ResolvedDesign, layout: Layout) -> float:
@@ -129,3 +130,194 @@ def ring_meridian(seat: ClampedFlange, layout: Layout) -> Meridian:
             ("ring cone", (inner, 0.0)),
         ],
     )
+
+
+def underside(scene: ResolvedDesign, layout: Layout) -> TracedPath:
+    """The path from the rear face around the axis outwards to the lower edge of the plate."""
+    mount, low = scene.mount, layout.plate_low
+    edge = ("plate underside", (layout.plate_radius, low))
+    if isinstance(mount, RobotFlange):
+        boss = 0.5 * mount.boss_diameter - scene.connector_printer.accuracy_mm.nominal
+        return [("boss face", (boss, layout.under)), ("boss", (boss, low)), edge]
+    if isinstance(mount, Sleeve):
+        finger = finger_radius(scene)
+        outer, end = finger + mount.sleeve_wall, low - mount.sleeve_length
+        return [
+            ("plate underside", (finger, low)),
+            ("finger", (finger, end)),
+            ("sleeve end", (outer, end)),
+            ("sleeve", (outer, low)),
+            edge,
+        ]
+    return [edge]
+
+
+def _mounting_bores(scene: ResolvedDesign, layout: Layout) -> tuple[Bore, ...]:
+    """Equally spaced holes, the first half a spacing off the x axis; a robot flange has a dowel hole on the y axis."""
+    mount, wider = scene.mount, scene.hole_undersize
+    if not isinstance(mount, BoltCircle | RobotFlange):
+        return ()
+    low, high, circle = layout.plate_low, layout.plate_high, layout.bolt_circle_radius
+    depth = mount.hole_depth if isinstance(mount, BoltCircle) else None
+    angles = [2 * math.pi * (k + 0.5) / mount.count for k in range(mount.count)]
+    radius = 0.5 * (mount.hole_diameter + wider)
+    holes = [
+        Bore(
+            circle * math.cos(angle),
+            circle * math.sin(angle),
+            radius,
+            low,
+            high if depth is None else low + depth,
+            closed="" if depth is None else "high",
+        )
+        for angle in angles
+    ]
+    if isinstance(mount, RobotFlange):
+        holes.append(Bore(0.0, circle, 0.5 * (mount.pin_diameter + wider), low, high))
+    return tuple(holes)
+
+
+def _mount_cuts(scene: ResolvedDesign, layout: Layout) -> tuple[Feature, ...]:
+    """The set screws' holes in a sleeve, half way along it, turned away from a side port."""
+    mount = scene.mount
+    if not isinstance(mount, Sleeve):
+        return ()
+    inner = finger_radius(scene)
+    outer, radius = inner + mount.sleeve_wall, 0.5 * (mount.set_screw_core_diameter + scene.hole_undersize)
+    height = layout.plate_low - 0.5 * mount.sleeve_length
+    drill = cylinder(radius, inner - 1.0 - (inner - math.sqrt(inner**2 - radius**2)), outer + 1.0)
+    net = crossing(outer, radius) - crossing(inner, radius)
+    angles = [0.5 * math.pi + 2 * math.pi * k / mount.set_screw_count for k in range(mount.set_screw_count)]
+    return tuple(
+        Feature(Turned(drill, Frame((0.0, 0.0, height), (math.cos(a), math.sin(a), 0.0), (0.0, 0.0, 1.0))), net)
+        for a in angles
+    )
+
+
+SEAT = "seat"
+"""Faces that the flange rests on or is grown onto: the ones both bodies share."""
+
+
+def _seat_faces(seat: AnySeat, layout: Layout) -> TracedPath:
+    """The path from the lower edge of the plate over its top to the inner edge of the seat at the base plane."""
+    plate: TracedPath = [("plate edge", (layout.plate_radius, layout.plate_high))]
+    inner, flange, high = layout.inner_radius, layout.flange_radius, layout.plate_high
+    ring: TracedPath = [("plate top", (layout.ring_radius, high)), ("ring", (layout.ring_radius, 0.0))]
+    if isinstance(seat, OnePiece):
+        return [
+            *plate,
+            *ring,
+            ("ring top", (flange, 0.0)),
+            (SEAT, (flange, high)),
+            (SEAT, (inner, high)),
+            (SEAT, (inner, 0.0)),
+        ]
+    # A cast flange leans: at its underside, where it rests, it is that much wider inside too.
+    floor: TracedPath = [
+        *([("groove floor", (layout.held_radius, high))] if layout.ring is not None else []),
+        ("groove floor", (flange, high)),
+        (SEAT, (inner + layout.flange_draft, high)),
+        ("groove floor", (layout.groove_inner, high)),
+        ("groove inner", (layout.groove_inner, 0.0)),
+    ]
+    if isinstance(seat, ClampedFlange):
+        return [*plate, *floor]
+    return [
+        *plate,
+        *ring,
+        ("ring top", (layout.groove_outer, 0.0)),
+        ("groove outer", (layout.groove_outer, high)),
+        *floor,
+    ]
+
+
+def _clamping_bores(seat: AnySeat, layout: Layout, undersize: float) -> tuple[Bore, ...]:
+    """Blind core holes in the connector for the screws of a clamping ring."""
+    if not isinstance(seat, ClampedFlange):
+        return ()
+    low, high = layout.plate_high - seat.core_depth, layout.plate_high
+    radius = 0.5 * (seat.core_diameter + undersize)
+    return tuple(Bore(x, y, radius, low, high, closed="low") for x, y in _circle(seat, layout))
+
+
+def _clearing_bores(seat: ClampedFlange, layout: Layout, undersize: float) -> tuple[Bore, ...]:
+    """Through holes in the clamping ring."""
+    low = layout.plate_high + seat.squeeze * layout.flange_thickness
+    radius = 0.5 * (seat.clearance_diameter + undersize)
+    return tuple(Bore(x, y, radius, low, seat.ring_thickness) for x, y in _circle(seat, layout))
+
+
+def _circle(seat: ClampedFlange, layout: Layout) -> list[tuple[float, float]]:
+    angles = [2 * math.pi * (k + 0.5) / seat.screw_count for k in range(seat.screw_count)]
+    return [(layout.screw_circle * math.cos(angle), layout.screw_circle * math.sin(angle)) for angle in angles]
+
+
+_PAST = 1.0
+"""Distance in mm by which a shape reaches past a face that it opens, so that no two faces coincide."""
+
+
+def _side_boss(layout: Layout) -> list[Feature]:
+    """The port's solid outside, from within the plate's edge, and its lugs."""
+    port, radius = layout.port, layout.plate_radius
+    inside = math.sqrt(radius**2 - port.root**2) - _PAST - radius
+    faces = [("", (port.root, inside)), *((tag, point) for point, tag in reversed(_faces(layout)))]
+    outline = trace((0.0, inside), [*faces, ("", (0.0, port.length))])
+    beyond = outline.volume() + math.pi * port.root**2 * (radius + inside) - crossing(radius, port.root)
+    boss = Feature(Turned(outline, _frame(layout)), beyond)
+    lugs = [Feature(replace(lug, frame=_frame(layout)), port.lug_volume / len(port.lugs)) for lug in port.lugs]
+    return [boss, *lugs]
+
+
+def _side_bore(layout: Layout, across: float) -> Feature:
+    """The bore from a vertical hole of radius ``across`` to the mouth; ``net`` is the volume that it adds to that
+    hole."""
+    port = layout.port
+    start = math.sqrt(across**2 - port.passage**2)
+    low = 0.5 * start - layout.plate_radius
+    mouth = (port.hollow[0][0], port.length + _PAST)
+    faces = [("", (port.passage, low)), *(("", point) for point in reversed(port.hollow)), ("", mouth)]
+    outline = trace((0.0, low), [*faces, ("", (0.0, mouth[1]))])
+    return Feature(Turned(outline, _frame(layout)), side_volume(layout, across))
+
+
+def side_volume(layout: Layout, across: float) -> float:
+    """Volume in mm3 of bore and port's hollow from the wall of a vertical hole of radius ``across`` to the mouth."""
+    port = layout.port
+    return port.hollow_volume(-layout.plate_radius) - crossing(across, port.passage)
+
+
+def _faces(layout: Layout) -> list[tuple[tuple[float, float], str]]:
+    """End point and tag of the outside faces, each tag at the end that a walk from the root reaches."""
+    port = layout.port
+    points = [port.hollow[0], *(point for point, _ in port.outside)]
+    return [(points[k], tag) for k, (_, tag) in enumerate(port.outside)] + [(points[-1], "")]
+
+
+def _frame(layout: Layout) -> Frame:
+    assert layout.port_axis is not None
+    return Frame((layout.plate_radius, 0.0, layout.port_axis), axis=(1.0, 0.0, 0.0), across=(0.0, 0.0, 1.0))
+
+
+def outward(layout: Layout) -> tuple[Point, TracedPath]:
+    """The path from the inner edge of the port's mouth over its outside to the rear face."""
+    port = layout.port
+    return _at(layout, port.hollow[0]), [(tag, _at(layout, point)) for point, tag in port.outside]
+
+
+def _inward(layout: Layout) -> TracedPath:
+    """The path from the upper end of the channel down to the inner edge of the port's mouth."""
+    port = layout.port
+    meeting = _at(layout, port.hollow[-1])[1]
+    points = [(layout.channel_radius, meeting), *(_at(layout, point) for point in reversed(port.hollow))]
+    return [(CHANNEL, point) for point in points]
+
+
+def _rear_lugs(layout: Layout) -> list[Feature]:
+    """The lugs of a lock; none for most ports."""
+    frame = Frame((0.0, 0.0, layout.under), axis=(0.0, 0.0, -1.0))
+    lugs = layout.port.lugs
+    return [Feature(replace(lug, frame=frame), layout.port.lug_volume / len(lugs)) for lug in lugs]
+
+
+def _at(layout: Layout, point: Point) -> Point:
+    return point[0], layout.under - point[1]

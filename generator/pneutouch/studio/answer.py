@@ -13,8 +13,8 @@ from pneutouch.api.prediction import Prediction
 from pneutouch.api.results import CheckResult
 from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
-from pneutouch.body.mesh import corner_normals
 from pneutouch.body.section import section_outline
+from pneutouch.body.solid import corner_normals
 from pneutouch.catalogue import load_scene
 from pneutouch.catalogue.library import elastomers
 from pneutouch.evaluation.charts import curve, resin_curves, tuning

@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from pneutouch.errors import InputError
-from pneutouch.tables.layout import DECIMALS, NAMES, TableFormat, TableLayout, blank, cells, score
-from pneutouch.tables.unit_words import unit_of
+from pneutouch.tables.layout import DECIMALS, NAMES, TableFormat, TableLayout, blank, cells, score, unit_of
 
 _COMMENT = ("#", "%", "!")
 _NO_UNIT = frozenset({"", "-", "%", "°C", "°F", "°", "V", "mV", "V/V", "1", "1/min", "Hz", "mm/min", "mm/s", "MPa/s"})

@@ -9,9 +9,8 @@ from pneutouch.arrays import Array
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.texture.contact import touches
 from pneutouch.texture.scalogram import MORSE
-from pneutouch.texture.sliding import NOISE, RATE
+from pneutouch.texture.sliding import NOISE, RATE, touches
 from pneutouch.texture.substrate import BarRow, MatrixLayer, amplitude
 from pneutouch.units import KPA
 

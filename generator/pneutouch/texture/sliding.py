@@ -1,26 +1,239 @@
-"""The scan: a dome slides over a specimen, held at one height or at one force, and its pressure is recorded.
+"""A dome at a preload slides over a specimen, held at one height or at one force, and its pressure is recorded.
 
-What modulates the pressure: the dome (stiffness k) and the specimen (compliance c) are springs in series. At a held
-height the dome is pressed by what the specimen does not give, delta(F) + c(x) F = const, so that
-
-    dp = -dp/d(delta) F dc/(1 + k c)
-
-to first order (physics.md 4.2); here the dome's whole curve is used. At a held force the dome's state does not change
-at all in this model: only the sensor's height follows the specimen. No friction, no inertia, no relaxation, no relief.
+The plate is flat, rigid and frictionless, the gas trapped (Boyle, with the dead volume): the specimen sinks far less
+than the dome (`substrate`). Dome (stiffness k) and specimen (compliance c) are springs in series. At a held height
+delta(F) + c(x) F = const, so that dp = -dp/d(delta) F dc/(1 + k c) to first order (physics.md 4.2); here the dome's
+whole curve is used. At a held force only the sensor's height follows the specimen. No friction, no inertia, no
+relaxation, no relief.
 """
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from pneutouch.arrays import Array
-from pneutouch.errors import InputError
+from pneutouch.arrays import Array, hermite
+from pneutouch.errors import BeyondLimitError, InputError
+from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, SensorBatch, batch_of
+from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.gauge_reading import PAPER_NOISE, PAPER_STEP, RECORDER_RATE_HZ
-from pneutouch.texture.contact import PreloadContact
+from pneutouch.mechanics.models.choice import outside
+from pneutouch.mechanics.sensor import Sensor
 from pneutouch.texture.signal import Signal
 from pneutouch.texture.substrate import BarRow, Substrate
 from pneutouch.units import GAUGE_LIMIT, KPA
+
+_COLUMNS = 61
+"""Plate heights of a loading curve; between them Hermite cubics with the exact slopes."""
+_SOLID_STEPS = 30
+_HALVINGS = 40
+
+
+@dataclass(frozen=True, slots=True)
+class PreloadContact:
+    """One driving pressure at one preload; mm, N, MPa.
+
+    Attributes:
+        driving_pressure, preload: As given.
+        indentation, contact_radius, pressure: At the preload; pressure is gauge.
+        stiffness: dF/d(indentation), N/mm, gas included.
+        pressure_slope: dp/d(indentation), MPa/mm, gas included.
+        model: The model that answered.
+        travel, force, rise: Loading curve, (n,), from first contact on; rise is pressure above the driving one.
+        force_slope, rise_slope: Their derivatives by travel, (n,).
+    """
+
+    driving_pressure: float
+    preload: float
+    indentation: float
+    contact_radius: float
+    pressure: float
+    stiffness: float
+    pressure_slope: float
+    model: str
+    travel: Array
+    force: Array
+    rise: Array
+    force_slope: Array
+    rise_slope: Array
+
+    def force_at(self, indentation: Array) -> Array:
+        """Force in N at indentations in mm, any shape, within the curve."""
+        return _along(indentation, self.travel, self.force, self.force_slope)
+
+    def force_slope_at(self, indentation: Array) -> Array:
+        """Its derivative, N/mm, straight between the curve's points: for Newton's method, which only needs it near."""
+        return np.interp(indentation, self.travel, self.force_slope)
+
+    def pressure_at(self, indentation: Array) -> Array:
+        """Gauge pressure in MPa at indentations in mm, any shape, within the curve."""
+        return self.driving_pressure + _along(indentation, self.travel, self.rise, self.rise_slope)
+
+
+class PreloadContacts(NamedTuple):
+    """Many sensors at one preload, (n,) each as in `PreloadContact`; NaN if the atlas does not reach the preload."""
+
+    indentation: Array
+    contact_radius: Array
+    stiffness: Array
+    pressure_slope: Array
+
+
+def touch(sensor: Sensor, driving_pressure: float, preload: float) -> PreloadContact:
+    """The dome at a driving pressure (MPa) pressed to a preload (N): by the atlas, by the solid where that is outside.
+
+    Raises InputError for a preload that is not positive or beyond what the press reaches within the sensor's depth, and
+    for pressures that are negative, beyond the limit point or beyond the pressure sensor's range.
+    """
+    _check_preload(sensor, driving_pressure, preload)
+    curve = None if outside("atlas", sensor) else _atlas_curve(sensor, driving_pressure)
+    model = "atlas"
+    if curve is None or curve[1][-1] < preload:
+        model, curve = "solid", _solid_curve(sensor, driving_pressure)
+    travel, force, rise, radius, force_slope, rise_slope = curve
+    if force[-1] < preload:
+        raise InputError(
+            f"preload = {preload:g} N: at {driving_pressure / KPA:g} kPa the sensor reaches {force[-1]:.3g} N within "
+            f"its {travel[-1]:.2f} mm of travel; give less, or a design with more indentation.depth_mm"
+        )
+    at = float(_inverse(np.array([preload]), travel[None], force[None], force_slope[None])[0])
+    pressure = driving_pressure + float(_along(np.array(at), travel, rise, rise_slope))
+    if pressure > sensor.gas.gauge_limit:
+        raise InputError(
+            f"preload = {preload:g} N: the pressure there is {pressure / KPA:.4g} kPa, beyond the pressure sensor's "
+            f"{sensor.gas.gauge_limit / KPA:g} kPa; give less"
+        )
+    return PreloadContact(
+        driving_pressure=driving_pressure,
+        preload=preload,
+        indentation=at,
+        contact_radius=float(np.interp(at, travel, radius)),
+        pressure=pressure,
+        stiffness=float(np.interp(at, travel, force_slope)),
+        pressure_slope=float(np.interp(at, travel, rise_slope)),
+        model=model,
+        travel=travel,
+        force=force,
+        rise=rise,
+        force_slope=force_slope,
+        rise_slope=rise_slope,
+    )
+
+
+def touches(batch: SensorBatch, preload: float) -> PreloadContacts:
+    """Many sensors at once at a preload (N), by the atlas; the batch must lie inside its box and below limit points."""
+    walls, k = np.unique(batch.wall_ratio, return_inverse=True)
+    press = AtlasPress(batch, shipped().slices(walls, ("contact_radius",)), k)
+    depth = batch.depth / batch.inner_radius
+    track = press.march(np.linspace(0.0, 1.0, _COLUMNS) * depth[:, None])
+    travel, force, _, radius, force_slope, rise_slope = _dimensional(press, track)
+    known = np.logical_and.accumulate(track.ok, axis=1) & (force_slope > 0)
+    force = np.where(known, force, -np.inf)
+    reached = force.max(axis=1) >= preload
+    at = np.full(len(batch), np.nan)
+    at[reached] = _inverse(np.full(reached.sum(), preload), travel[reached], force[reached], force_slope[reached])
+
+    def read(values: Array) -> Array:
+        return np.array([np.interp(x, t, v) for x, t, v in zip(at, travel, values, strict=True)])
+
+    return PreloadContacts(at, read(radius), read(force_slope), read(rise_slope))
+
+
+def _check_preload(sensor: Sensor, pressure: float, preload: float) -> None:
+    if not 0.0 < preload < np.inf:
+        raise InputError(f"preload = {preload:g} N: must be more than 0")
+    if not 0.0 <= pressure < np.inf:
+        raise InputError(f"driving pressure {pressure / KPA:g} kPa: must be a finite number, 0 or more")
+    if pressure >= sensor.gas.gauge_limit:
+        raise InputError(
+            f"driving pressure {pressure / KPA:g} kPa: beyond the pressure sensor's range of "
+            f"{sensor.gas.gauge_limit / KPA:g} kPa"
+        )
+    if outside("atlas", sensor) is None:
+        ratio = np.array([sensor.dome.wall_thickness / sensor.dome.inner_radius])
+        limit = float(shipped().slices(ratio, ()).limit_pressure[0]) * sensor.wall.shear_modulus
+        if pressure >= limit:
+            raise _beyond(pressure, limit)
+
+
+def _beyond(pressure: float, limit: float) -> InputError:
+    return InputError(
+        f"driving pressure {pressure / KPA:g} kPa: beyond the limit point, where the dome snaps; it must be less than "
+        f"{limit / KPA:.2f} kPa"
+    )
+
+
+LoadingCurve = tuple[Array, Array, Array, Array, Array, Array]
+"""Travel, force, rise, contact radius, slopes of force and rise; the last axis along the travel."""
+
+
+def _atlas_curve(sensor: Sensor, pressure: float) -> LoadingCurve | None:
+    """The curve as far as the atlas covers it; None if that is not even the first steps."""
+    batch = batch_of(sensor, [pressure])
+    press = AtlasPress(batch, shipped().slices(batch.wall_ratio, ("contact_radius",)), np.zeros(1, dtype=np.intp))
+    track = press.march(np.linspace(0.0, sensor.protocol.depth / sensor.dome.inner_radius, _COLUMNS)[None, :])
+    curve = _dimensional(press, track)
+    known = int(np.logical_and.accumulate(track.ok[0] & (curve[4][0] > 0)).sum())
+    if known < 4:
+        return None
+    return tuple(column[0, :known] for column in curve)  # type: ignore[return-value]
+
+
+def _dimensional(press: AtlasPress, track: PressTrack) -> LoadingCurve:
+    """Curves (n, m) in mm, N and MPa, with exact slopes: the volume follows the plate as the gas lets it."""
+    mu, size = press.batch.shear_modulus[:, None], press.batch.inner_radius[:, None]
+    point = track.point
+    swell = point.by_height / np.where(track.margin > 0, track.margin, np.inf)
+    force_slope = -point.by_height * swell - point.force_by_height
+    rise_slope = point.by_volume * swell - point.by_height
+    radius = np.maximum.accumulate(np.maximum(press.field("contact_radius", track), 0.0), axis=1)
+    return (
+        (press.apex[:, None] - track.height) * size,
+        point.force * mu * size**2,
+        (point.pressure - press.pressure[:, None]) * mu,
+        radius * size,
+        force_slope * mu * size,
+        rise_slope * mu / size,
+    )
+
+
+def _solid_curve(sensor: Sensor, pressure: float) -> LoadingCurve:
+
+    from scipy.interpolate import CubicSpline
+
+    from pneutouch.mechanics.models.solid import solid_states
+
+    try:
+        state = solid_states(sensor.replace(steps=_SOLID_STEPS), np.array([pressure]))[0]
+    except BeyondLimitError as error:
+        raise _beyond(error.pressure, error.limit) from None
+    travel, force, rise = state.indentation, state.force, state.pressure_rise
+    if len(travel) < 4:
+        raise InputError(f"driving pressure {pressure / KPA:g} kPa: the dome carries no plate; give another design")
+    slopes = [CubicSpline(travel, values)(travel, 1) for values in (force, rise)]
+    return travel, force, rise, state.contact_radius, slopes[0], slopes[1]
+
+
+def _along(at: Array, travel: Array, values: Array, slopes: Array) -> Array:
+    return np.asarray(hermite(at, travel, values, slopes))
+
+
+def _inverse(level: Array, travel: Array, force: Array, slope: Array) -> Array:
+    """Travel at which each curve (n, m) first reaches a force (n,), by halving on its Hermite cubic."""
+    rows = np.arange(len(level))
+    after = np.maximum((force >= level[:, None]).argmax(axis=1), 1)
+    low, high = travel[rows, after - 1], travel[rows, after]
+    f0, f1 = force[rows, after - 1], force[rows, after]
+    m0, m1 = slope[rows, after - 1] * (high - low), slope[rows, after] * (high - low)
+    left, right = np.zeros_like(level), np.ones_like(level)
+    for _ in range(_HALVINGS):
+        s = 0.5 * (left + right)
+        value = (
+            f0 * (1 + 2 * s) * (1 - s) ** 2 + m0 * s * (1 - s) ** 2 + f1 * s * s * (3 - 2 * s) + m1 * s * s * (s - 1)
+        )
+        left, right = np.where(value < level, s, left), np.where(value < level, right, s)
+    return np.asarray(low + 0.5 * (left + right) * (high - low))
+
 
 Control = Literal["height", "force"]
 RATE = RECORDER_RATE_HZ

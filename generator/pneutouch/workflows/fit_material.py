@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.bench.tensile.choose import MISFIT, NEO_HOOKEAN, LawChoice, choose_law
+from pneutouch.bench.tensile.choose import MISFIT, NEO_HOOKEAN, LawChoice, PuckFit, PuckSize, choose_law, fit_puck
 from pneutouch.bench.tensile.law_fit import LawFit, difference
-from pneutouch.bench.tensile.puck import PuckFit, PuckSize, fit_puck
 from pneutouch.bench.tensile.read import SpecimenSize, read_tension
 from pneutouch.catalogue import KINDS, Library, user_folder
 from pneutouch.catalogue.printers import makers

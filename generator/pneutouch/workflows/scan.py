@@ -29,11 +29,10 @@ from pneutouch.spec.material import Material
 from pneutouch.spec.options import ScanOptions
 from pneutouch.spec.read import Changes
 from pneutouch.spec.specimen import Bars
-from pneutouch.texture.contact import PreloadContact, touch
 from pneutouch.texture.detect import Detection, detect, least_duration
 from pneutouch.texture.separate import BarPattern, Separation, noise_amplitude, separate
 from pneutouch.texture.signal import Signal, read_signal
-from pneutouch.texture.sliding import NOISE, Recorder, ScanPath, TextureScan, scan
+from pneutouch.texture.sliding import NOISE, PreloadContact, Recorder, ScanPath, TextureScan, scan, touch
 from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate
 from pneutouch.units import KPA
 from pneutouch.workflows.specimen import ResolvedSpecimen, draw, load_specimen

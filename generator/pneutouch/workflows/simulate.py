@@ -23,9 +23,8 @@ from pneutouch.bench.simulate import (
     specimen_figures,
 )
 from pneutouch.bench.simulate.curve import PressCurves, sensor_pressure
-from pneutouch.bench.simulate.rig import LEAK_SECONDS, MARK, encoded
-from pneutouch.bench.simulate.scatter import parameters
-from pneutouch.bench.simulate.truth import aged
+from pneutouch.bench.simulate.rig import LEAK_SECONDS, MARK, encoded, parameters
+from pneutouch.bench.simulate.runs import aged
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.gauge import reading_of

@@ -8,12 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.calibrate import CalibrationFit, CalibrationParameters, Observations, fit
 from pneutouch.bench.calibrate.fitted_atlas import FLOOR, _shape
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET_PRIOR
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.record import MeasuredCurve
+from pneutouch.bench.record import MeasuredCurve, blocks_of
 from pneutouch.bench.simulate import PressCurve, SimulatedSpecimens, SimulationTruth, press_curves, simulate_run
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.paper_sensor import material_sensor

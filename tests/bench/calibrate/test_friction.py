@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.calibrate import Observations, fit
+from pneutouch.bench.calibrate.fit import identify
 from pneutouch.bench.calibrate.fitted_atlas import FittedContact
 from pneutouch.bench.calibrate.goodness import misses
-from pneutouch.bench.calibrate.identify import identify
 from pneutouch.bench.calibrate.parameters import FRICTION, MODULUS, NAMES, USUAL, parse_names
 from pneutouch.catalogue import load_scene
 from pneutouch.errors import InputError

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from pneutouch.bench.calibrate import USUAL, Observations, fit
+from pneutouch.bench.calibrate.fit import identify
 from pneutouch.bench.calibrate.goodness import misses
-from pneutouch.bench.calibrate.identify import identify
 from pneutouch.bench.calibrate.notes import fit_notes
 from pneutouch.bench.calibrate.other_states import further_tests
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET, WALL

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import curve_fit
 
+from pneutouch.bench.tensile.choose import PuckSize, fit_puck
 from pneutouch.bench.tensile.law_fit import tension
-from pneutouch.bench.tensile.puck import PuckSize, fit_puck
 from pneutouch.bench.tensile.read import SpecimenSize, _size, read_tension
 from pneutouch.errors import InputError
 

@@ -12,8 +12,8 @@ from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import ENDS, respond
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.events import range_end
-from pneutouch.mechanics.inflation import RISING_BRANCH
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.membrane import RISING_BRANCH
 from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.mechanics.prediction import ModelResult
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial

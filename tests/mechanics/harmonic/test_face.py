@@ -8,11 +8,10 @@ import pytest
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.harmonic.fields import Harmonics
-from pneutouch.mechanics.harmonic.object_contact import face_areas, pressed_face
+from pneutouch.mechanics.harmonic.object_contact import PressedFace, face_areas, pressed_face
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject, ProfiledObject
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.pressed_face import PressedFace
 from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.indenter import RigidBase, RigidObject, ball, edge

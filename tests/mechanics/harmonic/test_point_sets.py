@@ -6,8 +6,7 @@ from functools import cache
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.mechanics.harmonic.model import HarmonicModel
-from pneutouch.mechanics.harmonic.settling import PointSets
+from pneutouch.mechanics.harmonic.model import HarmonicModel, PointSets
 from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.indent import PressSettings, shut_in

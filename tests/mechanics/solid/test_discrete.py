@@ -5,8 +5,7 @@ import pytest
 
 from pneutouch.mechanics.laws import neo_hookean, ogden
 from pneutouch.mechanics.solid.banded import negative_pivots
-from pneutouch.mechanics.solid.cavity import Cavity, Gas, Liquid
-from pneutouch.mechanics.solid.elements import TermState
+from pneutouch.mechanics.solid.elements import Cavity, Gas, Liquid, TermState
 from pneutouch.mechanics.solid.mesh import dome, printed_dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pneutouch.mechanics.solid.events import PathPoint, crossing
+from pneutouch.mechanics.events import PathPoint, crossing
 
 
 def cubic(x):

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pneutouch.mechanics.events import BREAKS_CURVE
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.cavity import Gas
 from pneutouch.mechanics.solid.continuation import PathFollower, descend
-from pneutouch.mechanics.solid.events import BREAKS_CURVE
+from pneutouch.mechanics.solid.elements import Gas
 from pneutouch.mechanics.solid.friction import FrictionStep
 from pneutouch.mechanics.solid.friction_newton import FrictionSolver
 from pneutouch.mechanics.solid.friction_system import LeadingElimination, OneSidedBlocks

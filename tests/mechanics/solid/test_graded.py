@@ -17,7 +17,7 @@ from pneutouch.mechanics.models.choice import models_for
 from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.cavity import Gas
+from pneutouch.mechanics.solid.elements import Gas
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome

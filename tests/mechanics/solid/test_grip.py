@@ -8,9 +8,8 @@ import pytest
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.cavity import Gas, Regulator
 from pneutouch.mechanics.solid.continuation import PathFollower, PlateState, plate_state
-from pneutouch.mechanics.solid.elements import RADIAL, TermState
+from pneutouch.mechanics.solid.elements import RADIAL, Gas, Regulator, TermState
 from pneutouch.mechanics.solid.friction_path import FrictionFollower
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import SolidMesh, boundary, dome, grid_cells, with_middles

@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 from pneutouch.mechanics.laws import mooney_rivlin, neo_hookean, ogden, yeoh
 from pneutouch.mechanics.laws.strain import VALUE, Strain
 from pneutouch.mechanics.solid.banded import is_definite, softest
-from pneutouch.mechanics.solid.cavity import Regulator
-from pneutouch.mechanics.solid.elements import cell_shapes, gauss_square, line_shapes, pressure_modes
+from pneutouch.mechanics.solid.elements import Regulator, cell_shapes, gauss_square, line_shapes, pressure_modes
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel

@@ -10,9 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.calibrate.fit import CalibrationFit, fit
+from pneutouch.bench.calibrate.fit import UNSEEN, CalibrationFit, CorrelatedParameters, Identifiability, fit
 from pneutouch.bench.calibrate.goodness import ASSUMED_SCATTER, response_gap
-from pneutouch.bench.calibrate.identify import UNSEEN, CorrelatedParameters, Identifiability
 from pneutouch.bench.calibrate.intervals import LEAST_RUNS
 from pneutouch.bench.calibrate.observations import Observations, clipped, points_of
 from pneutouch.bench.calibrate.other_states import SuggestedTest

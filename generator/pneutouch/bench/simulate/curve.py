@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.simulate.scatter import parameter
+from pneutouch.bench.simulate.rig import parameter
 from pneutouch.errors import InputError
 from pneutouch.mechanics import Sensor, SensorState, predict
 from pneutouch.mechanics.limits import Limits

@@ -1,15 +1,28 @@
-"""One run on the simulated rig: a protocol, a curve, and the readings of the instruments."""
+"""One run on the simulated rig, and the true values of such runs: figures of each specimen and of its population."""
 
-from dataclasses import replace
-from typing import NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple, cast
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.protocol import RunProtocol
-from pneutouch.bench.simulate.curve import PressCurve
-from pneutouch.bench.simulate.rig import RigModel
-from pneutouch.bench.simulate.scatter import ScatterModel, WallMemory
+from pneutouch.bench.protocol import RunProtocol, protocol
+from pneutouch.bench.simulate.curve import ModelDeviation, PressCurve, PressCurves
+from pneutouch.bench.simulate.rig import (
+    MINUTE,
+    RigModel,
+    ScatterModel,
+    SimulatedSpecimens,
+    WallMemory,
+    ageing_factor,
+    stiffened,
+)
+from pneutouch.mechanics.atlas.press import batch_of
+from pneutouch.mechanics.atlas.respond import DEPTH, respond
+from pneutouch.mechanics.response import FigureArrays, figures, hysteresis, lines
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.spec.campaign import RunKind
+from pneutouch.units import KPA
 
 WALL, SCATTER = WallMemory(), ScatterModel()
 
@@ -134,3 +147,229 @@ def _read(rig: RigModel, rate: float, rng: np.random.Generator, true: RecordSamp
     kept = rng.random(time.size) >= rig.missed
     force = np.clip(force, -rig.force_range, rig.force_range)
     return RecordSamples(*(x[kept] for x in (time, position, force, rig.stepped(pressure))))
+
+
+SPECIMENS = 4000
+"""Specimens drawn for the mean and spread of a population: the mean is then known to a sixtieth of the spread."""
+
+STEPS = 28
+"""Equal plate steps of a specimen of the population."""
+
+_ENOUGH = 0.5
+"""Share of the specimens that must reach every depth for a population to be made of them."""
+
+_LOOP_RATE = 1000.0
+_FIRST = 1.0
+"""Seconds into the hold from which relaxation is counted: the plate no longer oscillates."""
+
+_INSTANTS = 200
+_KEYS = (
+    ("sensitivity_kPa_per_N", "sensitivity_kPa_per_N", 1.0),
+    ("sensitivity_through_origin_kPa_per_N", "sensitivity_through_origin_kPa_per_N", 1.0),
+    ("r_squared", "r_squared", 1.0),
+    ("nonlinearity_percent", "nonlinearity", 100.0),
+    ("stiffness_N_per_mm", "stiffness", 1.0),
+    ("force_range_N", "force_high", 1.0),
+)
+"""Figures of a loading curve: key, field of `FigureArrays`, factor."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationTruth:
+    """All assumptions of the simulator: scatter of specimens and runs, the rig, the memory of the wall, and how
+    specimens deviate from the model that presses them.
+
+    ``rest`` is the longest rest in s (None: the protocol's), ``specimens`` how many are drawn for a population.
+    """
+
+    scatter: ScatterModel = field(default_factory=ScatterModel)
+    rig: RigModel = field(default_factory=RigModel)
+    wall: WallMemory = field(default_factory=WallMemory)
+    deviation: ModelDeviation = field(default_factory=ModelDeviation)
+    rest: float | None = None
+    specimens: int = SPECIMENS
+
+    def protocol(self, kind: str, height: float, reach: float) -> RunProtocol:
+        """The protocol of a kind as it is simulated: its rests shortened to ``rest``, no depth beyond the range."""
+        reduced = within(protocol(cast(RunKind, kind), height), reach)
+        return reduced if self.rest is None else reduced.quicker(min(self.rest, reduced.rest))
+
+
+@dataclass(frozen=True, slots=True)
+class Population:
+    """Sensors of one resin and age at one driving pressure: mean figures by key, their spread over specimens, the
+    number of specimens, and the basis in words."""
+
+    figures: dict[str, float | None]
+    spread: dict[str, float]
+    count: int
+    basis: str
+
+
+def loading(curve: PressCurve, steps: RunProtocol, wall: WallMemory) -> tuple[Array, Array, Array]:
+    """Indentation, force and rise at the ends of the holds without noise, the origin first; (n + 1,) mm, N, MPa."""
+    depths = np.array(steps.depths)
+    force, rise = curve.at(depths)
+    if wall.times:
+        by_force, by_rise = wall.held(steps, curve.indentation)
+        force, rise = force + by_force @ curve.force, rise + by_rise @ curve.rise
+    return tuple(np.concatenate([[0.0], x]) for x in (depths, force, rise))  # type: ignore[return-value]
+
+
+def specimen_figures(curve: PressCurve, truth: SimulationTruth, height: float, rate: float) -> dict[str, float | None]:
+    """Figures of one specimen at one driving pressure without noise, by key.
+
+    Relaxation is as the rig reads it, its drift in it. Drift is the rig's alone: the wall's recovery after a press is
+    not in it."""
+    steps = truth.protocol("steps", height, curve.reach)
+    depth, force, rise = loading(curve, steps, truth.wall)
+    loading_figures = _by_key(lines(depth, force, rise / KPA))
+    deep = loading(curve, truth.protocol("saturation", height, curve.reach), truth.wall)
+    saturation = figures(deep[0], deep[1], deep[2] / KPA)
+    noise = truth.rig.noise(rate)
+    return {
+        **loading_figures,
+        "saturation_force_N": None if saturation is None else saturation.saturation_force,
+        **loop_figures(curve, truth, height),
+        **relaxation_figures(curve, truth, height),
+        "noise_force_N": noise[0],
+        "noise_pressure_kPa": noise[1] / KPA,
+        "drift_pressure_kPa_per_min": MINUTE * truth.rig.drift(curve.driving) / KPA,
+    }
+
+
+def loop_figures(curve: PressCurve, truth: SimulationTruth, height: float) -> dict[str, float]:
+    """Hysteresis of the noise-free loop, percent, mean over its cycles; the rise counts from before each."""
+    loop = truth.protocol("loop", height, curve.reach)
+    quiet = ScatterModel.none()
+    record = simulate_run(
+        curve, loop, RigModel.perfect(), _LOOP_RATE, np.random.default_rng(0), wall=truth.wall, scatter=quiet
+    )
+    knots, _ = loop.knots()
+    rise, both = record.pressure - curve.driving, []
+    touched = record.force > 0
+    for k in range(len(loop.depths)):
+        a, b, c, d = (knots[4 * k + j] for j in (1, 2, 3, 4))
+        up = touched & (record.time >= a) & (record.time <= b)
+        down = touched & (record.time >= c) & (record.time <= d)
+        here = rise - rise[np.searchsorted(record.time, a - 1e-9)]
+        both.append(hysteresis(record.force[up], here[up], record.force[down], here[down]))
+    width, area = np.mean(both, axis=0)
+    return {"hysteresis_width_percent": 100 * float(width), "hysteresis_area_percent": 100 * float(area)}
+
+
+def relaxation_figures(curve: PressCurve, truth: SimulationTruth, height: float) -> dict[str, float]:
+    """Loss from 1 s into the hold to its end, and its slope over log10 of time, over the value at 1 s; percent.
+
+    As the rig reads it: what its zero and the gas drift in that time is in it.
+
+    The slope is the least-squares line through instants even in log time; a loss counts as positive.
+    """
+    test = truth.protocol("relaxation", height, curve.reach)
+    depth = np.array(test.depths[:1])
+    force, rise = (float(x[0]) for x in curve.at(depth))
+    step = depth[0] / test.speed / 2000
+    ramp = np.stack(curve.at(np.linspace(0.0, depth[0], 2001)), axis=1)
+    start = [term[-1] for term in truth.wall.terms(ramp, step)]
+    time = np.geomspace(_FIRST, test.hold, _INSTANTS)
+    values = {}
+    rig, wall = truth.rig, truth.wall
+    for k, (name, level, shares, drift) in enumerate(
+        (("force", force, wall.force, rig.force_drift), ("pressure", rise, wall.rise, rig.drift(curve.driving)))
+    ):
+        value = level + drift * time
+        for share, term, tau in zip(shares, start, truth.wall.times, strict=True):
+            value += share * term[k] * np.exp(-time / tau)
+        slope = np.polyfit(np.log10(time), value, 1)[0]
+        values[f"relaxation_{name}_percent"] = float(100 * (value[0] - value[-1]) / value[0])
+        values[f"relaxation_{name}_percent_per_decade"] = float(-100 * slope / value[0])
+    return values
+
+
+def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float, seed: tuple[int, ...]) -> Population:
+    """The population around a nominal sensor, pressed at its k-th driving pressure.
+
+    Specimens come from the atlas in one batch. Mean and spread of each figure are then scaled by the nominal sensor's
+    own figure over the atlas's, so that they belong to the model behind the records. Outside the atlas, the figures are
+    the nominal sensor's and there is no spread but the runs'."""
+    sensor, curve = pressed.sensor, pressed.curves[k]
+    nominal = specimen_figures(curve, truth, sensor.dome.shape.height, rate)
+    steps = truth.protocol("steps", sensor.dome.shape.height, curve.reach)
+    drawn = _drawn(sensor, curve.driving, steps, truth, seed)
+    if drawn is None:
+        return Population(
+            _with_runs(nominal, truth, None), {}, 0, "the nominal sensor: the atlas does not cover this population"
+        )
+    here, kept = drawn
+    base = _by_key(FigureArrays(*(column[:1] for column in here)))
+    mean, spread = dict(nominal), {}
+    for key, name, factor in _KEYS:
+        values = factor * getattr(here, name)[1:]
+        simulated, tabulated = nominal[key], base[key]
+        scale = simulated / tabulated if simulated is not None and tabulated else 1.0
+        mean[key], spread[key] = float(scale * values.mean()), float(scale * values.std(ddof=1))
+    basis = (
+        f"{kept} of {truth.specimens} specimens through the atlas, scaled to the {pressed.model}'s nominal sensor; "
+        "saturation, hysteresis and relaxation are the nominal sensor's"
+    )
+    return Population(_with_runs(mean, truth, spread["sensitivity_kPa_per_N"]), spread, kept, basis)
+
+
+def _drawn(
+    sensor: Sensor, driving: float, steps: RunProtocol, truth: SimulationTruth, seed: tuple[int, ...]
+) -> tuple[FigureArrays, int] | None:
+    """Figures of the nominal sensor (first) and of the specimens that reach every depth; None if too few do."""
+    from pneutouch.mechanics.models.choice import outside
+
+    depth = max(steps.depths)
+    nominal = sensor.replace(depth=depth, gauge_limit=np.inf)
+    if outside("atlas", nominal) is not None:
+        return None
+    count = truth.specimens
+    some = SimulatedSpecimens.draw(truth.scatter, count, np.random.default_rng([*seed, count]))
+    batch = batch_of(nominal, np.full(count + 1, driving))
+    wall = np.maximum(batch.wall_thickness[1:] + some.wall, 0.05 * sensor.dome.wall_thickness)
+    batch = replace(
+        batch,
+        shear_modulus=batch.shear_modulus * np.concatenate([[1.0], some.modulus]),
+        wall_thickness=np.concatenate([batch.wall_thickness[:1], wall]),
+        dead_volume=batch.dead_volume + np.concatenate([[0.0], some.dead_volume]),
+    )
+    response = respond(batch, STEPS)
+    whole = np.flatnonzero((response.ends == DEPTH) & np.isfinite(response.range_end))
+    if not whole.size or whole[0] != 0 or whole.size - 1 < _ENOUGH * count:
+        return None
+    nodes = np.linspace(0.0, depth, STEPS + 1)
+    force, rise = _held(response.force[whole], response.rise[whole], nodes, steps, truth.wall)
+    depths = np.broadcast_to(np.concatenate([[0.0], steps.depths]), force.shape)
+    return lines(depths, force, rise / KPA), whole.size - 1
+
+
+def _held(force: Array, rise: Array, nodes: Array, steps: RunProtocol, wall: WallMemory) -> tuple[Array, Array]:
+    """Values at the ends of the holds of curves (n, nodes), the origin first."""
+    from scipy.interpolate import PchipInterpolator
+
+    rows = []
+    for values, memory in zip((force, rise), wall.held(steps, nodes), strict=True):
+        here = PchipInterpolator(nodes, values, axis=1)(np.array(steps.depths)) + values @ memory.T
+        rows.append(np.concatenate([np.zeros((len(values), 1)), here], axis=1))
+    return rows[0], rows[1]
+
+
+def _by_key(arrays: FigureArrays) -> dict[str, float | None]:
+    return {key: float(factor * np.ravel(getattr(arrays, name))[0]) for key, name, factor in _KEYS}
+
+
+def _with_runs(mean: dict[str, float | None], truth: SimulationTruth, parts: float | None) -> dict[str, float | None]:
+    """The mean with the spread of the sensitivity between runs of one specimen and between specimens."""
+    slope = mean["sensitivity_kPa_per_N"]
+    return {
+        **mean,
+        "repeatability_kPa_per_N": None if slope is None else truth.scatter.gain * slope,
+        "part_to_part_kPa_per_N": parts,
+    }
+
+
+def aged(sensor: Sensor, truth: SimulationTruth, days: float) -> Sensor:
+    """The nominal sensor at an age."""
+    return stiffened(sensor, ageing_factor(truth.scatter, days))

@@ -13,12 +13,12 @@ from typing import Self
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.mechanics.events import DETAIL, OBJECT_EDGE
 from pneutouch.mechanics.harmonic.friction import SurfaceFriction, SurfacePoints, tangents
 from pneutouch.mechanics.harmonic.friction_settling import SurfaceFrictionSolver
 from pneutouch.mechanics.harmonic.object_contact import HarmonicContact, X, Y, Z, upward
 from pneutouch.mechanics.harmonic.surface import Surface, SurfaceHeight
 from pneutouch.mechanics.solid.continuation import PlateState, descend
-from pneutouch.mechanics.solid.events import DETAIL, OBJECT_EDGE
 from pneutouch.mechanics.solid.friction import FrictionPoints
 from pneutouch.mechanics.solid.friction_linear import PointTractions
 from pneutouch.mechanics.solid.friction_path import FrictionFollower, approach

@@ -30,8 +30,7 @@ from pneutouch.mechanics.laws.strain import (
     Strain,
 )
 from pneutouch.mechanics.solid.banded import BlockEntries
-from pneutouch.mechanics.solid.cavity import Cavity
-from pneutouch.mechanics.solid.elements import line_shapes
+from pneutouch.mechanics.solid.elements import Cavity, line_shapes
 
 _PAIRS = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 

@@ -10,16 +10,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array, Index
+from pneutouch.mechanics.events import BASE_SHARE, DETAIL, OBJECT_EDGE, OVERHANG, PathPoint, SolidEvent, crossing
 from pneutouch.mechanics.harmonic.fields import FieldGroup, FieldOperator, Harmonics
 from pneutouch.mechanics.harmonic.friction_path import ShearPath, SurfaceFrictionFollower, held_back, not_sheared, shear
-from pneutouch.mechanics.harmonic.model import HarmonicModel
-from pneutouch.mechanics.harmonic.object_contact import HarmonicContact, X, Y, pressed_face
-from pneutouch.mechanics.harmonic.settling import ContactNewton, Foreseen
+from pneutouch.mechanics.harmonic.model import ContactNewton, Foreseen, HarmonicModel
+from pneutouch.mechanics.harmonic.object_contact import HarmonicContact, PressedFace, X, Y, pressed_face
 from pneutouch.mechanics.harmonic.surface import ProfiledObject, Surface, first_height
-from pneutouch.mechanics.pressed_face import PressedFace
 from pneutouch.mechanics.solid.continuation import PathFollower, PathJump, PlateState, descend
 from pneutouch.mechanics.solid.elements import F_RR, F_RZ, HOOP, RADIAL
-from pneutouch.mechanics.solid.events import BASE_SHARE, DETAIL, OBJECT_EDGE, OVERHANG, PathPoint, SolidEvent, crossing
 from pneutouch.mechanics.solid.indent import PressSettings, shut_in
 from pneutouch.mechanics.solid.inflate import FreeState
 from pneutouch.mechanics.solid.model import SolidModel

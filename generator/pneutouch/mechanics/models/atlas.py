@@ -23,15 +23,13 @@ from pneutouch.mechanics.atlas.respond import (
     run,
 )
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, AtlasSlices, shipped
-from pneutouch.mechanics.events import Event
+from pneutouch.mechanics.events import CREASE, DETAIL, Event, PathPoint, crossing
 from pneutouch.mechanics.limits import LimitPoint, Limits
-from pneutouch.mechanics.models.accuracy import NUMERICAL, TABULATION
+from pneutouch.mechanics.models.accuracy import BODY, NOT_CHECKED, NUMERICAL, TABULATION, discretised, solid_assumptions
 from pneutouch.mechanics.models.interface import Answered, Limitation, ModelAnswer, SensorModel
-from pneutouch.mechanics.models.statements import BODY, NOT_CHECKED, discretised, solid_assumptions
 from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor, WallMaterial
-from pneutouch.mechanics.solid.events import CREASE, DETAIL, PathPoint, crossing
 from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.units import KPA

@@ -15,10 +15,9 @@ from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.harmonic.friction_path import ShearPath
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject
-from pneutouch.mechanics.models.accuracy import HARMONICS_SETTLED, OBJECT_DISCRETISATION
+from pneutouch.mechanics.models.accuracy import HARMONICS_SETTLED, OBJECT_DISCRETISATION, discretised, solid_assumptions
 from pneutouch.mechanics.models.interface import Answered, ModelAnswer, SensorModel, one_by_one
 from pneutouch.mechanics.models.solid import curve_between, press_settings, reported_events, solid_result
-from pneutouch.mechanics.models.statements import discretised, solid_assumptions
 from pneutouch.mechanics.off_axis_curve import OffAxisCurve, RangeCurve, ShearCurve
 from pneutouch.mechanics.prediction import ModelResult, SensorState
 from pneutouch.mechanics.response import Figures, figures

@@ -7,16 +7,18 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.events import events, range_end
-from pneutouch.mechanics.inflation import (
+from pneutouch.mechanics.limits import limit_point, limits
+from pneutouch.mechanics.membrane import (
     LIMIT_HEIGHT,
+    PressedStates,
+    TrappedGas,
     height_errors,
     limit_point_errors,
+    press,
     pressure,
     relative_height,
     thickness_stretch,
 )
-from pneutouch.mechanics.limits import limit_point, limits
-from pneutouch.mechanics.membrane_contact import PressedStates, TrappedGas, press
 from pneutouch.mechanics.models.interface import Answered, Limitation, ModelAnswer, SensorModel, one_by_one
 from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures

@@ -14,15 +14,21 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from pneutouch.arrays import Array, distinct, hermite
-from pneutouch.mechanics.events import LOBES, SWAY, Event, range_end
+from pneutouch.mechanics.events import LOBES, SWAY, Event, SolidEvent, range_end
 from pneutouch.mechanics.limits import LAW_RANGE, LimitPoint, Limits
-from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION, OBJECT_DISCRETISATION, SENSITIVITY_DISCRETISATION
+from pneutouch.mechanics.models.accuracy import (
+    BODY,
+    LIMIT_DISCRETISATION,
+    NOT_CHECKED,
+    OBJECT_DISCRETISATION,
+    SENSITIVITY_DISCRETISATION,
+    discretised,
+    solid_assumptions,
+)
 from pneutouch.mechanics.models.interface import Answered, ModelAnswer, SensorModel, one_by_one
-from pneutouch.mechanics.models.statements import BODY, NOT_CHECKED, discretised, solid_assumptions
 from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState, WallPath
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.events import SolidEvent
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
 from pneutouch.mechanics.solid.indenter import Indenter, RigidBase
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch, inflate, state_at
@@ -33,7 +39,7 @@ from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
-    from pneutouch.mechanics.pressed_face import PressedFace
+    from pneutouch.mechanics.harmonic.object_contact import PressedFace
 
 _SUMMARY = (
     f"Discretisation: sensitivity within {SENSITIVITY_DISCRETISATION:.1%}, limit pressure "

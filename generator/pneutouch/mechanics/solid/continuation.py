@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.solid.cavity import Supply
+from pneutouch.mechanics.solid.elements import Supply
 from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import (

@@ -9,9 +9,8 @@ from typing import Self
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.solid.cavity import Supply
 from pneutouch.mechanics.solid.continuation import PathFollower, PlateState
-from pneutouch.mechanics.solid.elements import TermState
+from pneutouch.mechanics.solid.elements import Supply, TermState
 from pneutouch.mechanics.solid.friction import TANGENTIAL, FrictionState, FrictionStep
 from pneutouch.mechanics.solid.friction_newton import FrictionSolver, SlidingResult
 from pneutouch.mechanics.solid.friction_system import OneSidedBlocks

@@ -7,10 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.response import Figures, figures
-from pneutouch.mechanics.solid.cavity import Gas
-from pneutouch.mechanics.solid.continuation import PathFollower, PathJump, PlateState, descend
-from pneutouch.mechanics.solid.events import (
+from pneutouch.mechanics.events import (
     BASE_SHARE,
     BREAKS_CURVE,
     CREASE,
@@ -24,6 +21,9 @@ from pneutouch.mechanics.solid.events import (
     SolidEvent,
     crossing,
 )
+from pneutouch.mechanics.response import Figures, figures
+from pneutouch.mechanics.solid.continuation import PathFollower, PathJump, PlateState, descend
+from pneutouch.mechanics.solid.elements import Gas
 from pneutouch.mechanics.solid.indenter import RigidObject
 from pneutouch.mechanics.solid.inflate import FirstTouch, FreeState, first_touch
 from pneutouch.mechanics.solid.model import SolidModel

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.solid.cavity import Liquid, Regulator
+from pneutouch.mechanics.solid.elements import Liquid, Regulator
 from pneutouch.mechanics.solid.indenter import Indenter, RigidObject, first_contact
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import (

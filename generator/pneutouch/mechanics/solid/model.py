@@ -11,7 +11,6 @@ from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
 from pneutouch.mechanics.laws.strain import BY_A, BY_H, BY_J, BY_JH, GRADIENT, HESSIAN, VALUE, Strain
 from pneutouch.mechanics.solid.banded import AssemblyPattern, BlockEntries, FaceSums
 from pneutouch.mechanics.solid.base_contact import BaseContact, BaseFace, BaseLoad, FlangeContact, meeting_nodes
-from pneutouch.mechanics.solid.cavity import Cavity
 from pneutouch.mechanics.solid.elements import (
     DEFAULT_SCHEME,
     F_RR,
@@ -20,6 +19,7 @@ from pneutouch.mechanics.solid.elements import (
     F_ZZ,
     HOOP,
     IN_PLANE,
+    Cavity,
     IntegrationScheme,
     area_ratio,
     gauss_square,

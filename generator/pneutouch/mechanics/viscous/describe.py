@@ -22,8 +22,8 @@ from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.models.choice import outside
 from pneutouch.mechanics.models.solid import press_settings, solid_probe
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.cavity import FillingState, Gas
 from pneutouch.mechanics.solid.continuation import LONGEST, PathFollower, PlateState
+from pneutouch.mechanics.solid.elements import FillingState, Gas
 from pneutouch.mechanics.solid.indent import follower_of, shut_in
 from pneutouch.mechanics.solid.inflate import first_touch, inflate, state_at
 from pneutouch.mechanics.solid.model import SolidModel

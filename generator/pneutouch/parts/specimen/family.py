@@ -13,7 +13,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Indices
 from pneutouch.body import Solid
-from pneutouch.body.mesh import enclosed_volume, is_closed, welded
+from pneutouch.body.solid import enclosed_volume, is_closed, welded
 from pneutouch.errors import InputError, shown
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer

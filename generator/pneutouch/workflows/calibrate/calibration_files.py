@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.bench.calibrate.fit import UNSEEN
 from pneutouch.bench.calibrate.goodness import ResponseGap
-from pneutouch.bench.calibrate.identify import UNSEEN
 from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, KEYS, MODULUS, NAMES, OFFSET, WALL, outside_value
 from pneutouch.catalogue import KINDS
 from pneutouch.errors import InputError

@@ -20,6 +20,7 @@ from pneutouch.bench.calibrate import (
     parameters,
     predict_held_out,
 )
+from pneutouch.bench.calibrate.fit import CorrelatedParameters, Identifiability, identify
 from pneutouch.bench.calibrate.goodness import (
     ModelMisfit,
     ResponseGap,
@@ -29,7 +30,6 @@ from pneutouch.bench.calibrate.goodness import (
     residuals,
     response_gap,
 )
-from pneutouch.bench.calibrate.identify import CorrelatedParameters, Identifiability, identify
 from pneutouch.bench.calibrate.notes import fit_notes
 from pneutouch.bench.calibrate.other_states import SuggestedTest
 from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, KEYS, LOGARITHMIC, UNITS, outside_value

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch.bench.figures import summarize
-from pneutouch.bench.injection import dead_volume_of_cap
+from pneutouch.bench.reading import dead_volume_of_cap
 from pneutouch.bench.record import MeasuredCurve, Trace
 from pneutouch.bench.run_checks import check_plausible, outliers
 from pneutouch.bench.source import MeasuredFile

@@ -11,8 +11,7 @@ from typing import Any
 
 from pneutouch.arrays import Array
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.injection import INJECTION, leak_rate, read_injection
-from pneutouch.bench.reading import LEAK, PLATE, read_blocks
+from pneutouch.bench.reading import INJECTION, LEAK, PLATE, leak_rate, read_blocks, read_injection
 from pneutouch.bench.record import MeasuredCurve, Trace, trace
 from pneutouch.bench.run_checks import check_leak
 from pneutouch.bench.source import MeasuredFile, campaign_lines, identify
@@ -25,7 +24,7 @@ from pneutouch.spec.campaign import Campaign, CampaignRun, ColumnMap, FileFormat
 from pneutouch.spec.files import exists, is_file
 from pneutouch.spec.read import validate
 from pneutouch.spec.values import file_name
-from pneutouch.tables.unit_words import UNITS, unit_of
+from pneutouch.tables.layout import UNITS, unit_of
 from pneutouch.units import KPA
 from pneutouch.wording import listed
 

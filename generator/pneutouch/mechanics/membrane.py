@@ -1,6 +1,9 @@
-"""State II of the paper's membrane theory: the inflated dome pressed by a wide rigid plate.
+"""The paper's membrane theory: an inflated cap in closed form (state I), and the dome pressed by a plate (state II).
 
-The paper's equations 10 to 19 are ambiguous as printed, so there are two closures for the contact radius:
+State I (eq. 4 to 9): with x = h/R0 the thickness stretch is 2/(1 + x^2), and stationary energy gives, for the
+neo-Hookean law with C1 = mu/2, p R0/(C1 t0) = 8 x/(1 + x^2) - 64 x/(1 + x^2)^4. Its maximum is the limit point.
+
+State II (eq. 10 to 19) is ambiguous as printed, so there are two closures for the contact radius:
 
 ``variational``
     One potential, the wall's energy at its total stretch plus the isothermal gas, least over the contact
@@ -10,36 +13,132 @@ The paper's equations 10 to 19 are ambiguous as printed, so there are two closur
     the plate height at fixed contact radius is set to zero. It follows the paper's theory curves in trend
     only (S far above any measured value): for reproducing them, not for design.
 
-The pressed shape of the paper's state II: a flat disc and a free part of constant curvature.
-
-The free part is an arc tangent to the plate at radius rho and height h, through the base circle R0
-(eq. 11). Area and volume follow in closed form, with their derivatives by rho and h. Write c = R0 - rho,
-a = (c^2 + h^2)/(2h) for the arc's radius and theta for the angle it spans; then
+The free part of the pressed dome is an arc tangent to the plate at radius rho and height h, through the base circle R0
+(eq. 11). With c = R0 - rho, a = (c^2 + h^2)/(2h) for the arc's radius and theta for the angle it spans,
 
     A = pi [rho^2 + 2 rho a theta + c^2 + h^2]
     V = pi [rho^2 h + rho a^2 theta - rho c (a - h) + a h^2 - h^3/3] .
 
-rho = 0 gives the cap of state I.
-
-The wall's energy in the membrane theory: neo-Hookean, incompressible, equibiaxial (paper, eq. 7).
-
-With thickness stretch lambda and in-plane stretches lambda**-1/2, W = C1 (lambda^2 + 2/lambda - 3), C1 = mu/2.
-
-The trapped gas: isothermal and ideal (Boyle's law), pressures as gauge pressures in MPa, volumes in mm3.
-
-The paper's eq. (15), (p_II + p_m) V_gt = (p_I + p_m) V_g, with a dead volume added on both sides.
+The gas is isothermal and ideal, with the dead volume on both sides of eq. 15: pressures in MPa gauge, volumes in mm3.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.inflation import bisect
+from pneutouch.errors import BeyondLimitError, ComputationError
 from pneutouch.mechanics.sensor import Sensor
+
+_HALVINGS = 60
+"""2**-60 of the bracket: below the rounding of any root of its size."""
+
+
+def _bisect(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
+    """Return where ``function`` turns from negative to positive between ``low`` and ``high``, elementwise.
+
+    Where it is positive already at ``low`` the answer is ``low``; where it is still negative at ``high``,
+    ``high``. All arrays have the same shape.
+    """
+    a, b = np.array(low, float), np.array(high, float)
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (a + b)
+        below = function(middle) < 0
+        a, b = np.where(below, middle, a), np.where(below, b, middle)
+    root: Array = 0.5 * (a + b)
+    return root
+
+
+_HIGHEST = 1e6
+"""Largest x searched on the falling branch; p R0/(mu t0) is 4e-6 there."""
+
+
+def relative_pressure(x: Array) -> Array:
+    """P R0/(mu t0) at relative height x = h/R0."""
+    square = 1 + x**2
+    return 4 * x / square - 32 * x / square**4
+
+
+def thickness_stretch(x: Array) -> Array:
+    """Wall now over wall before (eq. 5)."""
+    return 2 / (1 + x**2)
+
+
+def membrane_stretch(x: Array) -> Array:
+    """In-plane stretch, the same in all directions (eq. 3)."""
+    return thickness_stretch(x) ** -0.5
+
+
+def _limit_height() -> float:
+    """X of the limit point, where (1 - x^2)(1 + x^2)^3 = 8 (1 - 7 x^2)."""
+
+    def slope(x: Array) -> Array:
+        square = x**2
+        return 8 * (1 - 7 * square) - (1 - square) * (1 + square) ** 3
+
+    # The slope is negative below the limit point and positive above it on this bracket.
+    return float(_bisect(slope, np.array(1.2), np.array(3.0)))
+
+
+LIMIT_HEIGHT = _limit_height()
+"""h/R0 at the limit point: 1.80524, for every stiffness, size and wall."""
+
+LIMIT_PRESSURE = float(relative_pressure(np.array(LIMIT_HEIGHT)))
+"""p R0/(mu t0) at the limit point: 1.51991."""
+
+
+def pressure(x: Array, inner_radius: float, wall: float, shear_modulus: float) -> Array:
+    """Driving pressure in MPa that holds the dome at relative height x (eq. 9)."""
+    return shear_modulus * wall / inner_radius * relative_pressure(x)
+
+
+def relative_height(
+    p: Array, inner_radius: float, wall: float, shear_modulus: float, *, falling: bool = False
+) -> Array:
+    """h/R0 at driving pressures ``p`` (MPa, from 0 to the limit), on the rising or the falling branch."""
+    target = np.asarray(p, float) * inner_radius / (shear_modulus * wall)
+    if np.any(target > LIMIT_PRESSURE * (1 + 1e-12)):
+        scale = shear_modulus * wall / inner_radius
+        text = (
+            f"no equilibrium of the membrane at p R0/(mu t0) = {float(np.max(target)):.4g}: the limit point is "
+            f"{LIMIT_PRESSURE:.4g}; lower the driving pressure"
+        )
+        raise BeyondLimitError(float(np.max(target)) * scale, LIMIT_PRESSURE * scale, text)
+    if np.any(target < 0):
+        raise ComputationError("the membrane theory does not cover suction; give driving pressures from 0")
+    if falling:
+        low, high = np.full(target.shape, math.log(LIMIT_HEIGHT)), np.full(target.shape, math.log(_HIGHEST))
+        return np.exp(_bisect(lambda s: target - relative_pressure(np.exp(s)), low, high))
+    low, high = np.ones(target.shape), np.full(target.shape, LIMIT_HEIGHT)
+    return _bisect(lambda x: relative_pressure(x) - target, low, high)
+
+
+_PRESSURE = (0.0, 0.487184, 0.816153, 1.204673, 1.398748, 1.497427, 1.546655, 1.568785, 1.57537)
+_HEIGHT = (1.0, 1.066291, 1.134059, 1.255874, 1.360730, 1.452773, 1.535446, 1.611202, 1.69000)
+
+RISING_BRANCH = np.column_stack([_PRESSURE, _HEIGHT])
+"""p R0/(mu t0) and h/R0 of the exact neo-Hookean membrane from no pressure to the limit point, by shooting without
+assuming constant curvature; the tests solve it again with an independent program."""
+
+
+def limit_point_errors() -> tuple[float, float]:
+    """Relative errors of the cap's limit pressure and of its apex height there."""
+    pressure, height = RISING_BRANCH[-1]
+    return float(LIMIT_PRESSURE / pressure - 1), float(LIMIT_HEIGHT / height - 1)
+
+
+def height_errors(relative_pressures: Array) -> Array:
+    """Relative errors of the cap's apex height at p R0/(mu t0) from 0 to the cap's limit.
+
+    Interpolated between the table's rows, where the errors change slowly.
+    """
+    known = RISING_BRANCH[RISING_BRANCH[:, 0] <= LIMIT_PRESSURE]
+    errors = relative_height(known[:, 0], 1.0, 1.0, 1.0) / known[:, 1] - 1
+    return np.asarray(np.interp(relative_pressures, known[:, 0], errors))
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +227,7 @@ def press(sensor: Sensor, gas: TrappedGas, apex: Array, indentation: Array, clos
     height = apex - indentation
     model = _BY_NAME[closure](sensor, gas, apex, height)
     zero = np.zeros(np.broadcast_shapes(np.shape(gas.driving_pressure), np.shape(height)))
-    rho = bisect(model.residual, zero, zero + sensor.dome.inner_radius)
+    rho = _bisect(model.residual, zero, zero + sensor.dome.inner_radius)
     cap = pressed_cap(rho, height, sensor.dome.inner_radius)
     reference = 2 * np.pi * sensor.dome.inner_radius**2
     return PressedStates(rho, cap.volume, gas.pressure(cap.volume), model.force(rho), reference / cap.area)
