@@ -21,7 +21,7 @@ from pneutouch.export.voxels.png import MOST_PIXELS
 from pneutouch.spec.files import MOST_BYTES
 from pneutouch.spec.tasks import MOST_TASKS
 from pneutouch.studio.guard import LARGEST_BODY, LARGEST_FILE
-from pneutouch.tables import binary_tables, xlsx_table
+from pneutouch.tables import binary_tables
 from pneutouch.tables.read import MOST_NUMBERS
 from pneutouch.tables.text import LONGEST_LINE
 from pneutouch.workflows.sweep.dataset import MOST_BYTES as MOST_DATASET
@@ -48,7 +48,7 @@ def bounds() -> list[tuple[str, str]]:
         ),
         (
             "measured run, Excel",
-            f"{xlsx_table.UNPACKED / mb:g} MB unpacked, {xlsx_table._PARTS} parts, {xlsx_table._ROWS} rows of {xlsx_table._COLUMNS} columns",
+            f"{binary_tables.UNPACKED / mb:g} MB unpacked, {binary_tables._PARTS} parts, {binary_tables._ROWS} rows of {binary_tables._COLUMNS} columns",
         ),
         ("measured run, TDMS", f"as many values as its bytes hold, {MOST_BLOCKS} blocks in memory"),
         (

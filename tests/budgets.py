@@ -126,8 +126,8 @@ def wording_lines() -> int:
 
 
 BUDGETS = (
-    Budget("lines of the package", package_lines, 85_270, 70_000),
-    Budget("files of the package", package_files, 504, 450),
+    Budget("lines of the package", package_lines, 84_713, 70_000),
+    Budget("files of the package", package_files, 450, 450),
     Budget("lines of benchmarks", benchmark_lines, 6_500, 6_500),
     Budget("functions that return dict[str, Any]", dictionaries, 30, 30),
     Budget("modules that predict paper-dome loads", loaded_modules, 150, 150),

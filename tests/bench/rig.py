@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pneutouch.bench.protocol import RunProtocol, protocol
+from pneutouch.bench.indents import RunProtocol, protocol
 from pneutouch.spec.campaign import CampaignRun
 from pneutouch.units import KPA
 

@@ -46,7 +46,7 @@ def measure(path):
 
 
 def long_file(path: Path, rest):
-    from pneutouch.bench.protocol import protocol
+    from pneutouch.bench.indents import protocol
 
     samples = record(faults=Faults(rate=10_000.0), what=protocol("steps", 9.25).quicker(rest))
     with path.open("w") as stream:

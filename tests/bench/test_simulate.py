@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from pneutouch.bench.protocol import RunProtocol, protocol
+from pneutouch.bench.indents import RunProtocol, protocol
 from pneutouch.bench.simulate import (
     RigModel,
     ScatterModel,

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pneutouch.bench.protocol import protocol
+from pneutouch.bench.indents import protocol
 from pneutouch.bench.simulate import (
     ModelDeviation,
     RigModel,

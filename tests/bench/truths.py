@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from pneutouch.bench.protocol import RunProtocol
+from pneutouch.bench.indents import RunProtocol
 from pneutouch.bench.simulate import PressCurve, WallMemory, press_curves
 from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.catalogue import Library, load_scene

@@ -13,7 +13,7 @@ from tests.fuzzing.files import library
 
 
 def read_exported(path: Path) -> object:
-    from pneutouch.studio.opened_design import open_file
+    from pneutouch.studio.design_jobs import open_file
 
     files = [{"name": path.name, "path": str(path)}]
     return open_file({"files": files, "bases": _bases()}, path.parent, lambda done, total, what: None)
@@ -26,7 +26,7 @@ def _bases() -> dict[str, str]:
 
 def read_question(path: Path) -> object:
     """The body of a question, as the page sends it, to its answer by the atlas."""
-    from pneutouch.studio.question import Question
+    from pneutouch.studio.form import Question
 
     question = Question.of(_body(path))
     load_scene(question.source(_bases(), library()), {}, library())
@@ -41,7 +41,7 @@ def _answers() -> Any:
 
 
 def read_search(path: Path) -> object:
-    from pneutouch.studio.question import Question
+    from pneutouch.studio.form import Question
     from pneutouch.studio.search import target_of
 
     return target_of(Question.of(_body(path)), _bases())
@@ -50,7 +50,7 @@ def read_search(path: Path) -> object:
 def _body(path: Path) -> Any:
     from starlette.requests import Request
 
-    from pneutouch.studio.question import json_body
+    from pneutouch.studio.form import json_body
 
     async def receive() -> dict[str, Any]:
         return {"type": "http.request", "body": path.read_bytes(), "more_body": False}

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from pneutouch.printability import PrintSubject
-from pneutouch.printability.rules import casting
+from pneutouch.printability.rules import mould
 from pneutouch.printability.view import PrintView, WettedSurface
 from pneutouch.spec.values import Quantity
 from tests.printability.gallery import material, printer
@@ -30,12 +30,12 @@ def view(wall=1.5, radius=9.25, wetted=(), calibrated=False, **figures):
 
 def test_the_time_to_fill_goes_with_viscosity_and_the_square_of_the_wall():
     """A quarter of a circle of 9.25 mm, rho g t2 / (12 eta)."""
-    (thin,) = casting.filling(view(wall=0.4))
+    (thin,) = mould.check_filling(view(wall=0.4))
     speed = 1080 * 9.81 * 0.4e-3**2 / (12 * 20)
     assert thin.severity == "warning" and "syringe" in thin.fix
     assert thin.excess.measured == pytest.approx(0.5 * math.pi * 9.25e-3 / speed / 60, rel=1e-9)
-    assert thin.excess.limit == 25 - casting.PREPARED_MIN
-    (thick,) = casting.filling(view(wall=0.8, mixed_viscosity_Pa_s=80.0))
+    assert thin.excess.limit == 25 - mould.PREPARED_MIN
+    (thick,) = mould.check_filling(view(wall=0.8, mixed_viscosity_Pa_s=80.0))
     assert thick.excess.measured == pytest.approx(thin.excess.measured)
 
 
@@ -46,33 +46,33 @@ def test_filling_is_reported_from_half_of_the_time_that_is_left(pot_life_min, fo
     assert needed == pytest.approx(2.438, abs=0.001)
     turn = 8 + 2 * needed
     assert (pot_life_min < turn) == bool(found)
-    assert len(casting.filling(view(pot_life_min=pot_life_min))) == found
+    assert len(mould.check_filling(view(pot_life_min=pot_life_min))) == found
 
 
 def test_the_bubble_that_stays_rises_by_the_height_of_the_dome_in_the_time_that_is_left():
-    (found,) = casting.bubbles(view())
+    (found,) = mould.check_bubbles(view())
     radius = math.sqrt(4.5 * 20 * 10.75e-3 / (17 * 60) / (1080 * 9.81))
     assert found.severity == "note" and found.excess is None
     assert f"up to {2e3 * radius:.2f} mm" in found.message
-    (weak,) = casting.bubbles(view(wall=1.0))
+    (weak,) = mould.check_bubbles(view(wall=1.0))
     assert weak.severity == "warning" and weak.excess.measured > weak.excess.limit == 0.5
 
 
 def test_a_thin_liquid_leaves_small_bubbles():
-    (found,) = casting.bubbles(view(wall=1.0, mixed_viscosity_Pa_s=3.0))
+    (found,) = mould.check_bubbles(view(wall=1.0, mixed_viscosity_Pa_s=3.0))
     assert found.severity == "note"
 
 
 @pytest.mark.parametrize(("process", "found"), [("filament", 0), ("polyjet", 1), ("resin", 1)])
 def test_photopolymer_that_the_silicone_touches_inhibits_it(process, found):
     surface = WettedSurface("mould", "VeroClear", process)
-    findings = casting.inhibition(view(wetted=(surface,)))
+    findings = mould.check_inhibition(view(wetted=(surface,)))
     assert len(findings) == found
     assert all("mould, printed in VeroClear" in one.message and "seal" in one.fix for one in findings)
 
 
 def test_nothing_is_found_of_a_printed_or_a_calibrated_dome():
     printed = PrintView(*dome([0], wall=0.3))
-    for rule in (casting.filling, casting.bubbles, casting.inhibition):
+    for rule in (mould.check_filling, mould.check_bubbles, mould.check_inhibition):
         assert rule(printed) == []
         assert rule(view(wall=0.3, calibrated=True, wetted=(WettedSurface("mould", "x", "resin"),))) == []

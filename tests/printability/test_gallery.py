@@ -8,8 +8,8 @@ import pytest
 
 from pneutouch.printability import Joint, PrintSubject, check
 from pneutouch.printability.rulebook import RULES
+from pneutouch.printability.rules.bodies import check_contact_faces, check_matte
 from pneutouch.printability.rules.cleaning import check_cleaning
-from pneutouch.printability.rules.faces import check_contact_faces, check_matte
 from pneutouch.printability.view import PrintView
 from tests.printability.gallery import BAD, GOOD, ball, box, item, one, rod, taper, two
 from tests.printability.working import WORKING

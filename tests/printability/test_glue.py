@@ -11,7 +11,7 @@ from pneutouch.catalogue import load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation.subject import glued_seat
 from pneutouch.parts.glue import GLUES, GlueSurface, glue_of, glues_for, surface_of
-from pneutouch.printability.rules import joints
+from pneutouch.printability.rules import working
 from pneutouch.printability.view import GluedSeat, PrintView
 from pneutouch.spec.design import Connector, DesignFile
 from tests.printability.working import dome
@@ -23,7 +23,7 @@ GLUED = {"connector.seat": "glued-flange"}
 
 def findings(name, one, other):
     subject, context = dome([0])
-    return joints.check_glue(PrintView(subject, replace(context, glued=GluedSeat(name, one, other))))
+    return working.check_glue(PrintView(subject, replace(context, glued=GluedSeat(name, one, other))))
 
 
 def test_silicone_takes_its_own_glue_alone_and_every_pair_has_one():

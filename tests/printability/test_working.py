@@ -10,8 +10,8 @@ import pytest
 
 from pneutouch.mechanics.prediction import DeformedShape
 from pneutouch.printability import PrintSubject, check
-from pneutouch.printability.rules import build_volume, joints
-from pneutouch.printability.rules.build_volume import WallStep
+from pneutouch.printability.rules import working as rules
+from pneutouch.printability.rules.working import WallStep
 from pneutouch.printability.view import PrintView
 from pneutouch.units import UM
 from tests.printability.gallery import box, cup, item
@@ -77,9 +77,7 @@ def test_a_wall_between_layers_says_what_it_prints_as_and_what_it_reads_then():
 
 @pytest.mark.parametrize(("share", "found"), [(0.0, False), (0.08, False), (-0.08, False), (0.12, True), (-0.12, True)])
 def test_a_wall_may_miss_whole_layers_by_a_tenth_of_one(share, found):
-    messages = [
-        finding.message for finding in build_volume.check_layers(PrintView(*dome([0], wall=(93 + share) * 0.016)))
-    ]
+    messages = [finding.message for finding in rules.check_layers(PrintView(*dome([0], wall=(93 + share) * 0.016)))]
     assert any("at the pole" in message for message in messages) is found
 
 
@@ -93,7 +91,7 @@ def test_a_dome_meets_a_body_from_a_twentieth_of_a_millimetre_on(depth, expected
     prediction = replace(context.prediction, states=(replace(state, shapes=(shape,)),))
     block = item(box(5, 5, 5, (20.0, 0.0, 0.0)), "block")
     view = PrintView(PrintSubject((*subject.items, block)), replace(context, prediction=prediction))
-    assert [finding.excess.measured for finding in joints.check_freedom(view)] == pytest.approx(expected, abs=1e-3)
+    assert [finding.excess.measured for finding in rules.check_freedom(view)] == pytest.approx(expected, abs=1e-3)
 
 
 @pytest.mark.parametrize("wall", [1.5, 1.488, 0.6, 0.73, 2.345])
@@ -118,7 +116,7 @@ def test_each_printer_has_a_near_wall_of_whole_layers_that_suits_its_pixels(prin
     for mode in machine.mode:
         layer = WallStep("layers", "pole", UM * mode.layer_height_um)
         for wall in np.linspace(0.5, 3.0, 101):
-            advised = build_volume._advised(wall, layer, pixel)
+            advised = rules._advised(wall, layer, pixel)
             assert layer.off(advised) < 1e-9
             assert pixel.off(advised) <= 0.1 + 1e-9
             assert abs(advised - wall) <= 4 * max(pixel.size, layer.size)

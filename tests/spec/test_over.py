@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.errors import InputError
-from pneutouch.spec.over import parse_over
 from pneutouch.spec.toml_text import value_text
+from pneutouch.spec.tray import parse_over
 
 KEY = "membrane.wall_thickness_mm"
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pneutouch.results.record import plain
-from pneutouch.studio.question import Question
+from pneutouch.studio.form import Question
 from pneutouch.studio.search import search
 from pneutouch.studio.server import bases_of
 

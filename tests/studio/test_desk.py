@@ -14,7 +14,7 @@ import pytest
 from starlette.applications import Starlette
 from starlette.testclient import TestClient
 
-from pneutouch.studio.building import build_design
+from pneutouch.studio.design_jobs import build_design
 from pneutouch.studio.guard import HEADERS, SHEET, Guard
 from pneutouch.studio.jobs import Desk, Job, Jobs
 from pneutouch.workflows.build import CONTENTS, described

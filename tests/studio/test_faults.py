@@ -9,7 +9,7 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import FieldsError
 from pneutouch.spec.read import validate
 from pneutouch.spec.target import Target
-from pneutouch.studio.faults import faults_of
+from pneutouch.studio.guard import faults_of
 
 BASE = {"target": {"sensitivity_kPa_per_N": 2.0}}
 

@@ -14,9 +14,9 @@ from pneutouch.errors import InputError
 from pneutouch.results.record import plain
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
-from pneutouch.studio.faults import faults_of
-from pneutouch.studio.opened_design import open_file
-from pneutouch.studio.question import Question
+from pneutouch.studio.design_jobs import open_file
+from pneutouch.studio.form import Question
+from pneutouch.studio.guard import faults_of
 from pneutouch.studio.server import bases_of
 from tests.conftest import ROOT
 from tests.export import test_threemf_unsafe as unsafe

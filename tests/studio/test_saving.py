@@ -125,7 +125,7 @@ def test_links_and_folders_are_not_followed(home, client):
 
 
 def test_a_design_that_is_open_from_elsewhere_keeps_its_name(home):
-    from pneutouch.studio.question import save_design
+    from pneutouch.studio.form import save_design
 
     (home / "mine.toml").write_text("[membrane]\nwall_thickness_mm = 1\n")
     bases = {"mine": str(home / "mine.toml")}

@@ -17,8 +17,8 @@ from pneutouch.spec.fields import declarations, table_of
 from pneutouch.spec.read import validate
 from pneutouch.spec.target import Target
 from pneutouch.studio.candidate import state_of
-from pneutouch.studio.faults import faults_of
-from pneutouch.studio.question import Question
+from pneutouch.studio.form import Question
+from pneutouch.studio.guard import faults_of
 from pneutouch.studio.search import target_of
 from pneutouch.studio.server import bases_of
 from pneutouch.workflows.select.checks import assigned

@@ -11,7 +11,7 @@ from pneutouch.catalogue import DesignSource
 from pneutouch.results.record import plain
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import validate
-from pneutouch.studio.question import Question
+from pneutouch.studio.form import Question
 from pneutouch.studio.search import search
 from pneutouch.studio.server import bases_of
 from pneutouch.workflows.select.checks import assigned

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pneutouch.bench.protocol import protocol
+from pneutouch.bench.indents import protocol
 from pneutouch.bench.simulate.curve import PressCurve
 from pneutouch.errors import InputError
 from pneutouch.evaluation.resins import pressed, resins_of

@@ -11,7 +11,7 @@ import numpy as np
 import pandas
 import pytest
 
-from pneutouch.bench.protocol import protocol
+from pneutouch.bench.indents import protocol
 from pneutouch.bench.simulate import SimulationTruth, press_curves
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign, campaign_of, design_of

@@ -159,7 +159,7 @@ def test_a_printer_without_voxels_is_refused_before_anything_is_written(library,
 
 def test_too_large_too_low_and_too_many_colours_are_found(library, tmp_path):
     plan = plan_voxels(small_assembly(), mode="High Mix", library=library)
-    from pneutouch.printability.rules.voxels import check_stack
+    from pneutouch.printability.rules.resins import check_stack
 
     printer, _ = plan.assembly.machine("membrane")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from pneutouch.catalogue import Library
 from pneutouch.schemas.pieces import unit_of
 from pneutouch.spec.fields import Table
-from pneutouch.spec.mixing import MixingCurve, MixingPoint
+from pneutouch.spec.grade import MixingCurve, MixingPoint
 from pneutouch.spec.printer import FeatureSize, Printer
 from pneutouch.spec.values import Quantity
 from reference_pages import markdown

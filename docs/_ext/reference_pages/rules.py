@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch.printability.rulebook import MOULD_RULES, RULES
-from pneutouch.printability.rules import feature_sizes, voxels
+from pneutouch.printability.rules import feature_sizes, resins
 from pneutouch.spec.printer import FeatureSize, Printer
 from reference_pages import markdown
 from reference_pages.markdown import code, plain, table
@@ -26,11 +26,11 @@ GROUPS = {
     "Support": ("hollows", "cleaning", "matte"),
     "The membrane and its working": ("layers", "glue", "driving", "mixing curve", "freedom"),
     "Casting": ("filling", "bubbles", "inhibition", *MOULD_RULES),
-    "On request": (voxels.RULE, "deep"),
+    "On request": (resins.VOXELS, "deep"),
 }
 """The rules in the order of the page."""
 
-NAMES = (*RULES, *MOULD_RULES, voxels.RULE, "deep")
+NAMES = (*RULES, *MOULD_RULES, resins.VOXELS, "deep")
 """Every rule: those of each check, those on moulds, on voxel stacks and of the independent reader."""
 
 _LIMITS = {**{name: rule.limit for name, rule in feature_sizes.SIZE_RULES.items()}, "gaps": "gap"}

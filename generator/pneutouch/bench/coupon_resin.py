@@ -15,8 +15,8 @@ from pneutouch.bench.statistics import Mean, mean, neo_hookean, secant_modulus, 
 from pneutouch.errors import InputError
 from pneutouch.mechanics.paper_sensor import logarithmic_slope, young_modulus
 from pneutouch.spec.coupon import LEAST_READINGS, Dumbbell, DumbbellSpecimen, MixedCoupons, Puck
+from pneutouch.spec.grade import MixingPoint
 from pneutouch.spec.material import STIFFEST_ELASTOMER_MPA, Material, density_problem
-from pneutouch.spec.mixing import MixingPoint
 from pneutouch.spec.values import Quantity
 
 _SECANT = 0.1

@@ -12,8 +12,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.first_contact import BEFORE, Baseline, baseline
-from pneutouch.bench.indents import RunIndentations, find_indents, read_window
-from pneutouch.bench.protocol import HOLD, RELAXATION
+from pneutouch.bench.indents import HOLD, RELAXATION, RunIndentations, find_indents, read_window
 from pneutouch.bench.record import Blocks, MeasuredCurve, MeasuredIndentation, SuspectInterval
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import CampaignRun, Rig

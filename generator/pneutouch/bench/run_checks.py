@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.protocol import HOLD, RELAXATION
+from pneutouch.bench.indents import HOLD, RELAXATION
 from pneutouch.bench.record import Blocks, MeasuredCurve
 from pneutouch.errors import InputError
 from pneutouch.mechanics.response import figures

@@ -19,8 +19,8 @@ from pneutouch.errors import InputError, nearest, one_line
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.files import exists, is_file
 from pneutouch.spec.gauge import Gauge
+from pneutouch.spec.grade import MixingCurve
 from pneutouch.spec.material import Material
-from pneutouch.spec.mixing import MixingCurve
 from pneutouch.spec.part import MOUNTS, PORTS, SEATS, Tube
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import read_toml, validate

@@ -1,12 +1,15 @@
-"""Names and titles of all files that can be named, by kind."""
+"""Names and titles of all files that can be named, by kind, and the design that a campaign names."""
 
+from pathlib import Path
 from typing import Any
 
 from pneutouch.catalogue.library import KINDS, Library, examples
+from pneutouch.catalogue.scene import DesignSource
 from pneutouch.errors import InputError, nearest
+from pneutouch.spec.campaign import CAMPAIGN, Campaign, design_of
 from pneutouch.spec.design import DesignFile
+from pneutouch.spec.grade import MixingCurve
 from pneutouch.spec.material import Material
-from pneutouch.spec.mixing import MixingCurve
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.specimen import Specimen
 from pneutouch.spec.values import name_of
@@ -79,3 +82,20 @@ def _title(thing: Any) -> str:
     if isinstance(thing, Printer):
         return f"{thing.title}: {', '.join(thing.resins)}"
     return str(thing.title)
+
+
+def known_design(campaign: Campaign, folder: Path, library: Library) -> str | None:
+    """The design that a campaign names, as a command takes it; None if it names none.
+
+    Raises InputError for one that is not there, with the campaign's file and key.
+    """
+    name = design_of(campaign, folder)
+    if name is not None:
+        try:
+            DesignSource.of(name, library)
+        except InputError as error:
+            # An error on what is in the design's file names that file.
+            if error.file is None:
+                error.file, error.key, error.value = str(folder / CAMPAIGN), "design", campaign.design
+            raise
+    return name

@@ -14,7 +14,7 @@ from pneutouch.catalogue.library import Library
 from pneutouch.errors import InputError, shown
 from pneutouch.shape.dome import DomeShape
 from pneutouch.spec.design import Membrane
-from pneutouch.spec.grade import Grade
+from pneutouch.spec.grade import FROM_CURVE, Grade, MixingCurve, MixingPoint
 from pneutouch.spec.material import (
     STIFFEST_ELASTOMER_MPA,
     ArcGrading,
@@ -23,7 +23,6 @@ from pneutouch.spec.material import (
     density_problem,
     elastomer_modulus_problem,
 )
-from pneutouch.spec.mixing import FROM_CURVE, MixingCurve, MixingPoint
 from pneutouch.spec.values import Quantity
 
 

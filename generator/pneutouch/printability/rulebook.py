@@ -9,18 +9,7 @@ from typing import Any
 
 from pneutouch.errors import RuleBrokenError, joined
 from pneutouch.parts.mould import MouldAssembly
-from pneutouch.printability.rules import (
-    build_volume,
-    casting,
-    cleaning,
-    driving_pressure,
-    faces,
-    feature_sizes,
-    joints,
-    mesh,
-    mould,
-    resins,
-)
+from pneutouch.printability.rules import bodies, cleaning, feature_sizes, mould, resins, working
 from pneutouch.printability.subject import PrintItem, PrintSubject
 from pneutouch.printability.view import PrintView, SensorContext
 from pneutouch.results.printing import Finding
@@ -28,28 +17,28 @@ from pneutouch.results.printing import Finding
 Rule = Callable[[PrintView], list[Finding]]
 
 RULES: dict[str, Rule] = {
-    "mesh": mesh.check_mesh,
-    "contact faces": faces.check_contact_faces,
-    "envelope": build_volume.check_envelope,
+    "mesh": bodies.check_mesh,
+    "contact faces": bodies.check_contact_faces,
+    "envelope": bodies.check_envelope,
     "resins": resins.check_resins,
     "walls": feature_sizes.CHECKS["walls"],
     "pins": feature_sizes.CHECKS["pins"],
     "holes": feature_sizes.CHECKS["holes"],
     "channels": feature_sizes.CHECKS["channels"],
-    "gaps": joints.check_gaps,
+    "gaps": feature_sizes.check_gaps,
     "emboss": feature_sizes.CHECKS["emboss"],
     "edges": feature_sizes.check_edges,
     "hollows": cleaning.check_hollows,
     "cleaning": cleaning.check_cleaning,
-    "matte": faces.check_matte,
-    "layers": build_volume.check_layers,
-    "filling": casting.filling,
-    "bubbles": casting.bubbles,
-    "inhibition": casting.inhibition,
-    "glue": joints.check_glue,
-    "driving": driving_pressure.check_driving,
+    "matte": bodies.check_matte,
+    "layers": working.check_layers,
+    "filling": mould.check_filling,
+    "bubbles": mould.check_bubbles,
+    "inhibition": mould.check_inhibition,
+    "glue": working.check_glue,
+    "driving": working.check_driving,
     "mixing curve": resins.check_mixing_curve,
-    "freedom": joints.check_freedom,
+    "freedom": working.check_freedom,
 }
 
 
@@ -57,7 +46,7 @@ def check(subject: PrintSubject, sensor_context: SensorContext | None = None) ->
     """All findings, errors first.
 
     Bodies whose mesh bounds no solid get the findings that need none: mesh, envelope and resins. Rules on the sensor's
-    working (driving_pressure, layers, mixing curve) and on casting report nothing without ``sensor_context``.
+    working (driving, layers, mixing curve) and on casting report nothing without ``sensor_context``.
     """
     view = PrintView(subject, sensor_context)
     return sorted((finding for rule in RULES.values() for finding in rule(view)), key=lambda finding: finding.rank)

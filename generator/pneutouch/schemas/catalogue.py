@@ -24,7 +24,7 @@ from pneutouch.schemas.pieces import (
     model_schema,
     record,
 )
-from pneutouch.spec.over import MAX_VALUES
+from pneutouch.spec.tray import MAX_VALUES
 
 _SCALAR = {"type": ["number", "string", "boolean"]}
 _VALUE = any_of(_SCALAR, items({"anyOf": [_SCALAR, {"type": "array"}]}))

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from pneutouch.catalogue import DesignSource, Library
     from pneutouch.evaluation.evaluate import Evaluation
-    from pneutouch.studio.question import Question
+    from pneutouch.studio.form import Question
 
 _DIGITS = 6
 

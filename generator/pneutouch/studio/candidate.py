@@ -20,7 +20,7 @@ from pneutouch.rounding import tenths_below
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import Table
 from pneutouch.spec.read import assignments, validate
-from pneutouch.studio.question import PAGE, Question
+from pneutouch.studio.form import PAGE, Question
 from pneutouch.units import KPA
 from pneutouch.workflows.select.checks import assigned
 

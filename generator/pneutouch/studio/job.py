@@ -13,11 +13,11 @@ from typing import Any, BinaryIO
 
 from pneutouch.results.record import plain
 from pneutouch.stopping import STOPS
-from pneutouch.studio.faults import PageResponse, reported
+from pneutouch.studio.guard import PageResponse, reported
 
 KINDS: dict[str, str] = {
-    "build": "building:build_design",
-    "open": "opened_design:open_file",
+    "build": "design_jobs:build_design",
+    "open": "design_jobs:open_file",
     "select": "search:search",
     "recognise": "measuring:recognised",
     "characterize": "measuring:characterize",

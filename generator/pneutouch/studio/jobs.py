@@ -21,10 +21,9 @@ from starlette.routing import Route
 
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.results.record import plain
-from pneutouch.studio.faults import fault_status, faults_of
-from pneutouch.studio.guard import SHEET, UPLOADS, Uploads
+from pneutouch.studio.form import NameTakenError, json_body, save_design
+from pneutouch.studio.guard import SHEET, UPLOADS, Uploads, fault_status, faults_of
 from pneutouch.studio.job import BRIEF, KINDS
-from pneutouch.studio.question import NameTakenError, json_body, save_design
 
 KEPT = 8
 """Jobs of a kind whose files are kept; the oldest goes first."""

@@ -1,9 +1,7 @@
-"""Campaign as the page shows it: files with their columns, figures compared with the predicted ones, curves.
-
-A campaign's folder made of the files that the page was given.
-"""
+"""A campaign as the page shows it: files and columns, figures beside the predicted, and the commands that repeat it."""
 
 import os
+import shlex
 import shutil
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -21,8 +19,10 @@ from pneutouch.report.numbers import overlap
 from pneutouch.results.measured import DoubtfulPart, RunOfSensor
 from pneutouch.rounding import rounded
 from pneutouch.spec.campaign import CAMPAIGN, CampaignRun
+from pneutouch.spec.options import CalibrationOptions, option_words
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
+from pneutouch.studio.form import Question
 from pneutouch.units import KPA
 from pneutouch.workflows.characterize import CharacterizationResult
 from pneutouch.workflows.characterize.predicted import doubtful, of_run
@@ -325,3 +325,70 @@ def _bring_named(folder: Path, inside: list[str]) -> None:
             inside[inside.index(path.name)] = path.as_posix()
             if path.name not in named:
                 (folder / path.name).unlink()
+
+
+_MARKS = {"\t": "tab", " ": "space"}
+
+Parameters = list[tuple[str, str]]
+"""Names of a command's parameters with their texts; a text is empty if the name alone states it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CommandWords:
+    """The command that repeats a job, and the steps before it."""
+
+    command: str
+    before: str
+
+
+def characterize_words(data: Path, question: Question | None, arguments: Mapping[str, Any]) -> CommandWords:
+    """The command, and the steps before it."""
+    parameters: Parameters = []
+    if question is not None:
+        parameters.append(("design", arguments["bases"][question.base]))
+        parameters += [("set", f"{key}={text}") for key, text in question.values.items() if text is not None]
+    return _words("characterize", data, [*parameters, *_reading_words(arguments)], _kept(question))
+
+
+def _kept(question: Question | None) -> str:
+    """Keys that the page leaves out of the design file: no option of a command does."""
+    left = [] if question is None else [key for key, text in question.values.items() if text is None]
+    return f"it keeps {', '.join(left)} of the design file, which the page leaves out" if left else ""
+
+
+def calibrate_words(
+    data: Path, question: Question | None, arguments: Mapping[str, Any], options: CalibrationOptions
+) -> CommandWords:
+    """The command, and the steps before it: it takes no changes of a design."""
+    changed = question is not None and any(key != "calibration" for key in question.values)
+    parameters: Parameters = []
+    if question is not None:
+        parameters.append(("design", "DESIGN" if changed else arguments["bases"][question.base]))
+    parameters += option_words(options if options.save else options.model_copy(update={"replace": False}))
+    return _words(
+        "calibrate", data, [*parameters, *_reading_words(arguments)], _saving(question, arguments) if changed else ""
+    )
+
+
+def _saving(question: Question | None, arguments: Mapping[str, Any]) -> str:
+    """Instruction to save a changed design first."""
+    assert question is not None
+    changes = [("from", arguments["bases"][question.base])]
+    changes += [("set", f"{key}={text}") for key, text in question.values.items() if text is not None]
+    return f"before it, with a name for DESIGN: {_command('new', 'DESIGN', changes)}"
+
+
+def _reading_words(arguments: Mapping[str, Any]) -> Parameters:
+    stated = {"columns": (arguments.get("columns") or "").strip(), **(arguments.get("format") or {})}
+    return [(name, _MARKS.get(value, str(value))) for name, value in stated.items() if value not in (None, "")]
+
+
+def _words(command: str, data: Path, parameters: Parameters, before: str) -> CommandWords:
+    return CommandWords(command=_command(command, str(data), parameters), before=before)
+
+
+def _command(command: str, given: str, parameters: Parameters) -> str:
+    words = ["pneutouch", command, given]
+    for name, text in parameters:
+        words += [f"--{name.replace('_', '-')}", *([text] if text else [])]
+    return shlex.join(words)

@@ -17,10 +17,20 @@ from pneutouch.results.calibration import OutcomeRecord
 from pneutouch.results.measured import MeasuredCampaign
 from pneutouch.spec.campaign import CAMPAIGN, Campaign, CampaignRun, RunKind, campaign_of
 from pneutouch.spec.options import CalibrationOptions, options_of
+from pneutouch.studio.form import Question
 from pneutouch.studio.job import Report
-from pneutouch.studio.measured import PageGroup, PageRun, page_group, page_run, page_runs, placed, write_runs
-from pneutouch.studio.question import Question
-from pneutouch.studio.repeating import CommandWords, calibrate_words, characterize_words
+from pneutouch.studio.measured import (
+    CommandWords,
+    PageGroup,
+    PageRun,
+    calibrate_words,
+    characterize_words,
+    page_group,
+    page_run,
+    page_runs,
+    placed,
+    write_runs,
+)
 from pneutouch.workflows.calibrate.calibrate import CalibrationOutcome, run_calibration
 from pneutouch.workflows.characterize import Reading, load_curves, parse_columns, read_as, recognise
 from pneutouch.workflows.characterize.campaign import characterize as run_characterize

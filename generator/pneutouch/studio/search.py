@@ -21,7 +21,7 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, parse_changes, validate
 from pneutouch.spec.target import Target
 from pneutouch.studio.candidate import CandidateCard, CandidateStates, candidate_figures, grade_figures
-from pneutouch.studio.question import PAGE, Question
+from pneutouch.studio.form import PAGE, Question
 from pneutouch.workflows.select.charts import tradeoff
 from pneutouch.workflows.select.document import dropped_lines, headline, missed_text, remarks, search_notes
 from pneutouch.workflows.select.graded import GradedSelectionRun

@@ -23,11 +23,17 @@ from pneutouch.catalogue import DesignSource, Library
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.results.record import plain
 from pneutouch.studio.answer import Answers
-from pneutouch.studio.faults import fault_status, faults_of, too_little_memory
-from pneutouch.studio.form import design_form, designs_of, target_form
-from pneutouch.studio.guard import Application, Guard, TooLargeError, too_large
+from pneutouch.studio.form import PageLibrary, Question, design_form, designs_of, json_body, target_form
+from pneutouch.studio.guard import (
+    Application,
+    Guard,
+    TooLargeError,
+    fault_status,
+    faults_of,
+    too_large,
+    too_little_memory,
+)
 from pneutouch.studio.jobs import Desk
-from pneutouch.studio.question import PageLibrary, Question, json_body
 from pneutouch.studio.solver import Solver, SupersededError
 
 _KINDS = {

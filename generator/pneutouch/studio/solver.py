@@ -12,8 +12,8 @@ from typing import Any, BinaryIO
 from pneutouch.catalogue import Library
 from pneutouch.results.record import plain
 from pneutouch.studio.answer import full_answer
-from pneutouch.studio.faults import PageResponse, reported
-from pneutouch.studio.question import PageLibrary, Question
+from pneutouch.studio.form import PageLibrary, Question
+from pneutouch.studio.guard import PageResponse, reported
 
 _LONGEST_LINE = 1 << 26
 """Bytes of an answer; the longest of a design with fifty driving pressures are a tenth of it."""

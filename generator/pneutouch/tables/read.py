@@ -10,11 +10,17 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
-from pneutouch.tables.binary_tables import parquet_chunks, parquet_layout, tdms_chunks, tdms_layout
+from pneutouch.tables.binary_tables import (
+    parquet_chunks,
+    parquet_layout,
+    tdms_chunks,
+    tdms_layout,
+    xlsx_chunks,
+    xlsx_layout,
+)
 from pneutouch.tables.csv_table import csv_chunks
 from pneutouch.tables.layout import CLOCK, RowChunk, TableFormat, TableLayout
 from pneutouch.tables.text import text_layout
-from pneutouch.tables.xlsx_table import xlsx_chunks, xlsx_layout
 
 _ANY = TableFormat()
 

@@ -17,7 +17,7 @@ from pneutouch.formats import versioned
 from pneutouch.output.files import check_writable, digest, exchange, file_digest, json_bytes
 from pneutouch.parts import Assembly
 from pneutouch.printability import Finding, refuse
-from pneutouch.printability.rules.voxels import check_stack
+from pneutouch.printability.rules.resins import check_stack
 from pneutouch.results.record import plain
 from pneutouch.spec.printer import Mode
 from pneutouch.stopping import parent_folders, temporary_folder, uninterrupted

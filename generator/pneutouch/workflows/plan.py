@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pneutouch.bench.protocol import CLEARANCE, REPETITIONS, RunProtocol, protocol
+from pneutouch.bench.indents import CLEARANCE, REPETITIONS, RunProtocol, protocol
 from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.bench.simulate.rig import LEAK_SECONDS
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pneutouch.bench.protocol import CLEARANCE, RunProtocol
+from pneutouch.bench.indents import CLEARANCE, RunProtocol
 from pneutouch.bench.simulate.curve import PressCurve, PressCurves, line_pressure, sensor_pressure
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError

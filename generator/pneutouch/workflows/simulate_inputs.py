@@ -12,7 +12,7 @@ from typing import get_args
 from pydantic import Field
 
 from pneutouch.catalogue import DesignSource, Library
-from pneutouch.catalogue.campaign import known_design
+from pneutouch.catalogue.listing import known_design
 from pneutouch.catalogue.scene import split_calibration
 from pneutouch.errors import InputError
 from pneutouch.evaluation.resins import SimulatedResin

@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.ndimage import binary_erosion, generate_binary_structure
 
-from pneutouch.export.voxels.raster import ResinBlend
-from pneutouch.export.voxels.skin import SkinCompensation, interior
+from pneutouch.export.voxels.raster import ResinBlend, SkinCompensation, interior
 from pneutouch.export.voxels.slices import BLOCK, VoxelSlicer, thresholds, void_and_cluster
 from tests.export.voxels.small import ball, block, job, material
 

@@ -5,7 +5,10 @@ import sys
 
 import pytest
 
-OURS, SCIPYS = "from pneutouch.mechanics.solid import lapack as ours", "from scipy.linalg import lapack as scipys"
+OURS, SCIPYS = (
+    "from pneutouch.mechanics.solid.banded import lapack as ours",
+    "from scipy.linalg import lapack as scipys",
+)
 COMPARED = """
 import sys
 import numpy as np

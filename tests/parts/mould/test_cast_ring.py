@@ -21,7 +21,7 @@ from pneutouch.parts import Assembly, assemble
 from pneutouch.parts.layout import membrane_meridian
 from pneutouch.parts.mould.pieces import silicone
 from pneutouch.printability.measure.mould import cavity_match, overlaps, undercuts
-from pneutouch.printability.rules.faces import overlap_volume, shared_area
+from pneutouch.printability.rules.bodies import overlap_volume, shared_area
 from pneutouch.printability.rules.feature_sizes import CHECKS
 from pneutouch.printability.subject import PrintSubject
 from pneutouch.printability.view import PrintView

@@ -6,8 +6,7 @@ import tomllib
 
 import numpy as np
 
-from pneutouch.bench.indents import find_indents
-from pneutouch.bench.protocol import protocol
+from pneutouch.bench.indents import find_indents, protocol
 from pneutouch.bench.reading import PLATE, read_blocks
 from pneutouch.bench.source import identify
 from pneutouch.spec.campaign import ColumnMap, Rig

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
-from pneutouch.spec.over import spread
+from pneutouch.spec.tray import spread
 from pneutouch.workflows.sweep import plan_of_file, plan_of_flags, sweep, work
 from pneutouch.workflows.sweep.execute import ComputeResources
 from pneutouch.workflows.sweep.work import study

@@ -62,7 +62,7 @@ def test_a_one_piece_sensor_stays_one_assembly(seats):
 
 
 def test_shared_faces_of_an_assembly_keep_their_triangles(seats):
-    from pneutouch.printability.rules.faces import shared_area
+    from pneutouch.printability.rules.bodies import shared_area
 
     laid, _ = seats
     part = next(part for part in laid.parts if len(part.bodies) == 2)

@@ -10,7 +10,7 @@ from tests.printability.gallery import ball, box, item, printer, prism, rod
 from pictures.rules.case import Case, Pair, of_rule
 from pneutouch.body.section import mesh_outline
 from pneutouch.printability import PrintItem
-from pneutouch.printability.rules.voxels import check_stack
+from pneutouch.printability.rules.resins import check_stack
 from pneutouch.report.section import draw_loops, horizontal, leader, vertical
 from pneutouch.report.style import INK
 

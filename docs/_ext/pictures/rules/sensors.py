@@ -10,8 +10,8 @@ from pictures.rules.case import LIBRARY, Case, Pair, assembled, evaluated, item_
 from pneutouch.mechanics.prediction import DeformedShape
 from pneutouch.report.section import draw_section, leader, polar
 from pneutouch.report.style import ACCENT, INK, LINES, MUTED, plain_ticks
+from pneutouch.spec.grade import MixingCurve, MixingPoint
 from pneutouch.spec.material import Material
-from pneutouch.spec.mixing import MixingCurve, MixingPoint
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,7 +10,7 @@ from pneutouch.bench.calibrate.fit import CalibrationFit
 from pneutouch.bench.calibrate.fitted_atlas import free_pressure, shared_of
 from pneutouch.bench.calibrate.observations import ATLAS_FORCE, ATLAS_PRESSURE, READING, ObservationPoints
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, NAMES, WALL
-from pneutouch.bench.protocol import REPETITIONS, SHARE
+from pneutouch.bench.indents import REPETITIONS, SHARE
 from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
 from pneutouch.mechanics.limits import RATED_SHARE, limits
 from pneutouch.mechanics.uncertainty.propagate import COUPON

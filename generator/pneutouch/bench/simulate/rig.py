@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.protocol import RunProtocol
+from pneutouch.bench.indents import RunProtocol
 from pneutouch.errors import InputError
 from pneutouch.mechanics.gauge_reading import GaugeReading
 from pneutouch.mechanics.sensor import Sensor

@@ -6,7 +6,7 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.protocol import RunProtocol, protocol
+from pneutouch.bench.indents import RunProtocol, protocol
 from pneutouch.bench.simulate.curve import ModelDeviation, PressCurve, PressCurves
 from pneutouch.bench.simulate.rig import (
     MINUTE,

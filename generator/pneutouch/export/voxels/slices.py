@@ -17,8 +17,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags, Indices, Labels, Singles
 from pneutouch.body.section import Window
-from pneutouch.export.voxels.raster import VoxelBody, VoxelJob
-from pneutouch.export.voxels.skin import RecentLayers, SkinCompensation, interior, reach_for
+from pneutouch.export.voxels.raster import RecentLayers, SkinCompensation, VoxelBody, VoxelJob, interior, reach_for
 
 BLOCK = (48, 16, 32)
 """Voxels of the block along z, y, x: at 27 um layers about 1.3 mm in each direction; our choice, ranked in about a

@@ -18,8 +18,7 @@ import numpy as np
 from pneutouch.arrays import Labels, Pixels
 from pneutouch.errors import InputError
 from pneutouch.export.voxels.png import decode, table
-from pneutouch.export.voxels.raster import BACKGROUND, VoxelBody, VoxelJob
-from pneutouch.export.voxels.skin import reach_for
+from pneutouch.export.voxels.raster import BACKGROUND, VoxelBody, VoxelJob, reach_for
 from pneutouch.export.voxels.slices import CUBE, FULL, VoxelCounts, VoxelSlicer
 from pneutouch.formats import check_format
 from pneutouch.results.stack import BodyVoxels, DitherRecord, ResinVoxels, StackRecord

@@ -13,8 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from pneutouch.arrays import Array, Index
-from pneutouch.mechanics.solid import lapack
-from pneutouch.mechanics.solid.banded import solve_definite
+from pneutouch.mechanics.solid.banded import lapack, solve_definite
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolverState
 

@@ -1,1 +1,1 @@
-"""The rules, one file each: ``check(view)`` returns findings."""
+"""The rules by their subject: ``check_NAME(view)`` returns findings."""

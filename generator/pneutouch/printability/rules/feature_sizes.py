@@ -1,18 +1,18 @@
-"""Features of one body against the smallest that its machine prints in its material. Measured on the mesh.
+"""Features of one body, and gaps between bodies printed together, against the smallest that their machine prints.
 
-Edges too sharp to print, and triangles too thin to be written.
-
-Thin places against the printer's limits: the common part of the rules on sizes.
+Measured on the meshes; with edges too sharp to print, and triangles too thin to be written.
 """
 
 from collections.abc import Iterator
 from functools import partial
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.body import Body
+from pneutouch.printability.measure.chords import first_hits
 from pneutouch.printability.measure.thin import FeatureKind, ThinPlace
 from pneutouch.printability.subject import Point3
 from pneutouch.printability.view import PrintPart, PrintView
@@ -178,3 +178,48 @@ def _collapsed(part: PrintPart) -> list[Finding]:
 def _areas(vertices: Array, body: Body) -> Array:
     a, b, c = np.moveaxis(vertices[body.triangles], 1, 0)
     return np.asarray(np.cross(b - a, c - a))
+
+
+_TOUCHING = 1e-3
+"""Faces nearer than this (mm) are meant to touch."""
+
+_PARALLEL = -np.cos(np.radians(10.0))
+"""Faces of two bodies leave a gap where they run along each other; where they meet at an edge they leave a corner."""
+
+_GAP_FIX = "widen the gap, close it, or print the bodies apart"
+
+
+def check_gaps(view: PrintView) -> list[Finding]:
+    """Compare every gap."""
+    findings = compare(view, "gaps", {"gap": "a gap"}, "gap", _GAP_FIX)
+    for job in view.jobs:
+        for one, other in combinations([part for part in job.parts if part.sound], 2):
+            findings += _between(one, other)
+    return findings
+
+
+def _between(one: PrintPart, other: PrintPart) -> list[Finding]:
+    feature = one.limit("gap")
+    samples, reach = one.samples, feature.recommended
+    box = other.item.body.bounds + np.array([[-reach], [reach]])
+    rows = np.flatnonzero(((samples.points >= box[0]) & (samples.points <= box[1])).all(axis=1))
+    if not len(rows):
+        return []
+    normals = one.surface.normals[samples.faces[rows]]
+    # Starting just inside, so that a touching face is hit and distinguished from a gap.
+    starts = samples.points[rows] - 0.5 * _TOUCHING * normals
+    hits = first_hits(other.manifold, starts, normals, reach + _TOUCHING)
+    width = hits.distances[:, 1] - 0.5 * _TOUCHING
+    facing = np.einsum("ij,ij->i", normals, other.surface.normals[hits.faces[:, 1]])
+    width = np.where((width > _TOUCHING) & (facing < _PARALLEL), width, np.inf)
+    first = int(width.argmin())
+    size = float(width[first])
+    slack = one.slack(reach, 0.0) + other.slack(reach, 0.0)
+    limit = lower(size, feature, slack)
+    if limit is None:
+        return []
+    severity = severity_of(size, feature, slack)
+    text = f"the gap to the {other.name} is {wording(size, limit, severity)}"
+    where = spot(samples.points[rows[first]])
+    hint = one.item.hints.get("gaps", _GAP_FIX)
+    return [Finding("gaps", severity, one.name, text, hint, feature.source, where, Excess(size, limit, "mm"))]

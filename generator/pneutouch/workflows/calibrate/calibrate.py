@@ -12,7 +12,7 @@ from pneutouch.bench.calibrate import NAMES, Observations
 from pneutouch.bench.calibrate.other_states import further_tests
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.catalogue import KINDS, DesignSource, Library, load_scene, split_calibration, user_folder
-from pneutouch.catalogue.campaign import known_design
+from pneutouch.catalogue.listing import known_design
 from pneutouch.errors import InputError
 from pneutouch.evaluation.calibrated import check_fitted
 from pneutouch.evaluation.evaluate import sensor_of

@@ -15,8 +15,8 @@ from pneutouch.bench.record import MeasuredCurve, Trace
 from pneutouch.bench.run_checks import check_plausible, outliers
 from pneutouch.bench.source import MeasuredFile
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
-from pneutouch.catalogue.campaign import known_design
 from pneutouch.catalogue.library import example_remedy
+from pneutouch.catalogue.listing import known_design
 from pneutouch.errors import InputError
 from pneutouch.evaluation.calibrated import check_fitted
 from pneutouch.evaluation.evaluate import sensor_of

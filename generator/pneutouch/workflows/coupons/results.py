@@ -20,8 +20,8 @@ from pneutouch.errors import InputError
 from pneutouch.output.files import replace_files
 from pneutouch.results.coupons import ChangedQuantity, CouponReport, MeasuredFigure
 from pneutouch.spec.coupon import CouponResults, FeatureGauge, MixedCoupons, read_results
+from pneutouch.spec.grade import MixingCurve, MixingPoint
 from pneutouch.spec.material import Material
-from pneutouch.spec.mixing import MixingCurve, MixingPoint
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text

@@ -22,8 +22,8 @@ from pneutouch.mechanics.models.choice import CLOSURES, USUAL
 from pneutouch.spec.design import CALIBRATION, DesignFile
 from pneutouch.spec.fields import table_of
 from pneutouch.spec.files import design_inside
-from pneutouch.spec.over import MAX_VALUES, parse_over, spread
 from pneutouch.spec.read import Changes
+from pneutouch.spec.tray import MAX_VALUES, parse_over, spread
 from pneutouch.spec.values import file_name, is_finite, name_of
 
 PRESSURES = "pneumatics.driving_pressures_kPa"

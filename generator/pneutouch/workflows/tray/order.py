@@ -17,10 +17,9 @@ from pneutouch.errors import InputError, shown
 from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.files import design_inside, is_file
 from pneutouch.spec.material import Material
-from pneutouch.spec.over import parse_over
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import Changes, read_toml, validate
-from pneutouch.spec.tray import LEAST_COPIES, MOST_COPIES, Entry, EntryValue, Tray
+from pneutouch.spec.tray import LEAST_COPIES, MOST_COPIES, Entry, EntryValue, Tray, parse_over
 from pneutouch.spec.values import file_name, name_of
 
 

@@ -8,8 +8,8 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.atlas.figures import SENSITIVITY
 from pneutouch.mechanics.paper_sensor import logarithmic_change, logarithmic_slope, shore_a
 from pneutouch.mechanics.uncertainty.source import UncertaintySource, counting
+from pneutouch.spec.grade import FROM_CURVE
 from pneutouch.spec.material import HARDEST, Material
-from pneutouch.spec.mixing import FROM_CURVE
 from pneutouch.spec.values import Quantity
 
 ASSUMED_FACTOR = 2.7

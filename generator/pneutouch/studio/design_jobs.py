@@ -1,11 +1,8 @@
-"""A job of the page: a file that was given to it, as a design that the page can show.
-
-The state of the page that is a design from elsewhere.
-"""
+"""Jobs of the page on one design: a file that was given to it is opened, or a design is built to all its files."""
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,15 +10,18 @@ from pneutouch import __version__
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.catalogue.library import is_specimen
 from pneutouch.errors import InputError, PneutouchError, one_line
-from pneutouch.evaluation.evaluate import PredictionOptions
+from pneutouch.evaluation.evaluate import PredictionOptions, evaluate
 from pneutouch.formats import KEY, check_format
+from pneutouch.mechanics.models.choice import model_options
+from pneutouch.output.files import MANIFEST
 from pneutouch.output.recipe import scene_kinds
 from pneutouch.results.record import plain
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.read import read_toml
-from pneutouch.spec.values import name_of
+from pneutouch.spec.values import name_of, plain_name
 from pneutouch.studio.candidate import state_of
-from pneutouch.studio.question import Question
+from pneutouch.studio.form import Question
+from pneutouch.workflows.build import STEPS, build, calibrated_name, described
 
 
 def nearest_state(source: DesignSource, bases: Mapping[str, str], library: Library) -> Question:
@@ -177,3 +177,59 @@ def _words(error: PneutouchError) -> str:
     """The message of an error without those of the errors after it."""
     alone = InputError(error.problem, file=error.file, key=error.key, value=error.value, remedy=error.remedy)
     return alone.message()
+
+
+STAGES = ("prediction", *STEPS)
+"""The stages that a build reports, in order."""
+
+SHEET = "datasheet.html"
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltFiles:
+    """Files of a kind, and the kind in words."""
+
+    files: list[str]
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltDesign:
+    """A design that was built: its files, the datasheet's path and the findings."""
+
+    name: str
+    question: Question
+    groups: list[BuiltFiles]
+    left_out: Mapping[str, Any]
+    sheet: str
+    findings: list[Mapping[str, Any]]
+
+
+def build_design(
+    arguments: Mapping[str, Any], folder: Path, report: Callable[[int, int, str | None], None]
+) -> BuiltDesign:
+    """Build the design of ``question`` into ``folder``, under ``name`` where one is given.
+
+    Raises InputError
+    naming the field, and RuleBrokenError where a rule is broken.
+    """
+    question, library = Question.of(arguments.get("question")), Library.default()
+    source = question.source(arguments["bases"], library)
+    name = arguments.get("name") or calibrated_name(source, {})
+    if name is not None:
+        if not isinstance(name, str):
+            raise InputError("must be a text", key="name", value=name)
+        source = replace(source, name=plain_name(name, key="name"))
+    report(0, len(STAGES), STAGES[0])
+    evaluation = evaluate(source, **model_options(None, None), library=library)
+    made = build(evaluation, folder, lambda step: report(STAGES.index(step), len(STAGES), step))
+    files = sorted(path.relative_to(made).as_posix() for path in made.rglob("*") if path.is_file())
+    groups = described(files, made.name)
+    return BuiltDesign(
+        name=source.name,
+        question=question,
+        groups=[BuiltFiles([f"{made.name}/{each}" for each in names], words) for names, words in groups],
+        left_out=json.loads((made / MANIFEST).read_text(encoding="utf-8")).get("left_out", {}),
+        sheet=f"{made.name}/{SHEET}",
+        findings=[plain(finding.stated) for finding in evaluation.findings],
+    )

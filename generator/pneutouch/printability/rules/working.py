@@ -1,0 +1,255 @@
+"""The working of the sensor: its wall in layers, its driving pressures, the bond of its glue, its freedom to move."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.mechanics import Sensor
+from pneutouch.parts.glue import GLUES, glues_for
+from pneutouch.printability.view import PrintPart, PrintView, SensorContext
+from pneutouch.results.printing import Excess, Finding
+from pneutouch.units import KPA, UM
+
+_SOURCE = "layer height and pixel as the printer's profile states them; a tenth of a step: own, unverified"
+_OFF = 0.1
+"""Share of a step by which a wall may miss a whole number of them."""
+
+
+_FAR = 4.0
+"""The advised wall is at most this many of the coarser steps from the one drawn."""
+
+
+class WallStep(NamedTuple):
+    """The machine's step across the wall at one place: layers or pixels, mm."""
+
+    unit: str
+    place: str
+    size: float
+
+    def off(self, wall: float) -> float:
+        """Share of a step by which a wall misses a whole number of them."""
+        return abs(wall / self.size - round(wall / self.size))
+
+    def printed(self, wall: float) -> tuple[float, float]:
+        """The walls that it prints as, mm."""
+        return self.size * math.floor(wall / self.size), self.size * math.ceil(wall / self.size)
+
+
+def check_layers(view: PrintView) -> list[Finding]:
+    """Compare the wall with the steps of the machine at the pole and at the rim: one finding a wall.
+
+    The wall of a calibrated sensor is printed already, and fitted: nothing is found of it. A cast one has no steps.
+    """
+    context = view.sensor
+    part = None if context is None else view.part(context.membrane)
+    if context is None or part is None or context.calibrated or part.item.printer.is_casting:
+        return []
+    printer, wall = part.item.printer, context.sensor.dome.wall_thickness
+    upright = abs(part.item.up[2]) / float(np.linalg.norm(part.item.up)) > 0.7
+    along, across = ("pole", "rim") if upright else ("rim", "pole")
+    layer = WallStep("layers", along, UM * part.item.mode.layer_um)
+    pixel = WallStep("pixels", across, UM * max(printer.pixel.x_um, printer.pixel.y_um))
+    missed = [step for step in (layer, pixel) if step.off(wall) > _OFF]
+    if not missed:
+        return []
+    clauses = [
+        f"{wall / step.size:.1f} {step.unit} of {step.size / UM:g} um at the {step.place}, where it prints as "
+        f"{low:.3f} or {high:.3f} mm"
+        for step in missed
+        for low, high in [step.printed(wall)]
+    ]
+    ends = [end for step in missed for end in step.printed(wall)]
+    read = _sensitivities(context.sensor, context.prediction.states[-1].driving_pressure, min(ends), max(ends))
+    best, shape = _advised(wall, layer, pixel), context.sensor.dome.shape
+    counts = f"{best / layer.size:.0f} layers and {best / pixel.size:.1f} pixels"
+    fix = part.item.hints.get("layers", f"draw the wall {best:.3f} mm thick: {counts}")
+    at = (
+        (0.0, 0.0, shape.height + 0.5 * wall)
+        if missed[0].place == "pole"
+        else (shape.inner_radius + 0.5 * wall, 0.0, 0.0)
+    )
+    excess = Excess(missed[0].off(wall), _OFF, missed[0].unit)
+    text = f"the wall is {', and '.join(clauses)}{read}"
+    return [Finding("layers", "note", part.name, text, fix, _SOURCE, at, excess)]
+
+
+def _advised(wall: float, layer: WallStep, pixel: WallStep) -> float:
+    """The nearest wall, mm, of whole layers that is close to whole pixels; if there is none, the closest to them."""
+    far = _FAR * max(layer.size, pixel.size)
+    numbers = range(max(1, math.ceil((wall - far) / layer.size)), math.floor((wall + far) / layer.size) + 1)
+    walls = [number * layer.size for number in numbers]
+    return min(walls, key=lambda one: (max(pixel.off(one), _OFF), abs(one - wall)))
+
+
+def _sensitivities(sensor: Sensor, pressure: float, low: float, high: float) -> str:
+    """The atlas's sensitivities between both walls; nothing where it does not cover the sensor."""
+    from pneutouch.mechanics.atlas.press import batch_of
+    from pneutouch.mechanics.atlas.respond import OUTSIDE, respond
+    from pneutouch.mechanics.models.choice import outside
+
+    sensitivities = []
+    for wall in (low, high):
+        other = sensor.replace(wall_thickness=wall)
+        if outside("atlas", other) is not None:
+            return ""
+        response = respond(batch_of(other, [pressure]), sensor.protocol.steps)
+        value = float(response.lines.sensitivity_kPa_per_N[0])
+        if response.ends[0] == OUTSIDE or not np.isfinite(value):
+            return ""
+        sensitivities.append(value)
+    least, most = sorted(sensitivities)
+    return f"; it reads {least:.3f} to {most:.3f} kPa/N at {pressure / KPA:g} kPa"
+
+
+_SOURCES = {
+    "limit point": "paper, section 4-A: the valid range ends at the maximum driving pressure",
+    "break strain": "lower end of the material's elongation at break",
+    "law range": "the stretch up to which the material's law was fitted (its file), against that of the inflated wall",
+    "gauge range": "paper, Supplement C: SMC PSE543-R06, +-100 kPa",
+}
+
+
+def check_driving(view: PrintView) -> list[Finding]:
+    """Compare the highest driving pressure with the rated pressure and with the nominal limit; and with a gauge that
+    the design names the pressure while pressed."""
+    return [] if view.sensor is None else [*_driven(view.sensor), *_pressed(view.sensor)]
+
+
+def _pressed(context: SensorContext) -> list[Finding]:
+    """The states whose range ends at that of the gauge."""
+    gauge, limit = context.gauge, context.sensor.gas.gauge_limit / KPA
+    if gauge is None:
+        return []
+    ended = [
+        (state, event)
+        for state in context.prediction.states
+        for event in state.events
+        if event.kind == "gauge range" and event.ends_range
+    ]
+    if not ended:
+        return []
+    state, event = ended[-1]
+    return [
+        Finding(
+            "driving",
+            "warning",
+            context.membrane,
+            f"pressed from {state.driving_pressure / KPA:g} kPa, the cavity passes the {limit:g} kPa that the "
+            f"{gauge.title} reads at {event.indentation:.2f} mm of the {context.sensor.protocol.depth:.2f} mm",
+            "take a pneumatics.gauge that reads further, lower pneumatics.driving_pressures_kPa or press less",
+            gauge.range_kPa.source,
+            (0.0, 0.0, state.apex_outer),
+            None,
+        )
+    ]
+
+
+def _driven(context: SensorContext) -> list[Finding]:
+    rating, last = context.rating, context.prediction.states[-1]
+    severity = rating.severity(last.driving_pressure)
+    if severity is None:
+        return []
+    text, limit = rating.excess(last.driving_pressure), rating.nominal
+    if severity == "warning":
+        text, limit = f"{text}: {rating.basis}", rating.limit
+    remedy = rating.remedy_for(last.driving_pressure)
+    fix = f"lower pneumatics.driving_pressures_kPa to at most {rating.pressure_kPa:.1f}"
+    return [
+        Finding(
+            "driving",
+            severity,
+            context.membrane,
+            text,
+            fix if remedy is None else f"{fix}, or {remedy}",
+            context.gauge.range_kPa.source
+            if context.gauge is not None and limit.name == "gauge range"
+            else _SOURCES[limit.name],
+            (0.0, 0.0, last.apex_outer),
+            Excess(last.driving_pressure / KPA, rating.pressure / KPA, "kPa"),
+        )
+    ]
+
+
+_SEATS = "take connector.seat = clamped-flange-M2, which needs none"
+
+
+def check_glue(view: PrintView) -> list[Finding]:
+    """Look up the pair of surfaces in the table of glues; nothing where no glue is named or chosen."""
+    context = view.sensor
+    if context is None or context.glued is None or context.calibrated:
+        return []
+    name, one, other = context.glued
+    glue = GLUES[name]
+    bond = glue.bond(one, other)
+    if bond is not None and not bond.weak:
+        return []
+    pair = one if one == other else f"{one} and {other}"
+    better = [each for each in glues_for(one, other) if each != name]
+    named = f"take connector.glue = {' or '.join(better)}" if bond is None and better else ""
+    fix = ", or ".join(part for part in (named, _SEATS) if part)
+    if bond is None:
+        text = f"{glue.title} does not bond {pair}: the flange comes off"
+        return [Finding("glue", "error", context.membrane, text, fix, glue.source, None, None)]
+    text = f"{glue.title} on {pair} carries small loads: the flange may peel off under pressure"
+    return [Finding("glue", "warning", context.membrane, text, fix, glue.source, None, None)]
+
+
+_MEETING = (
+    "this project's prediction: the model's wall passes through this body: its figures do not hold where they touch"
+)
+_TOUCH = 0.05
+"""Depth in mm below which a meeting is the mesh's and the prediction's own error."""
+
+
+def check_freedom(view: PrintView) -> list[Finding]:
+    """The deepest meeting of the inflated or pressed wall with each other body; nothing without predicted shapes."""
+    if view.sensor is None:
+        return []
+    others = [part for part in view.parts if part.name != view.sensor.membrane and part.sound]
+    findings = []
+    for part in others:
+        worst: tuple[float, str, tuple[float, float, float]] | None = None
+        for state in view.sensor.prediction.states:
+            for shape in state.shapes:
+                depth, where = _deepest(part, shape.cells.reshape(-1, 2))
+                if depth > _TOUCH and (worst is None or depth > worst[0]):
+                    pressed = "" if shape.indentation is None else f", pressed by {shape.indentation:.2f} mm"
+                    worst = depth, f"at {state.driving_pressure / KPA:g} kPa{pressed}", where
+        if worst is not None:
+            text = f"the dome meets the {part.name} {worst[1]}: they would overlap by {worst[0]:.2f} mm"
+            fix = "lower pneumatics.driving_pressures_kPa or indentation.depth_mm, or take another connector.seat"
+            findings.append(
+                Finding(
+                    "freedom",
+                    "warning",
+                    view.sensor.membrane,
+                    text,
+                    fix,
+                    _MEETING,
+                    worst[2],
+                    Excess(worst[0], 0.0, "mm"),
+                )
+            )
+    return findings
+
+
+def _deepest(part: PrintPart, plane: Array) -> tuple[float, tuple[float, float, float]]:
+    """Greatest depth in mm of points (n, 2) in (r, z) inside a body, in the half plane y = 0, and where; 0 outside."""
+    low, high = part.item.body.bounds
+    near = plane[(plane[:, 0] >= -1e-9) & (plane[:, 0] < high[0]) & (plane[:, 1] > low[2]) & (plane[:, 1] < high[2])]
+    points = np.column_stack([near[:, 0], np.full(len(near), 1e-4), near[:, 1]])
+    inside = [len(part.manifold.ray_cast(tuple(p), (p[0], p[1], high[2] + 1.0))) % 2 == 1 for p in points]
+    points = points[np.array(inside, bool)]
+    if not len(points):
+        return 0.0, (0.0, 0.0, 0.0)
+    solid = part.item.solid
+    gaps = (
+        solid.distance(points)
+        if solid is not None
+        else np.min(np.linalg.norm(part.item.body.vertices[None] - points[:, None], axis=2), axis=1)
+    )
+    k = int(np.argmax(gaps))
+    x, y, z = (float(value) for value in points[k])
+    return float(gaps[k]), (x, y, z)
