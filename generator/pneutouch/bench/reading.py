@@ -48,7 +48,7 @@ _EXACT = 1e-9
 def read_blocks(source: MeasuredFile, rig: Rig, progress: Callable[[float], None] = lambda share: None) -> Blocks:
     """Blocks of a measured file, in s, mm, N, MPa; ``progress`` is called with the share read, 0 to 1.
 
-    About `blocks.BLOCK_RATE` blocks a second, or one sample each up to `blocks.SLOW` Hz. The file is read in one pass
+    About `record.BLOCK_RATE` blocks a second, or one sample each up to `record.SLOW` Hz. The file is read in one pass
     and never is in memory as a whole. Gaps, clipped parts and a last row that may be cut are among the warnings.
 
     Of a run without a plate (the source has the channels of `LEAK`) position and force are zero.

@@ -36,7 +36,7 @@ Encoding = Literal[
 """Encodings that can be stated; of these utf-8, the three of UTF-16 and cp1252 are found by themselves."""
 
 RunKind = Literal["steps", "saturation", "loop", "relaxation", "leak", "injection"]
-"""Kind of a run; see `bench.protocol`. Leak and injection need no plate."""
+"""Kind of a run; see `bench.indents`. Leak and injection need no plate."""
 
 AS_DESIGNED = "as-designed"
 """Name in place of a resin's: the membrane as the design has it, which may be a mix that no file names."""

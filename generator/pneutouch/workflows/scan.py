@@ -88,7 +88,7 @@ def run_scan(
 ) -> ScanRun:
     """Scan a specimen with a sensor, both by name or path; ``changes`` are of the design.
 
-    Raises InputError if that is impossible: see `texture.contact`, `texture.sliding`, `texture.detect`.
+    Raises InputError if that is impossible: see `texture.sliding`, `texture.detect`.
     """
     library = library or Library.default()
     context, scene, sensor = _load_both(specimen, design, changes, library)

@@ -3,7 +3,7 @@
 A sliding point keeps the direction in which it was found to slide; across it, what is left of its spring acts. The
 directions turn from one Newton step to the next.
 
-Tractions are carried from step to step as in `settling`, friction's with those of the contact: at a guess that
+Tractions are carried from step to step as in `model`, friction's with those of the contact: at a guess that
 overshoots they have negative modes in the tangent and let points slide that stick.
 """
 
@@ -165,7 +165,7 @@ class SurfaceFrictionSolver(FrictionSolver):
     """Solves the steps of a path of an object in space."""
 
     step: SurfaceFriction
-    #: Tractions of the last linear model, or those that the path leads to; see `settling`.
+    #: Tractions of the last linear model, or those that the path leads to; see `model`.
     foreseen: PointTractions | None = None
 
     def direction(self, here: HeldState, kept: Array | None = None) -> Array:

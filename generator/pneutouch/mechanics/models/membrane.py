@@ -39,7 +39,7 @@ _NO_LAW = Limitation("it covers neither other laws, nor a clamped flange", False
 
 @dataclass(frozen=True)
 class MembraneTheory(SensorModel):
-    """The paper's theory with one of the closures of `membrane_contact`."""
+    """The paper's theory with one of the closures of `mechanics.membrane`."""
 
     closure: str = "variational"
 

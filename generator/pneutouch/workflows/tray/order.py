@@ -57,7 +57,7 @@ def order_of_file(path: Path, overrides: Changes | None = None, **head: Any) -> 
 def order_of_flags(
     designs: Sequence[str], over: Sequence[str] = (), copies: int = 1, overrides: Changes | None = None, **head: Any
 ) -> TrayOrder:
-    """One entry a design, each over the values of ``table.key=VALUES`` (see `spec.over`), ``copies`` of each.
+    """One entry a design, each over the values of ``table.key=VALUES`` (see `spec.tray`), ``copies`` of each.
 
     Raises InputError naming the parameter.
     """
