@@ -81,7 +81,7 @@ _MODELS = {
     "calibration": ("calibration.SensorCalibration", "A calibration of one sensor", "`calibrations/`"),
     "coupons": ("coupon.CouponResults", "What was measured on coupons", "given to `pneutouch coupons --results`"),
     "material": ("material.Material", "A cured material", "`printprofiles/materials/`"),
-    "mixing": ("mixing.MixingCurve", "A mixing curve of two resins", "`printprofiles/mixing/`"),
+    "mixing": ("grade.MixingCurve", "A mixing curve of two resins", "`printprofiles/mixing/`"),
     "printer": ("printer.Printer", "A printer", "`printprofiles/`"),
     "gauge": ("gauge.Gauge", "A pressure gauge", "`printprofiles/gauges/`"),
     "tube": ("part.Tube", "A tube", "`parts/tubes/`"),
