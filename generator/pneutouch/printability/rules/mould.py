@@ -176,13 +176,13 @@ _PREPARED = "3 min of mixing and 5 min of vacuum (fabrication notes of the repos
 _FLOW = f"film of a Newtonian liquid between plates under its own weight, rho g t2 / (12 eta); {_PREPARED}"
 _STOKES = f"Stokes's law, a bubble rises by 2/9 rho g r2 / eta; {_PREPARED}; share of the wall: own, unverified"
 _SLOW = 0.5
-"""Share of the time left for pouring from which check_filling is a warning: the viscosity rises as it cures (own)."""
+"""Share of the time left for pouring from which filling is a warning: the viscosity rises as it cures (own)."""
 _LARGE_BUBBLE = 0.5
 """Diameter of a bubble over the wall from which it is a weak spot that may leak (own, unverified)."""
 _GRAVITY = 9.81
 _PHOTOPOLYMER = "uncured photopolymer"
 _INHIBITION = (
-    "vendor, smooth-on.com/support/faq/129 on cure check_inhibition; joshuawoehlke.com: 24 finishes of resin prints "
+    "vendor, smooth-on.com/support/faq/129 on cure inhibition; joshuawoehlke.com: 24 finishes of resin prints "
     "compared, few of which let a platinum silicone cure"
 )
 
@@ -200,10 +200,10 @@ def check_filling(view: PrintView) -> list[Finding]:
         f"{part.item.body.material.label} needs {needed_min:.0f} min to run down a {wall:g} mm wall by its own weight; "
         f"{left_min:.0f} min of its pot life of {casting.pot_life_min.nominal:g} min are left after mixing"
     )
-    fix = part.item.hints.get("check_filling", "inject it with a syringe, or take a thicker wall or a thinner silicone")
+    fix = part.item.hints.get("filling", "inject it with a syringe, or take a thicker wall or a thinner silicone")
     excess = Excess(needed_min, left_min, "min")
     source = f"{_FLOW}; {casting.pot_life_min.source}"
-    return [Finding("check_filling", "warning", part.name, text, fix, source, _pole(context), excess)]
+    return [Finding("filling", "warning", part.name, text, fix, source, _pole(context), excess)]
 
 
 def check_bubbles(view: PrintView) -> list[Finding]:
@@ -215,12 +215,12 @@ def check_bubbles(view: PrintView) -> list[Finding]:
     wall, diameter = context.sensor.dome.wall_thickness, _bubble(*pour)
     weak = diameter > _LARGE_BUBBLE * wall
     share = f"{diameter / wall:.0%} of the {wall:g} mm wall"
-    text = f"check_bubbles up to {diameter:.2f} mm do not rise out in the pot life: {share}"
-    fix = part.item.hints.get("check_bubbles", "degas the mixed silicone under vacuum, and pour in a thin stream")
+    text = f"bubbles up to {diameter:.2f} mm do not rise out in the pot life: {share}"
+    fix = part.item.hints.get("bubbles", "degas the mixed silicone under vacuum, and pour in a thin stream")
     source = f"{_STOKES}; {casting.pot_life_min.source}"
     severity: Severity = "warning" if weak else "note"
     excess = Excess(diameter, _LARGE_BUBBLE * wall, "mm") if weak else None
-    return [Finding("check_bubbles", severity, part.name, text, fix, source, _pole(context), excess)]
+    return [Finding("bubbles", severity, part.name, text, fix, source, _pole(context), excess)]
 
 
 def check_inhibition(view: PrintView) -> list[Finding]:
@@ -231,7 +231,7 @@ def check_inhibition(view: PrintView) -> list[Finding]:
     part, context, _ = pour
     return [
         Finding(
-            "check_inhibition",
+            "inhibition",
             "warning",
             part.name,
             f"{part.item.body.material.label} cures against the {surface.body}, printed in {surface.material}: "
