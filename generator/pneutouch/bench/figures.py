@@ -117,16 +117,16 @@ def _line(curve: MeasuredCurve, *, saturating: bool) -> dict[str, float]:
     return values
 
 
-def line_figures(got: Figures) -> dict[str, float]:
+def line_figures(got: Figures[float]) -> dict[str, float]:
     """Figures of a loading curve by key of `FIGURES`; without saturation where it has none."""
     return {
-        "sensitivity_kPa_per_N": got.sensitivity_kPa_per_N,
-        "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin_kPa_per_N,
+        "sensitivity_kPa_per_N": got.sensitivity,
+        "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin,
         "r_squared": got.r_squared,
         "nonlinearity_percent": 100 * got.nonlinearity,
         "stiffness_N_per_mm": got.stiffness,
         "force_range_N": got.force_range[1],
-        **({} if got.saturation_force is None else {_SATURATION: got.saturation_force}),
+        **({} if np.isnan(got.saturation_force) else {_SATURATION: got.saturation_force}),
     }
 
 
@@ -188,7 +188,7 @@ def _binned(place: Array, values: Array, grid: Array) -> Array:
     return np.interp(grid, grid[known], total[known] / count[known])
 
 
-def _still(curve: MeasuredCurve, sensitivity_kPa_per_N: float | None) -> dict[str, float]:
+def _still(curve: MeasuredCurve, sensitivity: float | None) -> dict[str, float]:
     """Scatter and drift of the channels without contact; the resolution too, if the run has a sensitivity."""
     if curve.run.kind == "loop":
         # Its rests are too short for noise and drift: the wall still recovers.
@@ -196,8 +196,8 @@ def _still(curve: MeasuredCurve, sensitivity_kPa_per_N: float | None) -> dict[st
     values = {"drift_pressure_kPa_per_min": 60 * curve.drift[0] / KPA}
     noise_force, noise_kPa = curve.noise[0], curve.noise[1] / KPA
     values |= {"noise_force_N": noise_force, "noise_pressure_kPa": noise_kPa}
-    if sensitivity_kPa_per_N:
-        values["resolution_N"] = RESOLVED * noise_kPa / abs(sensitivity_kPa_per_N)
+    if sensitivity:
+        values["resolution_N"] = RESOLVED * noise_kPa / abs(sensitivity)
     return values
 
 

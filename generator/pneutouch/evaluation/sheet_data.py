@@ -102,7 +102,7 @@ class SensitivityCurve(NamedTuple):
     """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each, the model that computed it, and what to call it."""
 
     driving_pressure_kPa: Array
-    sensitivity_kPa_per_N: Array
+    sensitivity: Array
     model: str = "atlas"
     label: str = ""
 
@@ -142,7 +142,7 @@ class ChartPoint(NamedTuple):
 
     resin: str
     label: str
-    sensitivity_kPa_per_N: float
+    sensitivity: float
     force: float
 
 
@@ -173,7 +173,7 @@ class TradeOff:
     @property
     def known(self) -> tuple[TradeOffFront, ...]:
         """The fronts with a line to draw."""
-        return tuple(front for front in self.fronts if front.sensitivity_kPa_per_N.size > 1)
+        return tuple(front for front in self.fronts if front.sensitivity.size > 1)
 
 
 class ErrorCurves(NamedTuple):

@@ -261,7 +261,7 @@ def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float
     peak, figures, of_contact = prediction.limits.limit_point, state.figures, {}
     if figures is not None:
         of_contact = {
-            "sensitivity_kPa_per_N": figures.sensitivity_kPa_per_N,
+            "sensitivity_kPa_per_N": figures.sensitivity,
             "stiffness_N_per_mm": figures.stiffness,
             "force_at_range_end_N": figures.force_range[1],
         }

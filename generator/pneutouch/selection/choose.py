@@ -266,7 +266,7 @@ def _span(problem: SelectionProblem, pool: CandidatePool) -> tuple[Array, tuple[
     resin, radius, wall = (np.tile(column, 2) for column in (pool.resin, pool.radius, pool.wall))
     batch = problem.batch(resin, radius, wall, pressure)
     groups = np.repeat([0, 1], highest.size)
-    none, most = respond(batch, problem.steps, groups=groups).lines.sensitivity_kPa_per_N.reshape(2, -1)
+    none, most = respond(batch, problem.steps, groups=groups).lines.sensitivity.reshape(2, -1)
     return highest, (none, most)
 
 
@@ -322,8 +322,8 @@ def missed_percent(problem: SelectionProblem, candidate: Candidate) -> dict[str,
 def _off(problem: SelectionProblem, candidate: Candidate, name: str, margin: float) -> float:
     lines = candidate.pool.response.lines
     if name == "sensitivity":
-        assert problem.sensitivity_kPa_per_N is not None
-        return 100.0 * abs(float(lines.sensitivity_kPa_per_N[0]) / problem.sensitivity_kPa_per_N - 1.0)
+        assert problem.sensitivity is not None
+        return 100.0 * abs(float(lines.sensitivity[0]) / problem.sensitivity - 1.0)
     if name == "stiffness":
         least, most = problem.stiffness
         stiffness = float(lines.stiffness[0])

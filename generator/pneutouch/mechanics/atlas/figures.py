@@ -104,7 +104,7 @@ def log_figures(batch: SensorBatch, groups: Index | None = None) -> Array:
     response = respond(batch.take(order), atlas=neighbourhood(), groups=None if groups is None else groups[order])
     figures = np.empty((len(FIGURES), len(batch)))
     figures[:, order] = [
-        response.lines.sensitivity_kPa_per_N,
+        response.lines.sensitivity,
         response.limit_pressure / KPA,
         response.lines.stiffness,
         response.lines.force_high,

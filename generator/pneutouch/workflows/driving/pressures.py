@@ -111,7 +111,7 @@ def figure_of(state: SensorState, figure: str) -> float:
     if state.figures is None:
         return float("nan")
     return {
-        "sensitivity_kPa_per_N": state.figures.sensitivity_kPa_per_N,
+        "sensitivity_kPa_per_N": state.figures.sensitivity,
         "stiffness_N_per_mm": state.figures.stiffness,
         "force_range_N": state.figures.force_range[1],
     }[figure]

@@ -83,7 +83,7 @@ def _is_runner_up(designs: list[Candidate], index: int) -> bool:
 
 def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | None = None) -> FoundDesign:
     pool, lines = choice.pool, choice.pool.response.lines
-    sensitivity_kPa_per_N = float(lines.sensitivity_kPa_per_N[0])
+    sensitivity = float(lines.sensitivity[0])
     batch = selection.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
     by_solid = choice.contact
     return FoundDesign(
@@ -95,8 +95,8 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         outer_diameter_mm=2 * float(pool.radius[0] + pool.wall[0]),
         footprint_mm=selection.footprint(choice),
         dead_volume_mL=float(batch.dead_volume[0]) / ML,
-        sensitivity_kPa_per_N=sensitivity_kPa_per_N,
-        expanded_uncertainty_kPa_per_N=_known(sensitivity_kPa_per_N * choice.expanded),
+        sensitivity_kPa_per_N=sensitivity,
+        expanded_uncertainty_kPa_per_N=_known(sensitivity * choice.expanded),
         expanded_uncertainty_relative=_known(choice.expanded),
         coverage_factor=2,
         place_uncertainty_relative=choice.place if selection.problem.anywhere else None,
@@ -114,7 +114,7 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         model="atlas" if by_solid is None else "solid",
         plate_sensitivity_kPa_per_N=None if by_solid is None else by_solid.plate_kPa_per_N,
         rounds=None if by_solid is None else by_solid.rounds,
-        solid=None if solid is None else SolidCheck(_known(solid.sensitivity_kPa_per_N), solid.within),
+        solid=None if solid is None else SolidCheck(_known(solid.sensitivity), solid.within),
         set=tuple(selection.assignments(choice)),
     )
 
@@ -127,9 +127,7 @@ def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:
     """Value that a requirement would need for the best design without it."""
     pool, lines = dropped.best.pool, dropped.best.pool.response.lines
     if dropped.requirement == "sensitivity":
-        return (
-            f"{float(lines.sensitivity_kPa_per_N[0]):.3g} kPa/N instead of {selection.problem.sensitivity_kPa_per_N:g}"
-        )
+        return f"{float(lines.sensitivity[0]):.3g} kPa/N instead of {selection.problem.sensitivity:g}"
     if dropped.requirement == "force range":
         return f"{float(pool.force[0]):.3g} N instead of {selection.problem.force_range:g}"
     if dropped.requirement == "stiffness":

@@ -73,7 +73,7 @@ def select(
         if (why := _not_covered(part, last, written)) is not None:
             trials.append(part.trial(why))
             continue
-        slope = float(last.answer.designs[0].pool.response.lines.sensitivity_kPa_per_N[0]) * KPA
+        slope = float(last.answer.designs[0].pool.response.lines.sensitivity[0]) * KPA
         trials += _judged(part, parts[len(trials) :], slope, target)
         return replace(last, gauges=tuple(trials))
     if last is None:

@@ -185,7 +185,7 @@ def _spread(evaluation: Evaluation, sensor: Sensor) -> SensorSpread | None:
 def _interval(state: SensorState, width: float) -> Interval:
     if state.figures is None or not np.isfinite(width):
         return None
-    value = state.figures.sensitivity_kPa_per_N
+    value = state.figures.sensitivity
     return rounded((value * float(np.exp(-width)), value * float(np.exp(width))), DIGITS)
 
 
