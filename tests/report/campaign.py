@@ -81,7 +81,7 @@ def beside_of(group: RunGroup, states: dict[float, SensorState]) -> GroupCompari
     predicted = {
         "sensitivity_kPa_per_N": (f.sensitivity, 0.85 * f.sensitivity, 1.15 * f.sensitivity),
         "stiffness_N_per_mm": (f.stiffness, 0.9 * f.stiffness, 1.1 * f.stiffness),
-        "sensitivity_through_origin_kPa_per_N": (f.sensitivity_through_origin_kPa_per_N, None, None),
+        "sensitivity_through_origin_kPa_per_N": (f.sensitivity_through_origin, None, None),
         "r_squared": (f.r_squared, None, None),
         "nonlinearity_percent": (100 * f.nonlinearity, None, None),
         "force_range_N": (f.force_range[1], None, None),

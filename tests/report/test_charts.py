@@ -13,9 +13,10 @@ from pneutouch.evaluation.charts import tradeoff, tuning
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.report.certainty import OTHERS, SENSITIVITY, ends, ranked, share_bars, shares
+from pneutouch.report.certainty import OTHERS, ends, ranked, share_bars, shares
 from pneutouch.report.curves import resin_sensitivities
 from pneutouch.report.tradeoff import tradeoff_panel, tuning_panel
+from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.results.record import plain as data
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
@@ -69,12 +70,12 @@ def test_fronts_are_respond_s_and_the_designs_lie_on_or_below_them(selection):
         batch = selection.problem.batch(number * ones, front.radius, front.wall, 0.02 * ones)
         own = respond(batch, selection.problem.steps).lines
         np.testing.assert_allclose(own.sensitivity, front.sensitivity, rtol=1e-3)
-        np.testing.assert_allclose(np.fmin(own.force_high, own.saturation_force), front.force, rtol=1e-3)
+        np.testing.assert_allclose(own.reach, front.force, rtol=1e-3)
     by_title = {front.resin.material.title: front for front in found.known}
     for spot in found.spots:
         front = by_title[spot.resin]
-        assert spot.force <= 1.03 * np.interp(spot.sensitivity, front.sensitivity, front.force)
-        assert spot.sensitivity == pytest.approx(1.5, rel=0.05)
+        assert spot.figures.reach <= 1.03 * np.interp(spot.figures.sensitivity, front.sensitivity, front.force)
+        assert spot.figures.sensitivity == pytest.approx(1.5, rel=0.05)
 
 
 def test_the_band_at_the_working_pressure_is_the_choice_s_own(selection, library):
@@ -132,7 +133,7 @@ def test_a_design_s_charts_mark_the_design_at_its_own_figures(evaluated, drawn):
     evaluation = evaluated("paper-dome", model="atlas")
     last = evaluation.prediction.states[-1]
     (spot,) = drawn.spots
-    assert (spot.sensitivity, spot.force) == pytest.approx((last.figures.sensitivity, last.figures.force_range[1]))
+    assert spot.figures == last.figures and spot.figures.reach == last.figures.force_high
     runs = {front.resin.name for front in drawn.fronts}
     assert "Agilus30" not in runs
     assert {"TangoPlus", "FLX9995"} <= runs
@@ -142,7 +143,7 @@ def test_a_design_s_charts_mark_the_design_at_its_own_figures(evaluated, drawn):
         assert np.interp(pressure, found.chosen.driving_pressure_kPa, found.chosen.sensitivity) == pytest.approx(
             value, rel=1e-3
         )
-        own = data(said)["figures"][SENSITIVITY]
+        own = data(said)["figures"][SENSITIVITY_KEY]
         assert np.interp(pressure, found.chosen.driving_pressure_kPa, found.low_kPa_per_N) == pytest.approx(
             own["low"], rel=0.01
         )

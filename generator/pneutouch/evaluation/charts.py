@@ -267,13 +267,12 @@ def tradeoff(evaluation: Evaluation) -> TradeOff | None:
     else:
         drawn = contact_front(problem, resized(sensor, problem))
         fronts, errors = drawn.fronts, (drawn.median_error, drawn.greatest_error)
-    force = state.figures.reach
     title = evaluation.scene.membrane_material.title
     return TradeOff(
         tuple(fronts),
         state.driving_pressure / KPA,
         (problem.gauge_limit - state.driving_pressure) / KPA,
-        (ChartPoint(title, f"this design, {force:.3g} N", state.figures.sensitivity, force),),
+        (ChartPoint(title, f"this design, {state.figures.reach:.3g} N", state.figures),),
         errors=errors,
     )
 

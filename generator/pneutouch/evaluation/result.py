@@ -133,7 +133,7 @@ def _state(state: SensorState, *, curves: bool) -> StateRecord:
         nonlinearity_percent=100 * f.nonlinearity if f else None,
         stiffness_N_per_mm=f.stiffness if f else None,
         force_range_N=f.force_range if f else None,
-        saturation_force_N=None if f is None or np.isnan(f.saturation_force) else f.saturation_force,
+        saturation_force_N=f.saturation_force if f and np.isfinite(f.saturation_force) else None,
         curve=Curve(*[()] * 7) if without else _curve(state),
         events=tuple(EventRecord(e.kind, e.indentation, e.ends_range, e.message) for e in state.events),
         off_axis=None if state.beyond_axis is None else off_axis(state.beyond_axis),

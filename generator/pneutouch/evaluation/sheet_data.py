@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from pneutouch.catalogue import ResolvedDesign
     from pneutouch.mechanics.prediction import CurveOutcome, SensorPrediction, SensorState
     from pneutouch.mechanics.rating import Rating
+    from pneutouch.mechanics.response import Figures
     from pneutouch.mechanics.uncertainty import GasNotes
     from pneutouch.mechanics.viscous.describe import ViscousRuns
     from pneutouch.parts import Assembly
@@ -138,12 +139,11 @@ class TuningChart:
 
 
 class ChartPoint(NamedTuple):
-    """A design on the chart: title of its resin, what to call it, kPa/N and N."""
+    """A design on the chart: title of its resin, name beside the point, and figures."""
 
     resin: str
     label: str
-    sensitivity: float
-    force: float
+    figures: Figures[float]
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ Of = TypeVar("Of", bound=Any)
 
 class Figures(NamedTuple, Generic[Of]):
     """Key figures of one loading curve, or of many as arrays of one shape. Sensitivities in kPa/N, stiffness in N/mm,
-    forces in N, r_squared and nonlinearity as fractions; saturation_force is NaN where the curve has none."""
+    forces in N, r_squared and nonlinearity as fractions; saturation_force is infinite where the curve has none."""
 
     sensitivity: Of
     intercept_kPa: Of
@@ -44,7 +44,7 @@ class Figures(NamedTuple, Generic[Of]):
     @property
     def reach(self) -> Of:
         """Force that the range reaches: at its end, or where the slope has halved before, N."""
-        force: Of = np.fmin(self.force_high, self.saturation_force)
+        force: Of = np.minimum(self.force_high, self.saturation_force)
         return force
 
     def scaled(self, force: float, rise: float) -> Figures[Of]:
@@ -97,7 +97,8 @@ def figures(indentation: Array, force: Array, rise_kPa: Array) -> Figures[float]
 
 
 def saturation_force(force: Array, rise_kPa: Array, slope: Array | float) -> Array:
-    """Force at which the local slope of pressure over force falls below half the fitted one, NaN if it does not.
+    """Force at which the local slope of pressure over force falls below half the fitted one; infinite if it does
+    not, NaN without a fitted one.
 
     A curve that begins flat has not saturated: the slope must have been above before. Curves along the last axis; the
     local slope is the second-order difference, one-sided at the ends.
@@ -111,7 +112,8 @@ def saturation_force(force: Array, rise_kPa: Array, slope: Array | float) -> Arr
     low = local < _SATURATED * np.asarray(slope)[..., None]
     below = low & np.logical_or.accumulate(~low, axis=-1)
     first = np.take_along_axis(force, below.argmax(axis=-1)[..., None], axis=-1)[..., 0]
-    return np.where(below.any(axis=-1), first, np.nan)
+    none = np.where(np.isnan(slope), np.nan, np.inf)
+    return np.where(below.any(axis=-1), first, none)
 
 
 def tangent_stiffness(indentation: Array, force: Array) -> Array:

@@ -17,6 +17,7 @@ from pneutouch.mechanics.atlas.respond import BREAK, EDGE, OUTSIDE, AtlasRespons
 from pneutouch.mechanics.atlas.table import least_limit
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.rating import rated_pressure
+from pneutouch.mechanics.response import Figures
 from pneutouch.selection.problem import SelectionProblem
 
 
@@ -54,6 +55,11 @@ class CandidatePool(NamedTuple):
         return CandidatePool(
             self.resin[rows], self.radius[rows], self.wall[rows], self.pressure[rows], self.response.take(rows)
         )
+
+    @property
+    def figures(self) -> Figures[float]:
+        """Figures of the one candidate of a pool, or of the first."""
+        return Figures(*(float(column[0]) for column in self.response.lines))
 
     @property
     def force(self) -> Array:

@@ -320,15 +320,14 @@ def missed_percent(problem: SelectionProblem, candidate: Candidate) -> dict[str,
 
 
 def _off(problem: SelectionProblem, candidate: Candidate, name: str, margin: float) -> float:
-    lines = candidate.pool.response.lines
+    figures = candidate.pool.figures
     if name == "sensitivity":
         assert problem.sensitivity is not None
-        return 100.0 * abs(float(lines.sensitivity[0]) / problem.sensitivity - 1.0)
+        return 100.0 * abs(figures.sensitivity / problem.sensitivity - 1.0)
     if name == "stiffness":
         least, most = problem.stiffness
-        stiffness = float(lines.stiffness[0])
-        bound = least if least is not None and stiffness < least else most
+        bound = least if least is not None and figures.stiffness < least else most
         assert bound is not None
-        return 100.0 * abs(stiffness / bound - 1.0)
+        return 100.0 * abs(figures.stiffness / bound - 1.0)
     # A margin to a greatest value is relative to the candidate's own.
     return 100.0 * (1.0 / (1.0 + margin) - 1.0 if name in _MOST else -margin)

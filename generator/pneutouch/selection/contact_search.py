@@ -120,7 +120,7 @@ class ContactTrial:
         """Sensitivities at no pressure and at the rated one; NaN if the solid has none."""
         pressures = [0.0, highest]
         driven = float(self.pool.pressure[0])
-        solved = {driven: float(self.pool.response.lines.sensitivity[0])}
+        solved = {driven: self.pool.figures.sensitivity}
         missing = [p for p in pressures if p not in solved]
         if missing:
             answer = solve(self.resin, self.pool, missing)
@@ -318,10 +318,9 @@ class _Run:
             return last.why
         if group.rounds < ROUNDS or not last.off_target_alone:
             return None
-        value_kPa_per_N = float(last.pool.response.lines.sensitivity[0])
         return (
             f"the search did not settle in {group.rounds} rounds: at the last the solid's sensitivity is "
-            f"{value_kPa_per_N:.3g} kPa/N instead of {self.problem.sensitivity:g}"
+            f"{last.pool.figures.sensitivity:.3g} kPa/N instead of {self.problem.sensitivity:g}"
         )
 
     def _group(self, resin: str) -> str:

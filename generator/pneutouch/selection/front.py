@@ -237,8 +237,8 @@ def contact_front(problem: SelectionProblem, solve: SolveCandidate) -> ContactFr
 def _off(one: TradeOffFront, row: int, trial: ContactTrial) -> float:
     """The larger relative difference of sensitivity and force between a place of a front and the solid's answer
     there."""
-    exact_kPa_per_N, exact = trial.pool.response.lines.sensitivity[0], trial.pool.force[0]
-    return float(max(abs(one.sensitivity[row] / exact_kPa_per_N - 1.0), abs(one.force[row] / exact - 1.0)))
+    exact = trial.pool.figures
+    return float(max(abs(one.sensitivity[row] / exact.sensitivity - 1.0), abs(one.force[row] / exact.reach - 1.0)))
 
 
 def _fronts(problem: SelectionProblem, factors: ContactFactors) -> list[TradeOffFront]:

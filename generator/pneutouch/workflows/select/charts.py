@@ -136,7 +136,7 @@ def _tuned_by_solid(selection: SelectionRun, library: Library, chosen: Candidate
 
 def _working(chosen: Candidate) -> dict[float, float]:
     """The driving pressure that a design is for and its sensitivity there, kPa to kPa/N."""
-    return {float(chosen.pool.pressure[0]) / KPA: float(chosen.pool.response.lines.sensitivity[0])}
+    return {float(chosen.pool.pressure[0]) / KPA: chosen.pool.figures.sensitivity}
 
 
 def _best(selection: SelectionRun) -> list[Candidate]:
@@ -148,5 +148,5 @@ def _best(selection: SelectionRun) -> list[Candidate]:
 
 
 def _spot(rank: int, choice: Candidate) -> ChartPoint:
-    title, force = choice.resin.material.title, float(choice.pool.force[0])
-    return ChartPoint(title, f"{rank}  {title}, {force:.3g} N", float(choice.pool.response.lines.sensitivity[0]), force)
+    title, figures = choice.resin.material.title, choice.pool.figures
+    return ChartPoint(title, f"{rank}  {title}, {figures.reach:.3g} N", figures)

@@ -198,8 +198,7 @@ def _middle_wall(grade_target: GradeTarget, problem: SelectionProblem, base: Sen
         middle = in_resin(base.replace(wall_thickness=wall), problem.resins[0].material)
         solved = trial_of(middle, grade_target.pressures[:1], lambda limits: limits.lowest)
         place = np.zeros(1), np.array([radius]), np.array([wall]), np.array(grade_target.pressures[:1])
-        atlas_kPa_per_N = evaluated(problem, *place).response.lines.sensitivity[0]
-        factor = solved.sensitivity[0] / float(atlas_kPa_per_N)
+        factor = solved.sensitivity[0] / evaluated(problem, *place).figures.sensitivity
         if not np.isfinite(factor):
             break
         wall = middle_wall(replace(grade_target, sensitivity=target_kPa_per_N / factor), problem, radius, thickest)

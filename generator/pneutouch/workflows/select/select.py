@@ -298,7 +298,6 @@ def _confirm(selection: SelectionRun, choice: Candidate, judged: Evaluation | No
     figures = state.figures
     if figures is None:
         return Confirmation(float("nan"), False)
-    stated_kPa_per_N = float(choice.pool.response.lines.sensitivity[0])
     return Confirmation(
-        figures.sensitivity, bool(abs(np.log(figures.sensitivity / stated_kPa_per_N)) <= choice.expanded)
+        figures.sensitivity, bool(abs(np.log(figures.sensitivity / choice.pool.figures.sensitivity)) <= choice.expanded)
     )
