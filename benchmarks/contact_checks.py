@@ -60,8 +60,8 @@ def errors(design: str, pressure_kPa: float, changes: list[str]) -> tuple[Contac
             if trial.why:
                 sys.stdout.write(f"{one.resin.name}: {trial.why}\n")
                 continue
-            exact_kPa_per_N, force = trial.pool.response.lines.sensitivity_kPa_per_N[0], trial.pool.force[0]
-            found.append((np.log(one.sensitivity_kPa_per_N[row] / exact_kPa_per_N), np.log(one.force[row] / force)))
+            exact_kPa_per_N, force = trial.pool.response.lines.sensitivity[0], trial.pool.force[0]
+            found.append((np.log(one.sensitivity[row] / exact_kPa_per_N), np.log(one.force[row] / force)))
             off = ", ".join(f"{100 * log:+.1f} %" for log in found[-1])
             sys.stdout.write(f"{one.resin.name} at {exact_kPa_per_N:.3g} kPa/N: {off}\n")
             sys.stdout.flush()
@@ -87,7 +87,7 @@ def _by_solid(sensor: Sensor, pressure_kPa: float) -> float:
         (state,) = solid_states(sensor.replace(waves=0), np.array([pressure_kPa * KPA]))
     except ComputationError:
         return np.nan
-    return np.nan if state.figures is None else state.figures.sensitivity_kPa_per_N
+    return np.nan if state.figures is None else state.figures.sensitivity
 
 
 def resins(words: list[str]) -> None:
@@ -101,7 +101,7 @@ def resins(words: list[str]) -> None:
         for title, curve in curves.items():
             known = curve.driving_pressure_kPa
             grid = np.linspace(known[0], known[-1], POINTS)
-            drawn = np.interp(grid, known, curve.sensitivity_kPa_per_N)
+            drawn = np.interp(grid, known, curve.sensitivity)
             whole = np.array([_by_solid(in_resin(sensor, materials[title]), p) for p in grid])
             worst.append(float(np.nanmax(np.abs(np.log(drawn / whole)))))
             sys.stdout.write(f"| {design} | {title} | {100 * worst[-1]:.2f} % |\n")

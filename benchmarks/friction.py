@@ -103,7 +103,7 @@ def _sensitivities(moduli: dict[str, float]) -> list[dict[str, Any]]:
         for pressure in PRESSURES:
             one = scene(modulus, pressure)
             found = [press(one, friction).figures() for friction in FRICTIONS]
-            values = [None if figure is None else round(figure.sensitivity_kPa_per_N, 3) for figure in found]
+            values = [None if figure is None else round(figure.sensitivity, 3) for figure in found]
             rows.append({"resin": name, "driving_pressure_kPa": pressure / KPA, "sensitivity_kPa_per_N": values})
     return rows
 
@@ -139,7 +139,7 @@ def _slope(run: IndentationPath, every: int) -> float:
     d, f, p = (run.column(name)[::every] for name in ("indentation", "force", "rise"))
     found = figures(d, f, p / KPA)
     assert found is not None
-    return round(found.sensitivity_kPa_per_N, 4)
+    return round(found.sensitivity, 4)
 
 
 def _times() -> dict[str, Any]:

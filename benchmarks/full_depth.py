@@ -49,7 +49,7 @@ def pressed(mesh: tuple[int | None, int | None], pressure: float, held: str, bas
         grid = np.linspace(0.0, depth, s.protocol.steps + 1)
         force, rise = curve_between(run.path, grid)
         found = figures(grid, force, rise / KPA)
-        return None if found is None else found.sensitivity_kPa_per_N
+        return None if found is None else found.sensitivity
 
     kinds = ("base", "overhang", "clamp_fold", "snap", "lost")
     events = [f"{KINDS[e.kind][0]} {e.indentation:.2f}" for e in run.events if e.kind in kinds]

@@ -44,7 +44,7 @@ def sensitivity(sensor: Sensor, pressure_kPa: float) -> str:
     if figures is None:
         return "no range"
     mark = "" if left is None or pressure_kPa * KPA <= left else f" (beyond the law range, {left / KPA:.1f} kPa)"
-    return f"{figures.sensitivity_kPa_per_N:.2f}{mark}"
+    return f"{figures.sensitivity:.2f}{mark}"
 
 
 def limits(sensor: Sensor) -> Limits:
@@ -86,8 +86,8 @@ def by_law(name: str, sensor: Sensor) -> dict[str, Any]:
     kpa = {key: value / KPA for key, value in fitted.limits.named() if key in ("law range", "limit point")}
     return {
         "material": name,
-        "law_kPa_per_N": fitted.states[0].figures.sensitivity_kPa_per_N,
-        "neo_hookean_kPa_per_N": plain.states[0].figures.sensitivity_kPa_per_N,
+        "law_kPa_per_N": fitted.states[0].figures.sensitivity,
+        "neo_hookean_kPa_per_N": plain.states[0].figures.sensitivity,
         "law_limits_kPa": kpa,
         "neo_hookean_limit_kPa": plain.limits.limit_point / KPA,
     }

@@ -46,7 +46,7 @@ class Answer:
         """Slope of rise over force on a grid of indentations, kPa/N."""
         force, rise = self.curve(grid)
         found = figures(grid, force, rise / KPA)
-        return np.nan if found is None else found.sensitivity_kPa_per_N
+        return np.nan if found is None else found.sensitivity
 
 
 def solid_answer(scene: Scene, arc: int | None, through: int | None, depth: float | None = None) -> Answer:

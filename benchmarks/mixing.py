@@ -149,7 +149,7 @@ def sensitivities(moduli: list[float], library: Library) -> np.ndarray:
     for modulus in moduli:
         there = sensor.replace(shear_modulus=modulus)
         batch = batch_of(there, [p * KPA for p in PRESSURES_KPA])
-        rows.append(respond(batch, there.protocol.steps).lines.sensitivity_kPa_per_N)
+        rows.append(respond(batch, there.protocol.steps).lines.sensitivity)
     return np.array(rows)
 
 

@@ -80,9 +80,7 @@ def table_s1(library: Library, dead_volume_ml: float = 0.0, flange: tuple[float,
             for name, (model, closure) in METHODS.items()
         }
         for k, pressure in enumerate(PRESSURES):
-            errors = {
-                name: s[k].figures.sensitivity_kPa_per_N / truth[k] - 1 for name, s in runs.items() if s[k].figures
-            }
+            errors = {name: s[k].figures.sensitivity / truth[k] - 1 for name, s in runs.items() if s[k].figures}
             state = runs["solid"][k]
             ends = next((event.kind for event in state.events if event.ends_range), "depth")
             cells.append(Cell(material.title, pressure, truth[k], errors, ends, state.range_end))

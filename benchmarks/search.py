@@ -57,7 +57,7 @@ def by_model(design: pt.Design, pressure_kPa: float, model: str) -> float:
         (state,) = predict("", sensor(design), [pressure_kPa * KPA], model=model).states
     except PneutouchError:
         return np.nan
-    return np.nan if state.figures is None else state.figures.sensitivity_kPa_per_N
+    return np.nan if state.figures is None else state.figures.sensitivity
 
 
 def selected(target: float, pressure_kPa: float) -> pt.Design:

@@ -141,7 +141,7 @@ def _figure(sensor: Sensor, pressure_kPa: float) -> tuple[float, float, str]:
     except ComputationError as error:
         return float("nan"), 0.0, str(error)
     end = next((event.kind for event in state.events if event.ends_range), "depth")
-    value = float("nan") if state.figures is None else state.figures.sensitivity_kPa_per_N
+    value = float("nan") if state.figures is None else state.figures.sensitivity
     return value, state.range_end, end
 
 

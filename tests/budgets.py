@@ -70,7 +70,7 @@ def files_with_the_key() -> int:
 
 
 def classes_with_a_sensitivity() -> int:
-    """Classes between solver and sheet that have a field of the sensitivity."""
+    """Classes between solver and sheet that have a field of the sensitivity, by its name inside or outside."""
     classes = (
         node
         for name in COMPUTING
@@ -79,7 +79,8 @@ def classes_with_a_sensitivity() -> int:
         if isinstance(node, ast.ClassDef)
     )
     return sum(
-        any(isinstance(one, ast.AnnAssign) and ast.unparse(one.target) == KEY for one in node.body) for node in classes
+        any(isinstance(one, ast.AnnAssign) and ast.unparse(one.target) in (KEY, "sensitivity") for one in node.body)
+        for node in classes
     )
 
 
@@ -131,9 +132,9 @@ BUDGETS = (
     Budget("lines of benchmarks", benchmark_lines, 6_500, 6_500),
     Budget("functions that return dict[str, Any]", dictionaries, 30, 30),
     Budget("modules that predict paper-dome loads", loaded_modules, 150, 150),
-    Budget("lines in these", loaded_lines, 20_600, 18_000),
-    Budget("classes that hold a sensitivity, solver to sheet", classes_with_a_sensitivity, 10, 5),
-    Budget(f"files with the key {KEY}", files_with_the_key, 72, 30),
+    Budget("lines in these", loaded_lines, 20_556, 18_000),
+    Budget("classes that hold a sensitivity, solver to sheet", classes_with_a_sensitivity, 8, 5),
+    Budget(f"files with the key {KEY}", files_with_the_key, 19, 30),
     Budget("files of one name", files_of_one_name, 3, 3),
     Budget("lines of tests that assert wording", wording_lines, 600, 600),
 )

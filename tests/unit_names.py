@@ -1,7 +1,7 @@
 """Find names in the package that hold a quantity in another unit than the one they state.
 
 Inside the package lengths are mm, forces N, pressures MPa, volumes mm3: a name without a unit is in these. A name in
-kPa, mL or um says so (``pressure_kPa``). Three things tell what a name holds: a conversion (``x / KPA`` is kPa, and
+kPa, mL or um says so (``pressure_kPa``), but for a sensitivity, which is in kPa/N everywhere. Three things tell what a name holds: a conversion (``x / KPA`` is kPa, and
 ``x`` in ``x * KPA`` is kPa), a name that states its unit on the other side, and the documentation of a field.
 
 Run as ``python tests/unit_names.py``: one line for each place; exit code 1 where there is one.
@@ -53,8 +53,11 @@ _GENERIC = frozenset({"value", "values", "limit"})
 _LONG = 3
 """Shorter names are those of a formula, explained where they stand."""
 
-_KNOWN = re.compile(r"(?:^|_)(?:sensitivit(?:y|ies)|pressures?|volumes?|rise|ambient|driving)$")
-"""Names of quantities that are in MPa, MPa/N or mm3 where they state no unit."""
+_KNOWN = re.compile(r"(?:^|_)(?:pressures?|volumes?|rise|ambient|driving)$")
+"""Names of quantities that are in MPa or mm3 where they state no unit."""
+
+_SENSITIVITY = re.compile(r"(?:^|_)sensitivit(?:y|ies)$")
+"""Names of the one quantity that is in kPa/N where they state no unit, in the package as outside it."""
 
 _DOCUMENTED = re.compile(
     r"\b(sensitivit(?:y|ies)|(?:driving |ambient )?pressures?|(?:dead )?volumes?|pressure rise)\b"
@@ -84,6 +87,11 @@ def stated(name: str) -> str:
     """The unit that a name ends in, with what is divided by; "" where it states none of `FACTORS`."""
     match = _SUFFIX.search(name)
     return match[1].casefold() if match else ""
+
+
+def meant(name: str) -> str:
+    """The unit that a name states, or that of the quantity it names."""
+    return stated(name) or ("kpa" if _SENSITIVITY.search(name) else "")
 
 
 def terminal(node: ast.expr) -> str:
@@ -173,7 +181,7 @@ class File:
                 held = self.unit(value)
                 if len(name) < _LONG or name in _GENERIC | self.options:
                     continue
-                if held is not None and held != stated(name):
+                if held is not None and held != meant(name):
                     yield Place(self.name, value.lineno, name, held)
             yield from self._factors(node)
             yield from self._documented(node)
@@ -214,7 +222,7 @@ class File:
                 before = FACTORS[factor].casefold()
                 held = self.unit(left)
                 if held is None and len(name) >= _LONG:
-                    held = stated(name)
+                    held = meant(name)
                 wanted = before if isinstance(node.op, ast.Mult) else ""
                 if held is not None and held != wanted and name not in self.options:
                     yield Place(self.name, node.lineno, name, wanted)
@@ -231,12 +239,12 @@ class File:
             words = quantity.lower().replace(" ", "_").removesuffix("s")
             for name in names:
                 one = name.removesuffix("s")
-                if len(name) >= _LONG and (one.endswith(words) or words.endswith(one)) and not stated(name):
+                if len(name) >= _LONG and (one.endswith(words) or words.endswith(one)) and not meant(name):
                     yield Place(self.name, node.lineno, name, held)
         for _, listed, words in _ATTRIBUTE.findall(text):
             for name in listed.split(", "):
                 held = re.search(r"\b(kPa|mL|um)\b", words)
-                if name in names and held and not stated(name):
+                if name in names and held and not meant(name):
                     yield Place(self.name, node.lineno, name, held[1])
 
 

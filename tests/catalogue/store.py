@@ -61,7 +61,7 @@ def design_figures(library: Library, design: str) -> dict[str, Any]:
         **shape_figures(evaluation.assembly),
         "dead_volume_mm3": round(evaluation.assembly.dead_volume, 4),
         "limit_point_kPa": None if point is None else round(1e3 * point.driving_pressure, 5),
-        "sensitivity_kPa_per_N": [round(state.figures.sensitivity_kPa_per_N, 5) for state in prediction.states],
+        "sensitivity_kPa_per_N": [round(state.figures.sensitivity, 5) for state in prediction.states],
         "force_range_N": [round(state.figures.force_range[1], 4) for state in prediction.states],
         "findings": sorted({f"{finding.severity} {finding.rule}" for finding in evaluation.findings}),
     }

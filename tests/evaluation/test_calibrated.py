@@ -11,7 +11,7 @@ from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.uncertainty import spread
 from pneutouch.mechanics.atlas.figures import FIGURES
 from pneutouch.mechanics.uncertainty import monte_carlo
-from pneutouch.report.certainty import SENSITIVITY
+from pneutouch.results.record import SENSITIVITY_KEY as SENSITIVITY
 from pneutouch.results.record import plain as data
 from pneutouch.units import KPA, ML
 from tests.evaluation.calibrated import (
@@ -49,9 +49,7 @@ def test_curves_and_figures_are_corrected_between_the_pressures_that_were_measur
     for (force, rise), state, before in zip(factors, states, plain, strict=True):
         assert np.allclose(state.force, force * before.force, rtol=1e-12)
         assert np.allclose(state.pressure_rise, rise * before.pressure_rise, rtol=1e-12)
-        assert state.figures.sensitivity_kPa_per_N == pytest.approx(
-            before.figures.sensitivity_kPa_per_N * rise / force, rel=1e-12
-        )
+        assert state.figures.sensitivity == pytest.approx(before.figures.sensitivity * rise / force, rel=1e-12)
         assert state.figures.stiffness == pytest.approx(before.figures.stiffness * force, rel=1e-12)
         assert state.range_end == before.range_end
 

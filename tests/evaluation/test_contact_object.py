@@ -55,7 +55,7 @@ def test_a_ball_is_answered_by_the_solid_alone_and_stated(ball):
     plate = evaluate("paper-dome", {"pneumatics.driving_pressures_kPa": [22.0]}).prediction.states[0]
     state = ball.prediction.states[0]
     assert (state.force[1:] < plate.force[1:]).all()
-    assert state.figures.sensitivity_kPa_per_N > plate.figures.sensitivity_kPa_per_N
+    assert state.figures.sensitivity > plate.figures.sensitivity
     # where it is drawn it touches the wall and does not cut it
     pressed = state.shapes[-1]
     reach = np.interp(pressed.cells[..., 0], *pressed.body[pressed.body[:, 1] < 14].T)

@@ -32,7 +32,7 @@ def logs(sensor: Sensor, pressure: float) -> np.ndarray:
     """Logarithms of the figures that depend on the contact."""
     (state,) = solid_states(sensor, np.array([pressure]))
     found = state.figures
-    return np.log([found.sensitivity_kPa_per_N, found.stiffness, found.force_range[1], state.range_end])
+    return np.log([found.sensitivity, found.stiffness, found.force_range[1], state.range_end])
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +58,7 @@ def test_an_unknown_coefficient_has_the_share_that_the_solid_gives_it(rough):
     assert said["elasticities"][STATED]["friction"] == pytest.approx(slope, rel=0.1)
     assert said["figures"][STATED]["shares"]["friction"] > 0.01
     figure = said["figures"][STATED]
-    assert figure["value"] == pytest.approx(rough.prediction.states[0].figures.sensitivity_kPa_per_N, rel=1e-5)
+    assert figure["value"] == pytest.approx(rough.prediction.states[0].figures.sensitivity, rel=1e-5)
     assert figure["low"] < figure["value"] < figure["high"]
     assert "friction" not in next(note for note in said["notes"] if note.startswith("not in the budget"))
 
@@ -163,8 +163,8 @@ def test_the_tuning_curve_passes_through_the_solids_states(rough):
     drawn = curve(under_plate(rough.sensor), 30 * KPA, "here")
     bent = under_contact(rough.sensor, drawn, rough.prediction.states)
     for pressure in (5 * KPA, 20 * KPA):
-        found = np.interp(pressure / KPA, bent.driving_pressure_kPa, bent.sensitivity_kPa_per_N)
-        plate = np.interp(pressure / KPA, drawn.driving_pressure_kPa, drawn.sensitivity_kPa_per_N)
+        found = np.interp(pressure / KPA, bent.driving_pressure_kPa, bent.sensitivity)
+        plate = np.interp(pressure / KPA, drawn.driving_pressure_kPa, drawn.sensitivity)
         exact = math.exp(logs(rough.sensor, pressure)[0])
         assert found == pytest.approx(exact, rel=0.01)
         assert plate / exact - 1 > 0.04

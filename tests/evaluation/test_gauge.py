@@ -56,7 +56,7 @@ def test_the_smallest_force_is_three_deviations_of_a_difference_over_the_sensiti
     record = data(gauge_record(bare))
     assert record["threshold_kPa"] == pytest.approx(3 * math.sqrt(2) * scatter_kPa, rel=1e-5)
     for one, state in zip(record["states"], bare.prediction.states, strict=True):
-        slope_kPa_per_N = state.figures.sensitivity_kPa_per_N
+        slope_kPa_per_N = state.figures.sensitivity
         assert one["smallest_force_N"] == pytest.approx(record["threshold_kPa"] / slope_kPa_per_N, rel=1e-4)
         # The untouched dome gives less pressure than the fitted line.
         assert one["smallest_force_at_first_contact_N"] > one["smallest_force_N"]

@@ -23,7 +23,7 @@ STEP = 0.02
 
 def logs(sensor: Sensor, pressure: float) -> float:
     (state,) = solid_result(sensor, np.array([pressure])).states
-    return float(np.log(state.figures.sensitivity_kPa_per_N))
+    return float(np.log(state.figures.sensitivity))
 
 
 SOFTER = "mixture-tool"
@@ -87,7 +87,7 @@ def test_a_graded_prediction_has_the_solids_figures_and_says_whose_uncertainty_t
     evaluation = evaluated("graded-dome")
     for state, document in zip(evaluation.prediction.states, map(data, evaluation.uncertainty), strict=True):
         figure = document["figures"]["sensitivity_kPa_per_N"]
-        assert figure["value"] == pytest.approx(state.figures.sensitivity_kPa_per_N, rel=1e-5)
+        assert figure["value"] == pytest.approx(state.figures.sensitivity, rel=1e-5)
         assert figure["low"] < figure["value"] < figure["high"]
         assert "mixing fraction" in figure["shares"]
         assert any("the wall is graded" in note for note in document["notes"])

@@ -53,14 +53,14 @@ def test_another_curve_does_what_the_design_that_names_it_does(graded, curve):
     assert outcome.rated == pytest.approx(named.rating.pressure, rel=1e-9)
     for state, there in zip(outcome.states, named.prediction.states, strict=True):
         assert state.driving_pressure == there.driving_pressure
-        assert state.figures.sensitivity_kPa_per_N == pytest.approx(there.figures.sensitivity_kPa_per_N, rel=1e-9)
+        assert state.figures.sensitivity == pytest.approx(there.figures.sensitivity, rel=1e-9)
         assert state.figures.force_range == pytest.approx(there.figures.force_range, rel=1e-9)
 
 
 def test_a_stiffer_wall_reads_less_at_a_newton(graded):
-    softer, used, stiffer = (one.states[0].figures.sensitivity_kPa_per_N for one in graded.curves)
+    softer, used, stiffer = (one.states[0].figures.sensitivity for one in graded.curves)
     assert softer > used > stiffer
-    assert used == graded.prediction.states[0].figures.sensitivity_kPa_per_N
+    assert used == graded.prediction.states[0].figures.sensitivity
 
 
 def test_check_and_datasheet_set_the_curves_side_by_side(graded):
@@ -71,7 +71,7 @@ def test_check_and_datasheet_set_the_curves_side_by_side(graded):
     assert [len(row) for row in table.rows] == [5] * 6
     for one in graded.curves:
         assert one.by_curve.curve in note.message
-        assert f"{one.states[-1].figures.sensitivity_kPa_per_N:.2f} kPa/N" in note.message
+        assert f"{one.states[-1].figures.sensitivity:.2f} kPa/N" in note.message
     document = data(by_mixing_curve(graded.curves))
     assert [entry["place"] for entry in document] == ["softer", "in use", "stiffer"]
     assert document[1]["rated_pressure_kPa"] == pytest.approx(1e3 * graded.rating.pressure, rel=1e-5)

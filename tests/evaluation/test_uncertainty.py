@@ -40,7 +40,7 @@ def test_widths_are_the_budgets_and_values_the_models(evaluated, library, name, 
             zip(
                 FIGURES,
                 (
-                    state.figures.sensitivity_kPa_per_N,
+                    state.figures.sensitivity,
                     1e3 * evaluation.prediction.limits.limit_point,
                     state.figures.stiffness,
                     state.figures.force_range[1],

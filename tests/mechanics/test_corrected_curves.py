@@ -69,7 +69,7 @@ def test_between_its_coefficients_the_ratio_is_the_solids(library, resin):
 @pytest.mark.parametrize("resin", ["TangoPlus", "FLX9960", "FLX9985"])
 def test_a_large_coefficient_grips(library, resin):
     one = material_sensor(library.load("materials", resin)).replace(waves=0, gauge_limit=np.inf)
-    found = [pressed(one.replace(friction=f), 0.0).figures.sensitivity_kPa_per_N for f in (GRIPS, np.inf)]
+    found = [pressed(one.replace(friction=f), 0.0).figures.sensitivity for f in (GRIPS, np.inf)]
     assert found[0] == pytest.approx(found[1], rel=0.006)
 
 

@@ -255,7 +255,7 @@ def test_a_batch_of_the_atlas_answers_as_each_sensor_alone():
         assert asdict(answer.result.limit_point) == pytest.approx(asdict(alone.result.limit_point), rel=1e-9)
         for one, other in zip(answer.result.states, alone.result.states, strict=True):
             assert one.force == pytest.approx(other.force, rel=1e-9)
-            assert one.figures.sensitivity_kPa_per_N == pytest.approx(other.figures.sensitivity_kPa_per_N, rel=1e-9)
+            assert one.figures.sensitivity == pytest.approx(other.figures.sensitivity, rel=1e-9)
     assert isinstance(together[4], BeyondLimitError) and together[4].pressure == pytest.approx(50.0 * KPA)
 
 

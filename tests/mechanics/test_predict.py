@@ -72,15 +72,13 @@ def test_plate_edge_is_detected():
 
 def test_figures_do_not_jump_when_an_event_passes_a_step():
     pressures = np.linspace(0.0, 0.038, 60)
-    found = [state.figures.sensitivity_kPa_per_N for state in predict("x", PAPER, pressures.tolist()).states]
+    found = [state.figures.sensitivity for state in predict("x", PAPER, pressures.tolist()).states]
     steps = np.abs(np.diff(found))
     assert steps.max() < 4 * np.median(steps) + 0.02
 
 
 def test_more_steps_change_the_sensitivity_little():
-    few, many = (
-        predict("x", PAPER.replace(steps=n), [0.022]).states[0].figures.sensitivity_kPa_per_N for n in (14, 112)
-    )
+    few, many = (predict("x", PAPER.replace(steps=n), [0.022]).states[0].figures.sensitivity for n in (14, 112))
     assert few == pytest.approx(many, rel=0.01)
 
 

@@ -27,8 +27,8 @@ def paper():
 
 def test_apex_at_22_kpa_and_both_sensitivities_of_tango(paper):
     assert paper.states[2].apex_inner == pytest.approx(10.94, abs=0.02)
-    assert paper.states[0].figures.sensitivity_kPa_per_N == pytest.approx(2.547, rel=0.10)
-    assert paper.states[2].figures.sensitivity_kPa_per_N == pytest.approx(1.923, rel=0.10)
+    assert paper.states[0].figures.sensitivity == pytest.approx(2.547, rel=0.10)
+    assert paper.states[2].figures.sensitivity == pytest.approx(1.923, rel=0.10)
 
 
 def test_limit_point_of_the_thick_wall(paper):
@@ -120,9 +120,7 @@ def test_a_sway_is_reported_and_changes_no_figure():
 
 
 def test_figures_do_not_depend_on_the_number_of_steps():
-    few, many = (
-        predict("x", PAPER.replace(steps=n), [0.022]).states[0].figures.sensitivity_kPa_per_N for n in (14, 56)
-    )
+    few, many = (predict("x", PAPER.replace(steps=n), [0.022]).states[0].figures.sensitivity for n in (14, 56))
     assert few == pytest.approx(many, rel=0.01)
 
 
@@ -167,7 +165,7 @@ def test_a_wall_on_its_base_is_stated_and_changes_the_deep_press_alone():
     events = [{event.kind for event in one.states[0].events} for one in (on_base, through)]
     assert events[0] - events[1] == {"wall on its base"} and events[1] - events[0] == {"wall below the base plane"}
     # Extrapolated from meshes of up to 128 x 8 cells over the same depth: docs/background/accuracy.md.
-    assert on_base.states[0].figures.sensitivity_kPa_per_N == pytest.approx(2.3218, rel=0.002)
+    assert on_base.states[0].figures.sensitivity == pytest.approx(2.3218, rel=0.002)
     assert any("lies down" in line for line in on_base.assumptions)
     assert not any("lies down" in line for line in through.assumptions)
     own, others = set(on_base.assumptions), set(through.assumptions)
@@ -184,5 +182,5 @@ def test_the_flange_of_a_printed_rim_carries_the_wall():
     ]
     assert "wall on its base" in {event.kind for event in found[0].events}
     # Without it the wall passes through the flange: docs/background/accuracy.md.
-    assert found[0].figures.sensitivity_kPa_per_N == pytest.approx(2.366, rel=0.003)
-    assert found[1].figures.sensitivity_kPa_per_N > 1.05 * found[0].figures.sensitivity_kPa_per_N
+    assert found[0].figures.sensitivity == pytest.approx(2.366, rel=0.003)
+    assert found[1].figures.sensitivity > 1.05 * found[0].figures.sensitivity

@@ -79,13 +79,9 @@ def beside_of(group: RunGroup, states: dict[float, SensorState]) -> GroupCompari
         return GroupComparison(group, group.key.resin, None, {}, {}, "beyond the limit point of this resin")
     f = state.figures
     predicted = {
-        "sensitivity_kPa_per_N": (
-            f.sensitivity_kPa_per_N,
-            0.85 * f.sensitivity_kPa_per_N,
-            1.15 * f.sensitivity_kPa_per_N,
-        ),
+        "sensitivity_kPa_per_N": (f.sensitivity, 0.85 * f.sensitivity, 1.15 * f.sensitivity),
         "stiffness_N_per_mm": (f.stiffness, 0.9 * f.stiffness, 1.1 * f.stiffness),
-        "sensitivity_through_origin_kPa_per_N": (f.sensitivity_through_origin_kPa_per_N, None, None),
+        "sensitivity_through_origin_kPa_per_N": (f.sensitivity_through_origin, None, None),
         "r_squared": (f.r_squared, None, None),
         "nonlinearity_percent": (100 * f.nonlinearity, None, None),
         "force_range_N": (f.force_range[1], None, None),

@@ -13,9 +13,10 @@ from pneutouch.evaluation.charts import tradeoff, tuning
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.report.certainty import OTHERS, SENSITIVITY, ends, ranked, share_bars, shares
+from pneutouch.report.certainty import OTHERS, ends, ranked, share_bars, shares
 from pneutouch.report.curves import resin_sensitivities
 from pneutouch.report.tradeoff import tradeoff_panel, tuning_panel
+from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.results.record import plain as data
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
@@ -68,13 +69,13 @@ def test_fronts_are_respond_s_and_the_designs_lie_on_or_below_them(selection):
         ones = np.ones_like(front.radius)
         batch = selection.problem.batch(number * ones, front.radius, front.wall, 0.02 * ones)
         own = respond(batch, selection.problem.steps).lines
-        np.testing.assert_allclose(own.sensitivity_kPa_per_N, front.sensitivity_kPa_per_N, rtol=1e-3)
-        np.testing.assert_allclose(np.fmin(own.force_high, own.saturation_force), front.force, rtol=1e-3)
+        np.testing.assert_allclose(own.sensitivity, front.sensitivity, rtol=1e-3)
+        np.testing.assert_allclose(own.reach, front.force, rtol=1e-3)
     by_title = {front.resin.material.title: front for front in found.known}
     for spot in found.spots:
         front = by_title[spot.resin]
-        assert spot.force <= 1.03 * np.interp(spot.sensitivity_kPa_per_N, front.sensitivity_kPa_per_N, front.force)
-        assert spot.sensitivity_kPa_per_N == pytest.approx(1.5, rel=0.05)
+        assert spot.figures.reach <= 1.03 * np.interp(spot.figures.sensitivity, front.sensitivity, front.force)
+        assert spot.figures.sensitivity == pytest.approx(1.5, rel=0.05)
 
 
 def test_the_band_at_the_working_pressure_is_the_choice_s_own(selection, library):
@@ -82,7 +83,7 @@ def test_the_band_at_the_working_pressure_is_the_choice_s_own(selection, library
     (pressure, value), *rest = found.working_kPa_per_N.items()
     assert not rest
     assert pressure == pytest.approx(20)
-    assert np.interp(pressure, found.chosen.driving_pressure_kPa, found.chosen.sensitivity_kPa_per_N) == pytest.approx(
+    assert np.interp(pressure, found.chosen.driving_pressure_kPa, found.chosen.sensitivity) == pytest.approx(
         value, rel=1e-3
     )
     width = (
@@ -97,8 +98,8 @@ def test_tuning_curves_are_respond_s(selection, library):
     sensor = selection.sensor_of(best)
     own = respond(
         batch_of(sensor, (found.chosen.driving_pressure_kPa * KPA).tolist()), sensor.protocol.steps
-    ).lines.sensitivity_kPa_per_N
-    np.testing.assert_allclose(found.chosen.sensitivity_kPa_per_N, own, rtol=1e-3)
+    ).lines.sensitivity
+    np.testing.assert_allclose(found.chosen.sensitivity, own, rtol=1e-3)
     assert {other.label for other in found.others} == {"TangoPlus", "FLX9960-DM"} - {found.chosen.label}
 
 
@@ -132,19 +133,17 @@ def test_a_design_s_charts_mark_the_design_at_its_own_figures(evaluated, drawn):
     evaluation = evaluated("paper-dome", model="atlas")
     last = evaluation.prediction.states[-1]
     (spot,) = drawn.spots
-    assert (spot.sensitivity_kPa_per_N, spot.force) == pytest.approx(
-        (last.figures.sensitivity_kPa_per_N, last.figures.force_range[1])
-    )
+    assert spot.figures == last.figures and spot.figures.reach == last.figures.force_high
     runs = {front.resin.name for front in drawn.fronts}
     assert "Agilus30" not in runs
     assert {"TangoPlus", "FLX9995"} <= runs
     found = tuning(evaluation, 0.0356)
     assert list(found.working_kPa_per_N) == pytest.approx([0, 5, 12, 22])
     for (pressure, value), said in zip(found.working_kPa_per_N.items(), evaluation.uncertainty, strict=True):
-        assert np.interp(
-            pressure, found.chosen.driving_pressure_kPa, found.chosen.sensitivity_kPa_per_N
-        ) == pytest.approx(value, rel=1e-3)
-        own = data(said)["figures"][SENSITIVITY]
+        assert np.interp(pressure, found.chosen.driving_pressure_kPa, found.chosen.sensitivity) == pytest.approx(
+            value, rel=1e-3
+        )
+        own = data(said)["figures"][SENSITIVITY_KEY]
         assert np.interp(pressure, found.chosen.driving_pressure_kPa, found.low_kPa_per_N) == pytest.approx(
             own["low"], rel=0.01
         )

@@ -96,6 +96,6 @@ def test_the_design_is_picked_out_on_its_own_curve(name, sheet_of, picked):
     title = sheet.scene.membrane_material.title
     drawn_svg(curves.resin_sensitivities(sheet.resin_curves, sheet.prediction, title, {}))
     ((points, curve),) = picked
-    own = [(1e3 * s.driving_pressure, s.figures.sensitivity_kPa_per_N) for s in sheet.prediction.states if s.figures]
+    own = [(1e3 * s.driving_pressure, s.figures.sensitivity) for s in sheet.prediction.states if s.figures]
     np.testing.assert_allclose(points, own)
     np.testing.assert_allclose(np.interp(points[:, 0], *curve.T), points[:, 1], rtol=0.03)

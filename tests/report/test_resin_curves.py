@@ -38,7 +38,7 @@ def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library
         assert pressure[0] == 0
         assert pressure[-1] == pytest.approx(22)
         own = respond(batch_of(in_resin(sensor, material), (1e-3 * pressure).tolist()), sensor.protocol.steps)
-        np.testing.assert_allclose(sensitivity, own.lines.sensitivity_kPa_per_N, rtol=1e-3)
+        np.testing.assert_allclose(sensitivity, own.lines.sensitivity, rtol=1e-3)
 
 
 def test_a_resin_outside_the_atlas_is_drawn_by_the_solid_and_the_caption_says_so(evaluated, library):
@@ -53,8 +53,8 @@ def test_a_resin_outside_the_atlas_is_drawn_by_the_solid_and_the_caption_says_so
     assert [curve.model for curve in found.values()] == ["atlas", "solid"]
     assert drawn_by(found) == "drawn by the atlas, FLX9960-DM by the solid"
     same = resin_curves(sensor, {"b": hard}, 0.02, "solid", None)["FLX9960-DM"]
-    near = np.interp(found["FLX9960-DM"].driving_pressure_kPa, same.driving_pressure_kPa, same.sensitivity_kPa_per_N)
-    np.testing.assert_allclose(found["FLX9960-DM"].sensitivity_kPa_per_N, near, rtol=0.02)
+    near = np.interp(found["FLX9960-DM"].driving_pressure_kPa, same.driving_pressure_kPa, same.sensitivity)
+    np.testing.assert_allclose(found["FLX9960-DM"].sensitivity, near, rtol=0.02)
 
 
 def test_seven_resins_are_compared_and_stop_at_their_own_limits(evaluated, library):
@@ -88,8 +88,8 @@ def test_curves_under_friction_are_the_solids_within_a_percent(resin, model, eva
     assert curve.model == model and drawn_by(found) == f"drawn by the {model}"
     at = np.array([5.5, 16.5])
     states = solid_states(in_resin(sensor, material).replace(waves=0), 1e-3 * at)
-    solid = [state.figures.sensitivity_kPa_per_N for state in states]
-    shown = np.interp(at, curve.driving_pressure_kPa, curve.sensitivity_kPa_per_N)
+    solid = [state.figures.sensitivity for state in states]
+    shown = np.interp(at, curve.driving_pressure_kPa, curve.sensitivity)
     np.testing.assert_allclose(shown, solid, rtol=0.01)
 
 

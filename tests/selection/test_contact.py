@@ -45,7 +45,7 @@ def predicted(selection: SelectionRun, folder) -> tuple[float, float, float]:
     assert states[row].driving_pressure == pytest.approx(pressure, abs=1e-9)
     stated = data(found.uncertainty[row])["figures"]["sensitivity_kPa_per_N"]
     figures = states[row].figures
-    return figures.sensitivity_kPa_per_N, figures.force_range[1], 2 * stated["standard_uncertainty_relative"]
+    return figures.sensitivity, figures.force_range[1], 2 * stated["standard_uncertainty_relative"]
 
 
 @pytest.mark.slow
@@ -56,7 +56,7 @@ def test_a_design_for_a_ball_meets_the_target_under_that_ball(tmp_path):
     sensitivity_kPa_per_N, force, expanded = predicted(selection, tmp_path)
     assert sensitivity_kPa_per_N == pytest.approx(3.0, rel=0.02)
     stated = choice.pool.response.lines
-    assert sensitivity_kPa_per_N == pytest.approx(stated.sensitivity_kPa_per_N[0], rel=1e-3)
+    assert sensitivity_kPa_per_N == pytest.approx(stated.sensitivity[0], rel=1e-3)
     assert force == pytest.approx(stated.force_high[0], rel=1e-3)
     # The list's interval is that of the design's own prediction, not the plate's.
     assert choice.expanded == pytest.approx(expanded, rel=1e-3)
@@ -125,7 +125,7 @@ def _samples() -> tuple:
     for row, factor in ((0, 2.0), (2, 0.5)):
         one = response.take(np.array([row]))
         lines = one.lines._replace(
-            sensitivity_kPa_per_N=factor * one.lines.sensitivity_kPa_per_N,
+            sensitivity=factor * one.lines.sensitivity,
             stiffness=factor * one.lines.stiffness,
             force_high=factor * one.lines.force_high,
         )
@@ -153,7 +153,7 @@ def test_the_corrected_curve_has_the_corrected_slope():
     corrected = factors.corrected(batch, response)
     for row in range(3):
         slope = np.polyfit(corrected.force[row], 1e3 * corrected.rise[row], 1)[0]
-        assert slope == pytest.approx(corrected.lines.sensitivity_kPa_per_N[row], rel=1e-9)
+        assert slope == pytest.approx(corrected.lines.sensitivity[row], rel=1e-9)
 
 
 def test_a_sample_that_is_known_or_has_no_figures_adds_nothing():

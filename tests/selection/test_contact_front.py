@@ -37,7 +37,7 @@ def test_a_contact_that_changes_nothing_leaves_the_fronts_as_they_are(evaluated)
     assert len(set(asked)) == 5
     assert drawn.median_error <= drawn.greatest_error < 2e-3
     assert found.force == pytest.approx(plain.force, rel=2e-3)
-    assert found.sensitivity_kPa_per_N == pytest.approx(plain.sensitivity_kPa_per_N, rel=2e-3)
+    assert found.sensitivity == pytest.approx(plain.sensitivity, rel=2e-3)
 
 
 @pytest.mark.slow
@@ -65,9 +65,9 @@ def test_places_of_a_front_solved_again_are_within_the_stated_error(contact):
         for row in draw.integers(0, one.force.size, 5).tolist():
             trial = tried(problem, place(problem, number, one, row), solve)
             assert not trial.why
-            exact_kPa_per_N, force = trial.pool.response.lines.sensitivity_kPa_per_N[0], trial.pool.force[0]
-            off.append((one.sensitivity_kPa_per_N[row] / exact_kPa_per_N - 1.0, one.force[row] / force - 1.0))
-            plate.append(abs(trial.atlas.lines.sensitivity_kPa_per_N[0] / exact_kPa_per_N - 1.0))
+            exact_kPa_per_N, force = trial.pool.response.lines.sensitivity[0], trial.pool.force[0]
+            off.append((one.sensitivity[row] / exact_kPa_per_N - 1.0, one.force[row] / force - 1.0))
+            plate.append(abs(trial.atlas.lines.sensitivity[0] / exact_kPa_per_N - 1.0))
     differences = np.abs(off).max(axis=1)
     assert np.mean(differences <= drawn.greatest_error) >= 0.8
     assert np.median(differences) < 0.5 * np.median(plate)

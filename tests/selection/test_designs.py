@@ -48,10 +48,10 @@ def test_the_solid_confirms_every_design_of_another_resin(fingertip, solid):
     first = {choice.resin.name: k for k, choice in reversed(list(enumerate(fingertip.answer.designs)))}
     for number in first.values():
         choice, (_, state) = fingertip.answer.designs[number], solid(number)
-        stated = float(choice.pool.response.lines.sensitivity_kPa_per_N[0])
-        assert abs(np.log(state.figures.sensitivity_kPa_per_N / stated)) <= choice.expanded
+        stated = float(choice.pool.response.lines.sensitivity[0])
+        assert abs(np.log(state.figures.sensitivity / stated)) <= choice.expanded
         # The stated uncertainty is wide; as numbers the two agree far better, but where the wall buckles.
-        assert state.figures.sensitivity_kPa_per_N == pytest.approx(stated, rel=0.012)
+        assert state.figures.sensitivity == pytest.approx(stated, rel=0.012)
 
 
 def test_designs_keep_what_was_asked_for_and_every_limit(fingertip, solid):
@@ -59,7 +59,7 @@ def test_designs_keep_what_was_asked_for_and_every_limit(fingertip, solid):
         found, state = solid(number)
         membrane = found.scene.design.membrane
         assert 2 * (membrane.inner_radius_mm + membrane.wall_thickness_mm) <= 25.0
-        assert state.figures.sensitivity_kPa_per_N == pytest.approx(1.9, rel=0.06)
+        assert state.figures.sensitivity == pytest.approx(1.9, rel=0.06)
         assert state.figures.force_range[1] >= 0.99 * 15.0
         assert state.driving_pressure <= 0.9 * found.prediction.limits.lowest
         assert membrane.wall_thickness_mm >= found.scene.printer.smallest.wall("elastomer").least
@@ -113,7 +113,7 @@ def test_all_but_one_given_solves_for_that_one(given, free):
     changes = parse_changes(selection.assignments(choice))
     state = evaluate("paper-dome", changes, model="solid").prediction.states[-1]
     assert state.driving_pressure == pytest.approx(float(choice.pool.pressure[0]), rel=1e-6, abs=1e-9)
-    assert state.figures.sensitivity_kPa_per_N == pytest.approx(2.0, rel=0.01)
+    assert state.figures.sensitivity == pytest.approx(2.0, rel=0.01)
     if "inner_radius_mm" in given:
         assert float(choice.pool.radius[0]) == 9.25
     if "wall_thickness_mm" in given:
@@ -152,9 +152,7 @@ def test_predict_and_select_speak_of_one_sensor(fingertip, solid):
     choice = fingertip.answer.designs[0]
     found, _ = solid(0)
     state = predict("", found.sensor, [float(choice.pool.pressure[0])], model="atlas").states[0]
-    assert state.figures.sensitivity_kPa_per_N == pytest.approx(
-        float(choice.pool.response.lines.sensitivity_kPa_per_N[0]), rel=2e-3
-    )
+    assert state.figures.sensitivity == pytest.approx(float(choice.pool.response.lines.sensitivity[0]), rel=2e-3)
     assert state.driving_pressure / KPA == pytest.approx(12.0)
 
 
@@ -170,9 +168,7 @@ def test_a_depth_stated_in_the_base_follows_the_size_into_the_design(tmp_path):
     choice = selection.answer.designs[0]
     state = evaluate(str(base), parse_changes(selection.assignments(choice)), model="atlas").prediction.states[-1]
     assert state.indentation[-1] == pytest.approx(0.5 * float(choice.pool.radius[0]), rel=1e-6)
-    assert state.figures.sensitivity_kPa_per_N == pytest.approx(
-        float(choice.pool.response.lines.sensitivity_kPa_per_N[0]), rel=2e-3
-    )
+    assert state.figures.sensitivity == pytest.approx(float(choice.pool.response.lines.sensitivity[0]), rel=2e-3)
 
 
 @pytest.mark.parametrize(("diameter_mm", "sensitivity", "resin"), [(10.0, 4.6, "TangoPlus"), (10.0, 4.8, "TangoPlus")])

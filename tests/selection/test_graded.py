@@ -32,7 +32,7 @@ def test_a_wish_inside_the_box_is_met_with_half_the_tolerance_to_spare():
     found = searched(SAME)
     assert found.met
     assert max(shares(SAME, found.best)[name] for name in ("sensitivity", "same sensitivity")) <= 0.5
-    assert abs(found.best.sensitivity_kPa_per_N[1] / found.best.sensitivity_kPa_per_N[0] - 1) <= 0.01
+    assert abs(found.best.sensitivity[1] / found.best.sensitivity[0] - 1) <= 0.01
     assert len(found.trials) <= 30
 
 
@@ -50,7 +50,7 @@ def test_the_most_trials_are_kept_and_a_far_wish_is_not_met():
         assert not found.met
         assert len(found.trials) <= most
         assert told == [(k + 1, most) for k in range(len(found.trials))]
-    assert found.best.sensitivity_kPa_per_N[0] == max(trial.sensitivity_kPa_per_N[0] for trial in found.trials)
+    assert found.best.sensitivity[0] == max(trial.sensitivity[0] for trial in found.trials)
 
 
 def test_the_widest_range_keeps_the_sensitivity_and_beats_every_trial_that_does():
@@ -58,7 +58,7 @@ def test_the_widest_range_keeps_the_sensitivity_and_beats_every_trial_that_does(
 
     def at_rest(pole: float, rim: float) -> GradeTrial:
         both = made_up(pole, rim)
-        return GradeTrial(pole, rim, both.sensitivity_kPa_per_N[:1], both.force[:1], both.highest)
+        return GradeTrial(pole, rim, both.sensitivity[:1], both.force[:1], both.highest)
 
     found = searched(wish, at_rest)
     assert found.met
@@ -82,9 +82,7 @@ def test_limits_bind_but_are_no_aims():
     found = searched(strong)
     assert found.met
     assert found.best.reach >= 36.0
-    weak = searched(
-        SAME, lambda pole, rim: GradeTrial(pole, rim, made_up(pole, rim).sensitivity_kPa_per_N, (1.0, 1.0), 0.01)
-    )
+    weak = searched(SAME, lambda pole, rim: GradeTrial(pole, rim, made_up(pole, rim).sensitivity, (1.0, 1.0), 0.01))
     assert not weak.met
     assert shares(SAME, weak.best)["limit pressure"] == pytest.approx(2.2)
 
@@ -109,8 +107,8 @@ def test_a_fraction_is_found_at_which_the_sensitivity_is_met_exactly():
     mixed = select(Target.model_validate({**content, "given": {**given, "mix": "TangoPlus+VeroClear"}}), "test")
     assert len(mixed.answer.designs) == 1
     best = mixed.answer.designs[0]
-    assert float(best.pool.response.lines.sensitivity_kPa_per_N[0]) == pytest.approx(1.8, rel=5e-4)
-    assert mixed.confirmed[0].sensitivity_kPa_per_N == pytest.approx(1.8, rel=0.012)
+    assert float(best.pool.response.lines.sensitivity[0]) == pytest.approx(1.8, rel=5e-4)
+    assert mixed.confirmed[0].sensitivity == pytest.approx(1.8, rel=0.012)
     assert 0.121 < best.resin.grade.fractions[0] < 0.173
     law = pair_of("TangoPlus+VeroClear", mixed.base.printer, Library.default(), "test").law
     fraction = np.array(best.resin.grade.fractions[0])

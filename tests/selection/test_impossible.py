@@ -73,7 +73,7 @@ def test_what_is_missed_is_in_percent_of_what_is_required(wanted, count):
     nearest, missed = found.answer.nearest, missed_percent(found.problem, found.answer.nearest)
     lines, required = nearest.pool.response.lines, FINGERTIP["sensitivity_kPa_per_N"]
     off = {
-        "sensitivity": abs(lines.sensitivity_kPa_per_N[0] - required) / required,
+        "sensitivity": abs(lines.sensitivity[0] - required) / required,
         "force range": (150.0 - nearest.pool.force[0]) / 150.0,
         "stiffness": (lines.stiffness[0] - 0.2) / 0.2,
     }

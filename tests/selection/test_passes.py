@@ -86,9 +86,9 @@ def test_a_plate_that_digs_in_rejects_the_first_design_before_it_is_saved(finger
 
 
 def test_the_solid_solves_a_judged_design_once(fingertip, monkeypatch):
-    solved = fingertip.confirmed[0].sensitivity_kPa_per_N
+    solved = fingertip.confirmed[0].sensitivity
     afresh = workflow._confirm(fingertip, fingertip.answer.designs[0], None)
-    assert solved == pytest.approx(afresh.sensitivity_kPa_per_N, rel=1e-4)
+    assert solved == pytest.approx(afresh.sensitivity, rel=1e-4)
     monkeypatch.setattr("pneutouch.mechanics.models.solid.solid_states", None)
     again = workflow._confirm(fingertip, fingertip.answer.designs[0], fingertip.judged[1])
     assert again == fingertip.confirmed[0]
@@ -133,7 +133,7 @@ def test_the_solid_confirms_each_design_with_the_clamping_ring_of_its_own_size()
         base = selection.sensor_of(choice).dome.base
         assert base == sensor_of(drawn).dome.base
         assert base.ring > choice.pool.radius[0] + choice.pool.wall[0]
-    assert all(np.isfinite(confirmed.sensitivity_kPa_per_N) for confirmed in selection.confirmed)
+    assert all(np.isfinite(confirmed.sensitivity) for confirmed in selection.confirmed)
 
 
 def test_a_footprint_that_nothing_keeps_is_named_as_what_to_drop():

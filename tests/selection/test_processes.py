@@ -36,7 +36,7 @@ def test_each_process_has_its_best_on_a_profile_that_makes_it(both, library):
     for process, run in both.best:
         best = run.answer.designs[0]
         assert best.resin.material.is_cast == (process == "casting")
-        assert run.problem.sensitivity_kPa_per_N == 1.9
+        assert run.problem.sensitivity == 1.9
         solid = best.contact is not None or run.confirmed[0].within
         assert solid and run.left_out == {}
         assert 1 in run.judged

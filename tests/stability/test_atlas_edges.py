@@ -45,7 +45,7 @@ def test_outside_the_box_nothing_is_said_and_the_neighbours_answer_as_before(cas
     assert found.ends[1] == OUTSIDE and silent(found, 1) and np.isnan(found.limit_pressure[1])
     for row in (0, 2):
         assert found.ends[row] == DEPTH
-        assert found.lines.sensitivity_kPa_per_N[row] == pytest.approx(alone.lines.sensitivity_kPa_per_N[0], rel=1e-6)
+        assert found.lines.sensitivity[row] == pytest.approx(alone.lines.sensitivity[0], rel=1e-6)
         assert found.force[row] == pytest.approx(alone.force[0], rel=1e-6, abs=1e-9)
 
 
@@ -67,12 +67,12 @@ def test_what_is_no_sensor_is_told_nothing_and_its_neighbours_answer_as_before(n
     plain = getattr(batch(), name)[0]
     found = respond(batch(**{name: [plain, np.nan if nan else ODD[name], plain]}))
     assert found.ends[1] == OUTSIDE and silent(found, 1)
-    assert found.lines.sensitivity_kPa_per_N[[0, 2]] == pytest.approx(alone.lines.sensitivity_kPa_per_N[0], rel=1e-6)
+    assert found.lines.sensitivity[[0, 2]] == pytest.approx(alone.lines.sensitivity[0], rel=1e-6)
 
 
 def test_just_below_the_limit_point_there_is_an_answer():
     found = respond(batch(driving_pressure=(np.array([0.97, 0.99, 0.999, 0.9999]) * LIMIT).tolist(), depth=0.3))
-    assert np.isfinite(found.lines.sensitivity_kPa_per_N).all() and (found.ends == DEPTH).all()
+    assert np.isfinite(found.lines.sensitivity).all() and (found.ends == DEPTH).all()
     assert (np.diff(found.apex_outer) > 0).all()
 
 
@@ -109,7 +109,7 @@ def test_random_sensors_either_answer_in_full_or_not_at_all(seed):
     sensors = random_batch(30, seed, deepest=0.75)
     found = respond(sensors)
     finite = np.isfinite(found.force).all(axis=1)
-    assert (finite == np.isfinite(found.lines.sensitivity_kPa_per_N)).all()
+    assert (finite == np.isfinite(found.lines.sensitivity)).all()
     assert (finite == np.isfinite(found.range_end)).all() and finite.mean() > 0.9
     assert ((found.range_end <= sensors.depth * (1 + 1e-9)) | ~finite).all()
     assert np.isin(found.ends, (DEPTH, BUCKLING)).mean() > 0.95
@@ -124,5 +124,5 @@ def test_answers_do_not_jump_between_neighbouring_walls(seed, move):
     one, other = respond(sensors), respond(there)
     both = (one.ends == DEPTH) & (other.ends == DEPTH)
     assert both.mean() > 0.5
-    change = np.abs(np.log(other.lines.sensitivity_kPa_per_N[both] / one.lines.sensitivity_kPa_per_N[both]))
+    change = np.abs(np.log(other.lines.sensitivity[both] / one.lines.sensitivity[both]))
     assert (change < 4.0 * move + 2e-3).all()

@@ -47,7 +47,7 @@ def test_designs_are_compared_with_what_differs_and_at_every_pressure(library):
     for evaluation, k in zip(result.evaluations, (0, 1), strict=True):
         for state in evaluation.prediction.states:
             row = found[1e3 * state.driving_pressure]
-            assert row.values[k].value == pytest.approx(state.figures.sensitivity_kPa_per_N, rel=1e-5)
+            assert row.values[k].value == pytest.approx(state.figures.sensitivity, rel=1e-5)
     limit = rows(result, "limit_pressure_kPa")[None].differences[0]
     assert limit.exceeds is True and limit.percent > 20
 

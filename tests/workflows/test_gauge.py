@@ -81,5 +81,5 @@ def test_any_gauge_takes_the_finest_that_covers_the_range():
     finer = run.gauges[: run.gauges.index(chosen)]
     assert finer and all("it reads to" in trial.why for trial in finer)
     read = gauge_reading(gauge(chosen.gauge), AMBIENT)
-    slope = float(best.pool.response.lines.sensitivity_kPa_per_N[0]) * KPA
+    slope = float(best.pool.response.lines.sensitivity[0]) * KPA
     assert chosen.smallest_force_N == pytest.approx(read.threshold / slope)

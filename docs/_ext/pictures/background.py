@@ -218,7 +218,7 @@ def graded() -> str:
                 "pneumatics.driving_pressures_kPa": pressures_kPa,
             }
             states = evaluate("paper-dome", changes, model="solid").prediction.states
-            values = [state.figures.sensitivity_kPa_per_N for state in states]
+            values = [state.figures.sensitivity for state in states]
             ax.plot(
                 pressures_kPa, values, color=(ACCENT, INK, MUTED)[k], ls=LINES[k], marker=MARKERS[k], ms=4, label=label
             )

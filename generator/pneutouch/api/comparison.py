@@ -14,6 +14,7 @@ from pneutouch.errors import InputError
 from pneutouch.mechanics.models.choice import model_options
 from pneutouch.report import comparison_words
 from pneutouch.results.comparison import ComparisonRecord, RowRecord
+from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.spec.design import DesignFile
 from pneutouch.workflows.compare import CompareResult, write
 from pneutouch.workflows.compare import compare as run
@@ -70,7 +71,7 @@ class Comparison(show.Documented):
 
     def _rows(self) -> list[Any]:
         inputs = [(key, *(show.short(value) for value in values)) for key, values in self.inputs.items()]
-        figures = sorted(self._result.record.figures, key=lambda row: row.figure != "sensitivity_kPa_per_N")
+        figures = sorted(self._result.record.figures, key=lambda row: row.figure != SENSITIVITY_KEY)
         return [*inputs, *(self._row(row) for row in figures)]
 
     def _row(self, row: RowRecord) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ from pneutouch.arrays import Array
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.statistics import Estimate, mean_of, spread_between, spread_within, widened
 from pneutouch.mechanics.response import Figures, figures, hysteresis
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.units import KPA
 
 Pooled = Literal["mean", "within", "between"]
@@ -40,17 +41,13 @@ _WIDTH_READING, _AREA_READING = 0.03, 0.04
 (docs/background/coverage.json: ``off`` of the loop's figures)."""
 
 FIGURES = (
-    FigureDefinition("sensitivity_kPa_per_N", "Sensitivity, line with intercept", "kPa/N", digits=4),
+    FigureDefinition(SENSITIVITY_KEY, "Sensitivity, line with intercept", "kPa/N", digits=4),
     FigureDefinition("sensitivity_through_origin_kPa_per_N", "Sensitivity, line through the origin", "kPa/N", digits=4),
     FigureDefinition("r_squared", "R²", "", digits=5),
     FigureDefinition("nonlinearity_percent", "Nonlinearity", "% of full scale"),
-    FigureDefinition(
-        "repeatability_kPa_per_N", "Repeatability of the sensitivity", "kPa/N", "within", "sensitivity_kPa_per_N"
-    ),
-    FigureDefinition(
-        "part_to_part_kPa_per_N", "Part to part, of the sensitivity", "kPa/N", "between", "sensitivity_kPa_per_N"
-    ),
-    FigureDefinition("stiffness_N_per_mm", "Mean stiffness", "N/mm"),
+    FigureDefinition("repeatability_kPa_per_N", "Repeatability of the sensitivity", "kPa/N", "within", SENSITIVITY_KEY),
+    FigureDefinition("part_to_part_kPa_per_N", "Part to part, of the sensitivity", "kPa/N", "between", SENSITIVITY_KEY),
+    FigureDefinition(STIFFNESS_KEY, "Mean stiffness", "N/mm"),
     FigureDefinition("force_range_N", "Force at the greatest depth", "N"),
     FigureDefinition("saturation_force_N", "Saturation force", "N"),
     FigureDefinition("sensing_range_N", "Sensing range", "N"),
@@ -101,7 +98,7 @@ def run_figures(curve: MeasuredCurve) -> dict[str, float]:
         values |= _loop(curve)
     if kind == "relaxation" and curve.relaxation is not None:
         values |= _relaxation(*curve.relaxation)
-    values |= _still(curve, values.get("sensitivity_kPa_per_N"))
+    values |= _still(curve, values.get(SENSITIVITY_KEY))
     return {key: value for key, value in values.items() if np.isfinite(value)}
 
 
@@ -117,16 +114,16 @@ def _line(curve: MeasuredCurve, *, saturating: bool) -> dict[str, float]:
     return values
 
 
-def line_figures(got: Figures) -> dict[str, float]:
+def line_figures(got: Figures[float]) -> dict[str, float]:
     """Figures of a loading curve by key of `FIGURES`; without saturation where it has none."""
     return {
-        "sensitivity_kPa_per_N": got.sensitivity_kPa_per_N,
-        "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin_kPa_per_N,
+        SENSITIVITY_KEY: got.sensitivity,
+        "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin,
         "r_squared": got.r_squared,
         "nonlinearity_percent": 100 * got.nonlinearity,
-        "stiffness_N_per_mm": got.stiffness,
+        STIFFNESS_KEY: got.stiffness,
         "force_range_N": got.force_range[1],
-        **({} if got.saturation_force is None else {_SATURATION: got.saturation_force}),
+        **({_SATURATION: got.saturation_force} if np.isfinite(got.saturation_force) else {}),
     }
 
 
@@ -188,7 +185,7 @@ def _binned(place: Array, values: Array, grid: Array) -> Array:
     return np.interp(grid, grid[known], total[known] / count[known])
 
 
-def _still(curve: MeasuredCurve, sensitivity_kPa_per_N: float | None) -> dict[str, float]:
+def _still(curve: MeasuredCurve, sensitivity: float | None) -> dict[str, float]:
     """Scatter and drift of the channels without contact; the resolution too, if the run has a sensitivity."""
     if curve.run.kind == "loop":
         # Its rests are too short for noise and drift: the wall still recovers.
@@ -196,8 +193,8 @@ def _still(curve: MeasuredCurve, sensitivity_kPa_per_N: float | None) -> dict[st
     values = {"drift_pressure_kPa_per_min": 60 * curve.drift[0] / KPA}
     noise_force, noise_kPa = curve.noise[0], curve.noise[1] / KPA
     values |= {"noise_force_N": noise_force, "noise_pressure_kPa": noise_kPa}
-    if sensitivity_kPa_per_N:
-        values["resolution_N"] = RESOLVED * noise_kPa / abs(sensitivity_kPa_per_N)
+    if sensitivity:
+        values["resolution_N"] = RESOLVED * noise_kPa / abs(sensitivity)
     return values
 
 

@@ -295,7 +295,7 @@ def _apart(group: list[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
         return []
     depth = min(float(curve.indentation[-1]) for curve in group)
     forces = np.array([float(np.interp(depth, curve.indentation, curve.force)) for curve in group])
-    slopes_kPa_per_N = np.array([_sensitivity_kPa_per_N(curve) for curve in group])
+    slopes_kPa_per_N = np.array([_sensitivity(curve) for curve in group])
     reasons: dict[int, str] = {}
     for name, values in ((f"force at {depth:.3g} mm", forces), ("slope of pressure over force", slopes_kPa_per_N)):
         if not (values > 0).all():
@@ -314,6 +314,6 @@ def _apart(group: list[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
     ]
 
 
-def _sensitivity_kPa_per_N(curve: MeasuredCurve) -> float:
+def _sensitivity(curve: MeasuredCurve) -> float:
     values = figures(curve.indentation, curve.force, curve.rise / KPA)
-    return float("nan") if values is None else values.sensitivity_kPa_per_N
+    return float("nan") if values is None else values.sensitivity

@@ -23,7 +23,7 @@ from pneutouch.results.driving import (
     TaskRecord,
     UnknownLeak,
 )
-from pneutouch.results.record import plain
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY, plain
 from pneutouch.rounding import tenths_below
 
 
@@ -69,14 +69,14 @@ def _next(design: str, record: DrivingRecord, words: tuple[list[str] | None, str
         report_next("predict", design, *set_words(*words), "--set", f"pneumatics.driving_pressures_kPa=[{listed}]")
         return
     value = f"{missed.value:g}"
-    flags = {"sensitivity_kPa_per_N": ["--sensitivity"], "force_range_N": ["--force-range"]}
+    flags = {SENSITIVITY_KEY: ["--sensitivity"], "force_range_N": ["--force-range"]}
     stiffness = ["--stiffness-least", f"{0.95 * missed.value:g}", "--stiffness-most", f"{1.05 * missed.value:g}"]
     known = flags.get(missed.requirement)
     report_next("select", *(stiffness if known is None else [*known, value]), "--base", design)
 
 
-_UNITS = {"sensitivity_kPa_per_N": "kPa/N", "stiffness_N_per_mm": "N/mm", "force_range_N": "N"}
-_NAMES = {"sensitivity_kPa_per_N": "sensitivity", "stiffness_N_per_mm": "stiffness", "force_range_N": "force range"}
+_UNITS = {SENSITIVITY_KEY: "kPa/N", STIFFNESS_KEY: "N/mm", "force_range_N": "N"}
+_NAMES = {SENSITIVITY_KEY: "sensitivity", STIFFNESS_KEY: "stiffness", "force_range_N": "force range"}
 
 _MINUTE, _HOUR = 60.0, 3600.0
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from pneutouch.cli.terminal import table_text
 from pneutouch.mechanics.events import LOBES, SWAY
+from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.rounding import tenths_below
 from pneutouch.wording import SIMULATED, counted
 
@@ -18,9 +19,6 @@ if TYPE_CHECKING:
     from pneutouch.results.behaviour import CalibratedBy, ContactAnywhere, DynamicRecord, Dynamics, Viscous
     from pneutouch.results.prediction import LimitPointRecord, PredictionRecord, RatingRecord, StateRecord
     from pneutouch.results.uncertainty import IntervalRecord
-
-
-_SENSITIVITY = "sensitivity_kPa_per_N"
 
 
 def dynamics_lines(dynamics: Dynamics) -> list[str]:
@@ -117,7 +115,7 @@ def _state_table(states: Sequence[StateRecord]) -> str:
     rows = []
     for state in states:
         ends = [event.kind for event in state.events if event.ends_range]
-        known = None if state.uncertainty is None else state.uncertainty.known.get(_SENSITIVITY)
+        known = None if state.uncertainty is None else state.uncertainty.known.get(SENSITIVITY_KEY)
         row = [
             f"{state.driving_pressure_kPa:g}",
             f"{state.apex_height_inner_mm:.3f}",
@@ -163,7 +161,7 @@ def _sheared(states: Sequence[StateRecord]) -> list[str]:
 def _sampled(state: StateRecord) -> IntervalRecord | None:
     """The sampled interval of the sensitivity; None if nothing was sampled."""
     samples = None if state.uncertainty is None else state.uncertainty.monte_carlo
-    return None if samples is None else samples.figures.get(_SENSITIVITY)
+    return None if samples is None else samples.figures.get(SENSITIVITY_KEY)
 
 
 def _interval(ends: IntervalRecord | None) -> str:

@@ -29,7 +29,7 @@ from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, wit
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify, report_next, report_written
 from pneutouch.errors import InputError, RuleBrokenError
-from pneutouch.results.record import plain
+from pneutouch.results.record import SENSITIVITY_KEY, plain
 from pneutouch.results.selection import GradedRecord
 from pneutouch.spec.target import Target
 from pneutouch.spec.values import plain_numbers
@@ -49,7 +49,7 @@ _PERCENT = "PERCENT"
 """Metavar of an option in per cent."""
 
 SELECT_FIELDS = {
-    "sensitivity": FieldOption("target", "sensitivity_kPa_per_N"),
+    "sensitivity": FieldOption("target", SENSITIVITY_KEY),
     "tolerance": FieldOption("target", "tolerance_percent", partial(percent_of, parameter="tolerance"), _PERCENT),
     "at": FieldOption("target", "driving_pressure_kPa"),
     "force_range": FieldOption("target", "force_range_N"),

@@ -65,7 +65,7 @@ def _other(selection: SelectionRun, choice: Candidate, rank: int) -> str:
     """The sensitivity of the model that the row is not of: the solid's, or the atlas's under its plate."""
     if choice.contact is not None:
         return f"{choice.contact.plate_kPa_per_N:.3f}"
-    return f"{selection.confirmed[rank].sensitivity_kPa_per_N:.3f}" if rank < len(selection.confirmed) else "-"
+    return f"{selection.confirmed[rank].sensitivity:.3f}" if rank < len(selection.confirmed) else "-"
 
 
 def _place(choice: Candidate) -> str:
@@ -82,10 +82,10 @@ def row_of(selection: SelectionRun, choice: Candidate) -> list[str]:
         f"{pool.wall[0]:.2f}",
         f"{selection.footprint(choice):.1f}",
         f"{pool.pressure[0] / KPA:.2f}",
-        f"{pool.response.lines.sensitivity_kPa_per_N[0]:.3f}",
+        f"{pool.figures.sensitivity:.3f}",
         f"{100 * choice.expanded:.0f} %" if np.isfinite(choice.expanded) else "-",
         *([_place(choice)] if selection.problem.anywhere else []),
-        f"0-{pool.force[0]:.2f}",
+        f"0-{pool.figures.reach:.2f}",
         choice.ends_with,
         "..".join(f"{end:.2f}" if np.isfinite(end) else "none" for end in choice.span),
         f"{tenths_below(choice.rated / KPA):.1f}",
@@ -105,7 +105,7 @@ def processes_table(selection: ProcessSelection) -> tuple[list[str], list[list[s
     rows = []
     for number, (process, run) in enumerate(selection.best, start=1):
         best = run.answer.designs[0]
-        solid = "solid" if best.contact is not None else f"{run.confirmed[0].sensitivity_kPa_per_N:.3f}"
+        solid = "solid" if best.contact is not None else f"{run.confirmed[0].sensitivity:.3f}"
         rows.append([str(number), process, *row_of(run, best), solid])
     return [HEAD[0], "process", *HEAD[1:]], rows
 
@@ -167,10 +167,10 @@ def graded_lines(selection: GradedSelectionRun) -> list[str]:
 
 
 def _row(selection: GradedSelectionRun, trial: GradeTrial) -> list[str]:
-    apart = [f"{100 * trial.difference:+.1f} %"] if len(trial.sensitivity_kPa_per_N) > 1 else []
+    apart = [f"{100 * trial.difference:+.1f} %"] if len(trial.sensitivity) > 1 else []
     rated = "-" if trial.note else f"{tenths_below(trial.rated / KPA):.1f}"
     return [
-        *(f"{value:.3f}" for value in trial.sensitivity_kPa_per_N),
+        *(f"{value:.3f}" for value in trial.sensitivity),
         *apart,
         *(f"{value:.1f} N" for value in trial.force),
         ", ".join(dict.fromkeys(trial.ends)) or "-",

@@ -17,6 +17,7 @@ from pneutouch.cli.complete import assignment, names
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify, report_next, table_text
 from pneutouch.errors import InputError
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.rounding import tenths_below
 
 if TYPE_CHECKING:
@@ -148,8 +149,8 @@ _MOST = 24
 """Number of rows that are printed: as many as a screen shows."""
 
 _FIGURES = {
-    "sensitivity_kPa_per_N": ("S kPa/N", 3),
-    "stiffness_N_per_mm": ("N/mm", 3),
+    SENSITIVITY_KEY: ("S kPa/N", 3),
+    STIFFNESS_KEY: ("N/mm", 3),
     "force_range_high_N": ("N at the end", 2),
     "range_end_mm": ("range mm", 2),
     "limit_point_kPa": ("limit kPa", 1),

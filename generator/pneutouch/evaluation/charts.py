@@ -58,7 +58,7 @@ def curve(sensor: Sensor, highest: float, label: str) -> SensitivityCurve | None
     if found is None:
         return None
     factor = np.array([sensor.correction.sensitivity_factor(p * KPA) for p in found.driving_pressure_kPa.tolist()])
-    return found._replace(sensitivity_kPa_per_N=factor * found.sensitivity_kPa_per_N, label=label)
+    return found._replace(sensitivity=factor * found.sensitivity, label=label)
 
 
 def under_contact(
@@ -72,7 +72,7 @@ def under_contact(
     pressures = tuple((plate.driving_pressure_kPa * KPA).tolist())
     ratio = CorrectedAtlas(sensor, pressures, states, least).ratio[SENSITIVITY]
     kept = np.isfinite(ratio)
-    values = np.exp(ratio[kept]) * plate.sensitivity_kPa_per_N[kept]
+    values = np.exp(ratio[kept]) * plate.sensitivity[kept]
     return SensitivityCurve(plate.driving_pressure_kPa[kept], values, "atlas corrected by the solid", plate.label)
 
 
@@ -100,7 +100,7 @@ def interval(
     widths = estimate.budget.expanded[SENSITIVITY]
     good = np.isfinite(widths)
     width = np.interp(drawn.driving_pressure_kPa, at[good], widths[good])
-    return drawn.sensitivity_kPa_per_N * np.exp(-width), drawn.sensitivity_kPa_per_N * np.exp(width)
+    return drawn.sensitivity * np.exp(-width), drawn.sensitivity * np.exp(width)
 
 
 _POINTS = {"membrane": 12, "atlas": 25, "solid": 4}
@@ -172,7 +172,7 @@ def _by_atlas(
     grids = [np.linspace(0.0, min(highest, share * float(limit)), points) for limit in limits]
     batch = SensorBatch.join([batch_of(v, grid) for v, grid in zip(inside.values(), grids, strict=True)])
     response = respond(batch, next(iter(inside.values())).protocol.steps)
-    values = response.lines.sensitivity_kPa_per_N
+    values = response.lines.sensitivity
     known = (np.isfinite(values) & ~np.isin(response.ends, left_out)).reshape(-1, points)
     rows = zip(inside, grids, values.reshape(-1, points), known, strict=True)
     return {
@@ -212,7 +212,7 @@ def _by_model(variant: Sensor, highest: float, model: str, closure: str | None) 
         states = predict("", variant, pressures.tolist(), model=model, closure=closure or "variational").states
     except ComputationError:
         return None
-    values = [(p / KPA, s.figures.sensitivity_kPa_per_N) for p, s in zip(pressures, states, strict=True) if s.figures]
+    values = [(p / KPA, s.figures.sensitivity) for p, s in zip(pressures, states, strict=True) if s.figures]
     if not values:
         return None
     x, y = zip(*values, strict=True)
@@ -248,7 +248,7 @@ def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
         prediction.states,
         anywhere=scene.design.contact.anywhere,
     )
-    working = {s.driving_pressure / KPA: s.figures.sensitivity_kPa_per_N for s in prediction.states if s.figures}
+    working = {s.driving_pressure / KPA: s.figures.sensitivity for s in prediction.states if s.figures}
     return TuningChart(drawn, low, high, working)
 
 
@@ -267,14 +267,12 @@ def tradeoff(evaluation: Evaluation) -> TradeOff | None:
     else:
         drawn = contact_front(problem, resized(sensor, problem))
         fronts, errors = drawn.fronts, (drawn.median_error, drawn.greatest_error)
-    saturation, end = state.figures.saturation_force, state.figures.force_range[1]
-    force = end if saturation is None else min(end, saturation)
     title = evaluation.scene.membrane_material.title
     return TradeOff(
         tuple(fronts),
         state.driving_pressure / KPA,
         (problem.gauge_limit - state.driving_pressure) / KPA,
-        (ChartPoint(title, f"this design, {force:.3g} N", state.figures.sensitivity_kPa_per_N, force),),
+        (ChartPoint(title, f"this design, {state.figures.reach:.3g} N", state.figures),),
         errors=errors,
     )
 
@@ -310,7 +308,7 @@ def tradeoff_problem(evaluation: Evaluation, pressure: float) -> SelectionProble
     wall = printer.smallest.wall("elastomer")
     return SelectionProblem(
         resins=_resins(evaluation),
-        sensitivity_kPa_per_N=None,
+        sensitivity=None,
         tolerance=1.0,
         driving_pressure=pressure,
         force_range=None,

@@ -30,7 +30,7 @@ from pneutouch.results.comparison import (
     RowRecord,
     ValueRecord,
 )
-from pneutouch.results.record import extended
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY, extended
 from pneutouch.rounding import rounded
 
 if TYPE_CHECKING:
@@ -120,8 +120,8 @@ class FigureColumn(NamedTuple):
 FIGURES = (
     FigureColumn("rated_pressure_kPa", "rated pressure", "kPa", of_state=False),
     FigureColumn("limit_pressure_kPa", "limit pressure", "kPa", of_state=False),
-    FigureColumn("sensitivity_kPa_per_N", "sensitivity", "kPa/N"),
-    FigureColumn("stiffness_N_per_mm", "stiffness", "N/mm"),
+    FigureColumn(SENSITIVITY_KEY, "sensitivity", "kPa/N"),
+    FigureColumn(STIFFNESS_KEY, "stiffness", "N/mm"),
     FigureColumn("force_at_range_end_N", "force at the range's end", "N"),
     FigureColumn("range_end_mm", "end of the range", "mm"),
     FigureColumn("apex_height_outer_mm", "apex height, outer", "mm"),

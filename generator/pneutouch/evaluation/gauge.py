@@ -32,7 +32,7 @@ def _smallest_force(threshold: float | None, drift_kPa_per_K: float, state: Sens
     at_kPa = state.driving_pressure / KPA
     if state.figures is None:
         return GaugeState(at_kPa, None, None, drift_kPa_per_K, None, None)
-    slope = state.figures.sensitivity_kPa_per_N * KPA
+    slope = state.figures.sensitivity * KPA
     force = None if threshold is None else threshold / slope
     first = None if threshold is None else force_at_rise(state.force, state.pressure_rise, threshold)
     warming = None if threshold is None or drift_kPa_per_K <= 0 else threshold / (drift_kPa_per_K * KPA)

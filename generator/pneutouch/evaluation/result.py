@@ -127,13 +127,13 @@ def _state(state: SensorState, *, curves: bool) -> StateRecord:
         apex_height_outer_mm=state.apex_outer,
         cavity_volume_mL=state.cavity_volume / ML,
         range_end_mm=state.range_end,
-        sensitivity_kPa_per_N=f.sensitivity_kPa_per_N if f else None,
-        sensitivity_through_origin_kPa_per_N=f.sensitivity_through_origin_kPa_per_N if f else None,
+        sensitivity_kPa_per_N=f.sensitivity if f else None,
+        sensitivity_through_origin_kPa_per_N=f.sensitivity_through_origin if f else None,
         r_squared=f.r_squared if f else None,
         nonlinearity_percent=100 * f.nonlinearity if f else None,
         stiffness_N_per_mm=f.stiffness if f else None,
         force_range_N=f.force_range if f else None,
-        saturation_force_N=f.saturation_force if f else None,
+        saturation_force_N=f.saturation_force if f and np.isfinite(f.saturation_force) else None,
         curve=Curve(*[()] * 7) if without else _curve(state),
         events=tuple(EventRecord(e.kind, e.indentation, e.ends_range, e.message) for e in state.events),
         off_axis=None if state.beyond_axis is None else off_axis(state.beyond_axis),
@@ -244,7 +244,7 @@ def _mix_state(state: SensorState) -> MixState:
     figures = state.figures
     if figures is None:
         return MixState(state.driving_pressure / KPA, None, None)
-    return MixState(state.driving_pressure / KPA, figures.sensitivity_kPa_per_N, figures.force_range[1])
+    return MixState(state.driving_pressure / KPA, figures.sensitivity, figures.force_range[1])
 
 
 def _calibrated_by(evaluation: Evaluation) -> CalibratedBy | None:

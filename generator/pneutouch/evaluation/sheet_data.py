@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from pneutouch.catalogue import ResolvedDesign
     from pneutouch.mechanics.prediction import CurveOutcome, SensorPrediction, SensorState
     from pneutouch.mechanics.rating import Rating
+    from pneutouch.mechanics.response import Figures
     from pneutouch.mechanics.uncertainty import GasNotes
     from pneutouch.mechanics.viscous.describe import ViscousRuns
     from pneutouch.parts import Assembly
@@ -102,7 +103,7 @@ class SensitivityCurve(NamedTuple):
     """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each, the model that computed it, and what to call it."""
 
     driving_pressure_kPa: Array
-    sensitivity_kPa_per_N: Array
+    sensitivity: Array
     model: str = "atlas"
     label: str = ""
 
@@ -138,12 +139,11 @@ class TuningChart:
 
 
 class ChartPoint(NamedTuple):
-    """A design on the chart: title of its resin, what to call it, kPa/N and N."""
+    """A design on the chart: title of its resin, name beside the point, and figures."""
 
     resin: str
     label: str
-    sensitivity_kPa_per_N: float
-    force: float
+    figures: Figures[float]
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ class TradeOff:
     @property
     def known(self) -> tuple[TradeOffFront, ...]:
         """The fronts with a line to draw."""
-        return tuple(front for front in self.fronts if front.sensitivity_kPa_per_N.size > 1)
+        return tuple(front for front in self.fronts if front.sensitivity.size > 1)
 
 
 class ErrorCurves(NamedTuple):

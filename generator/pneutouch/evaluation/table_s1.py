@@ -52,9 +52,7 @@ def compute_errors(material: Material, model: str, closure: str) -> list[float |
 @lru_cache
 def _errors(sensor: Sensor, truth: tuple[float, float], model: str, closure: str) -> tuple[float | None, ...]:
     states = predict("", sensor, [p * KPA for p in PRESSURES], model=model, closure=closure).states
-    return tuple(
-        s.figures.sensitivity_kPa_per_N / t - 1 if s.figures else None for s, t in zip(states, truth, strict=True)
-    )
+    return tuple(s.figures.sensitivity / t - 1 if s.figures else None for s, t in zip(states, truth, strict=True))
 
 
 def fingerprint(material: Material) -> str:

@@ -24,6 +24,7 @@ from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
 from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION, NUMERICAL
 from pneutouch.mechanics.models.choice import stated_error
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.results.uncertainty import FigureRecord, SampledInterval, SampleRecord, UncertaintyRecord
 from pneutouch.rounding import rounded
 from pneutouch.spec.calibration import SensorCalibration
@@ -172,7 +173,7 @@ def spread(
         of_friction = None if calibration is None else friction_spread(calibration)
         contact = ContactModel(sensor, tuple(float(p) for p in pressures), states, fitted_spread=of_friction)
     batch = batch_of(under_plate(sensor), pressures)
-    numerical = {"sensitivity_kPa_per_N": stated_error(model, sensor), "limit_pressure_kPa": LIMIT_DISCRETISATION}
+    numerical = {SENSITIVITY_KEY: stated_error(model, sensor), "limit_pressure_kPa": LIMIT_DISCRETISATION}
     of_sensor = sources(
         batch,
         material,
@@ -261,8 +262,8 @@ def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float
     peak, figures, of_contact = prediction.limits.limit_point, state.figures, {}
     if figures is not None:
         of_contact = {
-            "sensitivity_kPa_per_N": figures.sensitivity_kPa_per_N,
-            "stiffness_N_per_mm": figures.stiffness,
+            SENSITIVITY_KEY: figures.sensitivity,
+            STIFFNESS_KEY: figures.stiffness,
             "force_at_range_end_N": figures.force_range[1],
         }
     return {

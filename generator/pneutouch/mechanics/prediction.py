@@ -61,7 +61,7 @@ class SensorState:
     apex_outer: float
     cavity_volume: float
     range_end: float
-    figures: Figures | None
+    figures: Figures[float] | None
     indentation: Array
     force: Array
     pressure_rise: Array

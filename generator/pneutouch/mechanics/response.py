@@ -7,8 +7,7 @@ the sensor makers' usual ones.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -19,49 +18,49 @@ _SATURATED = 0.5
 """Saturation: the local slope has fallen below this share of the fitted one."""
 
 
-@dataclass(frozen=True, slots=True)
-class Figures:
-    """Key figures of one loading curve. Sensitivities in kPa/N, stiffness in N/mm, forces in N."""
+Of = TypeVar("Of", bound=Any)
+"""One number, or an array with one for each curve."""
 
-    sensitivity_kPa_per_N: float
-    intercept_kPa: float
-    sensitivity_through_origin_kPa_per_N: float
-    r_squared: float
-    nonlinearity: float
-    stiffness: float
-    force_range: tuple[float, float]
-    saturation_force: float | None
 
-    def scaled(self, force: float, rise: float) -> Figures:
+class Figures(NamedTuple, Generic[Of]):
+    """Key figures of one loading curve, or of many as arrays of one shape. Sensitivities in kPa/N, stiffness in N/mm,
+    forces in N, r_squared and nonlinearity as fractions; saturation_force is infinite where the curve has none."""
+
+    sensitivity: Of
+    intercept_kPa: Of
+    sensitivity_through_origin: Of
+    r_squared: Of
+    nonlinearity: Of
+    stiffness: Of
+    force_low: Of
+    force_high: Of
+    saturation_force: Of
+
+    @property
+    def force_range(self) -> tuple[Of, Of]:
+        """Least and greatest contact force of the range, N."""
+        return self.force_low, self.force_high
+
+    @property
+    def reach(self) -> Of:
+        """Force that the range reaches: at its end, or where the slope has halved before, N."""
+        force: Of = np.minimum(self.force_high, self.saturation_force)
+        return force
+
+    def scaled(self, force: float, rise: float) -> Figures[Of]:
         """Figures of the curve whose forces and pressure rises are these times two factors."""
-        saturated = self.saturation_force
-        return replace(
-            self,
-            sensitivity_kPa_per_N=self.sensitivity_kPa_per_N * rise / force,
+        return self._replace(
+            sensitivity=self.sensitivity * rise / force,
             intercept_kPa=self.intercept_kPa * rise,
-            sensitivity_through_origin_kPa_per_N=self.sensitivity_through_origin_kPa_per_N * rise / force,
+            sensitivity_through_origin=self.sensitivity_through_origin * rise / force,
             stiffness=self.stiffness * force,
-            force_range=(self.force_range[0] * force, self.force_range[1] * force),
-            saturation_force=None if saturated is None else saturated * force,
+            force_low=self.force_low * force,
+            force_high=self.force_high * force,
+            saturation_force=self.saturation_force * force,
         )
 
 
-class FigureArrays(NamedTuple):
-    """Key figures of many curves, arrays of one shape; NaN for no saturation. Units as in `Figures`, nonlinearity and
-    r_squared as fractions."""
-
-    sensitivity_kPa_per_N: Array
-    intercept_kPa: Array
-    sensitivity_through_origin_kPa_per_N: Array
-    r_squared: Array
-    nonlinearity: Array
-    stiffness: Array
-    force_low: Array
-    force_high: Array
-    saturation_force: Array
-
-
-def lines(indentation: Array, force: Array, rise_kPa: Array) -> FigureArrays:
+def lines(indentation: Array, force: Array, rise_kPa: Array) -> Figures[Array]:
     """Key figures of curves along the last axis, (..., n) each; definitions in `figures`.
 
     A curve whose force does not vary has NaN for what it does not determine.
@@ -72,10 +71,10 @@ def lines(indentation: Array, force: Array, rise_kPa: Array) -> FigureArrays:
         slope = (df * dr).sum(axis=-1) / (df * df).sum(axis=-1)
         residual = dr - slope[..., None] * df
         spread, span = (dr * dr).sum(axis=-1), np.ptp(rise_kPa, axis=-1)
-        return FigureArrays(
-            sensitivity_kPa_per_N=slope,
+        return Figures(
+            sensitivity=slope,
             intercept_kPa=mean_rise_kPa[..., 0] - slope * mean_force[..., 0],
-            sensitivity_through_origin_kPa_per_N=(force * rise_kPa).sum(axis=-1) / (force * force).sum(axis=-1),
+            sensitivity_through_origin=(force * rise_kPa).sum(axis=-1) / (force * force).sum(axis=-1),
             r_squared=1.0 - np.where(spread == 0, 0.0, (residual * residual).sum(axis=-1) / spread),
             nonlinearity=np.where(span == 0, 0.0, np.abs(residual).max(axis=-1) / span),
             stiffness=(force[..., -1] - force[..., 0]) / (indentation[..., -1] - indentation[..., 0]),
@@ -85,7 +84,7 @@ def lines(indentation: Array, force: Array, rise_kPa: Array) -> FigureArrays:
         )
 
 
-def figures(indentation: Array, force: Array, rise_kPa: Array) -> Figures | None:
+def figures(indentation: Array, force: Array, rise_kPa: Array) -> Figures[float] | None:
     """Key figures over all the points given, or None if they do not determine a straight line.
 
     ``sensitivity`` is the slope of the least-squares line of pressure rise over force with intercept;
@@ -94,13 +93,12 @@ def figures(indentation: Array, force: Array, rise_kPa: Array) -> Figures | None
     """
     if len(force) < _LEAST_POINTS or np.ptp(force) <= 0 or np.ptp(indentation) <= 0:
         return None
-    values = {name: float(value) for name, value in lines(indentation, force, rise_kPa)._asdict().items()}
-    low, high, saturated = (values.pop(name) for name in ("force_low", "force_high", "saturation_force"))
-    return Figures(**values, force_range=(low, high), saturation_force=None if np.isnan(saturated) else saturated)
+    return Figures(*(float(value) for value in lines(indentation, force, rise_kPa)))
 
 
 def saturation_force(force: Array, rise_kPa: Array, slope: Array | float) -> Array:
-    """Force at which the local slope of pressure over force falls below half the fitted one, NaN if it does not.
+    """Force at which the local slope of pressure over force falls below half the fitted one; infinite if it does
+    not, NaN without a fitted one.
 
     A curve that begins flat has not saturated: the slope must have been above before. Curves along the last axis; the
     local slope is the second-order difference, one-sided at the ends.
@@ -114,7 +112,8 @@ def saturation_force(force: Array, rise_kPa: Array, slope: Array | float) -> Arr
     low = local < _SATURATED * np.asarray(slope)[..., None]
     below = low & np.logical_or.accumulate(~low, axis=-1)
     first = np.take_along_axis(force, below.argmax(axis=-1)[..., None], axis=-1)[..., 0]
-    return np.where(below.any(axis=-1), first, np.nan)
+    none = np.where(np.isnan(slope), np.nan, np.inf)
+    return np.where(below.any(axis=-1), first, none)
 
 
 def tangent_stiffness(indentation: Array, force: Array) -> Array:

@@ -10,15 +10,14 @@ from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorPrediction
 from pneutouch.report.blocks import Columns, Items, Plot, SheetBlock, SheetTable, Text, section
 from pneutouch.report.style import ACCENT, BOLD, INK, MUTED, figure, svg
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.results.uncertainty import SourceRecord, UncertaintyRecord
 from pneutouch.units import KPA
 
-SENSITIVITY = "sensitivity_kPa_per_N"
-
 _FIGURES = {
-    SENSITIVITY: ("Sensitivity", "kPa/N"),
+    SENSITIVITY_KEY: ("Sensitivity", "kPa/N"),
     "limit_pressure_kPa": ("Limit pressure", "kPa"),
-    "stiffness_N_per_mm": ("Stiffness", "N/mm"),
+    STIFFNESS_KEY: ("Stiffness", "N/mm"),
     "force_at_range_end_N": ("Force at the range's end", "N"),
     "range_end_mm": ("Range ends at", "mm"),
     "apex_height_outer_mm": ("Apex height, outside", "mm"),
@@ -40,10 +39,10 @@ def ends(prediction: SensorPrediction, documents: tuple[UncertaintyRecord, ...])
     """Uncertainties of the lowest and the highest driving pressure, by label; those of which something is known."""
     pairs = list(zip(prediction.states, documents, strict=True))
     chosen = pairs[:1] + pairs[1:][-1:]
-    return {f"{s.driving_pressure / KPA:g} kPa": d for s, d in chosen if SENSITIVITY in d.known}
+    return {f"{s.driving_pressure / KPA:g} kPa": d for s, d in chosen if SENSITIVITY_KEY in d.known}
 
 
-def interval(document: UncertaintyRecord, figure: str = SENSITIVITY) -> str:
+def interval(document: UncertaintyRecord, figure: str = SENSITIVITY_KEY) -> str:
     """The k = 2 interval of a figure, such as ``1.57 to 2.38``; empty if unknown."""
     estimate = document.known.get(figure)
     return "" if estimate is None else f"{_digits(estimate.low)} to {_digits(estimate.high)}"
@@ -51,7 +50,7 @@ def interval(document: UncertaintyRecord, figure: str = SENSITIVITY) -> str:
 
 def shares(covered: dict[str, UncertaintyRecord]) -> dict[str, dict[str, float]]:
     """Shares of the variance of the sensitivity by label of the driving pressure."""
-    return {label: dict(document.known[SENSITIVITY].shares) for label, document in covered.items()}
+    return {label: dict(document.known[SENSITIVITY_KEY].shares) for label, document in covered.items()}
 
 
 def uncertainty_section(sheet: SheetData, plots: Sequence[Plot]) -> list[SheetBlock]:

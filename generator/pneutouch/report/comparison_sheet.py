@@ -32,6 +32,7 @@ from pneutouch.report.curves import BandEnds, Press, forces, rises
 from pneutouch.report.pages import set_sheet
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED
 from pneutouch.results.comparison import ComparedCurve, ComparisonRecord, DifferenceRecord, RowRecord
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 
 MOST = 6
 """Sensors that are drawn: more cover one another."""
@@ -41,7 +42,6 @@ _SHORT, _CUT = 16, 44
 
 _TONES = (INK, "#3F8FBF", "#B4631D", MUTED, ACCENT, "#8C8C8C")
 _PANELS, _RUNS, _TOLERANCE, _TALLEST = 4, 30, 5e-3, 1.6
-_SENSITIVITY, _STIFFNESS = "sensitivity_kPa_per_N", "stiffness_N_per_mm"
 
 
 def comparison_sheet(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> dict[str, bytes]:
@@ -155,7 +155,7 @@ def presses(comparison: ComparisonRecord, draw: Callable[[Sequence[Press]], Pane
     right, high = (max((float(np.max(getattr(line, key))) for line in lines), default=0.0) for key in ("x", "y"))
     if not right or not high:
         return []
-    top = _top(comparison, _SENSITIVITY if draw is rises else _STIFFNESS) * high
+    top = _top(comparison, SENSITIVITY_KEY if draw is rises else STIFFNESS_KEY) * high
     plots = []
     for pressure_kPa in _spread([float(p) for p in comparison.driving_pressures_kPa]):
         shown = [one for k in range(len(names)) for one in _presses(comparison, k, pressure_kPa)]
@@ -173,7 +173,7 @@ def _presses(comparison: ComparisonRecord, k: int, pressure_kPa: float) -> list[
     """The predicted curve of a sensor with its bands, or the points of its measured runs."""
     name = words.labels(comparison)[k]
     matching = [c for c in comparison.curves if c.label == name and c.driving_pressure_kPa == pressure_kPa]
-    bands = [_ends(comparison, key, k, pressure_kPa) for key in (_SENSITIVITY, _STIFFNESS)]
+    bands = [_ends(comparison, key, k, pressure_kPa) for key in (SENSITIVITY_KEY, STIFFNESS_KEY)]
     return [
         _press(one, _spots(k)) if one.measured else _press(one, _look(k), *bands)
         for one in matching[:: math.ceil(len(matching) / _RUNS) or 1]

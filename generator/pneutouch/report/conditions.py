@@ -54,7 +54,7 @@ def _drift_alone(sheet: SheetData) -> list[list[str]]:
     at = f"at {state.driving_pressure / KPA:g} kPa, 20 °C"
     rows = [["Zero drift of the sealed gas", f"{drift_kPa_per_K:.2f} kPa/K", f"ideal gas in the yielding dome {at}"]]
     if state.figures is not None:
-        force = f"{drift_kPa_per_K / state.figures.sensitivity_kPa_per_N:.2f} N/K"
+        force = f"{drift_kPa_per_K / state.figures.sensitivity:.2f} N/K"
         rows.append(["the same as force", force, "drift over the predicted sensitivity"])
     return [*rows, ["Fast contact", "not known", "computed for sensors inside the atlas alone"]]
 
@@ -246,7 +246,7 @@ def mixing_section(sheet: SheetData) -> list[SheetBlock]:
 
 
 def _sensitivity(state: SensorState | None) -> str:
-    return DASH if state is None or state.figures is None else f"{state.figures.sensitivity_kPa_per_N:.3f}"
+    return DASH if state is None or state.figures is None else f"{state.figures.sensitivity:.3f}"
 
 
 def _range(state: SensorState | None) -> str:

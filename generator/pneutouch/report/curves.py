@@ -111,7 +111,7 @@ def resin_sensitivities(
     ``published_kPa_per_N`` maps driving pressures (kPa) to measured sensitivities (kPa/N) of this very sensor, where
     there are any.
     """
-    states = [(s.driving_pressure / KPA, s.figures.sensitivity_kPa_per_N) for s in prediction.states if s.figures]
+    states = [(s.driving_pressure / KPA, s.figures.sensitivity) for s in prediction.states if s.figures]
     states_kPa, predicted = np.array(states).reshape(-1, 2).T
     every = dict(curves)
     if len(predicted) and not (chosen in every and _holds(every[chosen], states_kPa, predicted)):
@@ -135,7 +135,7 @@ _OFF = 0.03
 
 def _holds(curve: SensitivityCurve, pressures_kPa: Array, sensitivities_kPa_per_N: Array) -> bool:
     """True if a curve runs through points."""
-    at = np.interp(pressures_kPa, curve.driving_pressure_kPa, curve.sensitivity_kPa_per_N)
+    at = np.interp(pressures_kPa, curve.driving_pressure_kPa, curve.sensitivity)
     return bool((np.abs(at - sensitivities_kPa_per_N) <= _OFF * sensitivities_kPa_per_N).all())
 
 

@@ -104,7 +104,7 @@ def graded_sensitivity(sheet: SheetData) -> Plot | None:
         return None
     lines = []
     for one, look in _compared(sheet):
-        figures = [(s.driving_pressure / KPA, s.figures.sensitivity_kPa_per_N) for s in one.states if s.figures]
+        figures = [(s.driving_pressure / KPA, s.figures.sensitivity) for s in one.states if s.figures]
         x, y = np.array(figures).reshape(-1, 2).T
         lines.append(replace(look, x=x, y=y, marker="o", size=3))
     words = (

@@ -42,7 +42,7 @@ def response(sheet: SheetData) -> Plot:
     """Pressure rise over contact force, with the lines whose slope is the sensitivity."""
     panel, fits = curves.rises(_presses(sheet)), []
     for f in (state.figures for state in sheet.prediction.states if state.figures is not None):
-        fit_kPa = [f.intercept_kPa + f.sensitivity_kPa_per_N * force for force in f.force_range]
+        fit_kPa = [f.intercept_kPa + f.sensitivity * force for force in f.force_range]
         fits.append(PlotLine(f.force_range, fit_kPa, tone=FAINT, width=0.8, over=1))
     words = "Response: pressure rise over contact force at each driving pressure, with the fitted lines."
     return Plot(drawn_svg(replace(panel, lines=(*panel.lines, *fits))), words)

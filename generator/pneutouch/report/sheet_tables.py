@@ -165,7 +165,7 @@ def sources(sheet: SheetData) -> list[list[str]]:
 
 
 def _sensitivity(state: SensorState) -> str:
-    return f"{state.figures.sensitivity_kPa_per_N:.2f}" if state.figures else DASH
+    return f"{state.figures.sensitivity:.2f}" if state.figures else DASH
 
 
 def _range(state: SensorState) -> str:

@@ -23,11 +23,12 @@ def tradeoff_panel(tradeoff: TradeOff) -> Panel:
         floor, top = (least, least), (ylim[1], ylim[1])
         lines += [PlotLine(window, low=floor, high=top, dashes=""), PlotLine(*frame, width=0.6, over=1)]
         notes.append(Note("target", ((low * high) ** 0.5, ylim[1]), (0.0, -1.0), bold=True))
-    for k, (_, label, *at) in enumerate(tradeoff.spots):
+    for k, spot in enumerate(tradeoff.spots):
+        at = spot.figures.sensitivity, spot.figures.reach
         lines.append(PlotLine(at[:1], at[1:], dashes="", marker="o", size=4.5, filled=k == 0, over=6 + (k == 0)))
-        notes.append(Note(label, (at[0], at[1]), (-1.0, -1.0), bold=k == 0))
+        notes.append(Note(spot.label, at, (-1.0, -1.0), bold=k == 0))
     for k, front in enumerate(tradeoff.known):
-        s, title = front.sensitivity_kPa_per_N, front.resin.material.title
+        s, title = front.sensitivity, front.resin.material.title
         picked = title == chosen
         tone, width, dashes = (ACCENT, 2.0, LINES[0]) if picked else (INK, 0.8, LINES[k % 5])
         end = f"{title}  {s[0]:.2g} to {s[-1]:.2g}"
@@ -42,10 +43,10 @@ def tradeoff_panel(tradeoff: TradeOff) -> Panel:
 
 def _limits(tradeoff: TradeOff) -> tuple[tuple[float, float], tuple[float, float]]:
     """Limits that hold the fronts, the designs and the window, with a margin and with space for the labels."""
-    x = [float(value) for front in tradeoff.known for value in front.sensitivity_kPa_per_N]
+    x = [float(value) for front in tradeoff.known for value in front.sensitivity]
     y = [float(value) for front in tradeoff.known for value in front.force]
-    x += [spot.sensitivity_kPa_per_N for spot in tradeoff.spots] + list(tradeoff.window_kPa_per_N or ())
-    y += [spot.force for spot in tradeoff.spots] + ([] if tradeoff.force is None else [tradeoff.force])
+    x += [spot.figures.sensitivity for spot in tradeoff.spots] + list(tradeoff.window_kPa_per_N or ())
+    y += [spot.figures.reach for spot in tradeoff.spots] + ([] if tradeoff.force is None else [tradeoff.force])
     left, right = min(x, default=0.1) / 1.3, max(x, default=10.0) * 1.3
     low, high = min(y, default=0.1) / 1.4, max(y, default=10.0) * 1.4
     # The labels stand in the upper right corner, above the gauge's limit: it has to leave them the half of the height.
@@ -65,10 +66,10 @@ def tuning_panel(tuning: TuningChart) -> Panel:
     chosen, working_kPa_per_N, high_kPa_per_N = tuning.chosen, tuning.working_kPa_per_N, tuning.high_kPa_per_N
     at_kPa = chosen.driving_pressure_kPa
     lines = [
-        PlotLine(one.driving_pressure_kPa, one.sensitivity_kPa_per_N, "", one.label, width=0.7, dashes=LINES[1 + k % 4])
+        PlotLine(one.driving_pressure_kPa, one.sensitivity, "", one.label, width=0.7, dashes=LINES[1 + k % 4])
         for k, one in enumerate(tuning.others)
     ]
-    picked = PlotLine(at_kPa, chosen.sensitivity_kPa_per_N, end=chosen.label if tuning.others else "", tone=ACCENT)
+    picked = PlotLine(at_kPa, chosen.sensitivity, end=chosen.label if tuning.others else "", tone=ACCENT)
     lines.append(replace(picked, width=2.0, picked=True, over=4, low=tuning.low_kPa_per_N, high=high_kPa_per_N))
     lines += [
         PlotLine((at, at), (0, value), width=0.6, dashes=LINES[4], over=2) for at, value in working_kPa_per_N.items()

@@ -13,6 +13,9 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel
 
+SENSITIVITY_KEY, STIFFNESS_KEY = "sensitivity_kPa_per_N", "stiffness_N_per_mm"
+"""Keys of the two slopes of a sensor in every document, dataset and table of figures."""
+
 Extended = TypeVar("Extended")
 
 

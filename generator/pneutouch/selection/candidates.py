@@ -17,6 +17,7 @@ from pneutouch.mechanics.atlas.respond import BREAK, EDGE, OUTSIDE, AtlasRespons
 from pneutouch.mechanics.atlas.table import least_limit
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.rating import rated_pressure
+from pneutouch.mechanics.response import Figures
 from pneutouch.selection.problem import SelectionProblem
 
 
@@ -56,10 +57,14 @@ class CandidatePool(NamedTuple):
         )
 
     @property
+    def figures(self) -> Figures[float]:
+        """Figures of the one candidate of a pool, or of the first."""
+        return Figures(*(float(column[0]) for column in self.response.lines))
+
+    @property
     def force(self) -> Array:
         """Force that the range reaches: at its end, or where the slope has halved before."""
-        lines = self.response.lines
-        return np.fmin(lines.force_high, lines.saturation_force)
+        return self.response.lines.reach
 
 
 def evaluated(problem: SelectionProblem, resin: Array, radius: Array, wall: Array, pressure: Array) -> CandidatePool:
@@ -87,10 +92,8 @@ def margins(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
     printable wall, plate (the contact stays off its edge), connector (space for its parts).
     """
     lines, margin_of = pool.response.lines, {}
-    if problem.sensitivity_kPa_per_N is not None:
-        margin_of["sensitivity"] = (
-            1.0 - np.abs(lines.sensitivity_kPa_per_N / problem.sensitivity_kPa_per_N - 1.0) / problem.tolerance
-        )
+    if problem.sensitivity is not None:
+        margin_of["sensitivity"] = 1.0 - np.abs(lines.sensitivity / problem.sensitivity - 1.0) / problem.tolerance
     if problem.force_range is not None:
         margin_of["force range"] = pool.force / problem.force_range - 1.0
     least, most = problem.stiffness
@@ -107,7 +110,7 @@ def margins(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
         with np.errstate(divide="ignore"):
             margin_of["rated pressure"] = rated(problem, pool.resin, pool.radius, pool.wall) / pool.pressure - 1.0
     margin_of |= _connector(problem, pool)
-    known = np.isfinite(lines.sensitivity_kPa_per_N) & (pool.response.ends != OUTSIDE)
+    known = np.isfinite(lines.sensitivity) & (pool.response.ends != OUTSIDE)
     return {
         name: np.where(known & np.isfinite(margin) | (known & (margin > 0)), margin, -np.inf)
         for name, margin in margin_of.items()
@@ -180,7 +183,7 @@ def search(problem: SelectionProblem) -> CandidatePool | None:
     if grid.radius.size == 0:
         return None
     coarse = evaluated(problem, *(part.ravel() for part in (grid.resin, grid.radius, grid.wall, grid.pressure)))
-    if problem.sensitivity_kPa_per_N is None or grid.radius.shape[-1] < 2:
+    if problem.sensitivity is None or grid.radius.shape[-1] < 2:
         return coarse
     exact = _met(problem, grid, coarse)
     return coarse if exact is None else joined([exact, coarse])
@@ -319,8 +322,8 @@ def _pressures(problem: SelectionProblem, resins: Array, ratio: Array, radius: A
 
 def _met(problem: SelectionProblem, grid: CandidateGrid, coarse: CandidatePool) -> CandidatePool | None:
     """Points between neighbours of the scan where the sensitivity passes the target; None if it never does."""
-    assert problem.sensitivity_kPa_per_N is not None
-    off = _log_ratio(problem.sensitivity_kPa_per_N, coarse).reshape(grid.radius.shape)
+    assert problem.sensitivity is not None
+    off = _log_ratio(problem.sensitivity, coarse).reshape(grid.radius.shape)
     with np.errstate(invalid="ignore"):
         passes = off[..., :-1] * off[..., 1:] <= 0.0
     where = np.nonzero(passes)
@@ -335,7 +338,7 @@ def _met(problem: SelectionProblem, grid: CandidateGrid, coarse: CandidatePool) 
         share = left + (right - left) * np.clip(low / np.where(low == high, 1.0, low - high), 0.02, 0.98)
         radius, wall, pressure = (_between(a, b, share) for a, b in ends)
         pool = evaluated(problem, resin, radius, wall, pressure)
-        here = np.nan_to_num(_log_ratio(problem.sensitivity_kPa_per_N, pool))
+        here = np.nan_to_num(_log_ratio(problem.sensitivity, pool))
         same = here * low > 0.0
         left, right = np.where(same, share, left), np.where(same, right, share)
         low, high = np.where(same, here, 0.5 * low), np.where(same, 0.5 * high, here)
@@ -345,7 +348,7 @@ def _met(problem: SelectionProblem, grid: CandidateGrid, coarse: CandidatePool) 
 def _log_ratio(target_kPa_per_N: float, pool: CandidatePool) -> Array:
     """Logarithm of the sensitivity over the target; NaN without a sensitivity."""
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(np.log(pool.response.lines.sensitivity_kPa_per_N / target_kPa_per_N))
+        return np.asarray(np.log(pool.response.lines.sensitivity / target_kPa_per_N))
 
 
 def _between(a: Array, b: Array, share: Array) -> Array:

@@ -266,7 +266,7 @@ def _span(problem: SelectionProblem, pool: CandidatePool) -> tuple[Array, tuple[
     resin, radius, wall = (np.tile(column, 2) for column in (pool.resin, pool.radius, pool.wall))
     batch = problem.batch(resin, radius, wall, pressure)
     groups = np.repeat([0, 1], highest.size)
-    none, most = respond(batch, problem.steps, groups=groups).lines.sensitivity_kPa_per_N.reshape(2, -1)
+    none, most = respond(batch, problem.steps, groups=groups).lines.sensitivity.reshape(2, -1)
     return highest, (none, most)
 
 
@@ -320,15 +320,14 @@ def missed_percent(problem: SelectionProblem, candidate: Candidate) -> dict[str,
 
 
 def _off(problem: SelectionProblem, candidate: Candidate, name: str, margin: float) -> float:
-    lines = candidate.pool.response.lines
+    figures = candidate.pool.figures
     if name == "sensitivity":
-        assert problem.sensitivity_kPa_per_N is not None
-        return 100.0 * abs(float(lines.sensitivity_kPa_per_N[0]) / problem.sensitivity_kPa_per_N - 1.0)
+        assert problem.sensitivity is not None
+        return 100.0 * abs(figures.sensitivity / problem.sensitivity - 1.0)
     if name == "stiffness":
         least, most = problem.stiffness
-        stiffness = float(lines.stiffness[0])
-        bound = least if least is not None and stiffness < least else most
+        bound = least if least is not None and figures.stiffness < least else most
         assert bound is not None
-        return 100.0 * abs(stiffness / bound - 1.0)
+        return 100.0 * abs(figures.stiffness / bound - 1.0)
     # A margin to a greatest value is relative to the candidate's own.
     return 100.0 * (1.0 / (1.0 + margin) - 1.0 if name in _MOST else -margin)

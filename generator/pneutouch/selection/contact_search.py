@@ -109,7 +109,7 @@ class ContactTrial:
         known = np.nan if self.state is None else uncertainty(self.resin, self.pool, self.state)
         least = least_margin({name: np.array([margin]) for name, margin in self.margins.items()})
         cost = costs(weights, np.array([known]), (np.array([span[0]]), np.array([span[1]])), least)
-        plate_kPa_per_N = float(self.atlas.lines.sensitivity_kPa_per_N[0])
+        plate_kPa_per_N = float(self.atlas.lines.sensitivity[0])
         how = ContactFigures("" if self.state is None else ending(self.state), plate_kPa_per_N, rounds)
         return Candidate(self.resin, self.pool, self.margins, known, span, highest, float(cost[0]), how)
 
@@ -120,14 +120,14 @@ class ContactTrial:
         """Sensitivities at no pressure and at the rated one; NaN if the solid has none."""
         pressures = [0.0, highest]
         driven = float(self.pool.pressure[0])
-        solved = {driven: float(self.pool.response.lines.sensitivity_kPa_per_N[0])}
+        solved = {driven: self.pool.figures.sensitivity}
         missing = [p for p in pressures if p not in solved]
         if missing:
             answer = solve(self.resin, self.pool, missing)
             states = answer.states or [None] * len(missing)
             for p, state in zip(missing, states, strict=True):
                 figures = None if state is None else state.figures
-                solved[p] = np.nan if figures is None else figures.sensitivity_kPa_per_N
+                solved[p] = np.nan if figures is None else figures.sensitivity
         return solved[0.0], solved[highest]
 
 
@@ -318,10 +318,9 @@ class _Run:
             return last.why
         if group.rounds < ROUNDS or not last.off_target_alone:
             return None
-        value_kPa_per_N = float(last.pool.response.lines.sensitivity_kPa_per_N[0])
         return (
             f"the search did not settle in {group.rounds} rounds: at the last the solid's sensitivity is "
-            f"{value_kPa_per_N:.3g} kPa/N instead of {self.problem.sensitivity_kPa_per_N:g}"
+            f"{last.pool.figures.sensitivity:.3g} kPa/N instead of {self.problem.sensitivity:g}"
         )
 
     def _group(self, resin: str) -> str:

@@ -35,7 +35,7 @@ class TradeOffFront(NamedTuple):
     """One resin's trade-off in order of sensitivity: kPa/N, N, and the dome it takes, mm; (n,) each, maybe none."""
 
     resin: CandidateResin
-    sensitivity_kPa_per_N: Array
+    sensitivity: Array
     force: Array
     radius: Array
     wall: Array
@@ -78,7 +78,7 @@ def _plate_margin(problem: SelectionProblem, pool: CandidatePool) -> Array:
 def _between(problem: SelectionProblem, pool: CandidatePool, on_plate: Array) -> Array:
     """Places of most force at each level, (2, n), by linear interpolation in the scan of one resin."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        logs, forces = np.log(pool.response.lines.sensitivity_kPa_per_N), np.log(pool.force)
+        logs, forces = np.log(pool.response.lines.sensitivity), np.log(pool.force)
     logs, forces, limits, plate = (
         _finer(values.reshape(_RATIOS, _RADII))
         for values in (logs, forces, np.clip(_least_margin(problem, pool), -1.0, 1.0), on_plate)
@@ -104,7 +104,7 @@ def _finer(values: Array) -> Array:
 def _near(problem: SelectionProblem, places: Array, pool: CandidatePool, step: float) -> Array:
     """Places around the best candidates of one resin, (2, n), each once."""
     good = np.flatnonzero(_least_margin(problem, pool) >= 0.0)
-    logs = np.log(pool.response.lines.sensitivity_kPa_per_N[good])
+    logs = np.log(pool.response.lines.sensitivity[good])
     rows, levels = _best(logs, np.log(pool.force[good]))
     u, v = places[:, good[rows]]
     across, along = step / (_RATIOS - 1), step * _ALONG_RADIUS / (_RADII - 1)
@@ -181,10 +181,10 @@ def _unbeaten(points: Array) -> Index:
 def _hull(problem: SelectionProblem, number: int, pool: CandidatePool) -> TradeOffFront:
     """Candidates that meet every limit, without those that another beats in both."""
     good = np.flatnonzero(_least_margin(problem, pool) >= 0.0)
-    sensitivity_kPa_per_N = pool.response.lines.sensitivity_kPa_per_N
-    rows = good[_unbeaten(np.stack([sensitivity_kPa_per_N, pool.force])[:, good])][::-1]
+    sensitivity = pool.response.lines.sensitivity
+    rows = good[_unbeaten(np.stack([sensitivity, pool.force])[:, good])][::-1]
     return TradeOffFront(
-        problem.resins[number], sensitivity_kPa_per_N[rows], pool.force[rows], pool.radius[rows], pool.wall[rows]
+        problem.resins[number], sensitivity[rows], pool.force[rows], pool.radius[rows], pool.wall[rows]
     )
 
 
@@ -237,8 +237,8 @@ def contact_front(problem: SelectionProblem, solve: SolveCandidate) -> ContactFr
 def _off(one: TradeOffFront, row: int, trial: ContactTrial) -> float:
     """The larger relative difference of sensitivity and force between a place of a front and the solid's answer
     there."""
-    exact_kPa_per_N, exact = trial.pool.response.lines.sensitivity_kPa_per_N[0], trial.pool.force[0]
-    return float(max(abs(one.sensitivity_kPa_per_N[row] / exact_kPa_per_N - 1.0), abs(one.force[row] / exact - 1.0)))
+    exact = trial.pool.figures
+    return float(max(abs(one.sensitivity[row] / exact.sensitivity - 1.0), abs(one.force[row] / exact.reach - 1.0)))
 
 
 def _fronts(problem: SelectionProblem, factors: ContactFactors) -> list[TradeOffFront]:
@@ -249,7 +249,7 @@ def _spread(one: TradeOffFront, shares: tuple[float, ...]) -> Index:
     """Rows at shares of the length of a front, each once; none of an empty one."""
     if one.force.size == 0:
         return np.zeros(0, dtype=np.intp)
-    steps = np.hypot(np.diff(np.log(one.sensitivity_kPa_per_N)), np.diff(np.log(one.force)))
+    steps = np.hypot(np.diff(np.log(one.sensitivity)), np.diff(np.log(one.force)))
     along = np.concatenate([[0.0], np.cumsum(steps)])
     return np.unique([np.abs(along - share * along[-1]).argmin() for share in shares])
 

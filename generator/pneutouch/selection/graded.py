@@ -44,7 +44,7 @@ class GradeTarget:
     force: what the range must reach (N); None if it need not. widest: whether it shall reach as far as it can.
     """
 
-    sensitivity_kPa_per_N: float
+    sensitivity: float
     tolerance: float
     pressures: tuple[float, ...]
     same_within: float | None
@@ -60,7 +60,7 @@ class GradeTrial:
 
     pole: float
     rim: float
-    sensitivity_kPa_per_N: tuple[float, ...]
+    sensitivity: tuple[float, ...]
     force: tuple[float, ...]
     highest: float
     ends: tuple[str, ...] = ()
@@ -70,7 +70,7 @@ class GradeTrial:
     @property
     def difference(self) -> float:
         """Sensitivity at the last pressure over that at the first, less one."""
-        return self.sensitivity_kPa_per_N[-1] / self.sensitivity_kPa_per_N[0] - 1.0
+        return self.sensitivity[-1] / self.sensitivity[0] - 1.0
 
     @property
     def reach(self) -> float:
@@ -93,10 +93,10 @@ TrialReport = Callable[[GradeTrial, int, int], None]
 
 def shares(target: GradeTarget, trial: GradeTrial) -> dict[str, float]:
     """Share of each tolerance or limit that a trial uses up: at most 1 if it is kept."""
-    values = np.array(trial.sensitivity_kPa_per_N)
+    values = np.array(trial.sensitivity)
     if not np.isfinite(values).all() or values.min() <= 0.0:
         return {"no figures": _MISSED}
-    used_share = {"sensitivity": float(np.abs(values / target.sensitivity_kPa_per_N - 1.0).max()) / target.tolerance}
+    used_share = {"sensitivity": float(np.abs(values / target.sensitivity - 1.0).max()) / target.tolerance}
     if target.same_within is not None:
         used_share["same sensitivity"] = abs(trial.difference) / target.same_within
     used_share["limit pressure"] = max(target.pressures) / trial.highest
@@ -154,7 +154,7 @@ def _done(target: GradeTarget, trials: list[GradeTrial]) -> bool:
 
 def _promising(target: GradeTarget, top: float, trials: list[GradeTrial], surface: str) -> tuple[float, float] | None:
     """The place of least cost on the surface through the trials, none tried yet; None if it promises no gain."""
-    known = [trial for trial in trials if np.isfinite(trial.sensitivity_kPa_per_N).all()]
+    known = [trial for trial in trials if np.isfinite(trial.sensitivity).all()]
     if len(known) < _FEWEST:
         return None
     centre, width, best = np.array([0.5 * top, 0.5 * top]), 0.5 * top, np.inf
@@ -175,9 +175,9 @@ def _expected(target: GradeTarget, top: float, trials: list[GradeTrial], places:
     """
     from scipy.interpolate import RBFInterpolator
 
-    known = [trial for trial in trials if np.isfinite(trial.sensitivity_kPa_per_N).all()]
+    known = [trial for trial in trials if np.isfinite(trial.sensitivity).all()]
     at = np.array([(t.pole, t.rim) for t in known]) / top
-    table = np.log([[*t.sensitivity_kPa_per_N, *np.maximum(t.force, 1e-9), t.highest] for t in known])
+    table = np.log([[*t.sensitivity, *np.maximum(t.force, 1e-9), t.highest] for t in known])
     values = np.exp(RBFInterpolator(at, table, kernel=surface, degree=1)(places / top))
     n = len(target.pressures)
     costs = np.array(
@@ -188,7 +188,7 @@ def _expected(target: GradeTarget, top: float, trials: list[GradeTrial], places:
     )
     every = np.array([(t.pole, t.rim) for t in trials])
     away = np.hypot(*np.moveaxis(places[:, None, :] - every[None, :, :], -1, 0)) / top
-    unknown = np.array([not np.isfinite(t.sensitivity_kPa_per_N).all() for t in trials])
+    unknown = np.array([not np.isfinite(t.sensitivity).all() for t in trials])
     return np.where((away.min(axis=1) < _APART) | unknown[away.argmin(axis=1)], np.inf, costs)
 
 
@@ -226,10 +226,8 @@ def trial_of(
     sensitivities_kPa_per_N, forces, ends = [], [], []
     for state in result.states:
         figures = state.figures
-        sensitivities_kPa_per_N.append(np.nan if figures is None else figures.sensitivity_kPa_per_N)
-        reach = np.nan if figures is None else figures.force_range[1]
-        saturated = None if figures is None else figures.saturation_force
-        forces.append(reach if saturated is None else min(reach, saturated))
+        sensitivities_kPa_per_N.append(np.nan if figures is None else figures.sensitivity)
+        forces.append(np.nan if figures is None else figures.reach)
         ends.append(next((event.kind for event in state.events if event.ends_range), "depth"))
     return GradeTrial(
         pole,
@@ -266,7 +264,7 @@ def nearest_fraction(
         for pressure in target.pressures
     ]
     lines = [answer.lines for answer in answers]
-    sensitivity_kPa_per_N = np.stack([line.sensitivity_kPa_per_N for line in lines], axis=1) * factor
+    sensitivity = np.stack([line.sensitivity for line in lines], axis=1) * factor
     costs = np.array(
         [
             cost(
@@ -274,8 +272,8 @@ def nearest_fraction(
                 GradeTrial(
                     at[k],
                     at[k],
-                    tuple(sensitivity_kPa_per_N[k].tolist()),
-                    tuple(float(np.fmin(line.force_high[k], line.saturation_force[k])) for line in lines),
+                    tuple(sensitivity[k].tolist()),
+                    tuple(float(line.reach[k]) for line in lines),
                     RATED_SHARE * float(np.fmin(answers[0].limit_pressure[k], problem.gauge_limit)),
                 ),
                 _SPARE,
@@ -283,11 +281,11 @@ def nearest_fraction(
             for k in range(at.size)
         ]
     )
-    known = np.isfinite(sensitivity_kPa_per_N).all(axis=1)
+    known = np.isfinite(sensitivity).all(axis=1)
     if not known.any():
         return None
     best = int(np.argmin(np.where(known, costs, np.inf)))
-    return float(at[best]), sensitivity_kPa_per_N[best]
+    return float(at[best]), sensitivity[best]
 
 
 def middle_wall(target: GradeTarget, problem: SelectionProblem, radius: float, thickest: float) -> float | None:
@@ -303,5 +301,5 @@ def middle_wall(target: GradeTarget, problem: SelectionProblem, radius: float, t
     ones = np.ones(_WALLS)
     response = respond(problem.batch(0 * ones, radius * ones, walls, target.pressures[0] * ones), problem.steps)
     with np.errstate(invalid="ignore", divide="ignore"):
-        off = np.abs(np.log(response.lines.sensitivity_kPa_per_N / target.sensitivity_kPa_per_N))
+        off = np.abs(np.log(response.lines.sensitivity / target.sensitivity))
     return None if not np.isfinite(off).any() else round(float(walls[np.nanargmin(off)]), 2)

@@ -47,7 +47,7 @@ def met_by_fraction(
     """
     pool = pool.take(_best(problem, pool))
     at = np.array([_fraction(problem.resins[int(number)]) for number in pool.resin])
-    if problem.sensitivity_kPa_per_N is not None:
+    if problem.sensitivity is not None:
         at = _bisected(problem, pool, law, at)
     places = np.stack([np.round(at, _DIGITS), pool.radius, pool.wall, pool.pressure])
     once = np.sort(np.unique(places, axis=1, return_index=True)[1])
@@ -74,12 +74,12 @@ def _best(problem: SelectionProblem, pool: CandidatePool) -> Index:
 
 def _bisected(problem: SelectionProblem, pool: CandidatePool, law: ResolvedMixingCurve, at: Array) -> Array:
     """Fractions (n,) between the neighbouring levels at which the sensitivity is the target."""
-    assert problem.sensitivity_kPa_per_N is not None
+    assert problem.sensitivity is not None
     known = levels(law)
     index = np.clip(np.searchsorted(known, at - 1e-9), 0, known.size - 1)
     low, high = known[np.maximum(index - 1, 0)], known[np.minimum(index + 1, known.size - 1)]
 
-    target_kPa_per_N = problem.sensitivity_kPa_per_N
+    target_kPa_per_N = problem.sensitivity
 
     def off(fraction: Array) -> Array:
         resins = tuple(
@@ -89,7 +89,7 @@ def _bisected(problem: SelectionProblem, pool: CandidatePool, law: ResolvedMixin
         numbers = np.arange(len(resins), dtype=float)
         pool_there = evaluated(replace(problem, resins=resins), numbers, pool.radius, pool.wall, pool.pressure)
         with np.errstate(invalid="ignore", divide="ignore"):
-            return np.asarray(np.log(pool_there.response.lines.sensitivity_kPa_per_N / target_kPa_per_N))
+            return np.asarray(np.log(pool_there.response.lines.sensitivity / target_kPa_per_N))
 
     a, b = off(low), off(high)
     bracketed = a * b <= 0.0

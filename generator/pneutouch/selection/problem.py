@@ -54,7 +54,7 @@ class SelectionProblem:
     """
 
     resins: tuple[CandidateResin, ...]
-    sensitivity_kPa_per_N: float | None
+    sensitivity: float | None
     tolerance: float
     driving_pressure: float | None
     force_range: float | None

@@ -128,7 +128,7 @@ class Answers:
         drawn = curve(evaluation.sensor, _highest(evaluation), "this design")
         design = None
         if drawn is not None:
-            design = PageLine(_drawn(drawn.driving_pressure_kPa), _drawn(drawn.sensitivity_kPa_per_N), model="atlas")
+            design = PageLine(_drawn(drawn.driving_pressure_kPa), _drawn(drawn.sensitivity), model="atlas")
         curves = PageCurves(design)
         return QuickAnswer(**_head(source), drawing=drawing, outside=None, prediction=prediction, curves=curves)
 
@@ -200,7 +200,7 @@ def _banded(evaluation: Evaluation) -> PageLine | None:
         return None
     low, high = (None if end is None else _drawn(end) for end in (drawn.low_kPa_per_N, drawn.high_kPa_per_N))
     chosen = drawn.chosen
-    line = _drawn(chosen.driving_pressure_kPa), _drawn(chosen.sensitivity_kPa_per_N)
+    line = _drawn(chosen.driving_pressure_kPa), _drawn(chosen.sensitivity)
     return PageLine(*line, low, high, model="atlas")
 
 
@@ -216,7 +216,7 @@ def _resin_lines(evaluation: Evaluation) -> tuple[ResinLine, ...]:
         prediction.states,
     )
     return tuple(
-        ResinLine(_drawn(one.driving_pressure_kPa), _drawn(one.sensitivity_kPa_per_N), model=one.model, title=title)
+        ResinLine(_drawn(one.driving_pressure_kPa), _drawn(one.sensitivity), model=one.model, title=title)
         for title, one in resins.items()
     )
 

@@ -72,9 +72,9 @@ class CandidateCard(CandidateFigures):
 def candidate_figures(selection: SelectionRun, choice: Candidate, rank: int | None = None) -> CandidateFigures:
     """Figures of a candidate."""
     pool = choice.pool
-    sensitivity_kPa_per_N, force = float(pool.response.lines.sensitivity_kPa_per_N[0]), float(pool.force[0])
+    sensitivity, force = float(pool.response.lines.sensitivity[0]), float(pool.force[0])
     rows = (*_figures(selection, choice), *_sizes(selection, choice), *_limits(selection, choice, rank))
-    place = ChartPlace(sensitivity_kPa_per_N, force)
+    place = ChartPlace(sensitivity, force)
     return CandidateFigures(rank, choice.resin.name, choice.resin.material.label, place, rows)
 
 
@@ -83,8 +83,8 @@ def grade_figures(selection: GradedSelectionRun) -> CandidateFigures:
     best, dome = selection.search.best, selection.sensor.dome
     pressures_kPa = [p / KPA for p in selection.grade_target.pressures]
     rows: list[FigureRow] = []
-    for at_kPa, sensitivity_kPa_per_N, force in zip(pressures_kPa, best.sensitivity_kPa_per_N, best.force, strict=True):
-        rows.append((f"Sensitivity at {at_kPa:g} kPa", f"{sensitivity_kPa_per_N:.3f} kPa/N", ""))
+    for at_kPa, sensitivity, force in zip(pressures_kPa, best.sensitivity, best.force, strict=True):
+        rows.append((f"Sensitivity at {at_kPa:g} kPa", f"{sensitivity:.3f} kPa/N", ""))
         rows.append((f"Force range at {at_kPa:g} kPa", f"0 to {force:.1f} N", ""))
     rows += [("Inner radius R0", f"{dome.inner_radius:g} mm", ""), ("Wall t0", f"{dome.wall_thickness:g} mm", "")]
     if not best.note:
@@ -95,11 +95,11 @@ def grade_figures(selection: GradedSelectionRun) -> CandidateFigures:
 
 def _figures(selection: SelectionRun, choice: Candidate) -> list[FigureRow]:
     lines, at_kPa = choice.pool.response.lines, float(choice.pool.pressure[0]) / KPA
-    sensitivity_kPa_per_N, width = float(lines.sensitivity_kPa_per_N[0]), choice.expanded
-    low_kPa_per_N, high_kPa_per_N = sensitivity_kPa_per_N * np.exp([-width, width])
+    sensitivity, width = float(lines.sensitivity[0]), choice.expanded
+    low_kPa_per_N, high_kPa_per_N = sensitivity * np.exp([-width, width])
     interval = f"{low_kPa_per_N:.2f} to {high_kPa_per_N:.2f} (k = 2)" if np.isfinite(width) else "interval not known"
     rows = [
-        ("Sensitivity", f"{sensitivity_kPa_per_N:.3f} kPa/N", interval),
+        ("Sensitivity", f"{sensitivity:.3f} kPa/N", interval),
         ("Driving pressure", f"{at_kPa:.2f} kPa", "gauge, before contact"),
         ("Force range", f"0 to {float(choice.pool.force[0]):.2f} N", f"ends with {choice.ends_with}"),
         ("Stiffness", f"{float(lines.stiffness[0]):.3g} N/mm", ""),
@@ -128,7 +128,7 @@ def _limits(selection: SelectionRun, choice: Candidate, rank: int | None) -> lis
         return [*rows, ("Under a plate", f"{choice.contact.plate_kPa_per_N:.3f} kPa/N", "by the atlas")]
     if rank is not None and rank <= len(selection.confirmed):
         solid = selection.confirmed[rank - 1]
-        value = f"{solid.sensitivity_kPa_per_N:.3f} kPa/N" if np.isfinite(solid.sensitivity_kPa_per_N) else "none"
+        value = f"{solid.sensitivity:.3f} kPa/N" if np.isfinite(solid.sensitivity) else "none"
         rows.append(("By the solid", value, "in the interval" if solid.within else "outside the interval"))
     return rows
 

@@ -17,6 +17,7 @@ from pneutouch.report.measured import GroupComparison
 from pneutouch.report.measured.tables import some
 from pneutouch.report.numbers import overlap
 from pneutouch.results.measured import DoubtfulPart, RunOfSensor
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.rounding import rounded
 from pneutouch.spec.campaign import CAMPAIGN, CampaignRun
 from pneutouch.spec.options import CalibrationOptions, option_words
@@ -209,8 +210,8 @@ def _predicted(comparison: GroupComparison) -> PredictedCurve | None:
         return None
     kept = state.indentation <= state.range_end * (1 + 1e-12)
     force, rise_kPa = state.force[kept], state.pressure_rise[kept] / KPA
-    rises = _band(comparison, "sensitivity_kPa_per_N", rise_kPa)
-    forces = _band(comparison, "stiffness_N_per_mm", force)
+    rises = _band(comparison, SENSITIVITY_KEY, rise_kPa)
+    forces = _band(comparison, STIFFNESS_KEY, force)
     return PredictedCurve(_drawn(state.indentation[kept]), _drawn(force), _drawn(rise_kPa), *rises, *forces)
 
 

@@ -232,7 +232,7 @@ def _chart(run: SelectionRun, library: Library) -> FrontChart:
     """The chart that ``select`` draws: sensitivities in kPa/N, forces in N, pressures in kPa."""
     drawn = tradeoff(run, library)
     fronts = (
-        FrontCurve(each.resin.material.title, tuple(each.sensitivity_kPa_per_N.tolist()), tuple(each.force.tolist()))
+        FrontCurve(each.resin.material.title, tuple(each.sensitivity.tolist()), tuple(each.force.tolist()))
         for each in drawn.known
     )
     chart = FrontChart(

@@ -47,7 +47,7 @@ from pneutouch.output.files import (
 from pneutouch.output.recipe import read_recipe
 from pneutouch.parts import Assembly, assemble
 from pneutouch.results.comparison import ComparisonRecord, CurvePoints
-from pneutouch.results.record import plain
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY, plain
 from pneutouch.spec.read import Changes
 from pneutouch.workflows.compare_measured import (
     PREDICTED_NAMES,
@@ -191,8 +191,8 @@ def _state(state: Mapping[str, Any], document: Mapping[str, Any], depths: Depths
 
 
 _OF_CURVE = (
-    "sensitivity_kPa_per_N",
-    "stiffness_N_per_mm",
+    SENSITIVITY_KEY,
+    STIFFNESS_KEY,
     "force_at_range_end_N",
     "r_squared",
     "nonlinearity_percent",

@@ -68,7 +68,7 @@ def test_curve_sensitivity_end_and_limit_are_the_solids(name):
     # The solid itself locates a jump to 5e-4 R0; near one the curves are steep.
     assert said.range_end[0] == pytest.approx(state.range_end, abs=0.01 * one.dome.inner_radius)
     assert state.figures is not None and found.limit_point is not None
-    assert said.lines.sensitivity_kPa_per_N[0] == pytest.approx(state.figures.sensitivity_kPa_per_N, rel=5e-3)
+    assert said.lines.sensitivity[0] == pytest.approx(state.figures.sensitivity, rel=5e-3)
     assert said.limit_pressure[0] == pytest.approx(found.limit_point.driving_pressure, rel=5e-4)
     assert said.apex_outer[0] == pytest.approx(state.apex_outer, abs=1e-3 * one.dome.inner_radius)
     assert said.cavity_volume[0] == pytest.approx(state.cavity_volume, rel=1e-3)

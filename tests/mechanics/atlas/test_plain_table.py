@@ -21,7 +21,7 @@ def sensitivities(points: np.ndarray) -> np.ndarray:
     sensors = batch(
         wall_thickness=wall, ambient_pressure=gas, driving_pressure=driving, depth=points[:, 4], dead_volume=dead
     )
-    return respond(sensors).lines.sensitivity_kPa_per_N
+    return respond(sensors).lines.sensitivity
 
 
 @pytest.mark.slow

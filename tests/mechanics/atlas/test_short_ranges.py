@@ -35,7 +35,7 @@ def greatest_difference(share):
         pressed = sensor.replace(depth=share * sensor.dome.inner_radius)
         if atlas.covers(pressed) is None:
             ours, theirs = (m.answer_one(pressed, np.array([pressure])).result.states[0] for m in (atlas, solid))
-            differences.append(ours.figures.sensitivity_kPa_per_N / theirs.figures.sensitivity_kPa_per_N - 1.0)
+            differences.append(ours.figures.sensitivity / theirs.figures.sensitivity - 1.0)
     assert len(differences) > 0.9 * DOMES
     return float(np.abs(differences).max())
 

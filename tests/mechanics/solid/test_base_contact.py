@@ -190,7 +190,7 @@ def test_sensitivity_converges_over_the_whole_depth(pressure):
         solid = paper(arc, through)
         run = press(solid, pressure)
         assert run.complete and not {e.kind for e in run.events} & {"clamp_fold", "snap", "lost", "overhang"}
-        found.append(run.figures().sensitivity_kPa_per_N)
+        found.append(run.figures().sensitivity)
         for state in run.path:
             r, z = solid.contact.outline(state.positions)
             assert not _crosses_itself(np.stack([r, z], axis=1))

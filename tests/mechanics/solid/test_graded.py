@@ -70,7 +70,7 @@ def test_an_even_grade_is_the_plain_solid():
     assert other.limits.limit_point == pytest.approx(one.limits.limit_point, rel=1e-12)
     for a, b in zip(one.states, other.states, strict=True):
         np.testing.assert_allclose(b.force, a.force, rtol=1e-12, atol=1e-12)
-        assert b.figures.sensitivity_kPa_per_N == pytest.approx(a.figures.sensitivity_kPa_per_N, rel=1e-12)
+        assert b.figures.sensitivity == pytest.approx(a.figures.sensitivity, rel=1e-12)
 
 
 def test_only_the_product_of_modulus_and_grade_counts():
@@ -83,9 +83,7 @@ def test_only_the_product_of_modulus_and_grade_counts():
     assert two.limits.limit_point == pytest.approx(one.limits.limit_point, rel=1e-9)
     # Where solved states lie follows rounding; what is read between them differs by what a cubic leaves.
     assert two.limits.break_strain == pytest.approx(one.limits.break_strain, rel=1e-4)
-    assert two.states[0].figures.sensitivity_kPa_per_N == pytest.approx(
-        one.states[0].figures.sensitivity_kPa_per_N, rel=1e-4
-    )
+    assert two.states[0].figures.sensitivity == pytest.approx(one.states[0].figures.sensitivity, rel=1e-4)
     np.testing.assert_allclose(two.states[0].max_von_mises, one.states[0].max_von_mises, rtol=1e-4)
 
 
@@ -169,7 +167,7 @@ def test_the_default_mesh_is_within_its_stated_error(fractions):
         coarse = SolidModel(dome(Hemisphere(9.25, 1.5)), one.wall.hyperelastic, grade=fine.grade)
         here = indent(coarse, state_at(coarse, pressure), steps).figures()
         there = indent(fine, state_at(fine, pressure, run), steps).figures()
-        assert here.sensitivity_kPa_per_N == pytest.approx(there.sensitivity_kPa_per_N, rel=0.01)
+        assert here.sensitivity == pytest.approx(there.sensitivity, rel=0.01)
 
 
 # ------------------------------------------------------------------------------- what rises with the modulus
@@ -237,9 +235,7 @@ def test_a_grade_of_two_knots_bears_a_pressure_between_its_ends():
 def test_the_sensitivity_of_a_grade_need_not_lie_between_its_ends():
     """It is a slope of pressure over force: a stiff pole spreads the contact, a soft rim gives the volume."""
     found = {
-        fractions: solid_result(sensor(*fractions), np.array([0.0]), past_limit=1.0)
-        .states[0]
-        .figures.sensitivity_kPa_per_N
+        fractions: solid_result(sensor(*fractions), np.array([0.0]), past_limit=1.0).states[0].figures.sensitivity
         for fractions in ((0.0,), (0.173,), (0.0, 0.173), (0.173, 0.0))
     }
     assert found[(0.173,)] < found[(0.0, 0.173)] < found[(0.0,)]

@@ -73,19 +73,13 @@ def test_scale_invariance():
         PressSettings(0.5 * 1000, plate_diameter=30 * length, ambient=0.101325 * stress, gauge_range=np.inf),
     )
     assert np.allclose(run.column("force")[1:] / stress / length**2, base.column("force")[1:], rtol=1e-9)
-    assert run.figures().sensitivity_kPa_per_N * length**2 == pytest.approx(
-        base.figures().sensitivity_kPa_per_N, rel=1e-9
-    )
+    assert run.figures().sensitivity * length**2 == pytest.approx(base.figures().sensitivity, rel=1e-9)
 
 
 def test_sensitivity_is_within_one_per_cent_of_a_refined_mesh():
     for mu, pressure in ((0.17, 0.0), (0.17, 0.022), (0.91, 0.0), (4.0, 0.022)):
-        coarse = press(mu, pressure, steps=10).figures().sensitivity_kPa_per_N
-        fine = (
-            press(mu, pressure, steps=10, mesh=dome(Hemisphere(9.25, 1.5), arc=72, through=3))
-            .figures()
-            .sensitivity_kPa_per_N
-        )
+        coarse = press(mu, pressure, steps=10).figures().sensitivity
+        fine = press(mu, pressure, steps=10, mesh=dome(Hemisphere(9.25, 1.5), arc=72, through=3)).figures().sensitivity
         assert coarse == pytest.approx(fine, rel=0.01)
 
 
@@ -93,7 +87,7 @@ def test_table_s1_with_nothing_fitted():
     errors = {}
     for pressure, row in TABLE_S1.items():
         for mu, measured in zip(MODULI, row, strict=True):
-            slope = press(mu, pressure, depth=0.75 * 9.25).figures().sensitivity_kPa_per_N
+            slope = press(mu, pressure, depth=0.75 * 9.25).figures().sensitivity
             errors[pressure, mu] = abs(slope / measured - 1.0)
     assert errors[0.0, 0.17] < 0.10 and errors[0.022, 0.17] < 0.10
     assert np.median([e for (_, mu), e in errors.items() if mu < 5.0]) < 0.10
@@ -127,7 +121,7 @@ def test_gauge_range_and_break_are_located():
 
 
 def test_dead_volume_softens():
-    slopes = [press(dead_volume=v).figures().sensitivity_kPa_per_N for v in (0.0, 500.0, 4000.0)]
+    slopes = [press(dead_volume=v).figures().sensitivity for v in (0.0, 500.0, 4000.0)]
     assert slopes[0] > slopes[1] > slopes[2]
 
 
@@ -212,7 +206,7 @@ def test_levels_passed_from_the_start_are_reported_at_zero():
 def test_a_refined_mesh_finds_the_fold_at_the_clamp():
     run = press(0.17, 0.0, depth=0.7 * 9.25, mesh=dome(Hemisphere(9.25, 1.5), arc=72, through=3))
     assert run.events[-1].kind == "clamp_fold" and not run.complete
-    assert run.figures().sensitivity_kPa_per_N == pytest.approx(2.64, rel=0.01)
+    assert run.figures().sensitivity == pytest.approx(2.64, rel=0.01)
 
 
 def test_contact_radius_and_snap_depth_hold_under_refinement():

@@ -79,12 +79,10 @@ def test_at_the_edge_of_the_box_the_neighbourhood_is_the_same_atlas():
     """Three quarters of R0 is the deepest press of the box: its neighbours lie in data that the survey has beyond."""
     batch = batch_of(PAPER, [0.0, 0.012, 0.022])
     inside, wider = respond(batch), respond(batch, atlas=neighbourhood())
-    assert wider.lines.sensitivity_kPa_per_N == pytest.approx(inside.lines.sensitivity_kPa_per_N, rel=1e-12)
+    assert wider.lines.sensitivity == pytest.approx(inside.lines.sensitivity, rel=1e-12)
     deeper = replace(batch, depth=1.01 * batch.depth)
-    assert np.isnan(respond(deeper).lines.sensitivity_kPa_per_N).all()
-    assert respond(deeper, atlas=neighbourhood()).lines.sensitivity_kPa_per_N == pytest.approx(
-        inside.lines.sensitivity_kPa_per_N, rel=0.02
-    )
+    assert np.isnan(respond(deeper).lines.sensitivity).all()
+    assert respond(deeper, atlas=neighbourhood()).lines.sensitivity == pytest.approx(inside.lines.sensitivity, rel=0.02)
 
 
 def test_a_sensor_near_its_limit_point_says_that_it_may_be_beyond(library):

@@ -60,6 +60,6 @@ def test_a_soft_cast_wall_has_an_interval_and_states_where_it_is_from(library):
     )
     for state, entry in zip(made.prediction.states, map(data, made.uncertainty), strict=True):
         figure = entry["figures"]["sensitivity_kPa_per_N"]
-        assert figure["value"] == pytest.approx(state.figures.sensitivity_kPa_per_N, rel=1e-5)
+        assert figure["value"] == pytest.approx(state.figures.sensitivity, rel=1e-5)
         assert figure["low"] < figure["value"] < figure["high"]
         assert any("1.79 times the modulus" in note for note in entry["notes"])

@@ -107,9 +107,7 @@ def ageing_shift_as_measured(material: Material, ratio: float) -> tuple[float, f
     """Mean change of the sensitivity curve, and of its size, over the mean aged curve: as Supplement E normalises."""
     fresh = material_sensor(material)
     old = fresh.replace(shear_modulus=ratio * fresh.wall.shear_modulus)
-    before, after = (
-        respond(batch_of(one, DRIVEN), one.protocol.steps).lines.sensitivity_kPa_per_N for one in (fresh, old)
-    )
+    before, after = (respond(batch_of(one, DRIVEN), one.protocol.steps).lines.sensitivity for one in (fresh, old))
     return float((after - before).mean() / after.mean()), float(np.abs(after - before).mean() / after.mean())
 
 
@@ -118,7 +116,7 @@ def needed(material: Material, measured: float) -> str:
     fresh = material_sensor(material)
     ratios = np.append(np.geomspace(1 / 3, 3, 89), 1.0)
     moved = [batch_of(fresh.replace(shear_modulus=r * fresh.wall.shear_modulus), DRIVEN) for r in ratios]
-    curves = respond(SensorBatch.join(moved), fresh.protocol.steps).lines.sensitivity_kPa_per_N.reshape(len(ratios), -1)
+    curves = respond(SensorBatch.join(moved), fresh.protocol.steps).lines.sensitivity.reshape(len(ratios), -1)
     size = np.abs(curves - curves[-1]).mean(axis=1) / curves.mean(axis=1)
     known = np.isfinite(size)
     enough = ratios[known & (np.nan_to_num(size) >= measured)]

@@ -284,11 +284,11 @@ def scatter_errors(groups: list[Array]) -> tuple[Array, float]:
 def _gap(travel: Array, measured: tuple[Array, Array], model: tuple[Array, Array], use: Flags) -> tuple[float, float]:
     """Logarithms of measured over modelled force, by least squares, and sensitivity."""
     force = float((measured[0] * model[0])[use].sum() / (model[0][use] ** 2).sum())
-    ratio = _sensitivity_kPa_per_N(travel, *measured, use) / _sensitivity_kPa_per_N(travel, *model, use)
+    ratio = _sensitivity(travel, *measured, use) / _sensitivity(travel, *model, use)
     return float(np.log(max(force, 1e-6))), float(np.log(max(ratio, 1e-6)))
 
 
-def _sensitivity_kPa_per_N(travel: Array, force: Array, rise: Array, use: Flags) -> float:
+def _sensitivity(travel: Array, force: Array, rise: Array, use: Flags) -> float:
     """Slope of the rise over the force; the origin belongs to the curve."""
     x, f, r = (np.concatenate([[0.0], part[use]]) for part in (travel, force, rise))
-    return float(lines(x, f, r / KPA).sensitivity_kPa_per_N)
+    return float(lines(x, f, r / KPA).sensitivity)

@@ -120,9 +120,7 @@ def predict_held_out(
 def _row(travel: Array, force: Array, rise: Array, model_force: Array, model_rise: Array, use: Array) -> list[float]:
     """Both sensitivities, root mean square and greatest errors over full scale; the origin belongs to both curves."""
     x, f, r, mf, mr = (np.concatenate([[0.0], part[use]]) for part in (travel, force, rise, model_force, model_rise))
-    measured_kPa_per_N, predicted_kPa_per_N = (
-        float(lines(x, a, b / KPA).sensitivity_kPa_per_N) for a, b in ((f, r), (mf, mr))
-    )
+    measured_kPa_per_N, predicted_kPa_per_N = (float(lines(x, a, b / KPA).sensitivity) for a, b in ((f, r), (mf, mr)))
     df, dr = (mf - f)[1:] / np.abs(f).max(), (mr - r)[1:] / np.abs(r).max()
     rms = [float(np.sqrt(np.mean(part**2))) for part in (df, dr)]
     return [measured_kPa_per_N, predicted_kPa_per_N, *rms, float(np.abs(df).max()), float(np.abs(dr).max())]

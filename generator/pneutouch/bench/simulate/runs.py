@@ -19,8 +19,9 @@ from pneutouch.bench.simulate.rig import (
 )
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import DEPTH, respond
-from pneutouch.mechanics.response import FigureArrays, figures, hysteresis, lines
+from pneutouch.mechanics.response import Figures, figures, hysteresis, lines
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.spec.campaign import RunKind
 from pneutouch.units import KPA
 
@@ -164,14 +165,14 @@ _FIRST = 1.0
 
 _INSTANTS = 200
 _KEYS = (
-    ("sensitivity_kPa_per_N", "sensitivity_kPa_per_N", 1.0),
-    ("sensitivity_through_origin_kPa_per_N", "sensitivity_through_origin_kPa_per_N", 1.0),
+    (SENSITIVITY_KEY, "sensitivity", 1.0),
+    ("sensitivity_through_origin_kPa_per_N", "sensitivity_through_origin", 1.0),
     ("r_squared", "r_squared", 1.0),
     ("nonlinearity_percent", "nonlinearity", 100.0),
-    ("stiffness_N_per_mm", "stiffness", 1.0),
+    (STIFFNESS_KEY, "stiffness", 1.0),
     ("force_range_N", "force_high", 1.0),
 )
-"""Figures of a loading curve: key, field of `FigureArrays`, factor."""
+"""Figures of a loading curve: key, field of `Figures`, factor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,11 +226,12 @@ def specimen_figures(curve: PressCurve, truth: SimulationTruth, height: float, r
     depth, force, rise = loading(curve, steps, truth.wall)
     loading_figures = _by_key(lines(depth, force, rise / KPA))
     deep = loading(curve, truth.protocol("saturation", height, curve.reach), truth.wall)
-    saturation = figures(deep[0], deep[1], deep[2] / KPA)
+    deepest = figures(deep[0], deep[1], deep[2] / KPA)
+    saturation = np.inf if deepest is None else deepest.saturation_force
     noise = truth.rig.noise(rate)
     return {
         **loading_figures,
-        "saturation_force_N": None if saturation is None else saturation.saturation_force,
+        "saturation_force_N": saturation if np.isfinite(saturation) else None,
         **loop_figures(curve, truth, height),
         **relaxation_figures(curve, truth, height),
         "noise_force_N": noise[0],
@@ -301,7 +303,7 @@ def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float
             _with_runs(nominal, truth, None), {}, 0, "the nominal sensor: the atlas does not cover this population"
         )
     here, kept = drawn
-    base = _by_key(FigureArrays(*(column[:1] for column in here)))
+    base = _by_key(Figures(*(column[:1] for column in here)))
     mean, spread = dict(nominal), {}
     for key, name, factor in _KEYS:
         values = factor * getattr(here, name)[1:]
@@ -312,12 +314,12 @@ def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float
         f"{kept} of {truth.specimens} specimens through the atlas, scaled to the {pressed.model}'s nominal sensor; "
         "saturation, hysteresis and relaxation are the nominal sensor's"
     )
-    return Population(_with_runs(mean, truth, spread["sensitivity_kPa_per_N"]), spread, kept, basis)
+    return Population(_with_runs(mean, truth, spread[SENSITIVITY_KEY]), spread, kept, basis)
 
 
 def _drawn(
     sensor: Sensor, driving: float, steps: RunProtocol, truth: SimulationTruth, seed: tuple[int, ...]
-) -> tuple[FigureArrays, int] | None:
+) -> tuple[Figures[Array], int] | None:
     """Figures of the nominal sensor (first) and of the specimens that reach every depth; None if too few do."""
     from pneutouch.mechanics.models.choice import outside
 
@@ -356,13 +358,13 @@ def _held(force: Array, rise: Array, nodes: Array, steps: RunProtocol, wall: Wal
     return rows[0], rows[1]
 
 
-def _by_key(arrays: FigureArrays) -> dict[str, float | None]:
+def _by_key(arrays: Figures[Array]) -> dict[str, float | None]:
     return {key: float(factor * np.ravel(getattr(arrays, name))[0]) for key, name, factor in _KEYS}
 
 
 def _with_runs(mean: dict[str, float | None], truth: SimulationTruth, parts: float | None) -> dict[str, float | None]:
     """The mean with the spread of the sensitivity between runs of one specimen and between specimens."""
-    slope = mean["sensitivity_kPa_per_N"]
+    slope = mean[SENSITIVITY_KEY]
     return {
         **mean,
         "repeatability_kPa_per_N": None if slope is None else truth.scatter.gain * slope,

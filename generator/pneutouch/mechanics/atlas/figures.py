@@ -9,12 +9,13 @@ from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, shipped
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.units import KPA
 
 FIGURES = (
-    "sensitivity_kPa_per_N",
+    SENSITIVITY_KEY,
     "limit_pressure_kPa",
-    "stiffness_N_per_mm",
+    STIFFNESS_KEY,
     "force_at_range_end_N",
     "range_end_mm",
     "apex_height_outer_mm",
@@ -25,10 +26,10 @@ INPUTS = ("shear_modulus", "wall_thickness", "inner_radius", "dead_volume", "amb
 """Inputs that a source may act on through the model, in the order of every array over inputs; names of
 `SensorBatch`."""
 
-SENSITIVITY = FIGURES.index("sensitivity_kPa_per_N")
+SENSITIVITY = FIGURES.index(SENSITIVITY_KEY)
 CONTACT_FIGURES = (
     SENSITIVITY,
-    FIGURES.index("stiffness_N_per_mm"),
+    FIGURES.index(STIFFNESS_KEY),
     FIGURES.index("force_at_range_end_N"),
     FIGURES.index("range_end_mm"),
 )
@@ -104,7 +105,7 @@ def log_figures(batch: SensorBatch, groups: Index | None = None) -> Array:
     response = respond(batch.take(order), atlas=neighbourhood(), groups=None if groups is None else groups[order])
     figures = np.empty((len(FIGURES), len(batch)))
     figures[:, order] = [
-        response.lines.sensitivity_kPa_per_N,
+        response.lines.sensitivity,
         response.limit_pressure / KPA,
         response.lines.stiffness,
         response.lines.force_high,

@@ -11,7 +11,7 @@ import numpy as np
 from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, SensorBatch, waiting
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, shipped
-from pneutouch.mechanics.response import FigureArrays, lines
+from pneutouch.mechanics.response import Figures, lines
 from pneutouch.units import KPA
 
 ENDS = ("depth", "plate edge", "gauge range", "break strain", "inward buckling", "outside the atlas")
@@ -36,7 +36,7 @@ class AtlasResponse(NamedTuple):
     Rows that cannot be (beyond the limit point, outside the box) are NaN throughout.
     """
 
-    lines: FigureArrays
+    lines: Figures[Array]
     ends: Index
     near_buckling: Flags
     range_end: Array
@@ -52,14 +52,14 @@ class AtlasResponse(NamedTuple):
     def take(self, rows: Index | Flags) -> AtlasResponse:
         """Some of the sensors."""
         some: list[Any] = [column[rows] for column in self[1:]]
-        return AtlasResponse(FigureArrays(*(column[rows] for column in self.lines)), *some)
+        return AtlasResponse(Figures(*(column[rows] for column in self.lines)), *some)
 
     @classmethod
     def join(cls, parts: Sequence[AtlasResponse]) -> AtlasResponse:
         """Several as one."""
         columns: list[Any] = [np.concatenate(column) for column in zip(*(part[1:] for part in parts), strict=True)]
         solved = [np.concatenate(column) for column in zip(*(part.lines for part in parts), strict=True)]
-        return cls(FigureArrays(*solved), *columns)
+        return cls(Figures(*solved), *columns)
 
 
 def inside(batch: SensorBatch, atlas: Atlas) -> Flags:

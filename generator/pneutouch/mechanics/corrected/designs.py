@@ -16,7 +16,7 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import BUCKLING, DEPTH, ENDS, AtlasResponse
 from pneutouch.mechanics.prediction import SensorState
-from pneutouch.mechanics.response import FigureArrays
+from pneutouch.mechanics.response import Figures
 
 _LENGTHS = np.array([0.3, 0.25, 0.5, 1.0])
 """Distances that count as one in the columns of `places`."""
@@ -42,13 +42,7 @@ def figures_of(response: AtlasResponse) -> Array:
     """Figures that are corrected, (n, 5): sensitivity, stiffness, force and travel at the end of the range, stretch
     above 1."""
     lines = response.lines
-    columns = [
-        lines.sensitivity_kPa_per_N,
-        lines.stiffness,
-        lines.force_high,
-        response.range_end,
-        response.max_stretch - 1.0,
-    ]
+    columns = [lines.sensitivity, lines.stiffness, lines.force_high, response.range_end, response.max_stretch - 1.0]
     return np.stack(columns, axis=1)
 
 
@@ -97,9 +91,9 @@ class ContactFactors(NamedTuple):
         lines = response.lines
         return response._replace(
             lines=lines._replace(
-                sensitivity_kPa_per_N=slope * lines.sensitivity_kPa_per_N,
+                sensitivity=slope * lines.sensitivity,
                 intercept_kPa=slope * force * lines.intercept_kPa,
-                sensitivity_through_origin_kPa_per_N=slope * lines.sensitivity_through_origin_kPa_per_N,
+                sensitivity_through_origin=slope * lines.sensitivity_through_origin,
                 stiffness=stiffness * lines.stiffness,
                 force_low=force * lines.force_low,
                 force_high=force * lines.force_high,
@@ -146,12 +140,8 @@ def solid_response(state: SensorState, atlas: AtlasResponse) -> AtlasResponse | 
     force, rise, stretch = (
         np.interp(grid, state.indentation, values) for values in (state.force, state.pressure_rise, state.max_stretch)
     )
-    saturation = np.nan if figures.saturation_force is None else figures.saturation_force
-    values = {name: getattr(figures, name) for name in FigureArrays._fields if hasattr(figures, name)}
-    low, high = figures.force_range
-    values |= {"force_low": low, "force_high": high, "saturation_force": saturation}
     return AtlasResponse(
-        lines=FigureArrays(**{name: np.array([value]) for name, value in values.items()}),
+        lines=Figures(*(np.array([value]) for value in figures)),
         ends=np.array([ENDS.index(kind) if kind in ENDS else BUCKLING]),
         near_buckling=np.array([False]),
         range_end=np.array([state.range_end]),

@@ -48,12 +48,7 @@ def state_logs(states: Sequence[SensorState], correction: ResponseCorrection | N
         if state.figures is not None:
             force, rise = (1.0, 1.0) if correction is None else correction.at(state.driving_pressure)
             fitted = state.figures.scaled(1.0 / force, 1.0 / rise)
-            rows[CONTACT_FIGURES, k] = (
-                fitted.sensitivity_kPa_per_N,
-                fitted.stiffness,
-                fitted.force_range[1],
-                state.range_end,
-            )
+            rows[CONTACT_FIGURES, k] = (fitted.sensitivity, fitted.stiffness, fitted.force_range[1], state.range_end)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.asarray(np.log(rows))
 

@@ -158,10 +158,10 @@ class _Curve(NamedTuple):
     peak: float | None = None
 
     @property
-    def sensitivity_kPa_per_N(self) -> float | None:
+    def sensitivity(self) -> float | None:
         """Sensitivity (kPa/N), where the range has one."""
         fit = figures(self.indentation, self.force, self.rise / KPA)
-        return None if fit is None else fit.sensitivity_kPa_per_N
+        return None if fit is None else fit.sensitivity
 
 
 def _curve(sensor: Sensor, pressed: OffAxisPath) -> _Curve:
@@ -178,8 +178,8 @@ def change(before: _Curve, after: _Curve) -> float:
         (float(np.interp(end, before.indentation, old)), float(np.interp(end, after.indentation, new)))
         for old, new in ((before.force, after.force), (before.rise, after.rise))
     ]
-    if before.sensitivity_kPa_per_N is not None and after.sensitivity_kPa_per_N is not None:
-        pairs.append((before.sensitivity_kPa_per_N, after.sensitivity_kPa_per_N))
+    if before.sensitivity is not None and after.sensitivity is not None:
+        pairs.append((before.sensitivity, after.sensitivity))
     if before.peak is not None and after.peak is not None:
         pairs.append((before.peak, after.peak))
     return max((abs(old / new - 1.0) for old, new in pairs if new), default=0.0)
@@ -272,7 +272,7 @@ def _shear_curve(path: ShearPath) -> ShearCurve:
     )
 
 
-def _figures(pressed: OffAxisPath, end: float, steps: int) -> Figures | None:
+def _figures(pressed: OffAxisPath, end: float, steps: int) -> Figures[float] | None:
     """Figures of the range, on the same equal steps of it as the solid's."""
     grid = np.linspace(0.0, end, steps + 1)
     force, rise = curve_between(pressed.path, grid)

@@ -126,7 +126,7 @@ class IndentationPath:
         """One field of every state, (n_states,)."""
         return np.array([getattr(s, name) for s in self.states])
 
-    def figures(self) -> Figures | None:
+    def figures(self) -> Figures[float] | None:
         """Figures of the curve before the first event that breaks it; None with too few states."""
         ends = [e.indentation for e in self.events if e.kind in BREAKS_CURVE]
         keep = self.column("indentation") < min(ends, default=np.inf)

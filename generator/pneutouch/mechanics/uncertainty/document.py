@@ -167,8 +167,8 @@ def gas_notes(batch: SensorBatch, temperature: float = REFERENCE_TEMPERATURE) ->
     give = np.where(good, stiffness / (stiffness + absolute / gas_volume), np.nan)
     rise_kPa_per_K = absolute * batch.shear_modulus / temperature * give / KPA
     travel = _TRAVEL * response.indentation
-    fast = _sensitivity_kPa_per_N(press, travel, ADIABATIC) / _sensitivity_kPa_per_N(press, travel, 1.0)
-    return GasNotes(rise_kPa_per_K, rise_kPa_per_K / response.lines.sensitivity_kPa_per_N, give, fast)
+    fast = _sensitivity(press, travel, ADIABATIC) / _sensitivity(press, travel, 1.0)
+    return GasNotes(rise_kPa_per_K, rise_kPa_per_K / response.lines.sensitivity, give, fast)
 
 
 def _wall_stiffness(press: AtlasPress, k: Index) -> Array:
@@ -180,13 +180,13 @@ def _wall_stiffness(press: AtlasPress, k: Index) -> Array:
     return np.asarray(point.by_volume + point.by_height * apex[:, 1] / slices.reach(k))
 
 
-def _sensitivity_kPa_per_N(press: AtlasPress, indentation: Array, exponent: float) -> Array:
+def _sensitivity(press: AtlasPress, indentation: Array, exponent: float) -> Array:
     """Slope of pressure over force, kPa/N, at plate travels (n, m) in mm; NaN if one of them has no state."""
     mu, radius = press.batch.shear_modulus[:, None], press.batch.inner_radius[:, None]
     pressure, force, converged = _pressed(press, np.nan_to_num(indentation) / radius, exponent)
     rise_kPa = (pressure - press.pressure[:, None]) * mu / KPA
     lost = ~converged | np.isnan(indentation).any(axis=1)
-    return np.where(lost, np.nan, lines(indentation, force * mu * radius**2, rise_kPa).sensitivity_kPa_per_N)
+    return np.where(lost, np.nan, lines(indentation, force * mu * radius**2, rise_kPa).sensitivity)
 
 
 def _pressed(press: AtlasPress, indentation: Array, exponent: float) -> tuple[Array, Array, Flags]:

@@ -271,7 +271,6 @@ def ageing_shift(sensor: Sensor, material: Material, driving_pressures: Sequence
     ratio = ageing_ratio(material)
     old = sensor.replace(shear_modulus=ratio * sensor.wall.shear_modulus)
     before_kPa_per_N, after_kPa_per_N = (
-        respond(batch_of(one, driving_pressures), one.protocol.steps).lines.sensitivity_kPa_per_N
-        for one in (sensor, old)
+        respond(batch_of(one, driving_pressures), one.protocol.steps).lines.sensitivity for one in (sensor, old)
     )
     return ratio, after_kPa_per_N / before_kPa_per_N - 1.0

@@ -88,9 +88,7 @@ def _outcome(outcome: CurveOutcome) -> str:
     state = outcome.states[-1]
     figures = state.figures
     read = (
-        "no straight part"
-        if figures is None
-        else f"{figures.sensitivity_kPa_per_N:.2f} kPa/N to {figures.force_range[1]:.1f} N"
+        "no straight part" if figures is None else f"{figures.sensitivity:.2f} kPa/N to {figures.force_range[1]:.1f} N"
     )
     rated_kPa = tenths_below(outcome.rated / KPA)
     return f"{head}, {read} at {state.driving_pressure / KPA:g} kPa, rated {rated_kPa:.1f} kPa"

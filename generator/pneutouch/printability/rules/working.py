@@ -95,7 +95,7 @@ def _sensitivities(sensor: Sensor, pressure: float, low: float, high: float) -> 
         if outside("atlas", other) is not None:
             return ""
         response = respond(batch_of(other, [pressure]), sensor.protocol.steps)
-        value = float(response.lines.sensitivity_kPa_per_N[0])
+        value = float(response.lines.sensitivity[0])
         if response.ends[0] == OUTSIDE or not np.isfinite(value):
             return ""
         sensitivities.append(value)

@@ -20,9 +20,9 @@ from pneutouch.report.blocks import Plot
 from pneutouch.report.chart import SIZE, WIDE, Chart, Panel, PlotLine, bars_between, drawn_svg
 from pneutouch.report.measured.tables import CampaignReport, GroupComparison, ResinGroups, some
 from pneutouch.report.style import INK, LINES, MARKERS, MUTED
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.units import KPA
 
-SENSITIVITY, STIFFNESS = "sensitivity_kPa_per_N", "stiffness_N_per_mm"
 _LEAST_SPAN = 20.0
 """Driving pressures closer together than this, kPa, do not make the slack of an axis smaller."""
 _MOST_TICKS, _COLUMNS = 5, 4
@@ -109,12 +109,12 @@ def _ends(values: Sequence[float], most: int = 2) -> list[float]:
 
 def sensitivities(groups: Groups) -> Plot | None:
     """Sensitivity over driving pressure, means of the specimens with their intervals in the predicted band."""
-    groups = [g for g in groups if any(SENSITIVITY in b.group.figures for b in g.comparisons)]
+    groups = [g for g in groups if any(SENSITIVITY_KEY in b.group.figures for b in g.comparisons)]
     words = "Mean over specimens with its 95 % interval, in the predicted band."
     if not groups:
         return None
     ages = list(dict.fromkeys(age for g in groups for age in g.ages.values()))
-    known = any(SENSITIVITY in b.predicted for g in groups for b in g.comparisons)
+    known = any(SENSITIVITY_KEY in b.predicted for g in groups for b in g.comparisons)
     legend = [PlotLine(label="predicted", width=1.0), _BAND] if known else []
     legend += [replace(_mean(k), label=f"measured, {age}") for k, age in enumerate(ages)]
     pressures_kPa = groups[0].campaign_pressures_kPa
@@ -129,9 +129,11 @@ def sensitivities(groups: Groups) -> Plot | None:
         panel = curves.sensitivities(lines)
         return replace(panel, xlim=across, ylim=up, ticks=pressures_kPa if few else ())
 
-    means = [b.group.figures[SENSITIVITY] for g in groups for b in g.comparisons if SENSITIVITY in b.group.figures]
+    means = [
+        b.group.figures[SENSITIVITY_KEY] for g in groups for b in g.comparisons if SENSITIVITY_KEY in b.group.figures
+    ]
     ends = [end for one in means for end in (one.value, one.high)]
-    ends += [end for g in groups for b in g.comparisons for end in b.predicted.get(SENSITIVITY, ())]
+    ends += [end for g in groups for b in g.comparisons for end in b.predicted.get(SENSITIVITY_KEY, ())]
     top = 1.12 * max(end for end in ends if end is not None)
     up = 1.12 * min(0.0, *(one.value for one in means)), top or 1.0
     return _plot(groups, "Sensitivity over driving pressure", words, draw, legend, "xy")
@@ -144,9 +146,9 @@ def _mean(k: int) -> PlotLine:
 def _predicted_sensitivity(groups: ResinGroups, half: float) -> list[PlotLine]:
     """The band between driving pressures; of one alone a bar of ``half`` its width."""
     known = {
-        b.group.key.driving_pressure_kPa: b.predicted[SENSITIVITY]
+        b.group.key.driving_pressure_kPa: b.predicted[SENSITIVITY_KEY]
         for b in reversed(groups.comparisons)
-        if SENSITIVITY in b.predicted
+        if SENSITIVITY_KEY in b.predicted
     }
     rows = [(p, *known[p]) for p in sorted(known)]
     if len(rows) == 1:
@@ -163,7 +165,7 @@ def _measured_sensitivity(groups: ResinGroups, ages: list[str], aside: float) ->
     """Means with their intervals; ages stand next to one another."""
     lines = []
     for comparison in groups.comparisons:
-        estimate = comparison.group.figures.get(SENSITIVITY)
+        estimate = comparison.group.figures.get(SENSITIVITY_KEY)
         if estimate is None:
             continue
         k = ages.index(comparison.group.key.age)
@@ -180,13 +182,13 @@ def _measured_sensitivity(groups: ResinGroups, ages: list[str], aside: float) ->
 def responses(groups: Groups) -> Plot | None:
     """Pressure rise over force: every run's points over the predicted curves and their bands."""
     words = "Pressure rise over contact force. {}sensitivity{}"
-    return _curves(groups, "Response", words, curves.rises, SENSITIVITY)
+    return _curves(groups, "Response", words, curves.rises, SENSITIVITY_KEY)
 
 
 def indentations(groups: Groups) -> Plot | None:
     """Force over indentation in the same way; the band is that of the stiffness."""
     words = "Contact force over indentation. {}stiffness{}"
-    return _curves(groups, "Force over indentation", words, curves.forces, STIFFNESS)
+    return _curves(groups, "Force over indentation", words, curves.forces, STIFFNESS_KEY)
 
 
 def _curves(
@@ -224,7 +226,9 @@ def _presses(groups: ResinGroups) -> list[curves.Press]:
             presses.append(curves.Press(run.indentation, run.force, run.rise / KPA, look))
         if runs and comparison.state is not None and pressure_kPa not in done:
             done.add(pressure_kPa)
-            bands = map(comparison.relative_band, (SENSITIVITY, STIFFNESS) if pressure_kPa in shaded_kPa else ("", ""))
+            bands = map(
+                comparison.relative_band, (SENSITIVITY_KEY, STIFFNESS_KEY) if pressure_kPa in shaded_kPa else ("", "")
+            )
             presses.append(curves.predicted_press(comparison.state, tone, *bands))
     return presses
 

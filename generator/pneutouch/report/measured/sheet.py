@@ -28,6 +28,7 @@ from pneutouch.report.measured.tables import MOST_RUNS, CampaignReport, GroupCom
 from pneutouch.report.numbers import between, difference, number, overlap, signed, word_of
 from pneutouch.report.pages import set_sheet
 from pneutouch.results.measured import Verdict
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.units import KPA
 from pneutouch.wording import SIMULATED, counted
 
@@ -94,7 +95,6 @@ def _plots(measured: CampaignReport, groups: list[ResinGroups]) -> list[Plot]:
     return sorted(drawn, key=lambda plot: not plot.full)
 
 
-_SENSITIVITY = "sensitivity_kPa_per_N"
 _WORDS = ("passed", "failed", "not decided")
 
 
@@ -149,7 +149,7 @@ def whole_verdict(verdicts: tuple[Verdict, ...]) -> str:
 
 def tiles(measured: CampaignReport) -> list[Tile]:
     """Name, value, unit, condition of the figures that count; those that were not measured are left out."""
-    tiles = [_extent(measured, _SENSITIVITY, "Sensitivity", "kPa/N"), *_against(measured)]
+    tiles = [_extent(measured, SENSITIVITY_KEY, "Sensitivity", "kPa/N"), *_against(measured)]
     for key, name in (("repeatability_kPa_per_N", "Repeatability"), ("part_to_part_kPa_per_N", "Part to part")):
         tiles.append(_worst(measured, key, name, "kPa/N", "standard deviation of the sensitivity"))
     tiles.append(_worst(measured, "hysteresis_width_percent", "Hysteresis", "% FS", "greatest width of the loop"))
@@ -157,7 +157,7 @@ def tiles(measured: CampaignReport) -> list[Tile]:
         _worst(measured, "relaxation_force_percent", "Relaxation of the force", "%", "from 1 s to the end of the hold")
     )
     tiles.append(_worst(measured, "resolution_N", "Resolution", "N", "three standard deviations of the noise"))
-    tiles.append(_extent(measured, "stiffness_N_per_mm", "Mean stiffness", "N/mm"))
+    tiles.append(_extent(measured, STIFFNESS_KEY, "Mean stiffness", "N/mm"))
     tiles.append(_extent(measured, "force_range_N", "Force at the greatest depth", "N"))
     return [tile for tile in tiles if tile is not None][:6]
 
@@ -196,7 +196,11 @@ def _extent(measured: CampaignReport, key: str, name: str, unit: str) -> Tile | 
 def _against(measured: CampaignReport) -> list[Tile]:
     """Differences of the measured sensitivities from the predicted, and the number of groups whose intervals
     overlap."""
-    pairs = [(b, e, b.predicted[_SENSITIVITY]) for b, e in _with(measured, _SENSITIVITY) if _SENSITIVITY in b.predicted]
+    pairs = [
+        (b, e, b.predicted[SENSITIVITY_KEY])
+        for b, e in _with(measured, SENSITIVITY_KEY)
+        if SENSITIVITY_KEY in b.predicted
+    ]
     off = [(gap, b) for b, e, p in pairs if (gap := difference(e.value, p[0])) is not None]
     if not off:
         return []

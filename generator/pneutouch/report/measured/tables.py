@@ -22,6 +22,7 @@ from pneutouch.report.blocks import Cell, SheetBlock, SheetTable, Text, section
 from pneutouch.report.numbers import DASH, Bounds, between, difference, number, overlap, signed, word_of
 from pneutouch.report.style import MARKERS
 from pneutouch.results.measured import AgeingChange, InjectionFigure, Verdict
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.results.uncertainty import UncertaintyRecord
 from pneutouch.spec.campaign import Campaign
 
@@ -230,7 +231,7 @@ def _of_sensor(comparison: GroupComparison, sensor: str) -> list[str]:
     group = comparison.group
     each = [figures for curve, figures in zip(group.curves, group.each, strict=True) if curve.run.sensor == sensor]
     cells: list[str] = []
-    for name, digits in (("sensitivity_kPa_per_N", 4), ("stiffness_N_per_mm", 3)):
+    for name, digits in ((SENSITIVITY_KEY, 4), (STIFFNESS_KEY, 3)):
         values = np.array([figures[name] for figures in each if name in figures])
         if not values.size:
             cells += [DASH, DASH]
@@ -238,7 +239,7 @@ def _of_sensor(comparison: GroupComparison, sensor: str) -> list[str]:
         mean = float(values.mean())
         spread = number(float(values.std(ddof=1)), 2) if values.size > 1 else DASH
         cells += [number(mean, digits), spread]
-    count = sum("sensitivity_kPa_per_N" in figures for figures in each)
+    count = sum(SENSITIVITY_KEY in figures for figures in each)
     return [str(count), *cells] if set(cells) != {DASH} else []
 
 
@@ -295,13 +296,13 @@ def _listed(
 
 
 LINES_OF = {
-    "sensitivity_kPa_per_N": "Slope of the least-squares line of pressure rise over force, with intercept, over a run.",
+    SENSITIVITY_KEY: "Slope of the least-squares line of pressure rise over force, with intercept, over a run.",
     "sensitivity_through_origin_kPa_per_N": "Slope of the least-squares line through the origin.",
     "r_squared": "Share of the variance of the rise that the line with intercept explains.",
     "nonlinearity_percent": "Greatest distance from that line over the full-scale rise.",
     "repeatability_kPa_per_N": "Standard deviation of the sensitivity between runs of a specimen, pooled.",
     "part_to_part_kPa_per_N": "Standard deviation of the specimens' mean sensitivities.",
-    "stiffness_N_per_mm": "Force at the greatest depth over that depth.",
+    STIFFNESS_KEY: "Force at the greatest depth over that depth.",
     "force_range_N": "Greatest force of the sensitivity test, at its greatest depth.",
     "saturation_force_N": "Force at which the local slope of rise over force falls below half the fitted one.",
     "sensing_range_N": "Saturation force, or the greatest force reached where the sensor did not saturate.",

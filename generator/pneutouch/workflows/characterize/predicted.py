@@ -37,6 +37,7 @@ from pneutouch.results.measured import (
     RunWarning,
     Verdict,
 )
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.results.uncertainty import UncertaintyRecord
 from pneutouch.spec.campaign import AS_DESIGNED, CampaignRun, RunKind
 from pneutouch.spec.material import Material
@@ -44,7 +45,7 @@ from pneutouch.spec.read import Changes
 from pneutouch.spec.target import Target, TargetFigures
 from pneutouch.units import KPA
 
-_OF_STATE = ("sensitivity_kPa_per_N", "stiffness_N_per_mm")
+_OF_STATE = (SENSITIVITY_KEY, STIFFNESS_KEY)
 """Figures whose uncertainty goes by the same name; the force at the greatest depth is the range's end's."""
 
 
@@ -131,7 +132,7 @@ def _published(evaluation: Evaluation, group: RunGroup) -> dict[str, float]:
     """The sensitivity in Table S1, kPa/N, where the sensor is the paper's and was measured at this driving pressure."""
     known = published_sensitivities(evaluation.sensor, evaluation.scene.membrane_material)
     at = [value for pressure, value in known.items() if math.isclose(pressure, group.key.driving_pressure_kPa)]
-    return {"sensitivity_kPa_per_N": at[0]} if at else {}
+    return {SENSITIVITY_KEY: at[0]} if at else {}
 
 
 def depths_of(group: RunGroup) -> list[list[Array]]:
@@ -200,13 +201,13 @@ def _requirements(figures: TargetFigures) -> list[tuple[str, str, float, float, 
     if (s := figures.sensitivity_kPa_per_N) is not None:
         part = figures.tolerance_percent / 100
         text = f"{s:g} kPa/N within {figures.tolerance_percent:g} %"
-        rows.append(("Sensitivity", "sensitivity_kPa_per_N", s * (1 - part), s * (1 + part), text))
+        rows.append(("Sensitivity", SENSITIVITY_KEY, s * (1 - part), s * (1 + part), text))
     if (f := figures.force_range_N) is not None:
         rows.append(("Force range", "force_range_N", f, _INFINITE, f"at least {f:g} N"))
     if (k := figures.stiffness_least_N_per_mm) is not None:
-        rows.append(("Stiffness", "stiffness_N_per_mm", k, _INFINITE, f"at least {k:g} N/mm"))
+        rows.append(("Stiffness", STIFFNESS_KEY, k, _INFINITE, f"at least {k:g} N/mm"))
     if (k := figures.stiffness_most_N_per_mm) is not None:
-        rows.append(("Stiffness", "stiffness_N_per_mm", 0.0, k, f"at most {k:g} N/mm"))
+        rows.append(("Stiffness", STIFFNESS_KEY, 0.0, k, f"at most {k:g} N/mm"))
     return rows
 
 
@@ -232,7 +233,7 @@ def ageing(groups: Sequence[RunGroup], library: Library) -> tuple[AgeingChange, 
 
     With the ends of its 95 % interval, and the paper's change in a year where it measured one.
     """
-    known = [group for group in groups if "sensitivity_kPa_per_N" in group.figures]
+    known = [group for group in groups if SENSITIVITY_KEY in group.figures]
     by_sensor: Callable[[RunGroup], tuple[str, float]] = lambda group: (group.key.resin, group.key.driving_pressure_kPa)  # noqa: E731
     changes: list[AgeingChange] = []
     for (resin, pressure), some in groupby(sorted(known, key=by_sensor), key=by_sensor):
@@ -257,7 +258,7 @@ def _published_sensitivity(resin: str, library: Library) -> float | None:
 
 def _change(fresh: RunGroup, aged: RunGroup) -> tuple[float, float | None, float | None]:
     """Change in percent with its ends; the halves of both intervals are added as squares."""
-    new, old = fresh.figures["sensitivity_kPa_per_N"], aged.figures["sensitivity_kPa_per_N"]
+    new, old = fresh.figures[SENSITIVITY_KEY], aged.figures[SENSITIVITY_KEY]
     value = 100 * (old.value - new.value) / old.value
     if new.high is None or old.high is None:
         return value, None, None

@@ -17,6 +17,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.coupons import CouponFindings, ReadingSource, leak
+from pneutouch.bench.figures import line_figures
 from pneutouch.catalogue import DesignSource, Library
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
@@ -108,13 +109,7 @@ class ReachCurves:
 
 def figure_of(state: SensorState, figure: str) -> float:
     """A figure of a task by its key, in its unit; NaN if the state has none."""
-    if state.figures is None:
-        return float("nan")
-    return {
-        "sensitivity_kPa_per_N": state.figures.sensitivity_kPa_per_N,
-        "stiffness_N_per_mm": state.figures.stiffness,
-        "force_range_N": state.figures.force_range[1],
-    }[figure]
+    return float("nan") if state.figures is None else line_figures(state.figures)[figure]
 
 
 def reach_curves(

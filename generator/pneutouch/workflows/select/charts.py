@@ -58,7 +58,7 @@ def tradeoff(selection: SelectionRun, library: Library | None = None) -> TradeOf
     pressure = problem.driving_pressure
     if pressure is None:
         pressure = float(designs[0].pool.pressure[0]) if designs else 0.0
-    target_kPa_per_N = problem.sensitivity_kPa_per_N
+    target_kPa_per_N = problem.sensitivity
     # Of a mix the fronts of the designs' own fractions: those of all that were tried lie side by side.
     mixed = any(resin.grade is not None for resin in problem.resins)
     resins = tuple(choice.resin for choice in designs) if mixed and designs else problem.resins
@@ -127,7 +127,7 @@ def _tuned_by_solid(selection: SelectionRun, library: Library, chosen: Candidate
     if len(states) < _LEAST:
         return None
     at_kPa = np.array([state.driving_pressure for state in states]) / KPA
-    solved_kPa_per_N = np.array([state.figures.sensitivity_kPa_per_N for state in states if state.figures])
+    solved_kPa_per_N = np.array([state.figures.sensitivity for state in states if state.figures])
     drawn = SensitivityCurve(at_kPa, solved_kPa_per_N, "solid", chosen.resin.material.title)
     caption = f"{contact_text(selection.base)}: by the solid"
     low, high = solve.interval(chosen.resin, chosen.pool, drawn, states) or (None, None)
@@ -136,7 +136,7 @@ def _tuned_by_solid(selection: SelectionRun, library: Library, chosen: Candidate
 
 def _working(chosen: Candidate) -> dict[float, float]:
     """The driving pressure that a design is for and its sensitivity there, kPa to kPa/N."""
-    return {float(chosen.pool.pressure[0]) / KPA: float(chosen.pool.response.lines.sensitivity_kPa_per_N[0])}
+    return {float(chosen.pool.pressure[0]) / KPA: chosen.pool.figures.sensitivity}
 
 
 def _best(selection: SelectionRun) -> list[Candidate]:
@@ -148,7 +148,5 @@ def _best(selection: SelectionRun) -> list[Candidate]:
 
 
 def _spot(rank: int, choice: Candidate) -> ChartPoint:
-    title, force = choice.resin.material.title, float(choice.pool.force[0])
-    return ChartPoint(
-        title, f"{rank}  {title}, {force:.3g} N", float(choice.pool.response.lines.sensitivity_kPa_per_N[0]), force
-    )
+    title, figures = choice.resin.material.title, choice.pool.figures
+    return ChartPoint(title, f"{rank}  {title}, {figures.reach:.3g} N", figures)

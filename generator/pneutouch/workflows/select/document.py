@@ -82,8 +82,7 @@ def _is_runner_up(designs: list[Candidate], index: int) -> bool:
 
 
 def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | None = None) -> FoundDesign:
-    pool, lines = choice.pool, choice.pool.response.lines
-    sensitivity_kPa_per_N = float(lines.sensitivity_kPa_per_N[0])
+    pool, figures = choice.pool, choice.pool.figures
     batch = selection.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
     by_solid = choice.contact
     return FoundDesign(
@@ -95,16 +94,16 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         outer_diameter_mm=2 * float(pool.radius[0] + pool.wall[0]),
         footprint_mm=selection.footprint(choice),
         dead_volume_mL=float(batch.dead_volume[0]) / ML,
-        sensitivity_kPa_per_N=sensitivity_kPa_per_N,
-        expanded_uncertainty_kPa_per_N=_known(sensitivity_kPa_per_N * choice.expanded),
+        sensitivity_kPa_per_N=figures.sensitivity,
+        expanded_uncertainty_kPa_per_N=_known(figures.sensitivity * choice.expanded),
         expanded_uncertainty_relative=_known(choice.expanded),
         coverage_factor=2,
         place_uncertainty_relative=choice.place if selection.problem.anywhere else None,
-        r_squared=float(lines.r_squared[0]),
-        force_range_N=(0.0, float(pool.force[0])),
+        r_squared=figures.r_squared,
+        force_range_N=(0.0, figures.reach),
         range_end_mm=float(pool.response.range_end[0]),
         range_ends_with=choice.ends_with,
-        stiffness_N_per_mm=float(lines.stiffness[0]),
+        stiffness_N_per_mm=figures.stiffness,
         limit_point_kPa=float(pool.response.limit_pressure[0]) / KPA,
         rated_pressure_kPa=choice.rated / KPA,
         above_rated_pressure=choice.margins["rated pressure"] < 0,
@@ -114,7 +113,7 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         model="atlas" if by_solid is None else "solid",
         plate_sensitivity_kPa_per_N=None if by_solid is None else by_solid.plate_kPa_per_N,
         rounds=None if by_solid is None else by_solid.rounds,
-        solid=None if solid is None else SolidCheck(_known(solid.sensitivity_kPa_per_N), solid.within),
+        solid=None if solid is None else SolidCheck(_known(solid.sensitivity), solid.within),
         set=tuple(selection.assignments(choice)),
     )
 
@@ -125,15 +124,13 @@ def _known(value: float) -> float | None:
 
 def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:
     """Value that a requirement would need for the best design without it."""
-    pool, lines = dropped.best.pool, dropped.best.pool.response.lines
+    pool, figures = dropped.best.pool, dropped.best.pool.figures
     if dropped.requirement == "sensitivity":
-        return (
-            f"{float(lines.sensitivity_kPa_per_N[0]):.3g} kPa/N instead of {selection.problem.sensitivity_kPa_per_N:g}"
-        )
+        return f"{figures.sensitivity:.3g} kPa/N instead of {selection.problem.sensitivity:g}"
     if dropped.requirement == "force range":
-        return f"{float(pool.force[0]):.3g} N instead of {selection.problem.force_range:g}"
+        return f"{figures.reach:.3g} N instead of {selection.problem.force_range:g}"
     if dropped.requirement == "stiffness":
-        return f"{float(lines.stiffness[0]):.3g} N/mm"
+        return f"{figures.stiffness:.3g} N/mm"
     if dropped.requirement == "footprint":
         return f"{selection.footprint(dropped.best):.4g} mm instead of {selection.problem.max_footprint:g}"
     if dropped.requirement == "rated pressure":

@@ -189,7 +189,7 @@ def _wall(target: Target, where: str, grade_target: GradeTarget, problem: Select
 
 def _middle_wall(grade_target: GradeTarget, problem: SelectionProblem, base: Sensor, thickest: float) -> float | None:
     """The wall of `middle_wall`; under a contact that the atlas does not cover for a target that it has corrected."""
-    radius, target_kPa_per_N = base.dome.inner_radius, grade_target.sensitivity_kPa_per_N
+    radius, target_kPa_per_N = base.dome.inner_radius, grade_target.sensitivity
     problem = without_plate(problem, base)
     wall = middle_wall(grade_target, problem, radius, thickest)
     for _ in range(_WALL_ROUNDS if other_contact(base) is not None else 0):
@@ -198,13 +198,10 @@ def _middle_wall(grade_target: GradeTarget, problem: SelectionProblem, base: Sen
         middle = in_resin(base.replace(wall_thickness=wall), problem.resins[0].material)
         solved = trial_of(middle, grade_target.pressures[:1], lambda limits: limits.lowest)
         place = np.zeros(1), np.array([radius]), np.array([wall]), np.array(grade_target.pressures[:1])
-        atlas_kPa_per_N = evaluated(problem, *place).response.lines.sensitivity_kPa_per_N[0]
-        factor = solved.sensitivity_kPa_per_N[0] / float(atlas_kPa_per_N)
+        factor = solved.sensitivity[0] / evaluated(problem, *place).figures.sensitivity
         if not np.isfinite(factor):
             break
-        wall = middle_wall(
-            replace(grade_target, sensitivity_kPa_per_N=target_kPa_per_N / factor), problem, radius, thickest
-        )
+        wall = middle_wall(replace(grade_target, sensitivity=target_kPa_per_N / factor), problem, radius, thickest)
     return wall
 
 
@@ -278,7 +275,7 @@ def _nearest(
         even = [trial for trial in search.trials if trial.pole == trial.rim]
         return solved(min(even, key=lambda trial: max(shares(grade_target, trial).values())).pole)
     nearest = solved(by_atlas[0])
-    factor = np.array(nearest.trial.sensitivity_kPa_per_N) / by_atlas[1]
+    factor = np.array(nearest.trial.sensitivity) / by_atlas[1]
     if max(shares(grade_target, nearest.trial).values()) <= 1.0 or not np.isfinite(factor).all():
         return nearest
     again = nearest_fraction(grade_target, problem, pair.law, size, factor)

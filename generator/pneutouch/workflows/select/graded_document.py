@@ -45,7 +45,7 @@ def graded(selection: GradedSelectionRun) -> GradedRecord:
 def _figures(selection: GradedSelectionRun, trial: GradeTrial) -> GradeFigures:
     return GradeFigures(
         driving_pressures_kPa=tuple(p / KPA for p in selection.grade_target.pressures),
-        sensitivity_kPa_per_N=_known(trial.sensitivity_kPa_per_N),
+        sensitivity_kPa_per_N=_known(trial.sensitivity),
         difference_percent=_known((100 * trial.difference,))[0],
         force_range_end_N=_known(trial.force),
         range_ends_with=tuple(trial.ends),
@@ -63,9 +63,9 @@ def _known(values: tuple[float, ...]) -> tuple[float | None, ...]:
 def missed(selection: GradedSelectionRun) -> list[str]:
     """Requirements that the best grade misses, and the range over which it can be moved at this size, in words."""
     grade_target, best = selection.grade_target, selection.search.best
-    values = ", ".join(f"{value:.3f}" for value in best.sensitivity_kPa_per_N)
+    values = ", ".join(f"{value:.3f}" for value in best.sensitivity)
     texts = {
-        "sensitivity": f"{values} kPa/N instead of {grade_target.sensitivity_kPa_per_N:g} within "
+        "sensitivity": f"{values} kPa/N instead of {grade_target.sensitivity:g} within "
         f"{100 * grade_target.tolerance:g} %",
         "same sensitivity": f"{100 * best.difference:+.1f} % apart instead of "
         f"{100 * (grade_target.same_within or 0):g} %",
@@ -76,11 +76,7 @@ def missed(selection: GradedSelectionRun) -> list[str]:
     }
     lines = [f"{name}: {texts[name]}" for name, used in shares(grade_target, best).items() if used > 1.0]
     known_kPa_per_N = np.array(
-        [
-            trial.sensitivity_kPa_per_N
-            for trial in selection.search.trials
-            if np.isfinite(trial.sensitivity_kPa_per_N).all()
-        ]
+        [trial.sensitivity for trial in selection.search.trials if np.isfinite(trial.sensitivity).all()]
     )
     if known_kPa_per_N.size:
         lines.append(

@@ -73,7 +73,7 @@ def select(
         if (why := _not_covered(part, last, written)) is not None:
             trials.append(part.trial(why))
             continue
-        slope = float(last.answer.designs[0].pool.response.lines.sensitivity_kPa_per_N[0]) * KPA
+        slope = last.answer.designs[0].pool.figures.sensitivity * KPA
         trials += _judged(part, parts[len(trials) :], slope, target)
         return replace(last, gauges=tuple(trials))
     if last is None:
@@ -119,7 +119,7 @@ def _not_covered(part: _Part, run: SelectionRun, written: int | None) -> str | N
     ended = next((choice for choice in designs if "gauge" in choice.ends_with), None)
     if ended is None:
         return None
-    return f"{part.reach}, where the range of the best design ends ({float(ended.pool.force[0]):.3g} N)"
+    return f"{part.reach}, where the range of the best design ends ({ended.pool.figures.reach:.3g} N)"
 
 
 def _judged(chosen: _Part, parts: list[_Part], slope: float, target: Target) -> list[GaugeTrial]:

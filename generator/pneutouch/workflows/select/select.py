@@ -66,7 +66,7 @@ _PLATE_SHARE = 1.25
 class Confirmation:
     """The result of the solid for a design: sensitivity (kPa/N) and whether it lies within the stated uncertainty."""
 
-    sensitivity_kPa_per_N: float
+    sensitivity: float
     within: bool
 
 
@@ -260,7 +260,7 @@ def problem_of(
     feature = scene.printer.smallest.wall("elastomer")
     return SelectionProblem(
         resins=resins,
-        sensitivity_kPa_per_N=required.sensitivity_kPa_per_N,
+        sensitivity=required.sensitivity_kPa_per_N,
         tolerance=required.tolerance_percent / 100,
         driving_pressure=None if required.driving_pressure_kPa is None else required.driving_pressure_kPa * KPA,
         force_range=required.force_range_N,
@@ -298,8 +298,6 @@ def _confirm(selection: SelectionRun, choice: Candidate, judged: Evaluation | No
     figures = state.figures
     if figures is None:
         return Confirmation(float("nan"), False)
-    stated_kPa_per_N = float(choice.pool.response.lines.sensitivity_kPa_per_N[0])
     return Confirmation(
-        figures.sensitivity_kPa_per_N,
-        bool(abs(np.log(figures.sensitivity_kPa_per_N / stated_kPa_per_N)) <= choice.expanded),
+        figures.sensitivity, bool(abs(np.log(figures.sensitivity / choice.pool.figures.sensitivity)) <= choice.expanded)
     )

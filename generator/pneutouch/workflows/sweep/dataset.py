@@ -21,6 +21,7 @@ from pneutouch.errors import InputError
 from pneutouch.formats import KEY, check_format, format_of
 from pneutouch.mechanics.models.choice import USUAL
 from pneutouch.output.files import replace_files
+from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.files import check_plain, oversized
@@ -221,9 +222,6 @@ def _attributes(study: SweepStudy, rows: list[list[dict[str, Any]]], content: di
     }
 
 
-FIGURE = "sensitivity_kPa_per_N"
-"""The figure that is drawn."""
-
 _ENDS = "sensitivity_low_kPa_per_N", "sensitivity_high_kPa_per_N"
 
 
@@ -303,21 +301,21 @@ def swept_figure(content: xarray.Dataset) -> SweptFigure | None:
     """The drawn figure over the swept fields; None if no state has one. A list is drawn over its first field."""
     from pneutouch.report.swept import SweptFigure
 
-    if not np.isfinite(content[FIGURE].values).any():
+    if not np.isfinite(content[SENSITIVITY_KEY].values).any():
         return None
-    dims = [str(dim) for dim in content[FIGURE].dims]
+    dims = [str(dim) for dim in content[SENSITIVITY_KEY].dims]
     if dims[0] == "point":
         content = _gridded(content)
-        dims = [str(dim) for dim in content[FIGURE].dims]
+        dims = [str(dim) for dim in content[SENSITIVITY_KEY].dims]
     axes = tuple(_axis(content, name) for name in dims)
-    arrays = (content[name].values for name in (FIGURE, *_ENDS))
+    arrays = (content[name].values for name in (SENSITIVITY_KEY, *_ENDS))
     return SweptFigure("sensitivity  (kPa/N)", axes, *arrays)
 
 
 def _gridded(content: xarray.Dataset) -> xarray.Dataset:
     """A list of points as a grid over its fields, where it is one; else over the number of the point."""
     fields = [str(name) for name, values in content.coords.items() if name != "point" and values.dims == ("point",)]
-    kept = content[[FIGURE, *_ENDS]]
+    kept = content[[SENSITIVITY_KEY, *_ENDS]]
     places = list(zip(*(content[name].values.tolist() for name in fields), strict=True))
     if len(fields) == 1 and len(set(places)) == len(places):
         return kept.swap_dims(point=fields[0]).sortby(fields[0])

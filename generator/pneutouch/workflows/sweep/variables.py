@@ -17,6 +17,7 @@ from pneutouch.mechanics import Sensor, SensorState
 from pneutouch.mechanics.atlas.figures import SENSITIVITY
 from pneutouch.mechanics.uncertainty.propagate import propagate_groups
 from pneutouch.results.prediction import PredictionRecord, StateRecord
+from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.rounding import rounded
 
 Interval = tuple[float, float] | None
@@ -83,13 +84,13 @@ STATE: tuple[SweepVariable, ...] = (
         "status", "", "ok, refused (not possible), failed (not computed); empty if not asked for", lambda _: "ok", True
     ),
     SweepVariable("message", "", "why a state is refused or failed", lambda _: "", True),
-    _number("sensitivity_kPa_per_N", "kPa/N", "slope of pressure rise over contact force, first contact to range end"),
+    _number(SENSITIVITY_KEY, "kPa/N", "slope of pressure rise over contact force, first contact to range end"),
     SweepVariable(_ENDS[0], "kPa/N", f"lower {_END}", _unread),
     SweepVariable(_ENDS[1], "kPa/N", f"upper {_END}", _unread),
     _number("sensitivity_through_origin_kPa_per_N", "kPa/N", "the same slope of a line through the origin"),
     _number("r_squared", "1", "coefficient of determination of the straight line"),
     _number("nonlinearity_percent", "percent", "greatest distance from the straight line over the full-scale rise"),
-    _number("stiffness_N_per_mm", "N/mm", "mean slope of contact force over indentation, first contact to range end"),
+    _number(STIFFNESS_KEY, "N/mm", "mean slope of contact force over indentation, first contact to range end"),
     _number("range_end_mm", "mm", "indentation up to which the figures hold"),
     SweepVariable("range_end_event", "", "what ends the range: depth (nothing does), or the event", _range_event, True),
     SweepVariable("force_range_low_N", "N", "least contact force of the range", _force(0)),
@@ -185,7 +186,7 @@ def _spread(evaluation: Evaluation, sensor: Sensor) -> SensorSpread | None:
 def _interval(state: SensorState, width: float) -> Interval:
     if state.figures is None or not np.isfinite(width):
         return None
-    value = state.figures.sensitivity_kPa_per_N
+    value = state.figures.sensitivity
     return rounded((value * float(np.exp(-width)), value * float(np.exp(width))), DIGITS)
 
 
@@ -193,7 +194,7 @@ INTERVAL = "sensitivity_interval_percent"
 """Name of half the width of the interval of the sensitivity, which follows from its ends."""
 
 MAPPED = {
-    "sensitivity": ("sensitivity  (kPa/N)", "sensitivity_kPa_per_N"),
+    "sensitivity": ("sensitivity  (kPa/N)", SENSITIVITY_KEY),
     "force-range": ("greatest force of the range  (N)", "force_range_high_N"),
     "rated-pressure": ("rated pressure  (kPa)", "rated_pressure_kPa"),
     "interval": ("interval of the sensitivity, k = 2  (± %)", INTERVAL),

@@ -89,7 +89,7 @@ def _table_s1_sensitivities(sensors: tuple[Sensor, ...]) -> Array:
     if not sensors:
         return np.empty((0, 2))
     batch = SensorBatch.join([batch_of(sensor, [0.0, 22.0 * KPA]) for sensor in sensors])
-    return respond(batch).lines.sensitivity_kPa_per_N.reshape(-1, 2)
+    return respond(batch).lines.sensitivity.reshape(-1, 2)
 
 
 def _against(measured: PaperMeasurements, sensitivity: Array) -> tuple[float, ...]:
