@@ -11,7 +11,7 @@ import pytest
 
 from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.curve import LOADING_POINTS, curve_of
-from pneutouch.bench.first_contact import excursions, position_noise
+from pneutouch.bench.excursions import excursions, position_noise
 from pneutouch.bench.protocol import HOLD, protocol
 from pneutouch.errors import InputError
 from pneutouch.mechanics.response import figures

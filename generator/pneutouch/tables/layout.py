@@ -62,6 +62,7 @@ class TableLayout:
         first_row: Row of the first numbers.
         least: Fewest cells of a row; the most are those of ``names``.
         clock: First time and step of a file without a column of times, in the unit of `CLOCK`.
+        stamps: Indices of the columns that hold dates with times of day; they are read as seconds from the first.
     """
 
     names: tuple[str, ...]
@@ -72,6 +73,7 @@ class TableLayout:
     first_row: int = 2
     least: int = 0
     clock: tuple[float, float] | None = None
+    stamps: tuple[int, ...] = ()
 
     @property
     def all_names(self) -> tuple[str, ...]:
@@ -92,6 +94,9 @@ class TableLayout:
         """Units of `all_names`."""
         return self.units if self.clock is None else ("s", *self.units)
 
+
+STAMP = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d:\d\d([.,]\d+)?(Z|[+-]\d\d:?\d\d)?")
+"""A date with a time of day, as ISO 8601 writes it."""
 
 NUMBER = {
     ".": re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?"),

@@ -15,10 +15,19 @@ UNITS: dict[str, dict[str, float]] = {
         "bar": 0.1,
         "psi": 6.894757293168e-3,
         "mmHg": 1.33322387415e-4,
+        "kPa_abs": 1e-3,
+        "Pa_abs": 1e-6,
+        "hPa_abs": 1e-4,
+        "mbar_abs": 1e-4,
+        "bar_abs": 0.1,
+        "psi_abs": 6.894757293168e-3,
     },
     "volume": {"mL": 1e3, "uL": 1.0, "mm3": 1.0, "L": 1e6},
 }
 """Units a column may have, with their factor to the inner units: s, mm, N, MPa, mm3."""
+
+ABSOLUTE = "_abs"
+"""Ending of the units of absolute pressures, of which the ambient pressure is subtracted."""
 
 _WORDS: dict[str, dict[str, str]] = {
     "time": {
@@ -51,6 +60,11 @@ _WORDS: dict[str, dict[str, str]] = {
         "bar": "barg bar(g)",
         "psi": "psig psi(g) lbf/in2 lbf/in²",
         "mmHg": "mmhg torr",
+        "kPa_abs": "kpaa kPaa kPa(a) kPa(abs)",
+        "hPa_abs": "hPa(a) hPaa",
+        "mbar_abs": "mbara mbar(a) mbar(abs)",
+        "bar_abs": "bara bar(a) bar(abs)",
+        "psi_abs": "psia psi(a)",
     },
     "volume": {
         "mL": "ml cc ccm cm3 cm³ cm^3 milliliter milliliters",
@@ -59,7 +73,7 @@ _WORDS: dict[str, dict[str, str]] = {
         "L": "l",
     },
 }
-"""Other spellings of the units. A mass stands for its weight. Absolute pressures (psia, bara) are not among them."""
+"""Other spellings of the units. A mass stands for its weight."""
 
 _SMALL = frozenset({"psi", "bar", "lbf", "sec", "mm"})
 
@@ -76,7 +90,7 @@ _TABLE = _table()
 _LONG = 4
 """Letters from which a word may be in any case, as may `_SMALL`: of others the case distinguishes milli from mega."""
 
-BRACKETS = re.compile(r"[(\[{<]\s*([^(\[{<]*?(?:\(g\))?)\s*[)\]}>]")
+BRACKETS = re.compile(r"[(\[{<]\s*([^(\[{<]*?(?:\((?:g|a|abs)\))?)\s*[)\]}>]")
 
 
 def unit_of(word: str) -> tuple[str, str] | None:
