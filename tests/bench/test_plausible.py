@@ -197,9 +197,9 @@ def test_a_driving_pressure_a_little_off_is_a_question(tmp_path, samples):
 
 @pytest.mark.parametrize("driving", [0.0, 12.0])
 @pytest.mark.parametrize("expected", [EXPECTED, None])
-def test_an_absolute_pressure_is_refused_with_what_to_subtract(driving, expected):
+def test_an_absolute_pressure_is_refused_with_the_unit_that_subtracts_the_ambient(driving, expected):
     absolute = replace(ideal(deepest=DEPTH, driving=driving), driving=(driving + 101.3) * KPA)
-    with pytest.raises(InputError, match=r"looks like an absolute pressure; subtract the ambient pressure"):
+    with pytest.raises(InputError, match=r'columns.pressure.unit = "kPa_abs"'):
         check_plausible(absolute, COLUMNS, expected, Path("run.csv"))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.curve import LOADING_POINTS, curve_of
-from pneutouch.bench.first_contact import excursions, position_noise
+from pneutouch.bench.excursions import excursions, position_noise
 from pneutouch.bench.indents import HOLD, protocol
 from pneutouch.bench.record import blocks_of
 from pneutouch.errors import InputError

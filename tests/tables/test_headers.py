@@ -62,7 +62,8 @@ NUMBERS = "0.0,1.5,0.25,10.5\n0.1,1.6,0.35,10.6\n0.2,1.7,0.45,10.7\n"
         ("Pressure SP (kPa)", "", "", "kPa"),
         ("Cycle (N)", "", "", "N"),
         ("Cycles", "N", "", "N"),
-        ("Pressure (psia)", "", "", ""),
+        ("Pressure (psia)", "", "pressure", "psi_abs"),
+        ("Pressure (kPa(a))", "", "pressure", "kPa_abs"),
         ("Pressure (bar abs)", "", "", ""),
         ("Temperature (°C)", "", "", ""),
         ("Strain (%)", "", "", ""),
@@ -117,7 +118,7 @@ def test_a_unit_that_is_not_stated_is_asked_for(tmp_path):
 
 def test_a_channel_that_is_missing_is_asked_for(tmp_path):
     asked(tmp_path, "Time (s),Position (mm),Load (N),T (°C)", "column pressure_kPa: missing", "no column of pressure")
-    asked(tmp_path, "Time (s),Position (mm),Load (N),Pressure (psia)", "no column of pressure")
+    asked(tmp_path, "Time (s),Position (mm),Load (N),Pressure (at)", "no column of pressure")
 
 
 def test_only_the_gauge_pressure_and_the_measured_force_are_taken(tmp_path):

@@ -10,13 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 from pneutouch.api.design import Design, source_of
 from pneutouch.api.fields import keyword_options, named_by_keyword, number_of, path_of, paths_of
 from pneutouch.api.results import Result
 from pneutouch.errors import InputError, shown
 from pneutouch.results.record import plain
+from pneutouch.spec.campaign import RunKind
 from pneutouch.spec.options import CalibrationOptions, FitOptions, PlanOptions, ScanOptions, SimulationOptions
 
 if TYPE_CHECKING:
@@ -103,6 +104,7 @@ def characterize(
     evidence: str = "doubtful",
     columns: Mapping[str, Mapping[str, Any]] | None = None,
     file_format: Mapping[str, Any] | None = None,
+    kind: RunKind | None = None,
 ) -> Result:
     """Figures of measured runs (a campaign's folder, its file or one run's) compared with the predicted ones.
 
@@ -111,18 +113,21 @@ def characterize(
     it, else found from each file.
     ``target`` is a target file to compare with; ``evidence`` states of which runs `Result.save` plots the evidence:
     "doubtful", "all" or "none".
-    ``model`` None: the solid, and harmonic for contact off the axis. Files that cannot be read are listed under
-    ``failures``.
+    ``model`` None: the solid, and harmonic for contact off the axis. ``kind`` of a single run, None: told from its
+    record. Files that cannot be read are listed under ``failures``.
     """
     from pneutouch.mechanics.models.choice import USUAL
     from pneutouch.workflows.characterize.campaign import characterize as run
     from pneutouch.workflows.characterize.campaign import write
 
     target_file = None if target is None else path_of(target, "target", "give the path of a target file")
+    if kind is not None and kind not in get_args(RunKind):
+        raise InputError(f"must be one of {', '.join(get_args(RunKind))}", key="kind", value=kind)
     with named_by_keyword():
         source = None if design is None else source_of(design)
         reading = _reading(columns, file_format)
-        outcome = run(path_of(data, "data", _DATA), source, target=target_file, model=model or USUAL, reading=reading)
+        how: Any = {"target": target_file, "model": model or USUAL, "reading": reading, "kind": kind}
+        outcome = run(path_of(data, "data", _DATA), source, **how)
     return Result(f"Measured {outcome.name}", plain(outcome.figures), partial(write, outcome, evidence=evidence))
 
 

@@ -6,16 +6,18 @@ Warnings about a run, each with its time interval and reason; nothing is dropped
 import itertools
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.bench.excursions import NEAR, Excursion
 from pneutouch.bench.first_contact import BEFORE, Baseline, baseline
 from pneutouch.bench.indents import HOLD, RELAXATION, RunIndentations, find_indents, read_window
 from pneutouch.bench.record import Blocks, MeasuredCurve, MeasuredIndentation, SuspectInterval
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import CampaignRun, Rig
+from pneutouch.spec.campaign import CampaignRun, Rig, RunKind
 from pneutouch.units import KPA
 
 SHORT = 0.5
@@ -34,6 +36,12 @@ MOST = 20
 """Gaps, clipped parts and spikes that are listed one by one, of each kind: our choice, for a readable list."""
 
 _MANY = MappingProxyType({"gap": "gaps", "clipped": "clipped parts", "spike": "spikes"})
+
+MISSING, PRESSED = 0.1, 0.002
+"""Share of a loading that may be missing, and of its force that the force may change by before contact: our choice."""
+
+_SURELY = 8.0
+"""Standard errors of that change that are no chance, noise alike from sample to sample included: our choice."""
 
 _SIGNIFICANT = 4.0
 """Standard errors that a change must exceed before it is reported: one false alarm in 10^4."""
@@ -76,10 +84,10 @@ def run_warnings(run: CampaignRun, blocks: Blocks, indentations: RunIndentations
         end = indentations.parts[0].clear[0] if indentations.parts else blocks.time.size - 1
         why = "the record begins with the plate in; left out"
         warnings.append(SuspectInterval(float(blocks.time[0]), float(blocks.time[end]), why, False))
-    usual = RELAXATION if run.kind == "relaxation" else HOLD
+    usual, turns = RELAXATION if run.kind == "relaxation" else HOLD, run.kind in ("loop", "hand")
     for number, indent in enumerate(indentations.indents, start=1):
-        warnings += _of_one(number, indent, blocks, indentations, usual, run.kind != "loop")
-    if run.kind != "loop":
+        warnings += _of_one(number, indent, blocks, indentations, usual, not turns)
+    if not turns:
         warnings += _of_depths([indent for indent in indentations.indents if not math.isnan(indent.contact)])
     return warnings + _leak(blocks, indentations)
 
@@ -100,10 +108,16 @@ def _of_one(
         warnings.append(SuspectInterval(begin, end, short, True))
     elif held and (why := _unsettled(blocks, indentations, number - 1)):
         warnings.append(SuspectInterval(*indent.read, f"indentation {number}: {why}", True))
-    if math.isnan(indent.release):
+    if math.isnan(indent.release) and not _goes_on(indentations, number - 1):
         lasting = f"indentation {number}: no release: the force does not go back"
         warnings.append(SuspectInterval(end, float(blocks.time[-1]), lasting, True))
     return warnings
+
+
+def _goes_on(indentations: RunIndentations, number: int) -> bool:
+    """True if the next indentation is a further step of the same loading."""
+    parts = indentations.parts
+    return number + 1 < len(parts) and parts[number + 1].clear == parts[number].clear
 
 
 def _unsettled(blocks: Blocks, indentations: RunIndentations, number: int) -> str | None:
@@ -174,39 +188,67 @@ _BEYOND_TRAVEL = 1.05
 def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     """The curve of a run with a plate; its first point is the origin.
 
-    Steps and saturation: one point for each indentation, sorted by depth. Loop and relaxation: the loading, averaged
-    over the cycles, at `LOADING_POINTS` even depths. A force or rise that falls as the sensor is pressed stays negative
-    (see `plausible.check_plausible`). Noise is that of single samples without contact, from the spread within blocks
-    and that between their means about a straight line; drift is the slope before the first contact.
+    A run without a stated kind is of that which its record shows. Steps and saturation: one point for each stay, sorted
+    by depth. Loop, relaxation and a press by hand: the loading, averaged over the cycles, at `LOADING_POINTS` even
+    depths, or forces by hand. A force or rise that falls as the sensor is pressed stays negative (see
+    `run_checks.check_plausible`). Noise is that of single samples without contact, from the spread within blocks and
+    that between their means about a straight line; drift is the slope before the first contact.
 
     Raises InputError if the plate does not move or moves backwards, or there is no contact.
     """
     if run.kind in ("leak", "injection"):
         raise InputError(f"a {run.kind} run has no plate and no curve", file=blocks.file)
-    indentations = find_indents(blocks)
+    travels = _travel(blocks, rig)
+    if run.kind == "hand":
+        blocks = _by_force(blocks)
+    indentations = find_indents(blocks, steps=run.kind != "hand")
+    shows: RunKind = "hand" if run.kind == "hand" else indentations.kind(blocks)
+    told = "kind" not in run.model_fields_set
+    if told:
+        run = run.model_copy(update={"kind": shows})
     touched = [k for k, contact in enumerate(indentations.contacts) if contact is not None]
     if not touched:
         raise InputError(_no_contact(blocks, indentations))
-    warnings = [*listed(blocks.warnings), *_travel(blocks, rig), *run_warnings(run, blocks, indentations)]
+    warnings = [*listed(blocks.warnings), *travels, *run_warnings(run, blocks, indentations)]
     kept, left_out = _kept(blocks, indentations, touched)
     warnings += left_out
     if not kept:
         reasons = "; ".join(sorted({warning.why for warning in left_out}))
         raise InputError(f"none of {len(touched)} indentations can be used: {reasons}", file=blocks.file)
-    loadings = [_loading(blocks, indentations, k) for k in kept] if run.kind in ("loop", "relaxation") else []
+    turns = run.kind in ("loop", "hand")
+    loadings = [_loading(blocks, indentations, k) for k in kept] if turns or run.kind == "relaxation" else []
     points = _averaged(loadings) if loadings else _points(indentations, kept)
+    indents = indentations.indents
+    if run.kind == "hand":
+        points = np.full(points[0].size, np.nan), *points[1:]
+        indents = tuple(replace(one, onset=math.nan, indentation=math.nan) for one in indents)
     bases = [indentations.bases[k] for k in kept]
     return MeasuredCurve(
         run,
         *points,
         driving=float(np.mean([base.mean[1] for base in bases])),
-        indents=indentations.indents,
-        loop=tuple(_cycle(blocks, indentations, k) for k in kept) if run.kind == "loop" else (),
+        indents=indents,
+        loop=tuple(_cycle(blocks, indentations, k) for k in kept) if turns else (),
         relaxation=_relaxation(blocks, indentations, kept[0]) if run.kind == "relaxation" else None,
         noise=(_noise(bases, 0), _noise(bases, 1)),
         drift=_drift(blocks, indentations),
+        onset_error=indentations.onset_error,
+        shows=shows,
+        told=told,
         warnings=tuple(sorted(warnings, key=lambda warning: (warning.start, warning.end, warning.why))),
     )
+
+
+def _by_force(blocks: Blocks) -> Blocks:
+    """A press by hand with its force in place of the travel, which nobody knows: loadings are found by it."""
+    rest = float(np.median(blocks.force[: max(blocks.force.size // 50, 3)]))
+    if rest - float(blocks.force.min()) > float(blocks.force.max()) - rest:
+        raise InputError(
+            f"column of the force: falls by {rest - float(blocks.force.min()):.3g} N as the sensor is pressed",
+            file=blocks.file,
+            remedy="it must rise: set columns.force.sign, or give `columns` with a minus before its name",
+        )
+    return replace(blocks, position=blocks.force)
 
 
 def _no_contact(blocks: Blocks, indentations: RunIndentations) -> str:
@@ -236,14 +278,43 @@ def _travel(blocks: Blocks, rig: Rig) -> list[SuspectInterval]:
 def _kept(blocks: Blocks, indentations: RunIndentations, touched: list[int]) -> tuple[list[int], list[SuspectInterval]]:
     kept, warnings = [], []
     for k in touched:
-        indent = indentations.indents[k]
+        indent, part = indentations.indents[k], indentations.parts[k]
         why = untrusted(blocks, indent, BEFORE)
+        if not part.held and k > 0 and _goes_on(indentations, k - 1):
+            why = why or "the plate does not stay there, as it does at the steps before"
+        why = why or _cut(blocks, indent, part.held) or _pressed(blocks, part, indent)
         if why is None:
             kept.append(k)
         else:
             message = f"indentation {k + 1}, {indent.indentation:.4g} mm, left out: {why}"
             warnings.append(SuspectInterval(*indent.read, message, False))
     return kept, warnings
+
+
+def _cut(blocks: Blocks, indent: MeasuredIndentation, held: bool) -> str | None:
+    """Reason why a loading without a stay cannot be used: much of it was not recorded, its deep end perhaps."""
+    if held:
+        return None
+    begin, end = indent.contact, indent.hold[1] + max(indent.hold[1] - indent.contact, 0.0)
+    gaps = [warning for warning in blocks.warnings if warning.kind == "gap"]
+    lost = sum(max(min(gap.end, end) - max(gap.start, begin), 0.0) for gap in gaps)
+    return "much of its way in and out is missing" if lost > MISSING * (end - begin) else None
+
+
+def _pressed(blocks: Blocks, part: Excursion, indent: MeasuredIndentation) -> str | None:
+    """Reason why an indentation cannot be used: the force rises with the plate already where it should be clear."""
+    end = int(np.searchsorted(blocks.time, indent.contact))
+    start = part.clear[0]
+    # Where the plate rests first, the force may change for other reasons, and contact is found against its level.
+    rests = np.ptp(blocks.position[slice(*part.clear)]) <= NEAR * indent.indentation
+    if rests or end - start < 4:
+        return None
+    base = baseline(blocks, start, end)
+    change = abs(base.slope[0]) * float(blocks.time[end - 1] - blocks.time[start])
+    noise = math.sqrt(12 * base.between[0] / (end - start))
+    if change <= max(_SURELY * noise, PRESSED * abs(indent.force)):
+        return None
+    return f"the force changes by {change:.2g} N before contact: the record begins with the sensor pressed"
 
 
 def _points(indentations: RunIndentations, kept: Sequence[int]) -> tuple[Array, Array, Array]:
@@ -297,13 +368,13 @@ def _relaxation(blocks: Blocks, indentations: RunIndentations, k: int) -> tuple[
 
 
 def _drift(blocks: Blocks, indentations: RunIndentations) -> tuple[float, float]:
-    """Slopes of pressure and force over the last third of the first stretch without contact.
+    """Slope of the pressure over the last third of the first stretch without contact, and its standard error.
 
     There a reset is over and nothing was pressed yet: after an indentation the wall still recovers.
     """
     start, end = indentations.parts[0].clear
-    slopes = baseline(blocks, end - max((end - start) // 3, 1), end).slope
-    return slopes[1], slopes[0]
+    base = baseline(blocks, end - max((end - start) // 3, 1), end)
+    return base.slope[1], math.sqrt(_slope_variance(blocks, base)) if base.end - base.start > 3 else math.inf
 
 
 def _noise(bases: Sequence[Baseline], channel: int) -> float:

@@ -4,7 +4,7 @@ A campaign in figures: runs of a resin, an age and a driving pressure made one, 
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -80,7 +80,24 @@ to travel than force is: the least that follow the solid's loops."""
 
 _LEAST_SAMPLES = 40
 
-_SATURATION = "saturation_force_N"
+_SATURATION, _DRIFT = "saturation_force_N", "drift_pressure_kPa_per_min"
+
+COVERED = 1.96
+"""Standard errors of a slope over some hundred blocks on either side of it in an interval of 95 %."""
+
+_OF_LINE = frozenset(
+    {
+        SENSITIVITY_KEY,
+        "sensitivity_through_origin_kPa_per_N",
+        "r_squared",
+        "nonlinearity_percent",
+        STIFFNESS_KEY,
+        "force_range_N",
+        _SATURATION,
+        "resolution_N",
+    }
+)
+"""Figures of a loading curve, and what is made of them."""
 
 _ENDS = 0.15
 """Decades at either end of a hold over which a line gives the value at the end: one block would give its noise."""
@@ -92,9 +109,9 @@ def run_figures(curve: MeasuredCurve) -> dict[str, float]:
     """The figures that one run gives, by key; those it does not determine are left out."""
     values: dict[str, float] = {}
     kind = curve.run.kind
-    if kind in ("steps", "saturation") and len(curve.force) > 2:
+    if len(curve.force) > 2:
         values |= _line(curve, saturating=kind == "saturation")
-    if kind == "loop" and curve.loop:
+    if kind in ("loop", "hand") and curve.loop:
         values |= _loop(curve)
     if kind == "relaxation" and curve.relaxation is not None:
         values |= _relaxation(*curve.relaxation)
@@ -187,10 +204,10 @@ def _binned(place: Array, values: Array, grid: Array) -> Array:
 
 def _still(curve: MeasuredCurve, sensitivity: float | None) -> dict[str, float]:
     """Scatter and drift of the channels without contact; the resolution too, if the run has a sensitivity."""
-    if curve.run.kind == "loop":
+    if curve.run.kind in ("loop", "hand"):
         # Its rests are too short for noise and drift: the wall still recovers.
         return {}
-    values = {"drift_pressure_kPa_per_min": 60 * curve.drift[0] / KPA}
+    values = {_DRIFT: 60 * curve.drift[0] / KPA}
     noise_force, noise_kPa = curve.noise[0], curve.noise[1] / KPA
     values |= {"noise_force_N": noise_force, "noise_pressure_kPa": noise_kPa}
     if sensitivity:
@@ -248,6 +265,11 @@ class RunGroup:
         """The curves of one kind of run."""
         return [curve for curve in self.curves if curve.run.kind == kind]
 
+    @property
+    def lined(self) -> list[MeasuredCurve]:
+        """The curves whose loading gives sensitivity and stiffness: steps where there are any, else what turns."""
+        return self.of_kind("steps") or [curve for curve in self.curves if curve.run.kind != "saturation"]
+
 
 def summarize(curves: Iterable[MeasuredCurve]) -> list[RunGroup]:
     """Groups in the order of resin, age and pressure."""
@@ -273,7 +295,8 @@ def _ages(days: set[float]) -> dict[float, float]:
 
 
 def _group(key: GroupKey, curves: list[MeasuredCurve]) -> RunGroup:
-    each = tuple(run_figures(curve) for curve in curves)
+    stepped = any(curve.run.kind == "steps" for curve in curves)
+    each = tuple(_without_line(curve, run_figures(curve)) if stepped else run_figures(curve) for curve in curves)
     pooled: dict[str, Estimate] = {}
     for figure in FIGURES:
         by_sensor: dict[str, list[float]] = {}
@@ -282,6 +305,37 @@ def _group(key: GroupKey, curves: list[MeasuredCurve]) -> RunGroup:
                 by_sensor.setdefault(curve.run.sensor, []).append(values[figure.of or figure.key])
         if by_sensor:
             estimate = _POOL[figure.pooled]([np.array(by_sensor[name]) for name in sorted(by_sensor)])
+            if estimate.low is None and figure.key in _ALONE:
+                estimate = _ALONE[figure.key](curves, estimate)
             if np.isfinite(estimate.value):
                 pooled[figure.key] = widened(estimate, figure.reading)
     return RunGroup(key, tuple(curves), pooled, each)
+
+
+def _without_line(curve: MeasuredCurve, values: dict[str, float]) -> dict[str, float]:
+    """Figures of a run beside steps runs, whose straight line is taken: that of a loading without stays is another."""
+    if curve.run.kind in ("steps", "saturation"):
+        return values
+    return {key: value for key, value in values.items() if key not in _OF_LINE}
+
+
+def _drift_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Estimate:
+    """The drift of the only run with the interval of its own slope; a slope without one is no drift."""
+    error = next(curve.drift[1] for curve in curves if curve.run.kind not in ("loop", "hand"))
+    half = COVERED * 60 * error / KPA
+    if not np.isfinite(half):
+        return replace(estimate, value=float("nan"))
+    return replace(estimate, low=estimate.value - half, high=estimate.value + half, over="samples")
+
+
+def _stiffness_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Estimate:
+    """The stiffness of the only run with the interval that its first contact leaves."""
+    curve = next((curve for curve in curves if len(curve.force) > 2), None)
+    if curve is None or not np.isfinite(curve.onset_error):
+        return estimate
+    half = COVERED * abs(estimate.value) * curve.onset_error / float(curve.indentation[-1])
+    return replace(estimate, low=estimate.value - half, high=estimate.value + half, over="samples")
+
+
+_ALONE = {_DRIFT: _drift_of_one, STIFFNESS_KEY: _stiffness_of_one}
+"""Figures of which a single run has an interval: that of its samples."""

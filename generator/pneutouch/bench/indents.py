@@ -8,17 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.first_contact import (
-    BEFORE,
-    Baseline,
-    ContactOnset,
-    Excursion,
-    baseline,
-    excursions,
-    first_baseline,
-    onsets,
-    threshold,
-)
+from pneutouch.bench.excursions import Excursion, excursions, kind_of
+from pneutouch.bench.first_contact import BEFORE, Baseline, ContactOnset, baseline, first_baseline, onsets, threshold
 from pneutouch.bench.record import GAP, Blocks, MeasuredIndentation
 from pneutouch.spec.campaign import RunKind
 
@@ -128,6 +119,10 @@ contacts come deeper, while the model counts from the dome as it was. Enough tha
 choice."""
 
 
+BIAS = 0.02
+"""Bias of a first contact, mm, that its interval counts as a standard error: half of the one tested for a dome."""
+
+
 @dataclass(frozen=True, slots=True)
 class RunIndentations:
     """The indentations of a run, with the stretches behind them, in order of time.
@@ -152,10 +147,22 @@ class RunIndentations:
     least: float
     onset: float
 
+    @property
+    def onset_error(self) -> float:
+        """Standard error of `onset`, infinite without one: that of one contact, as all share the fitted shape."""
+        errors = [one.error for one in self.contacts if one is not None and one.fitted][:EARLY]
+        return math.hypot(BIAS, float(np.median(errors))) if errors else math.inf
 
-def find_indents(blocks: Blocks) -> RunIndentations:
-    """Cut a run into its indentations and read them. Raises InputError if the plate does not move."""
-    parts, pressed = excursions(blocks)
+    def kind(self, blocks: Blocks) -> RunKind:
+        """The kind of run that the indentations make."""
+        touching = [one for one, contact in zip(self.parts, self.contacts, strict=True) if contact is not None]
+        return kind_of(blocks.position, touching)
+
+
+def find_indents(blocks: Blocks, *, steps: bool = True) -> RunIndentations:
+    """Cut a run into its indentations, one each of the ``steps`` of a loading, and read them. Raises InputError if the
+    plate does not move."""
+    parts, pressed = excursions(blocks, steps=steps)
     if not parts:
         return RunIndentations([], [], [], (), pressed, 1, 0.0, math.nan)
     bases = [first_baseline(blocks, one) for one in parts]

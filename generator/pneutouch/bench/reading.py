@@ -1,5 +1,6 @@
 """A measured file to blocks, in the program's units and signs, and the runs without a plate: air injected or left."""
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -14,9 +15,9 @@ from pneutouch.bench.source import MeasuredFile
 from pneutouch.bench.statistics import Mean
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap, Rig
-from pneutouch.tables.layout import UNITS
+from pneutouch.tables.layout import ABSOLUTE, UNITS
 from pneutouch.tables.read import chunks, whole
-from pneutouch.units import KPA
+from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 
 CLIPPED = 0.98
 """Share of an instrument's range at which it is taken for clipped: our choice, makers specify up to the range."""
@@ -38,26 +39,36 @@ coarse or noiseless channel repeats everywhere. Our choice."""
 _PRESSED = 30.0
 """Noise standard deviations by which the force must change as evidence of movement: our choice."""
 
-PLATE, LEAK = ("time", "position", "force", "pressure"), ("time", "pressure")
-"""Channels of a run with a plate, and of one without."""
+PLATE, HAND, LEAK = ("time", "position", "force", "pressure"), ("time", "force", "pressure"), ("time", "pressure")
+"""Channels of a run with a plate, of one pressed by hand, whose travel nobody knows, and of one without a contact."""
+
+_COPIED = 1e-6
+"""Share of its span by which a channel that is a copy of another may differ from it, by rounding: our choice. No two
+instruments agree so."""
 
 _EXACT = 1e-9
 """Relative difference at which two blocks hold one and the same number, summing aside."""
 
 
-def read_blocks(source: MeasuredFile, rig: Rig, progress: Callable[[float], None] = lambda share: None) -> Blocks:
+def read_blocks(
+    source: MeasuredFile,
+    rig: Rig,
+    progress: Callable[[float], None] = lambda share: None,
+    ambient: float = STANDARD_ATMOSPHERE,
+) -> Blocks:
     """Blocks of a measured file, in s, mm, N, MPa; ``progress`` is called with the share read, 0 to 1.
 
     About `record.BLOCK_RATE` blocks a second, or one sample each up to `record.SLOW` Hz. The file is read in one pass
     and never is in memory as a whole. Gaps, clipped parts and a last row that may be cut are among the warnings.
 
-    Of a run without a plate (the source has the channels of `LEAK`) position and force are zero.
+    Of a run without a plate (the source has the channels of `LEAK`) position and force are zero; of one pressed by hand
+    (`HAND`) the position is. Of absolute pressures ``ambient`` (MPa) is subtracted.
 
     Raises InputError, naming file, column and row, as `tables.read.chunks`, for time that does not increase, more than
     half of the samples missing, and a channel that is dead; a run in which nothing moves, as a leak run, has no dead
     channel."""
     path, columns, keys = source.path, source.columns, source.channels
-    plate = "force" in keys
+    pressed = "force" in keys
     names = {key: getattr(columns, key).name for key in keys}
     read = [PLATE.index(key) for key in keys]
     collector = BlockCollector(path, names=names)
@@ -65,23 +76,34 @@ def read_blocks(source: MeasuredFile, rig: Rig, progress: Callable[[float], None
     for chunk in chunks(path, [names[key] for key in keys], source.layout):
         collector.total = chunk.total
         samples = np.zeros((len(PLATE), chunk.rows.size))
-        samples[read] = scaled(path, columns, keys, chunk.rows, chunk.values)
+        samples[read] = scaled(path, columns, keys, chunk.rows, chunk.values, ambient)
         collector.take(chunk.rows, samples)
         cut = cut or chunk.last is not None
         progress(chunk.share)
     blocks = collector.blocks()
     end = float(blocks.time[-1])
     warnings = [SuspectInterval(end, end, "last row left out: no line end, so its last number may be cut", False)][:cut]
-    if plate:
-        _check_alive(blocks, names)
+    if pressed:
+        _check_apart(blocks, names)
+        if "position" in keys:
+            _check_alive(blocks, names)
         warnings += _clipped(blocks, "force", blocks.force, blocks.force_extreme, rig.force_range_N, 1.0, "N")
     top_kPa = rig.pressure_range_kPa
     warnings += _clipped(blocks, "pressure", blocks.pressure, blocks.pressure_extreme, top_kPa, KPA, "kPa")
     return replace(blocks, warnings=(*blocks.warnings, *warnings))
 
 
-def scaled(path: Path, columns: ColumnMap, keys: Sequence[str], rows: Array, values: Array) -> Array:
+def scaled(
+    path: Path,
+    columns: ColumnMap,
+    keys: Sequence[str],
+    rows: Array,
+    values: Array,
+    ambient: float = STANDARD_ATMOSPHERE,
+) -> Array:
     """Values (k, n) of the columns ``keys`` in internal units, with their signs; ``rows`` (n,) are row numbers.
+
+    Of absolute pressures ``ambient`` (MPa) is subtracted.
 
     Raises InputError, naming column and row, for a number beyond `GREATEST`.
     """
@@ -97,7 +119,27 @@ def scaled(path: Path, columns: ColumnMap, keys: Sequence[str], rows: Array, val
             file=path,
             remedy="must be a measured number",
         )
+    for place, key in enumerate(keys):
+        if getattr(columns, key).unit.endswith(ABSOLUTE):
+            converted[place] -= ambient
     return converted
+
+
+def _check_apart(blocks: Blocks, names: dict[str, str]) -> None:
+    """Refuse two channels of which one is the other times a number, as one column given twice or copied is."""
+    known = [(key, getattr(blocks, key)) for key in PLATE[1:] if key in names]
+    for (first, one), (second, other) in itertools.combinations(known, 2):
+        spans = float(np.ptp(one)), float(np.ptp(other))
+        if blocks.size < 1 or one.size < 3 or min(spans) <= 0:
+            continue
+        slope, level = np.polyfit(one, other, 1)
+        if np.abs(other - slope * one - level).max() <= _COPIED * spans[1]:
+            raise InputError(
+                f"columns {names[first]} and {names[second]} hold the same values"
+                + ("" if math.isclose(slope, 1.0, rel_tol=1e-3) else f", times {slope:.4g}"),
+                file=blocks.file,
+                remedy=f"{first} and {second} must be measured apart: was one column copied, or named twice?",
+            )
 
 
 def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Indices
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import CampaignRun
+from pneutouch.spec.campaign import CampaignRun, RunKind
 
 SuspectKind = Literal["gap", "clipped", "spike", "note", "other"]
 
@@ -86,7 +86,7 @@ class MeasuredCurve:
     """The curve of a run: points in order of their depth, from first contact, (n,) mm, N, MPa; the first is the origin.
 
     Attributes:
-        run: Its entry in the campaign.
+        run: Its entry in the campaign; of a run without a kind with the one that the record shows.
         indentation, force, rise: Loading points.
         driving: Pressure before contact as it was read, MPa, mean over the indentations.
         indents: The indentations behind the points.
@@ -94,7 +94,10 @@ class MeasuredCurve:
         relaxation: Of a relaxation run: seconds since the hold began, force, rise.
         noise: Standard deviations of a sample of force (N) and pressure (MPa) without contact, trend taken out; NaN
             if nothing was without contact.
-        drift: Slope of the pressure before the first contact, MPa/s, and of the force, N/s.
+        drift: Slope of the pressure before the first contact, MPa/s, and its standard error.
+        onset_error: Standard error of the place of first contact, mm; infinite if it is not known.
+        shows: Kind of run that the plate's travel shows, whatever the campaign states.
+        told: True if ``run`` has its kind from the record.
         warnings: Intervals that may be wrong.
     """
 
@@ -108,6 +111,9 @@ class MeasuredCurve:
     relaxation: tuple[Array, Array, Array] | None = None
     noise: tuple[float, float] = (float("nan"), float("nan"))
     drift: tuple[float, float] = (float("nan"), float("nan"))
+    onset_error: float = float("inf")
+    shows: RunKind = "steps"
+    told: bool = False
     warnings: tuple[SuspectInterval, ...] = field(default=())
 
 

@@ -16,6 +16,7 @@ from pneutouch.bench.record import Blocks, MeasuredCurve
 from pneutouch.errors import InputError
 from pneutouch.mechanics.response import figures
 from pneutouch.spec.campaign import CampaignRun, ColumnMap, Rig
+from pneutouch.tables.layout import ABSOLUTE as ABSOLUTE_UNIT
 from pneutouch.tables.layout import UNITS
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 
@@ -46,6 +47,13 @@ SWAP_MARGIN = math.log(2.0)
 
 _RESTS = 0.05
 """Share of the greatest force or rise by which points may be negative: noise about the origin."""
+
+LOADED = 0.1
+"""Share of the greatest force from which one before contact may be a preload, and of the greatest rise that goes on
+while the force stays: our choice."""
+
+_FLAT_POINTS, _NOISES, _LEVEL = 3, 6.0, 2e-3
+"""Points at the greatest force that may be a channel's end; noise, or share of the force, within which they count."""
 
 _MINUS = {
     1: " (in `columns` a minus before the name turns the sign)",
@@ -96,11 +104,73 @@ def check_plausible(
     and right in another unit of `spec.campaign.UNITS` (beyond `BEYOND`: near in another unit), a pressure before
     contact that is `DRIVING_FAR` times as far from the driving pressure as a reset leaves it."""
     _check_signs(curve, columns, file)
-    if expected is not None:
+    by_hand = curve.run.kind == "hand"
+    if expected is not None and not by_hand:
         _check_swap(curve, columns, expected, file)
-    time = _check_time(curve, columns, file)
-    magnitudes = [] if expected is None else _magnitudes(curve, columns, expected, file)
-    return tuple(text for text in (*magnitudes, time, _driving(curve, columns, file)) if text is not None)
+    time = None if by_hand else _check_time(curve, columns, file)
+    magnitudes: list[str | None] = []
+    if expected is not None:
+        magnitudes = [_rise(curve, columns, expected, file)] if by_hand else _magnitudes(curve, columns, expected, file)
+    asked = (
+        *magnitudes,
+        time,
+        _driving(curve, columns, file),
+        _kind(curve),
+        _loaded(curve, columns),
+        _flat(curve, columns),
+    )
+    return tuple(text for text in asked if text is not None)
+
+
+def _kind(curve: MeasuredCurve) -> str | None:
+    """Question about a stated kind of run whose record shows another."""
+    stated, shows = curve.run.kind, curve.shows
+    stays = {"steps": True, "saturation": True, "relaxation": True, "loop": False}
+    if stated not in stays or stays[stated] == stays.get(shows):
+        return None
+    does = "stays at its deep ends" if stays.get(shows) else "turns at its deep ends without a stay"
+    return f"stated as a run of kind {stated}, but the plate {does}, as in one of kind {shows}: state that kind?"
+
+
+def _loaded(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
+    """Question about a force before contact that may be a preload."""
+    zeros = [one.zero_force for one in curve.indents if not math.isnan(one.contact)]
+    top = float(np.abs(curve.force).max())
+    if not zeros or abs(zeros[0]) <= LOADED * top:
+        return None
+    return (
+        f"column {columns.force.name}: reads {_number(zeros[0])} N before contact, {abs(zeros[0]) / top:.2g} times "
+        "what the press adds; it is subtracted: a scale that was not zeroed, or was the sensor pressed already?"
+    )
+
+
+def _flat(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
+    """Question about a force that stays at its greatest value while the pressure goes on rising."""
+    force, rise = curve.force, curve.rise
+    if force.size < _FLAT_POINTS + 2 or not math.isfinite(curve.noise[0]):
+        return None
+    top = force >= force.max() - max(_NOISES * curve.noise[0], _LEVEL * float(force.max()))
+    first = int(top.argmax())
+    if force.size - first < _FLAT_POINTS or rise[-1] - rise[first] < LOADED * float(np.ptp(rise)):
+        return None
+    return (
+        f"column {columns.force.name}: stays at {_number(float(force.max()))} N over the last {force.size - first} "
+        f"points while the pressure rises by {_number(float(rise[-1] - rise[first]) / KPA)} kPa: is the force sensor "
+        "at its end?"
+    )
+
+
+def _rise(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> str | None:
+    """Question about the rise of a press by hand at its force, up to the prediction's."""
+    if expected.curve is None:
+        return None
+    _, force, rise = expected.curve
+    reach = min(float(curve.force[-1]), float(force[-1]))
+    measured, target = float(np.interp(reach, curve.force, curve.rise)), float(np.interp(reach, force, rise))
+    reads = f"rises by {_number(measured / KPA)} kPa at {_number(reach)} N"
+    return _magnitude(
+        file, columns, "pressure", measured / target, reads, f"the prediction has {_number(target / KPA)} kPa"
+    )
 
 
 def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
@@ -168,9 +238,10 @@ def _magnitude(file: Path, columns: ColumnMap, key: str, ratio: float, reads: st
     problem = f"column {column.name}: {reads} where {predicted}, {times}"
     declared = UNITS[key][column.unit]
     near = FAR if key in ("force", "pressure") and ratio > BEYOND else UNIT_NEAR
-    off = {unit: abs(math.log(max(ratio, 1e-12) * factor / declared)) for unit, factor in UNITS[key].items()}
+    gauges = {unit: factor for unit, factor in UNITS[key].items() if not unit.endswith(ABSOLUTE_UNIT)}
+    off = {unit: abs(math.log(max(ratio, 1e-12) * factor / declared)) for unit, factor in gauges.items()}
     nearest = min(off, key=lambda unit: off[unit])
-    if nearest != column.unit and off[nearest] < math.log(near):
+    if nearest != column.unit.removesuffix(ABSOLUTE_UNIT) and off[nearest] < math.log(near):
         same = " or ".join(unit for unit in off if math.isclose(UNITS[key][unit], UNITS[key][nearest]))
         is_exact = off[nearest] < math.log(UNIT_NEAR)
         then = "" if is_exact else f", {ratio * UNITS[key][nearest] / declared:.2g} times the prediction then"
@@ -257,12 +328,18 @@ def _driving(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None
     if abs(off_kPa) <= DRIVING_FAR * near_kPa or read_kPa < 0.0:
         return f"{problem}; another run's file, or a gauge not zeroed?"
     set_so = f"state driving_pressure_kPa = {read_kPa:.0f} below its [[runs]] entry"
-    if ABSOLUTE[0] < off_kPa * KPA / STANDARD_ATMOSPHERE < ABSOLUTE[1]:
+    if looks_absolute(off_kPa):
         problem += ", which looks like an absolute pressure"
-        remedy = f"subtract the ambient pressure in the file (pressures are gauge pressures), or {set_so}"
+        unit = f"{columns.pressure.unit}{ABSOLUTE_UNIT}"
+        remedy = f'set columns.pressure.unit = "{unit}", of which the ambient pressure is subtracted, or {set_so}'
     else:
         remedy = f"name the right file, set columns.pressure.unit, subtract the gauge's zero in the file, or {set_so}"
     raise InputError(problem, file=file, remedy=remedy)
+
+
+def looks_absolute(off_kPa: float) -> bool:
+    """True if a pressure before contact is above the driving pressure by about an atmosphere."""
+    return ABSOLUTE[0] < off_kPa * KPA / STANDARD_ATMOSPHERE < ABSOLUTE[1]
 
 
 APART = 0.15

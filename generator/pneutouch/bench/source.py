@@ -18,7 +18,7 @@ from pneutouch.tables.layout import BRACKETS, UNITS, TableFormat, TableLayout, u
 from pneutouch.tables.read import layout_of
 
 _WORDS = {
-    "time": "time t zeit temps tiempo tempo x_value elapsed seconds millis",
+    "time": "time t zeit temps tiempo tempo x_value elapsed seconds millis timestamp datetime",
     "position": "position pos displacement disp extension travel stroke depth crosshead indentation deflection "
     "deformation verformung weg z deplacement déplacement posizione",
     "force": "force f load kraft charge effort fuerza forza",
@@ -63,6 +63,12 @@ _LONGEST = 200
 """Letters of a name that may state its unit without brackets."""
 
 _LAST = re.compile(r"(.*?)(?:[\s_,:;/.-]+|\bin\s+)([^\s_,:;/]+)")
+
+
+class MissingChannelError(InputError):
+    """A file without a column for some of its channels, which ``channels`` names."""
+
+    channels: tuple[str, ...] = ()
 
 
 class HeaderMeaning(NamedTuple):
@@ -273,7 +279,11 @@ def _undecided(
         "state it in the campaign file (of this file alone: as [runs.columns] below its entry), or give `columns`:\n"
         f"{_lines(lines, remarks)}"
     )
-    return InputError(problem, file=path, key=key, remedy=remedy)
+    if any(open_.values()):
+        return InputError(problem, file=path, key=key, remedy=remedy)
+    error = MissingChannelError(problem, file=path, key=key, remedy=remedy)
+    error.channels = tuple(open_)
+    return error
 
 
 def _problem(key: str, names: Sequence[str]) -> str:

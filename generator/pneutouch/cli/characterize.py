@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, get_args
 
 import typer
 
@@ -16,8 +16,8 @@ from pneutouch.cli.commands import option
 from pneutouch.cli.complete import names
 from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, reading_of, reading_text, reading_words, with_fields
 from pneutouch.cli.terminal import echo, notify, report_next, set_words
-from pneutouch.spec.campaign import Campaign
-from pneutouch.wording import SIMULATED
+from pneutouch.spec.campaign import Campaign, RunKind
+from pneutouch.wording import SIMULATED, listed
 
 if TYPE_CHECKING:
     from pneutouch.results.measured import MeasuredCampaign, MeasuredGroup, MeasuredRun
@@ -53,6 +53,15 @@ def characterize(
         str, typer.Option("--evidence", help="Runs whose evidence is plotted: doubtful, all or none.")
     ] = "doubtful",
     columns: ColumnsOption = None,
+    kind: Annotated[
+        str | None,
+        typer.Option(
+            "--kind",
+            metavar="KIND",
+            help=f"Kind of a single run: {', '.join(get_args(RunKind))}.",
+            show_default="by its record",
+        ),
+    ] = None,
     set_: SetOption = None,
     calibration: CalibrationOption = None,
     out: OutOption = Path("outputs"),
@@ -71,9 +80,12 @@ def characterize(
 
         if evidence not in EVIDENCE:
             raise InputError(f"--evidence {evidence}: unknown.{nearest(evidence, EVIDENCE)}")
+        if kind is not None and kind not in get_args(RunKind):
+            raise InputError(f"unknown.{nearest(kind, get_args(RunKind))}", key="kind", value=kind)
         with bar("reading runs", unit="MB") as progress:
             given, reading = changes(set_, calibration), reading_of(columns, fields)
-            outcome = run(data, design, given, target=target, model=model or USUAL, progress=progress, reading=reading)
+            how: Any = {"target": target, "model": model or USUAL, "reading": reading, "kind": kind}
+            outcome = run(data, design, given, progress=progress, **how)
         folder = write(outcome, out, evidence)
         if json:
             print_json(plain(replace(outcome.figures, folder=str(folder))))
@@ -115,6 +127,13 @@ def _report_next(
         report_next("compare", outcome.design_given, folder, *set_words([*given, *(set_ or ())]))
 
 
+_NAMED = 12
+"""Runs whose kind is listed one by one."""
+
+_SHALLOWER = 0.01
+"""Share by which the measured depth may differ from that of `predict` before it is said: figures move less then."""
+
+
 def measured_text(measured: "MeasuredCampaign") -> str:
     """A table a group: measured with its interval, and the prediction; then the warnings."""
     head = f"{measured.title}: measured on {measured.design}, predicted by {measured.model}"
@@ -132,6 +151,9 @@ def measured_text(measured: "MeasuredCampaign") -> str:
     for figure in measured.injections:
         error = "" if figure.standard_error is None else f" ± {figure.standard_error:.2g}"
         lines.append(f"\n{figure.sensor}: {figure.figure} {figure.value:.4g}{error} {figure.unit}")
+    told = [f"{run.file} as {run.kind}" for run in measured.runs if run.kind_by_record]
+    if told:
+        lines.append(f"\nkind of run, by the record: {listed(told, _NAMED)}")
     lines += _warnings(measured.runs)
     lines += [f"\nquestion: {entry.file}: {entry.question} The run is used." for entry in measured.questions]
     return "\n".join(lines)
@@ -151,6 +173,9 @@ def _group(group: "MeasuredGroup") -> list[str]:
     from pneutouch.bench.figures import BY_KEY
 
     lines = [f"{group.resin}, {group.age}, {group.driving_pressure_kPa:g} kPa: {', '.join(group.sensors)}"]
+    depth, whole = group.depth_mm, group.predicted_range_mm
+    if depth and whole and abs(depth / whole - 1) > _SHALLOWER:
+        lines.append(f"  predicted at the depths measured, to {depth:.3g} mm; `predict` goes to {whole:.3g} mm")
     if group.why_not_predicted:
         lines.append(f"  not predicted: {group.why_not_predicted}")
     for key, entry in group.figures.items():

@@ -94,6 +94,10 @@ class MeasuredGroup:
     """Reason for which there is no predicted figure; null: there are."""
     figures: Mapping[str, CampaignFigure]
     """Figures by name."""
+    depth_mm: float | None = None
+    """Greatest measured depth, to which the predicted figures are read; null: not known."""
+    predicted_range_mm: float | None = None
+    """Depth to which `predict` gives its figures; null: not predicted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +152,8 @@ class MeasuredRun(RunOfSensor):
     """Figures by name."""
     warnings: tuple[RunWarning, ...]
     """Doubtful parts."""
+    kind_by_record: bool = False
+    """True if the kind was not stated, and told from the record."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import datetime
 import os
 from pathlib import Path, PurePosixPath
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import Field, ValidationError, model_validator
 
@@ -35,8 +35,11 @@ Encoding = Literal[
 ]
 """Encodings that can be stated; of these utf-8, the three of UTF-16 and cp1252 are found by themselves."""
 
-RunKind = Literal["steps", "saturation", "loop", "relaxation", "leak", "injection"]
-"""Kind of a run; see `bench.indents`. Leak and injection need no plate."""
+PlannedKind = Literal["steps", "saturation", "loop", "relaxation", "leak", "injection"]
+"""Kind of a run that a rig does; see `bench.indents`. Leak and injection need no plate."""
+
+RunKind = Literal[PlannedKind, "hand"]
+"""Kind of a run; a press by hand has no travel."""
 
 AS_DESIGNED = "as-designed"
 """Name in place of a resin's: the membrane as the design has it, which may be a mix that no file names."""
@@ -124,13 +127,16 @@ Volume = Annotated[float, Field(ge=0, le=1e4)]
 """A volume of room air, mL."""
 
 
+_KIND = f"Kind of run: {', '.join(get_args(RunKind))}; left out: told from the record, but for an injection."
+
+
 class CampaignRun(Table):
     """One [[runs]] entry: a file and its measurement."""
 
     file: Printable = Field(min_length=1, max_length=1000, description="Path of the file, from the campaign's folder.")
-    kind: RunKind = Field(default="steps", description="Kind of run: " + ", ".join(RunKind.__args__) + ".")  # type: ignore[attr-defined]
+    kind: RunKind = Field(default="steps", description=_KIND)
     sensor: Printable = Field(min_length=1, max_length=60, description="Name of the specimen.")
-    resin: str = Field(min_length=1, description=f"Name of its material, or {shown(AS_DESIGNED)}.")
+    resin: str = Field(default=AS_DESIGNED, min_length=1, description=f"Name of its material, or {shown(AS_DESIGNED)}.")
     driving_pressure_kPa: float = number(0.0, unit="kPa", low=0, high=1000, help="Gauge pressure before contact.")
     run: int = Field(default=1, ge=1, le=10_000, description="Number of the repetition.")
     date: datetime.date | None = Field(default=None, description="Day of the run.")

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal, Self, TypeVar, get_args
 from pydantic import AfterValidator, BeforeValidator, Field, JsonValue, model_validator
 from pydantic_core import PydanticUndefined
 
-from pneutouch.spec.campaign import RunKind
+from pneutouch.spec.campaign import PlannedKind
 from pneutouch.spec.fields import EntryError, FieldsError, Table, extra_of
 from pneutouch.spec.read import validate
 
@@ -151,8 +151,8 @@ class SimulationOptions(PlanOptions):
         None, "Driving pressures, kPa; left out: the design's.", unit="kPa", flag="pressures", metavar="KPA,KPA"
     )
     runs: int = option(3, "Runs of each steps and saturation test; other kinds have one.", low=1, high=1000)
-    kinds: Annotated[list[RunKind], _ONCE, _AT_LEAST_ONE] = option(
-        ["steps", "loop", "relaxation"], f"Of {', '.join(get_args(RunKind))}.", metavar="KIND,KIND"
+    kinds: Annotated[list[PlannedKind], _ONCE, _AT_LEAST_ONE] = option(
+        ["steps", "loop", "relaxation"], f"Of {', '.join(get_args(PlannedKind))}.", metavar="KIND,KIND"
     )
     rate_Hz: float = option(100.0, "Samples a second, Hz.", unit="Hz", low=10, high=1e5)
     rest_s: float | None = option(

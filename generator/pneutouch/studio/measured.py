@@ -195,7 +195,7 @@ def _figures(comparison: GroupComparison) -> tuple[PageFigure, ...]:
 def _curves(comparison: GroupComparison) -> GroupCurves:
     runs = tuple(
         RunCurve(curve.run.sensor, curve.run.run, *map(_drawn, (curve.indentation, curve.force, curve.rise / KPA)))
-        for curve in some(comparison.group.of_kind("steps"))
+        for curve in some([curve for curve in comparison.group.lined if curve.run.kind != "hand"])
     )
     return GroupCurves(runs, _predicted(comparison) if runs else None)
 

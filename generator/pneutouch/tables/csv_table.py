@@ -13,15 +13,21 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
-from pneutouch.tables.layout import NUMBER, RowChunk, TableLayout, blank, cells, places
+from pneutouch.tables.layout import NUMBER, STAMP, RowChunk, TableLayout, blank, cells, places
+from pneutouch.tables.locate import COMMENT, comment
 from pneutouch.tables.text import LONGEST_LINE, TOO_LONG, TextBytes
+
+_MARKS = tuple(mark.encode() for mark in COMMENT)
 
 CHUNK = 4 * 2**20
 """Bytes parsed at once: about 100 000 rows; larger ones are not faster and take more memory."""
 
 
 class _Reader(NamedTuple):
-    """A text table with its columns located; ``least`` and ``most`` are the cells of a row."""
+    """A text table with its columns located; ``least`` and ``most`` are the cells of a row.
+
+    ``stamps`` are the places of columns with dates and times; ``begin`` holds the first of each, s, once it was read.
+    """
 
     path: Path
     delimiter: str
@@ -30,6 +36,8 @@ class _Reader(NamedTuple):
     most: int
     names: Sequence[str]
     places: list[int]
+    stamps: tuple[int, ...]
+    begin: dict[int, float]
 
     def fault(self, row: int, problem: str, remedy: str | None = None) -> InputError:
         return InputError(problem, file=self.path, key=f"row {row}", remedy=remedy)
@@ -39,11 +47,28 @@ class _Reader(NamedTuple):
             return None
         return float(text.replace(",", "."))
 
+    def value(self, text: str, place: int) -> float | None:
+        """The number of a cell, of a date and time the seconds since the column's first; None if it is neither."""
+        if place not in self.stamps:
+            return self.number(text)
+        if not STAMP.fullmatch(text):
+            return None
+        return float(self.seconds([text], place)[0])
+
+    def seconds(self, texts: Sequence[str], place: int) -> Array:
+        """Seconds since the first cell of a column of dates and times. Raises ValueError for other texts."""
+        import pandas as pd
+
+        stamps = pd.to_datetime(pd.Series(texts).str.replace(",", "."), format="ISO8601", utc=True)
+        passed = stamps.astype("datetime64[ns, UTC]").astype("int64").to_numpy() * 1e-9
+        first = self.begin.setdefault(place, float(passed[0]))
+        return np.asarray(passed - first)
+
 
 def csv_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[RowChunk]:
     """Chunks of a text file; see `read.chunks`.
 
-    Empty lines are skipped but counted. A complete last row without a line end is returned as `RowChunk.last`, because
+    Empty lines and comments are skipped but counted. A complete last row without a line end is returned as `RowChunk.last`, because
     its last number may be cut."""
     how = layout.format
     reader = _Reader(
@@ -54,6 +79,8 @@ def csv_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterato
         len(layout.names),
         names,
         places(path, layout, names),
+        layout.stamps,
+        {},
     )
     size = path.stat().st_size
     with path.open("rb") as file:
@@ -74,7 +101,7 @@ def csv_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterato
             if not more:
                 break
             data = rest + more
-        if data and rest.strip():
+        if data and rest.strip() and not comment(rest.decode("utf-8", "replace")):
             last, total = _last(rest, row, reader), row - layout.first_row + 1
             yield RowChunk(np.empty(0), np.empty((len(names), 0)), 1.0, total, last, row)
 
@@ -118,16 +145,20 @@ def _parse(data: bytes, row: int, reader: _Reader) -> tuple[Array, Array, int]:
     if not data.isascii() or b"\0" in data:
         _check_text(data, row, reader)
     lines, spaces = data.count(b"\n"), reader.delimiter == " "
-    # The parser ignores superfluous fields without an error, so they are counted here.
+    # The parser ignores superfluous fields without an error, so they are counted here; a comment has other ones.
     count = data.count(reader.delimiter.encode())
-    uneven = spaces or count not in (lines * (reader.most - 1), lines * (reader.least - 1))
+    uneven = spaces or any(mark in data for mark in _MARKS) or count not in (lines * (reader.most - 1), lines * (reader.least - 1))
     kept = _check_widths(data, row, reader) if uneven or b'"' in data or reader.most == 1 else None
     rows = row + (np.arange(lines, dtype=float) if kept is None else kept)
+    table = data
+    if kept is not None and kept.size < lines:
+        each = data.split(b"\n")
+        table = b"".join(each[int(k)] + b"\n" for k in kept)
     if not rows.size:
         return rows, np.empty((len(reader.places), 0)), lines
     try:
         frame = pd.read_csv(
-            io.BytesIO(data),
+            io.BytesIO(table),
             sep=r"\s+" if spaces else reader.delimiter,
             decimal=reader.decimal,
             header=None,
@@ -135,10 +166,15 @@ def _parse(data: bytes, row: int, reader: _Reader) -> tuple[Array, Array, int]:
             names=list(range(max(reader.least, max(reader.places) + 1))),
             index_col=False,
             usecols=reader.places,
-            dtype="float64",
+            dtype={place: "str" if place in reader.stamps else "float64" for place in reader.places},
             engine="c",
         )
-        values = np.stack([frame[place].to_numpy() for place in reader.places])
+        values = np.stack(
+            [
+                reader.seconds(frame[place].tolist(), place) if place in reader.stamps else frame[place].to_numpy()
+                for place in reader.places
+            ]
+        )
     except (ValueError, pd.errors.ParserError):
         values = np.full((len(reader.places), rows.size), np.nan)
     if values.shape[1] != rows.size or not np.isfinite(values).all():
@@ -147,11 +183,12 @@ def _parse(data: bytes, row: int, reader: _Reader) -> tuple[Array, Array, int]:
 
 
 def _check_widths(data: bytes, row: int, reader: _Reader) -> Array:
-    """Indices of the lines that are not empty. Raises InputError for one with too few or too many fields."""
+    """Indices of the lines that are neither empty nor comments. Raises InputError for one with too few or too many
+    fields."""
     kept = []
     # Line feeds end rows: the other line ends of Unicode belong to the cell.
     for k, line in enumerate(data.decode("utf-8").split("\n")[:-1]):
-        if blank(line, reader.delimiter):
+        if blank(line, reader.delimiter) or comment(line):
             continue
         if "\r" in line.rstrip("\r"):
             raise reader.fault(row + k, "a carriage return within it", "rows must end in line feeds")
@@ -185,7 +222,7 @@ def _raise_fault(data: bytes, row: int, reader: _Reader) -> None:
         in_row = cells(line, reader.delimiter)
         for name, place in zip(reader.names, reader.places, strict=True):
             text = in_row[place] if place < len(in_row) else ""
-            number = reader.number(text)
+            number = reader.value(text, place)
             if number is None or not np.isfinite(number):
                 problem = f"column {name}: '{text[:40]}' is no finite number" if text else f"column {name}: empty"
                 raise reader.fault(row + k, problem, f"must be a number with a {mark}, without marks of thousands")
@@ -197,7 +234,7 @@ def _last(rest: bytes, row: int, reader: _Reader) -> Array:
     _check_text(rest, row, reader)
     text = rest.decode("utf-8")
     in_row = cells(text, reader.delimiter)
-    numbers = [reader.number(in_row[place]) if place < len(in_row) else None for place in reader.places]
+    numbers = [reader.value(in_row[place], place) if place < len(in_row) else None for place in reader.places]
     if len(in_row) < reader.least or None in numbers:
         problem = f"the file ends within this row, '{text.strip()[:60]}'; it is cut off"
         raise reader.fault(row, f"{problem}: copy it again, or delete its last row")

@@ -24,10 +24,19 @@ UNITS: dict[str, dict[str, float]] = {
         "bar": 0.1,
         "psi": 6.894757293168e-3,
         "mmHg": 1.33322387415e-4,
+        "kPa_abs": 1e-3,
+        "Pa_abs": 1e-6,
+        "hPa_abs": 1e-4,
+        "mbar_abs": 1e-4,
+        "bar_abs": 0.1,
+        "psi_abs": 6.894757293168e-3,
     },
     "volume": {"mL": 1e3, "uL": 1.0, "mm3": 1.0, "L": 1e6},
 }
 """Units a column may have, with their factor to the inner units: s, mm, N, MPa, mm3."""
+
+ABSOLUTE = "_abs"
+"""Ending of the units of absolute pressures, of which the ambient pressure is subtracted."""
 
 _WORDS: dict[str, dict[str, str]] = {
     "time": {
@@ -60,6 +69,11 @@ _WORDS: dict[str, dict[str, str]] = {
         "bar": "barg bar(g)",
         "psi": "psig psi(g) lbf/in2 lbf/in²",
         "mmHg": "mmhg torr",
+        "kPa_abs": "kpaa kPaa kPa(a) kPa(abs)",
+        "hPa_abs": "hPa(a) hPaa",
+        "mbar_abs": "mbara mbar(a) mbar(abs)",
+        "bar_abs": "bara bar(a) bar(abs)",
+        "psi_abs": "psia psi(a)",
     },
     "volume": {
         "mL": "ml cc ccm cm3 cm³ cm^3 milliliter milliliters",
@@ -68,7 +82,7 @@ _WORDS: dict[str, dict[str, str]] = {
         "L": "l",
     },
 }
-"""Other spellings of the units. A mass stands for its weight. Absolute pressures (psia, bara) are not among them."""
+"""Other spellings of the units. A mass stands for its weight."""
 
 _SMALL = frozenset({"psi", "bar", "lbf", "sec", "mm"})
 
@@ -85,7 +99,7 @@ _TABLE = _table()
 _LONG = 4
 """Letters from which a word may be in any case, as may `_SMALL`: of others the case distinguishes milli from mega."""
 
-BRACKETS = re.compile(r"[(\[{<]\s*([^(\[{<]*?(?:\(g\))?)\s*[)\]}>]")
+BRACKETS = re.compile(r"[(\[{<]\s*([^(\[{<]*?(?:\((?:g|a|abs)\))?)\s*[)\]}>]")
 
 
 def unit_of(word: str) -> tuple[str, str] | None:
@@ -143,6 +157,7 @@ class TableLayout:
         first_row: Row of the first numbers.
         least: Fewest cells of a row; the most are those of ``names``.
         clock: First time and step of a file without a column of times, in the unit of `CLOCK`.
+        stamps: Indices of the columns that hold dates with times of day; they are read as seconds from the first.
     """
 
     names: tuple[str, ...]
@@ -153,6 +168,7 @@ class TableLayout:
     first_row: int = 2
     least: int = 0
     clock: tuple[float, float] | None = None
+    stamps: tuple[int, ...] = ()
 
     @property
     def all_names(self) -> tuple[str, ...]:
@@ -173,6 +189,9 @@ class TableLayout:
         """Units of `all_names`."""
         return self.units if self.clock is None else ("s", *self.units)
 
+
+STAMP = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d:\d\d([.,]\d+)?(Z|[+-]\d\d:?\d\d)?")
+"""A date with a time of day, as ISO 8601 writes it."""
 
 NUMBER = {
     ".": re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?"),

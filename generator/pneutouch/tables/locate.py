@@ -14,7 +14,8 @@ from typing import NamedTuple
 from pneutouch.errors import InputError
 from pneutouch.tables.layout import DECIMALS, NAMES, TableFormat, TableLayout, blank, cells, score, unit_of
 
-_COMMENT = ("#", "%", "!")
+COMMENT = ("#", "%", "!")
+"""Marks that begin a comment."""
 _NO_UNIT = frozenset({"", "-", "%", "°C", "°F", "°", "V", "mV", "V/V", "1", "1/min", "Hz", "mm/min", "mm/s", "MPa/s"})
 _SHORT = 8
 """Characters of the longest unit."""
@@ -85,8 +86,8 @@ def fewest(names: Sequence[str], rows: Sequence[Sequence[str]], decimal: str) ->
 
 
 def comment(line: str) -> bool:
-    """True if a line before the header is a comment."""
-    return line.lstrip().startswith(_COMMENT)
+    """True if a line is a comment."""
+    return line.lstrip().startswith(COMMENT)
 
 
 def _first(rows: Sequence[Sequence[str]], decimal: str, width: int) -> int | None:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from pneutouch.errors import InputError
-from pneutouch.tables.layout import DECIMALS, NAMES, TableFormat, TableLayout, blank, cells, undecided_comma
+from pneutouch.tables.layout import DECIMALS, NAMES, STAMP, TableFormat, TableLayout, blank, cells, undecided_comma
 from pneutouch.tables.locate import (
     Located,
     comment,
@@ -183,13 +183,17 @@ def _of_rows(path: Path, lines: Sequence[str], given: TableFormat, known: Sequen
         remedy = f'{_STATE} (without marks of thousands):\n[format]\ndecimal = ","'
         raise InputError(problem, file=path, key=f"row {begin + located.first + 1}", remedy=remedy)
     names, least = fewest(located.names, data, decimal)
-    units = [*located.units, ""][: len(names)]
+    units = [*located.units, *[""] * len(names)][: len(names)]
+    stamps = tuple(k for k, cell in enumerate(data[0][: len(names)] if data else []) if STAMP.fullmatch(cell))
+    for k in stamps:
+        units[k] = units[k] or "s"
     at = None if located.header is None else begin + located.header + 1
     before = begin + (located.first if located.header is None else located.header)
     if skip is None and all(comment(line) or not line.strip() for line in rows[:before]):
         before = 0
     written = replace(given, delimiter=delimiter, decimal=decimal, skip_rows=before if skip is None else skip)
-    return TableLayout(tuple(names), tuple(units), written, (), at, begin + located.first + 1, least)
+    first = begin + located.first + 1
+    return TableLayout(tuple(names), tuple(units), written, (), at, first, least, stamps=stamps)
 
 
 def _cells(line: str, delimiter: str) -> list[str]:

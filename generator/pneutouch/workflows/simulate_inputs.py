@@ -17,13 +17,13 @@ from pneutouch.catalogue.scene import split_calibration
 from pneutouch.errors import InputError
 from pneutouch.evaluation.resins import SimulatedResin
 from pneutouch.mechanics.models.choice import USUAL
-from pneutouch.spec.campaign import CAMPAIGN, CampaignRun, RunKind, campaign_of
+from pneutouch.spec.campaign import CAMPAIGN, CampaignRun, PlannedKind, campaign_of
 from pneutouch.spec.files import exists, read_bytes
 from pneutouch.spec.options import SimulationOptions
 from pneutouch.spec.read import Changes, parse_changes
 from pneutouch.spec.values import file_name
 
-KINDS: tuple[RunKind, ...] = get_args(RunKind)
+KINDS: tuple[PlannedKind, ...] = get_args(PlannedKind)
 PRESSED = ("steps", "saturation", "loop", "relaxation")
 """Kinds of run with a plate."""
 

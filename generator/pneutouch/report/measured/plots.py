@@ -194,8 +194,8 @@ def indentations(groups: Groups) -> Plot | None:
 def _curves(
     groups: Groups, title: str, words: str, draw: Callable[[Sequence[curves.Press]], Panel], figure: str
 ) -> Plot | None:
-    groups = [g for g in groups if any(b.group.of_kind("steps") for b in g.comparisons)]
-    drawn = [b for g in groups for b in g.comparisons if b.group.of_kind("steps")]
+    groups = [g for g in groups if any(b.group.lined for b in g.comparisons)]
+    drawn = [b for g in groups for b in g.comparisons if b.group.lined]
     legend = _key(groups)
     for pressure_kPa in sorted({b.group.key.driving_pressure_kPa for b in drawn}):
         legend.append(replace(_tone(groups[0], pressure_kPa), label=f"{pressure_kPa:g} kPa"))
@@ -217,7 +217,7 @@ def _presses(groups: ResinGroups) -> list[curves.Press]:
     presses: list[curves.Press] = []
     done: set[float] = set()
     for comparison in groups.comparisons:
-        runs, pressure_kPa = some(comparison.group.of_kind("steps")), comparison.group.key.driving_pressure_kPa
+        runs, pressure_kPa = some(comparison.group.lined), comparison.group.key.driving_pressure_kPa
         tone = _tone(groups, pressure_kPa)
         for run in runs:
             look = _spots(groups, comparison, run)

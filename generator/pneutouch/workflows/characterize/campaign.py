@@ -3,6 +3,7 @@
 The small tables of a characterization: points, segments, and the results of leak and injection runs.
 """
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -36,14 +37,22 @@ from pneutouch.parts import assemble
 from pneutouch.report.measured import CampaignReport
 from pneutouch.results.measured import InjectionFigure, MeasuredCampaign, ReadFiles
 from pneutouch.results.record import plain
-from pneutouch.spec.campaign import AS_DESIGNED, CAMPAIGN, CampaignRun, campaign_of
+from pneutouch.spec.campaign import AS_DESIGNED, CAMPAIGN, CampaignRun, RunKind, campaign_of
 from pneutouch.spec.read import Changes, parse_changes, read_toml, validate
 from pneutouch.spec.target import Target
 from pneutouch.spec.values import file_name
 from pneutouch.tables.csv_table import csv_bytes
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.characterize.load import CampaignData, Progress, Reading, load_curves, read_as, undisputed
-from pneutouch.workflows.characterize.predicted import StatePrediction, ageing, answers, compared, figures_of, verdicts
+from pneutouch.workflows.characterize.predicted import (
+    StatePrediction,
+    ageing,
+    answers,
+    compared,
+    figures_of,
+    unexpected,
+    verdicts,
+)
 
 _RUN = ("file", "sensor", "resin", "driving_pressure_kPa", "run", "age_days")
 
@@ -51,11 +60,16 @@ _RUN = ("file", "sensor", "resin", "driving_pressure_kPa", "run", "age_days")
 def points_csv(curves: Iterable[MeasuredCurve]) -> bytes:
     """Every loading point of every run: indentation, force, pressure rise."""
     rows = [
-        [*_of(curve), f"{d:.6g}", f"{f:.6g}", f"{p / KPA:.6g}"]
+        [*_of(curve), _cell(d), f"{f:.6g}", f"{p / KPA:.6g}"]
         for curve in curves
         for d, f, p in zip(curve.indentation, curve.force, curve.rise, strict=True)
     ]
     return csv_bytes((*_RUN, "indentation_mm", "contact_force_N", "pressure_rise_kPa"), rows)
+
+
+def _cell(value: float, digits: int = 6) -> str:
+    """A number, or nothing of what is not known, such as the travel of a press by hand."""
+    return f"{value:.{digits}g}" if math.isfinite(value) else ""
 
 
 def segments_csv(curves: Iterable[MeasuredCurve]) -> bytes:
@@ -69,7 +83,7 @@ def segments_csv(curves: Iterable[MeasuredCurve]) -> bytes:
                     *_of(curve),
                     "indentation",
                     *(f"{t:.4f}" for t in times),
-                    f"{i.onset:.5g}",
+                    _cell(i.onset, 5),
                     f"{i.driving / KPA:.5g}",
                     "",
                     "",
@@ -180,18 +194,20 @@ def characterize(
     library: Library | None = None,
     progress: Progress = lambda done, total: None,
     reading: Reading | None = None,
+    kind: RunKind | None = None,
 ) -> CharacterizationResult:
     """Read a campaign's folder or one file, and compare its figures with the prediction of its design.
 
     ``design`` comes before the one that the campaign names; ``changes`` are laid over either, and ``reading`` (tables
-    ``columns`` and ``format``) over what the campaign gives of its files. ``model`` USUAL is the solid, or harmonic
+    ``columns`` and ``format``) over what the campaign gives of its files. A single file is of the ``kind`` given, else
+    of that which its record shows. ``model`` USUAL is the solid, or harmonic
     off the axis. Raises InputError if nothing can be read; files that fail are listed in the outcome.
     """
     library = library or Library.default()
     name, named = (design, {}) if design is not None else _design_of(data, library)
     request = None if target is None else validate(Target, read_toml(target), str(target))
     given = {**named, **(changes or {})}
-    loaded = load_curves(data, load_scene(name, given, library), progress, reading)
+    loaded = load_curves(data, load_scene(name, given, library), progress, reading, kind)
     if loaded.campaign.ambient_pressure_kPa is not None:
         given.setdefault("pneumatics.ambient_pressure_kPa", loaded.campaign.ambient_pressure_kPa)
     _check_resins(data, loaded, library)
@@ -203,16 +219,17 @@ def characterize(
     curves, failures, questions = sound(loaded, answer_of)
     groups = summarize(curves)
     pushed, unread = injections(loaded, scene)
+    comparisons = tuple(
+        compared(group, _answer(answer_of, group.key.resin, group.key.driving_pressure_kPa)) for group in groups
+    )
     measured = CampaignReport(
         campaign=loaded.campaign,
         scene=scene,
         folder=loaded.folder,
-        comparisons=tuple(
-            compared(group, _answer(answer_of, group.key.resin, group.key.driving_pressure_kPa)) for group in groups
-        ),
+        comparisons=comparisons,
         curves=tuple(curves),
         failures=(*loaded.failures, *failures, *unread),
-        questions=questions,
+        questions=(*questions, *unexpected(comparisons)),
         verdicts=() if request is None else verdicts(request, groups),
         injections=pushed,
         ageing=ageing(groups, library),

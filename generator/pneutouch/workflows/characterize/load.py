@@ -11,21 +11,22 @@ from typing import Any
 
 from pneutouch.arrays import Array
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.reading import INJECTION, LEAK, PLATE, leak_rate, read_blocks, read_injection
+from pneutouch.bench.reading import HAND, INJECTION, LEAK, PLATE, leak_rate, read_blocks, read_injection
 from pneutouch.bench.record import MeasuredCurve, Trace, trace
-from pneutouch.bench.run_checks import check_leak
-from pneutouch.bench.source import MeasuredFile, campaign_lines, identify
+from pneutouch.bench.run_checks import check_leak, looks_absolute
+from pneutouch.bench.source import MeasuredFile, MissingChannelError, campaign_lines, identify
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.catalogue.library import example_remedy
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.evaluation.resins import resin_of
+from pneutouch.output.files import file_digest
 from pneutouch.results.measured import ReadFiles
-from pneutouch.spec.campaign import Campaign, CampaignRun, ColumnMap, FileFormat, campaign_of
+from pneutouch.spec.campaign import Campaign, CampaignRun, ColumnMap, FileFormat, RunKind, campaign_of
 from pneutouch.spec.files import exists, is_file
 from pneutouch.spec.read import validate
 from pneutouch.spec.values import file_name
-from pneutouch.tables.layout import UNITS, unit_of
-from pneutouch.units import KPA
+from pneutouch.tables.layout import ABSOLUTE, UNITS, unit_of
+from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 from pneutouch.wording import listed
 
 Reading = Mapping[str, Mapping[str, Any]]
@@ -174,6 +175,13 @@ class _Gathered:
     failures: list[tuple[str, str]] = field(default_factory=list)
     questions: list[tuple[str, str]] = field(default_factory=list)
     sources: dict[str, MeasuredFile] = field(default_factory=dict)
+    digests: dict[str, str] = field(default_factory=dict)
+
+    def first_of(self, path: Path, file: str) -> str | None:
+        """The file before this one that has the same bytes; None if there is none."""
+        digest = file_digest(path)
+        first = file if digest is None else self.digests.setdefault(digest, file)
+        return None if first == file else first
 
 
 def load_curves(
@@ -181,23 +189,30 @@ def load_curves(
     scene: ResolvedDesign | None = None,
     progress: Progress = lambda done, total: None,
     reading: Reading | None = None,
+    kind: RunKind | None = None,
 ) -> CampaignData:
-    """Read a campaign's folder, its campaign file, or one file of a steps run; ``reading`` is laid over the campaign.
+    """Read a campaign's folder, its campaign file, or one file of a run; ``reading`` is laid over the campaign.
 
-    A single file is of the design's resin and of that of its driving pressures that was read before contact; ``scene``
-    is the design then. Raises InputError if the campaign itself is wrong, or none of its files can be read.
+    A single file is of the ``kind`` given, else of that which it shows; of the design's resin, and of that of its
+    driving pressures that was read before contact; ``scene`` is the design then. Raises InputError if the
+    campaign itself is wrong, or none of its files can be read.
     """
     if data.is_dir() or data.suffix == ".toml":
         campaign, folder = campaign_of(data)
+        if kind is not None:
+            raise InputError("given for a campaign", key="kind", value=kind, remedy="state it in its [[runs]] entries")
     else:
-        campaign, folder = _single(data, scene), data.parent
+        campaign, folder = _single(data, scene, kind), data.parent
     campaign = with_reading(campaign, reading)
     gathered = _Gathered()
+    ambient_kPa = campaign.ambient_pressure_kPa
+    if ambient_kPa is None:
+        ambient_kPa = STANDARD_ATMOSPHERE / KPA if scene is None else scene.design.pneumatics.ambient_pressure_kPa
     meter = _Meter(progress, sum(_size(folder / run.file) for run in campaign.runs))
     for run in campaign.runs:
         size = _size(folder / run.file)
         try:
-            _read(run, campaign, folder, gathered, meter.within(size))
+            _read(run, campaign, folder, gathered, meter.within(size), ambient_kPa * KPA)
         except PneutouchError as error:
             gathered.failures.append((run.file, str(error)))
         meter.past(size)
@@ -207,8 +222,10 @@ def load_curves(
         raise InputError("\n".join([f"{data}: none of its files can be read", *lines]))
     if not (data.is_dir() or data.suffix == ".toml"):
         assert scene is not None
-        gathered.curves = [_at_its_pressure(curve, scene) for curve in gathered.curves]
-        campaign = campaign.model_copy(update={"runs": [curve.run for curve in gathered.curves]})
+        gathered.curves = [_at_its_pressure(curve, scene, gathered.sources) for curve in gathered.curves]
+    as_read = {curve.run.file: curve.run for curve in gathered.curves}
+    as_read |= {run.file: run for run, *_ in (*gathered.injections, *gathered.leaks)}
+    campaign = campaign.model_copy(update={"runs": [as_read.get(run.file, run) for run in campaign.runs]})
     return CampaignData(
         campaign,
         folder,
@@ -247,13 +264,23 @@ def _size(path: Path) -> int:
 
 
 def _read(
-    run: CampaignRun, campaign: Campaign, folder: Path, gathered: _Gathered, progress: Callable[[float], None]
+    run: CampaignRun,
+    campaign: Campaign,
+    folder: Path,
+    gathered: _Gathered,
+    progress: Callable[[float], None],
+    ambient: float,
 ) -> None:
     source = gathered.sources[run.file] = recognise(run, campaign, folder)
+    if (first := gathered.first_of(folder / run.file, run.file)) is not None:
+        raise InputError(
+            f"the same bytes as {first}: one recording is no two runs", file=folder / run.file, remedy="leave one out"
+        )
+    run = _of_its_channels(run, source)
     if run.kind == "injection":
         gathered.injections.append((run, *read_injection(source)))
         return
-    blocks = read_blocks(source, campaign.rig, progress)
+    blocks = read_blocks(source, campaign.rig, progress, ambient)
     gathered.traces[run.file] = trace(blocks)
     if run.kind == "leak":
         gathered.questions += [(run.file, text) for text in check_leak(blocks, run, campaign.rig)]
@@ -262,29 +289,68 @@ def _read(
         gathered.curves.append(curve_of(run, blocks, campaign.rig))
 
 
+_WITHOUT: dict[tuple[str, ...], tuple[RunKind, tuple[str, ...]]] = {
+    ("position",): ("hand", HAND),
+    ("position", "force"): ("leak", LEAK),
+}
+"""Kind and channels of a file that lacks some channels of a run with a plate."""
+
+
 def recognise(run: CampaignRun, campaign: Campaign, folder: Path) -> MeasuredFile:
-    """The file of a run with its columns; no sample is read. Raises InputError if one is not found."""
+    """The file of a run with its columns; no sample is read. Of a run without a kind the channels are those that the
+    file has. Raises InputError if a column is not found."""
     path = folder / run.file
     if not exists(path):
         raise InputError("no such file", file=path, remedy=f"the campaign names it as {run.label}")
-    channels = {"injection": INJECTION, "leak": LEAK}.get(run.kind, PLATE)
+    channels = {"injection": INJECTION, "leak": LEAK, "hand": HAND}.get(run.kind, PLATE)
     columns, written = campaign.reading(run)
-    return identify(path, columns, channels, written)
+    try:
+        return identify(path, columns, channels, written)
+    except MissingChannelError as error:
+        if "kind" in run.model_fields_set or error.channels not in _WITHOUT:
+            raise
+        return identify(path, columns, _WITHOUT[error.channels][1], written)
 
 
-def _single(data: Path, scene: ResolvedDesign | None) -> Campaign:
+def _of_its_channels(run: CampaignRun, source: MeasuredFile) -> CampaignRun:
+    """The run with the kind that the channels of its file leave, where none is stated."""
+    kind = next((kind for kind, channels in _WITHOUT.values() if channels == source.channels), None)
+    if kind is None or run.kind == kind:
+        return run
+    # As if it were left out: the record tells it.
+    told = run.model_copy(update={"kind": kind})
+    told.model_fields_set.discard("kind")
+    return told
+
+
+def _single(data: Path, scene: ResolvedDesign | None, kind: RunKind | None) -> Campaign:
     if not data.exists():
         raise InputError("no such file or folder", file=data, remedy=example_remedy(str(data)))
     if scene is None:
         raise InputError("a single file needs its sensor", file=data, remedy="give `design`")
     run = CampaignRun(file=data.name, sensor=file_name(data.stem)[:_LONGEST], resin=resin_of(scene))
+    if kind is not None:
+        run = run.model_copy(update={"kind": kind})
     return Campaign(title=f"Run {file_name(data.name)}"[:_LONGEST], runs=[run])
 
 
-def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign) -> MeasuredCurve:
-    """A single file's curve under that of the design's pressures that it was read at, else the read one."""
+def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, sources: Mapping[str, MeasuredFile]) -> MeasuredCurve:
+    """A single file's curve under that of the design's pressures that it was read at, else the read one.
+
+    Raises InputError for a pressure before contact that looks like an absolute one.
+    """
     read_kPa = curve.driving / KPA
-    nearest_kPa = min(scene.design.pneumatics.driving_pressures_kPa, key=lambda p: abs(p - read_kPa))
+    stated_kPa = scene.design.pneumatics.driving_pressures_kPa
+    nearest_kPa = min(stated_kPa, key=lambda p: abs(p - read_kPa))
     near = abs(nearest_kPa - read_kPa) <= max(_NEAR_KPA, _NEAR_SHARE * nearest_kPa)
+    if not near and any(looks_absolute(read_kPa - p) for p in (0.0, *stated_kPa)):
+        column = sources[curve.run.file].columns.pressure
+        raise InputError(
+            f"{read_kPa:.4g} kPa before contact, which looks like an absolute pressure",
+            file=curve.run.file,
+            key=f"column {column.name}",
+            remedy=f"give `columns` pressure={column.name}:{column.unit}{ABSOLUTE}, of which the ambient pressure of "
+            "the design is subtracted",
+        )
     found_kPa = nearest_kPa if near else round(max(read_kPa, 0.0), 1)
     return replace(curve, run=curve.run.model_copy(update={"driving_pressure_kPa": found_kPa}))

@@ -124,7 +124,7 @@ def compared(group: RunGroup, answer: StatePrediction) -> GroupComparison:
             group, label, None, UncertaintyRecord(), {}, "predictions are of fresh prints; see aged predictions"
         )
     uncertainty = answer.evaluation.uncertainty[answer.place]
-    predicted = _figures(state, uncertainty, depths_of(group))
+    predicted = _figures(state, uncertainty, depths_of(group, state))
     return GroupComparison(group, label, state, uncertainty, predicted, published=_published(answer.evaluation, group))
 
 
@@ -135,12 +135,15 @@ def _published(evaluation: Evaluation, group: RunGroup) -> dict[str, float]:
     return {SENSITIVITY_KEY: at[0]} if at else {}
 
 
-def depths_of(group: RunGroup) -> list[list[Array]]:
-    """The depths of each steps run of each specimen of a group, mm."""
+def depths_of(group: RunGroup, state: SensorState) -> list[list[Array]]:
+    """The depths of each run of each specimen of a group that gives its straight line, mm; of a press by hand those at
+    which the prediction has its forces."""
     by_specimen: dict[str, list[Array]] = {}
-    for curve in group.of_kind("steps"):
+    for curve in group.lined:
         if curve.indentation.size > 1:
-            by_specimen.setdefault(curve.run.sensor, []).append(curve.indentation)
+            travel = np.interp(curve.force, state.force, state.indentation)
+            depths = travel if curve.run.kind == "hand" else curve.indentation
+            by_specimen.setdefault(curve.run.sensor, []).append(depths)
     return list(by_specimen.values())
 
 
@@ -161,6 +164,34 @@ def _figures(
         predictions[key] = (value, None, None) if ends is None else (value, scale * ends.low, scale * ends.high)
     return predictions
 
+
+def unexpected(comparisons: Iterable[GroupComparison]) -> tuple[tuple[str, str], ...]:
+    """Questions about groups whose figures lie outside the predicted interval: the group's first file, and what would
+    explain it."""
+    questions = []
+    for comparison in comparisons:
+        group = comparison.group
+        for key, why in _EXPLAINED.items():
+            _, low, high = comparison.predicted.get(key, (math.nan, None, None))
+            measured = group.figures.get(key)
+            if measured is None or low is None or high is None or low <= measured.value <= high:
+                continue
+            figure = BY_KEY[key]
+            problem = (
+                f"{figure.name} {measured.value:.4g} {figure.unit} at {group.key.driving_pressure_kPa:g} kPa is "
+                f"outside the predicted {low:.4g} to {high:.4g}: {why}?"
+            )
+            questions.append((group.lined[0].run.file, problem))
+    return tuple(questions)
+
+
+_EXPLAINED = {
+    SENSITIVITY_KEY: "units of force or pressure, another resin, or gas behind the cavity "
+    "(pneumatics.dead_volume_mL)",
+    STIFFNESS_KEY: "units of force or travel, another resin or wall, or a record that begins with the sensor "
+    "pressed",
+}
+"""Figures that are questioned outside the predicted interval, and what would explain them."""
 
 _INFINITE = float("inf")
 
@@ -303,7 +334,15 @@ def _group(comparison: GroupComparison) -> MeasuredGroup:
         tuple(curve.run.file for curve in group.curves),
         comparison.why or None,
         {key: _figure(key, estimate, comparison) for key, estimate in group.figures.items()},
+        _depth(comparison),
+        None if comparison.state is None else round(comparison.state.range_end, 4),
     )
+
+
+def _depth(comparison: GroupComparison) -> float | None:
+    """The greatest depth of the runs that give a group's straight line, mm."""
+    depths = [float(curve.indentation[-1]) for curve in comparison.group.lined if curve.indentation.size > 1]
+    return round(max(depths), 4) if depths and np.isfinite(depths).all() else None
 
 
 def _figure(key: str, estimate: Estimate, comparison: GroupComparison) -> CampaignFigure:
@@ -323,7 +362,7 @@ def of_run(run: CampaignRun) -> tuple[str, RunKind, str, str, int, float, float]
 
 def _run(curve: MeasuredCurve, values: dict[str, float]) -> MeasuredRun:
     warnings = (RunWarning(*doubtful(each), each.kind) for each in curve.warnings)
-    return MeasuredRun(*of_run(curve.run), len(curve.force) - 1, values, tuple(warnings))
+    return MeasuredRun(*of_run(curve.run), len(curve.force) - 1, values, tuple(warnings), curve.told)
 
 
 def doubtful(part: SuspectInterval) -> tuple[float, float, str, bool]:

@@ -1,0 +1,229 @@
+"""The plate's excursions: clear of the sensor, going in, staying, coming out; and the kind of run that they make.
+
+Found from the position alone.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.bench.record import Blocks
+from pneutouch.errors import InputError
+from pneutouch.spec.campaign import RunKind
+
+NOISE = 5.0
+"""Standard deviations of the position within which the plate is taken to stay: a false alarm in a million."""
+
+TURN = 0.05
+"""Share of the whole travel by which the plate must turn back to begin another indentation. The smallest of the paper's
+(0.5 mm of 6.9 mm, and the clearance) is three times as long."""
+
+NEAR, STAY = 0.02, 0.005
+"""Shares of an indentation's travel: the first for overshoot at its end, the second for the hold."""
+
+WIDE, FEW = 0.05, 8
+"""Share of the travel, and number of blocks: with fewer than `FEW` blocks at the clear end, as in a loop without rest,
+those within `WIDE` of it count."""
+
+_LEAST_SHARE = 20.0
+"""The plate moves where its travel is more than so many standard deviations of its position."""
+
+_ACTIVE = 5.0
+"""Position is reversed where the force varies so many times more at its low end than at its high end."""
+
+_MOVES = 0.2
+"""Share of its greatest speed from which on the plate is taken to move."""
+
+
+_SPREADS = 1.7
+"""A plate that stays is near its deep end hardly longer by a limit four times as wide; one that turns evenly is four
+times as long within it, and one that follows a sine twice."""
+
+_LINGERS = 4.0
+"""A stay on the way in lasts so many times longer than the plate is near the other places of the way: our choice."""
+
+_SCATTERED = 1.5
+"""Blocks between the first and the last of a stay over those within its limits: more is no one stay."""
+
+
+class Excursion(NamedTuple):
+    """One loading and unloading, or one step of a loading in steps; block numbers, ends exclusive.
+
+    ``clear`` is the stretch before it with the plate at its clear end, ``hold`` the stay at its deep end, ``out`` where
+    the unloading ends (the next clear stretch, or the record). ``held``: the plate stays there, and does not just turn.
+    Steps of one loading share ``clear`` and ``out``.
+    """
+
+    clear: tuple[int, int]
+    hold: tuple[int, int]
+    out: int
+    held: bool = True
+
+
+def excursions(blocks: Blocks, *, steps: bool = True) -> tuple[list[Excursion], bool]:
+    """All loadings and unloadings, and whether the record begins with the plate in (that one is left out).
+
+    A loading in ``steps`` is as many excursions as it has stays.
+
+    No speed and no length is presumed: all limits are shares of the travel or multiples of the position's noise, so
+    that a run in a wrong unit is still segmented correctly, and its magnitude reveals the unit. Missed samples do not
+    matter, as no differences of neighbours are taken. Raises InputError if the plate does not move, or moves out of
+    the sensor when it presses."""
+    place = _smooth(blocks.position)
+    noise, span = position_noise(blocks.position), float(np.ptp(place))
+    if span <= _LEAST_SHARE * noise or place.size < FEW:
+        raise InputError(
+            f"position: the plate never moves: from {place.min():.4g} to {place.max():.4g} mm",
+            file=blocks.file,
+            remedy="is columns.position the right column?",
+        )
+    _check_direction(blocks, place, span)
+    turns = _turns(place, max(2 * NOISE * noise, TURN * span))
+    tops = [at for at, high in turns if high]
+    lows = [at for at, high in turns if not high]
+    parts: list[Excursion] = []
+    previous = 0
+    for top in tops:
+        before = [low for low in lows if low < top]
+        after = next((low for low in lows if low > top), place.size - 1)
+        if not before:
+            previous = after
+            continue
+        start = max(previous, parts[-1].hold[1] if parts else 0)
+        way = place[before[-1] : after + 1]
+        first, last = _stay(way, way[0], noise)
+        hold = (first + before[-1], last + before[-1])
+        clear = _clear(place[start : hold[0]], float(way[0]), float(place[top]), noise)
+        held = _held(way, float(np.median(way[first:last])), noise)
+        parts.append(Excursion((clear[0] + start, clear[1] + start), hold, place.size, held))
+        previous = after
+    ends = [*(one.clear[0] for one in parts[1:]), place.size]
+    parts = [one._replace(out=end) for one, end in zip(parts, ends, strict=True)]
+    if steps:
+        parts = [step for one in parts for step in _steps(place, one, noise)]
+    return parts, bool(tops) and (not lows or tops[0] < lows[0])
+
+
+def position_noise(position: Array) -> float:
+    """Standard deviation of a block's position, mm, from second differences, which an even move does not enter."""
+    if position.size < 3:
+        return 0.0
+    return float(1.4826 * np.median(np.abs(np.diff(position, 2))) / np.sqrt(6))
+
+
+def _smooth(values: Array) -> Array:
+    """Running median of three: a single wild position is no turn."""
+    if values.size < 3:
+        return values
+    inner = np.median(np.stack([values[:-2], values[1:-1], values[2:]]), axis=0)
+    return np.concatenate([values[:1], inner, values[-1:]])
+
+
+def _check_direction(blocks: Blocks, place: Array, span: float) -> None:
+    # While the plate moves, for a channel may also change in a rest, as a pressure does that is reset.
+    speed = np.abs(np.gradient(place, blocks.time))
+    moving = speed > _MOVES * speed.max()
+    low = blocks.force[moving & (place < place.min() + 0.1 * span)]
+    high = blocks.force[moving & (place > place.max() - 0.1 * span)]
+    if min(low.size, high.size) < 3:
+        return
+    if low.std() > _ACTIVE * high.std() and np.ptp(low) > TURN * np.ptp(blocks.force):
+        raise InputError(
+            f"the force changes where position is low ({place.min():.4g} mm) and is constant where it is high "
+            f"({place.max():.4g} mm)",
+            file=blocks.file,
+            remedy="position must count into the sensor: invert columns.position.sign",
+        )
+
+
+def _turns(place: Array, least: float) -> list[tuple[int, bool]]:
+    """Turning points with at least ``least`` mm between neighbours: block and whether it is a high one, in order."""
+    turns: list[tuple[int, bool]] = []
+    values = place.tolist()
+    low = high = 0
+    rising: bool | None = None
+    for k, value in enumerate(values):
+        if value > values[high]:
+            high = k
+        if value < values[low]:
+            low = k
+        if rising is not False and values[high] - value > least:
+            turns.append((high, True))
+            rising, low = False, k
+        elif rising is not True and value - values[low] > least:
+            turns.append((low, False))
+            rising, high = True, k
+    if rising is not None:
+        turns.append((high, True) if rising else (low, False))
+    return turns
+
+
+def _stay(place: Array, low: float, noise: float) -> tuple[int, int]:
+    """Blocks for which the plate stays at the deep end of an excursion: the first, and the one after the last."""
+    top = float(place.max())
+    level = float(np.median(place[place >= top - max(NEAR * (top - low), NOISE * noise)]))
+    at = np.flatnonzero(np.abs(place - level) <= max(STAY * (top - low), NOISE * noise))
+    if not at.size:
+        peak = int(place.argmax())
+        return peak, peak + 1
+    return int(at[0]), int(at[-1]) + 1
+
+
+def _clear(place: Array, low: float, top: float, noise: float) -> tuple[int, int]:
+    """Blocks for which the plate is at its clear end before it goes in, first and last."""
+    at = np.flatnonzero(place <= low + max(STAY * (top - low), NOISE * noise))
+    if at.size < FEW:
+        at = np.flatnonzero(place <= low + WIDE * (top - low))
+    return int(at[0]), int(at[-1]) + 1
+
+
+def _held(way: Array, level: float, noise: float) -> bool:
+    """True if the plate stays at the deep end ``level`` of a way in and out, by how the time near it grows."""
+    near = max(STAY * (level - float(way.min())), NOISE * noise)
+    short, long = (int((np.abs(way - level) <= factor * near).sum()) for factor in (1, 4))
+    return short >= FEW and long < _SPREADS * short
+
+
+def _steps(place: Array, one: Excursion, noise: float) -> list[Excursion]:
+    """The stays of a loading, each as an excursion with the same clear stretch, the deep end last."""
+    start = one.clear[1] - 1
+    way = place[start : one.hold[0]]
+    holds = [(first + start, last + start) for first, last in _stays(way, float(place[one.hold[0]]), noise)]
+    return [*(one._replace(hold=hold, held=True) for hold in holds), one]
+
+
+def _stays(way: Array, top: float, noise: float) -> list[tuple[int, int]]:
+    """Stays on a way in, short of ``top``: the first block of each, and the one after its last."""
+    if way.size < 2 * FEW:
+        return []
+    low = float(way[0])
+    near = max(STAY * (top - low), NOISE * noise)
+    levels = np.arange(low + 4 * near, top - 4 * near, near / 2)
+    if not levels.size:
+        return []
+    places = np.sort(way)
+    count = np.searchsorted(places, levels + near, side="right") - np.searchsorted(places, levels - near)
+    least = max(FEW, _LINGERS * float(np.median(count)))
+    stays: list[tuple[int, int]] = []
+    for k in np.argsort(-count, kind="stable"):
+        if count[k] < least:
+            break
+        at = np.flatnonzero(np.abs(way - levels[k]) <= near)
+        first, last = int(at[0]), int(at[-1]) + 1
+        apart = all(last <= begin or first >= end for begin, end in stays)
+        if apart and last - first <= _SCATTERED * at.size:
+            stays.append((first, last))
+    return sorted(stays)
+
+
+def kind_of(position: Array, parts: list[Excursion]) -> RunKind:
+    """The kind of a run with a plate, by the excursions that touch: steps where the plate stays at several depths, a
+    relaxation where it stays at one, a loop where it turns without a stay."""
+    held = [one for one in parts if one.held]
+    if 2 * len(held) < len(parts) or not parts:
+        return "loop"
+    depths = [float(np.median(position[slice(*one.hold)])) for one in held]
+    return "steps" if np.ptp(depths) > TURN * np.ptp(position) else "relaxation"
