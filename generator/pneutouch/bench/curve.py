@@ -280,7 +280,7 @@ def _kept(blocks: Blocks, indentations: RunIndentations, touched: list[int]) -> 
     for k in touched:
         indent, part = indentations.indents[k], indentations.parts[k]
         why = untrusted(blocks, indent, BEFORE)
-        if not part.held and k > 0 and _goes_on(indentations, k - 1):
+        if not part.held and k - 1 in touched and _goes_on(indentations, k - 1):
             why = why or "the plate does not stay there, as it does at the steps before"
         why = why or _cut(blocks, indent, part.held) or _pressed(blocks, part, indent)
         if why is None:
@@ -335,9 +335,10 @@ def _loading(blocks: Blocks, indentations: RunIndentations, k: int) -> tuple[Arr
 
 
 def _deepest(blocks: Blocks, hold: tuple[int, int]) -> int:
-    """Block at which the loading ends: the deepest of a short stay, else the hold's begin."""
+    """Block at which the loading ends: the deepest of a short stay, else the first at the depth of the stay."""
     begin, end = hold
-    return begin + int(blocks.position[begin:end].argmax()) if end - begin < LOADING_POINTS else begin
+    place = blocks.position[begin:end]
+    return begin + int(place.argmax() if end - begin < LOADING_POINTS else (place >= np.median(place)).argmax())
 
 
 def _averaged(loadings: list[tuple[Array, Array, Array]]) -> tuple[Array, Array, Array]:

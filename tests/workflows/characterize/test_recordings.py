@@ -1,0 +1,220 @@
+"""Recordings of any rig: figures as the truth has them, or a question, or a refusal with the remedy that then works."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pneutouch.errors import InputError
+from pneutouch.spec.campaign import Campaign, CampaignRun
+from pneutouch.workflows.characterize.campaign import characterize
+from pneutouch.workflows.characterize.load import load_curves
+from tests.bench.recordings import CLEAR, DEEP, READ, Recording, by_hand, plain, presses, true_figures, truth
+
+
+def read(folder, recording, **options):
+    path = folder / "run.csv"
+    path.write_text(recording.text())
+    return characterize(path, "paper-dome", model="atlas", **options).figures
+
+
+def figures(measured):
+    (group,) = measured.groups
+    return group.figures
+
+
+@pytest.mark.parametrize("name", READ)
+def test_every_figure_is_that_of_the_truth(name, tmp_path):
+    recording = READ[name]
+    measured = read(tmp_path, recording)
+    (run,) = measured.runs
+    assert (run.kind, run.kind_by_record) == (recording.kind, True)
+    assert not measured.questions and not measured.failures
+    found = figures(measured)
+    for key, value in true_figures(recording.at()).items():
+        figure = found[key]
+        inside = figure.low is not None and figure.low <= value <= figure.high
+        assert inside or figure.value == pytest.approx(value, rel=0.02), key
+    assert found["sensitivity_kPa_per_N"].value == pytest.approx(
+        found["sensitivity_kPa_per_N"].predicted.value, rel=0.02
+    )
+
+
+@pytest.mark.parametrize("noise", [0.02, 0.15])
+def test_the_stiffness_of_one_run_has_an_interval_that_holds_the_truth(noise, tmp_path):
+    """Its first contact is found in noise; 20 records are to hold it in most cases, and it is to shrink with the noise."""
+    held, widths = 0, []
+    for seed in range(20):
+        figure = figures(read(tmp_path, Recording(noise=noise, seed=seed)))["stiffness_N_per_mm"]
+        held += figure.low <= true_figures(READ["triangular"].at())["stiffness_N_per_mm"] <= figure.high
+        widths.append((figure.high - figure.low) / figure.value)
+    assert held >= 17
+    assert np.median(widths) < (0.02 if noise < 0.1 else 0.1)
+
+
+def test_the_drift_of_one_run_has_an_interval_that_holds_the_truth(tmp_path):
+    """Over a second without contact the slope of the noise is a hundred times a gauge's drift."""
+    held = 0
+    for seed in range(20):
+        drifting = replace(READ["stairs without return"], drift=-0.005, seed=seed)
+        figure = figures(read(tmp_path, drifting))["drift_pressure_kPa_per_min"]
+        assert figure.interval_over == "samples"
+        held += figure.low <= -0.005 <= figure.high
+    assert held >= 17
+
+
+def test_a_press_by_hand_has_a_sensitivity_and_no_stiffness(tmp_path):
+    measured = read(tmp_path, Recording(write=by_hand))
+    (run,), found = measured.runs, figures(measured)
+    assert run.kind == "hand" and not measured.questions
+    force = np.linspace(0.0, float(truth().at(np.array([DEEP]))[0][0]), 26)
+    travel = np.interp(force, truth().force, truth().indentation)
+    value = true_figures(travel[1:])["sensitivity_kPa_per_N"]
+    assert found["sensitivity_kPa_per_N"].value == pytest.approx(value, rel=0.02)
+    assert found["sensitivity_kPa_per_N"].predicted.value == pytest.approx(value, rel=0.02)
+    assert "stiffness_N_per_mm" not in found and "hysteresis_width_percent" in found
+
+
+def test_a_press_by_hand_of_the_wrong_sign_is_refused_with_the_sign(tmp_path):
+    upside = Recording(write=by_hand, spoil=lambda s: s * np.array([[1], [1], [-1], [1]]))
+    with pytest.raises(InputError, match=r"columns\.force\.sign"):
+        read(tmp_path, upside)
+    reading = {"columns": {"force": {"name": "force_N", "unit": "N", "sign": -1}}}
+    assert figures(read(tmp_path, upside, reading=reading))["sensitivity_kPa_per_N"].value > 2
+
+
+@pytest.mark.parametrize("ambient", [98.0, 101.3])
+def test_an_absolute_pressure_is_refused_with_the_unit_that_then_works(ambient, tmp_path):
+    recording = Recording(ambient=ambient)
+    with pytest.raises(InputError) as refused:
+        read(tmp_path, recording)
+    assert "pressure=pressure_kPa:kPa_abs" in refused.value.remedy
+    reading = {"columns": {"pressure": {"name": "pressure_kPa", "unit": "kPa_abs"}}}
+    found = figures(read(tmp_path, recording, reading=reading))
+    value = true_figures(recording.at())["sensitivity_kPa_per_N"]
+    assert found["sensitivity_kPa_per_N"].value == pytest.approx(value, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "factor"), [("force", "pressure", 1.0), ("force", "pressure", 2.2), ("position", "force", 1.0)]
+)
+def test_columns_that_are_one_are_refused(first, second, factor, tmp_path):
+    rows = {"position": 1, "force": 2, "pressure": 3}
+
+    def copied(samples):
+        samples[rows[second]] = factor * samples[rows[first]]
+        return samples
+
+    with pytest.raises(InputError, match="hold the same values"):
+        read(tmp_path, Recording(spoil=copied))
+
+
+def asked(measured, *words):
+    return [entry.question for entry in measured.questions if all(word in entry.question for word in words)]
+
+
+def test_a_force_at_the_end_of_its_channel_is_a_question_in_noise_and_refused_without(tmp_path):
+    def clipped(samples, noise):
+        samples[2] = np.minimum(samples[2], 10.0) + noise * np.random.default_rng(1).normal(size=samples.shape[1])
+        return samples
+
+    noisy = read(tmp_path, Recording(noise=0.0, spoil=lambda s: clipped(s, 0.02)))
+    assert asked(noisy, "force_N", "stays at") and asked(noisy, "Sensitivity", "outside")
+    with pytest.raises(InputError, match="clipped"):
+        read(tmp_path, Recording(spoil=lambda s: clipped(s, 0.0)))
+
+
+def test_a_tare_is_subtracted_with_a_question(tmp_path):
+    measured = read(tmp_path, Recording(tare=12.0))
+    assert asked(measured, "12 N before contact")
+    value = true_figures(READ["triangular"].at())["sensitivity_kPa_per_N"]
+    assert figures(measured)["sensitivity_kPa_per_N"].value == pytest.approx(value, rel=0.02)
+
+
+def test_a_record_that_begins_in_contact_is_refused_or_asked_about(tmp_path):
+    moving = Recording(presses(1), spoil=lambda s: s[:, 2500:6000])
+    with pytest.raises(InputError, match="begins with the sensor pressed"):
+        read(tmp_path, moving)
+    resting = [(0.1, 1.5), (2.0, 1.5), (6.0, DEEP), (6.0, 1.5), (2.0, 1.5)]
+    assert asked(read(tmp_path, Recording(resting, spoil=lambda s: s[:, 60:])), "Mean stiffness", "pressed")
+
+
+def test_a_stated_kind_insists_and_is_questioned(tmp_path):
+    measured = read(tmp_path, READ["triangular"], kind="steps")
+    (run,) = measured.runs
+    assert (run.kind, run.kind_by_record) == ("steps", False)
+    assert asked(measured, "stated as a run of kind steps", "loop")
+
+
+def test_the_kind_of_a_campaign_stands_in_its_file(tmp_path):
+    run = CampaignRun(file="run.csv", sensor="A1")
+    (tmp_path / "run.csv").write_text(READ["triangular"].text())
+    (tmp_path / "campaign.toml").write_text('[[runs]]\nfile = "run.csv"\nsensor = "A1"\n')
+    with pytest.raises(InputError, match=r"\[\[runs\]\]") as refused:
+        load_curves(tmp_path, kind="loop")
+    assert refused.value.key == "kind"
+    # A run without kind and resin is of the kind that it shows, and of the design's resin.
+    measured = characterize(tmp_path, "paper-dome", model="atlas").figures
+    assert [entry.kind for entry in measured.runs] == ["loop"] and run.resin == Campaign(runs=[run]).runs[0].resin
+
+
+def test_one_recording_is_no_two_runs(tmp_path):
+    text = READ["triangular"].text()
+    rows = []
+    for number in (1, 2):
+        (tmp_path / f"{number}.csv").write_text(text)
+        rows.append(f'[[runs]]\nfile = "{number}.csv"\nsensor = "A1"\nrun = {number}\n')
+    (tmp_path / "campaign.toml").write_text("\n".join(rows))
+    measured = characterize(tmp_path, "paper-dome", model="atlas").figures
+    assert [run.file for run in measured.runs] == ["1.csv"]
+    (failure,) = measured.failures
+    assert failure.file == "2.csv" and "the same bytes as 1.csv" in failure.message
+
+
+def test_a_unit_that_is_wrong_is_refused_of_one_file_as_of_a_campaign(tmp_path):
+    mbar = Recording(spoil=lambda s: s * np.array([[1], [1], [1], [10]]))
+    assert "mbar" in read(tmp_path, mbar).failures[0].message
+    reading = {"columns": {"pressure": {"name": "pressure_kPa", "unit": "mbar"}}}
+    value = true_figures(mbar.at())["sensitivity_kPa_per_N"]
+    assert figures(read(tmp_path, mbar, reading=reading))["sensitivity_kPa_per_N"].value == pytest.approx(
+        value, rel=0.02
+    )
+
+
+def test_an_empty_cell_is_refused_with_its_row_and_column(tmp_path):
+    def emptied(samples, header):
+        rows = plain(samples, header).splitlines()
+        rows[500] = rows[500].rpartition(",")[0] + ","
+        return "\n".join(rows) + "\n"
+
+    with pytest.raises(InputError, match="row 501: column pressure_kPa: empty"):
+        read(tmp_path, Recording(write=emptied))
+
+
+def test_a_leak_is_told_from_its_columns(tmp_path):
+    path = tmp_path / "leak.csv"
+    time = np.arange(0.0, 60.0, 0.01)
+    pressure = 5.0 - 0.001 * time + np.random.default_rng(0).normal(0, 0.01, time.size)
+    rows = np.column_stack([time, pressure])
+    path.write_text("time_s,pressure_kPa\n" + "\n".join(f"{t:.4f},{p:.5f}" for t, p in rows) + "\n")
+    loaded = load_curves(path, characterize_scene())
+    ((run, rate, error),) = loaded.leaks
+    assert run.kind == "leak" and abs(60e3 * rate - 0.06) < 4 * 60e3 * error + 0.01
+
+
+def characterize_scene():
+    from pneutouch.catalogue import Library, load_scene
+
+    return load_scene("paper-dome", {}, Library.default())
+
+
+def test_the_clear_place_does_not_matter(tmp_path):
+    """The plate waits just above the dome on its way in: that stay is no indentation."""
+    waits = [(2.0, CLEAR), (0.5, -0.3), (3.0, -0.3), (7.0, DEEP), (7.5, CLEAR), (2.0, CLEAR)]
+    measured = read(tmp_path, replace(READ["triangular"], legs=waits))
+    (run,) = measured.runs
+    assert run.kind == "loop"
+    value = true_figures(READ["triangular"].at())["sensitivity_kPa_per_N"]
+    assert figures(measured)["sensitivity_kPa_per_N"].value == pytest.approx(value, rel=0.02)
