@@ -95,6 +95,7 @@ LINES = [
 """Commands, and the file of theirs that is a pipe."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("line", "name"), LINES, ids=[f"{line}, {name}" for line, name in LINES])
 def test_a_command_refuses_a_pipe_and_names_it(line, name, command, tmp_path):
     with pipe(tmp_path / name):

@@ -71,6 +71,7 @@ def test_every_command_has_its_arguments_and_options_with_their_help(name):
             assert f"| `{parameter.default}` |" in row
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_the_example_of_a_command_can_be_read(name):
     program, given, *words = shlex.split(commands.EXAMPLES[name])
@@ -154,6 +155,7 @@ def test_every_source_of_a_profile_stands_on_the_page(name):
     assert all(cell(plain(source)) in text for source in found)
 
 
+@pytest.mark.slow
 def test_a_page_that_is_made_no_more_is_removed_and_no_other_file(tmp_path):
     (tmp_path / "schemas").mkdir()
     for name in ("old.md", "schemas/old.schema.json", "formats.txt"):

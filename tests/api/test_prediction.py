@@ -79,6 +79,7 @@ def test_what_a_prediction_is_made_of_shows_itself_in_a_line(prediction):
         assert len(repr(part)) < 120 + len(evaluation.scene.where)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["paper-dome", "graded-dome", "cast-dome"])
 def test_a_prediction_passes_between_processes(name):
     found = pt.load(name).predict()

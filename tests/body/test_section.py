@@ -47,6 +47,7 @@ def test_points_are_inside_where_the_mesh_winds_round_them(name, library):
         assert 0.03 < found.mean() < 0.97
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_sections_add_up_to_the_exact_volume_and_agree_with_points(name, library):
     """An even sum over shifted pixels errs far less than a pixel's share of the surface."""

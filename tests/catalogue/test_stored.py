@@ -38,6 +38,7 @@ def test_figures_of_designs_are_the_stored_ones(design):
         assert expected[key] is None or found[key] == pytest.approx(expected[key], rel=2e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("parts", PARTS, ids=" ".join)
 def test_figures_of_parts_are_the_stored_ones(parts):
     compare_shapes(shape_figures(assembled(LIBRARY, parts, *SMALL)), EXPECTED["parts"][" ".join(parts)])

@@ -108,6 +108,7 @@ def test_an_error_names_the_flag_as_it_is_typed(words, key):
     assert refused.exit_code == 2 and refused.stderr.splitlines()[-1].startswith(f"error: {key}")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("given_as", ["none.csv", Path("none.csv"), ["none.csv"], (Path("none.csv"),)])
 def test_one_file_is_a_list_of_one(given_as):
     with pytest.raises(InputError) as caught:

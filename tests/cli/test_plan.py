@@ -19,6 +19,7 @@ def run(*arguments: str):
     return CliRunner().invoke(app, list(arguments))
 
 
+@pytest.mark.slow
 def test_plan_prints_its_document_and_warns_on_stderr(tmp_path):
     rig = tmp_path / "rig.toml"
     rig.write_text('[rig]\nname = "small"\nforce_range_N = 10.0\n')

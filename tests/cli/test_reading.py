@@ -76,6 +76,7 @@ def test_ten_instruments_give_the_printed_figures_of_the_plain_file(tmp_path, re
     assert result.stderr.count("note: ") == len(document["read_as"])
 
 
+@pytest.mark.slow
 def test_what_is_printed_is_what_the_page_shows(tmp_path, recording):
     path = zwick(tmp_path, *recording)
     result = run(
@@ -264,6 +265,7 @@ def test_the_page_lists_every_unit():
         assert [unit.strip() for unit in row.split(",")] == list(units)
 
 
+@pytest.mark.slow
 def test_a_planned_campaign_takes_files_of_other_programs(tmp_path, recording):
     """Its file leaves the columns open, and takes the lines that were printed."""
     assert run("plan", "paper-dome", "--specimens", "1", "--out", tmp_path).exit_code == 0

@@ -33,6 +33,7 @@ def scanned(tmp_path_factory):
     return json.loads(result.stdout), out / "texture-specimen-paper-dome-scan"
 
 
+@pytest.mark.slow
 def test_a_scan_is_of_its_schema(scanned):
     said, folder = scanned
     hold("scan", said)
@@ -81,6 +82,7 @@ def again(tmp_path_factory):
     return result.stdout, out / "texture-specimen-paper-dome-scan"
 
 
+@pytest.mark.slow
 def test_same_input_same_bytes(scanned, again):
     for path in sorted(scanned[1].iterdir()):
         assert (again[1] / path.name).read_bytes() == path.read_bytes(), path.name

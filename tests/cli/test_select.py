@@ -34,6 +34,7 @@ def test_the_sleeve_is_named_by_its_finger_where_the_mount_s_name_has_another(fi
     assert base.mount.code == f"F{finger}"
 
 
+@pytest.mark.slow
 def test_json_lists_ranked_designs_with_uncertainty_and_margins():
     result = run(*ASKED, "--json")
     assert result.exit_code == 0
@@ -61,6 +62,7 @@ def test_a_written_design_can_be_predicted(tmp_path, monkeypatch):
     assert run(*ASKED, "--write", "mine").exit_code == 2
 
 
+@pytest.mark.slow
 def test_text_names_resins_and_what_binds():
     said = run(*ASKED).stdout
     assert "TangoPlus" in said
@@ -172,6 +174,7 @@ def test_no_target_is_an_error():
     assert "no target; give a target file, or --sensitivity" in result.stderr
 
 
+@pytest.mark.slow
 def test_no_kernel_is_loaded():
     code = (
         "import sys; from typer.testing import CliRunner; from pneutouch.cli.app import app; "

@@ -22,6 +22,7 @@ def bench(tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_the_page_s_file_runs(command, bench):
     (text,) = re.findall(r"```toml\n(.*?)```", TEXT, re.DOTALL)
     (bench / "walls.toml").write_text(text)
@@ -30,6 +31,7 @@ def test_the_page_s_file_runs(command, bench):
     assert json.loads(result.stdout)["parts"] == 2 * (3 * 2 + 1)
 
 
+@pytest.mark.slow
 def test_json_is_one_document_and_progress_goes_to_stderr(command, bench):
     result = command("tray", EXAMPLE, "--json", "--out", "trays")
     document = json.loads(result.stdout)
@@ -70,6 +72,7 @@ def test_bad_input_is_said_and_nothing_is_written(words, message, command, bench
     assert not (bench / "outputs").exists()
 
 
+@pytest.mark.slow
 def test_cadquery_is_not_loaded(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert not modules_after("tray", "paper-dome") & {"cadquery", "OCP", "typst"}

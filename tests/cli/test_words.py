@@ -41,6 +41,7 @@ def test_a_number_with_an_underscore_is_none(words, flag, command, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "words", [["{}"], ["--{}"], ["list", "{}"], ["list", "--{}"], ["list", "a", "{}"], ["predict", "{}"], ["new", "{}"]]
 )

@@ -81,6 +81,7 @@ def test_models_of_a_plate_refuse_another_object_and_name_the_one_that_answers(m
     assert refused.value.key == "model" and "solid" in refused.value.remedy
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("friction", "stated"), [(0.6, 0.6), ("inf", "inf")])
 def test_friction_reaches_the_solid_and_the_document(friction, stated):
     given = {"contact.friction": friction, "pneumatics.driving_pressures_kPa": [0.0], "indentation.depth_mm": 4.0}

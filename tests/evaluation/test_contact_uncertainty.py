@@ -46,6 +46,7 @@ def rough():
     return evaluate("paper-dome", changes)
 
 
+@pytest.mark.slow
 def test_an_unknown_coefficient_has_the_share_that_the_solid_gives_it(rough):
     said = data(rough.uncertainty[0])
     (source,) = [one for one in said["sources"] if one["name"] == "friction" and STATED in one["figures"]]
@@ -99,6 +100,7 @@ def test_the_shift_of_a_contact_is_taken_at_a_softer_and_a_stiffer_wall(evaluate
     np.testing.assert_allclose(nodes, np.broadcast_to(expected[:, None, None], nodes.shape))
 
 
+@pytest.mark.slow
 def test_the_ratio_makes_the_plates_figures_those_of_the_contact(evaluated):
     """At the pressures that are solved, and in its logarithm straight between them."""
     sensor, pressures = (

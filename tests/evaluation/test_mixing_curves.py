@@ -46,6 +46,7 @@ def finding(evaluation):
     return [one for one in evaluation.findings if one.rule == "mixing curve"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("curve", ["mixture-tool", "j750-hardness"])
 def test_another_curve_does_what_the_design_that_names_it_does(graded, curve):
     named = mixed(curve=curve)

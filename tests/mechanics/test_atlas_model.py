@@ -209,6 +209,7 @@ def test_a_shallow_press_is_left_to_the_solid(depth):
     assert predict("", sensor, [7.2388 * KPA], model="atlas").error_estimate.model_choice is not None
 
 
+@pytest.mark.slow
 @given(
     st.floats(3.0, 15.0),
     st.floats(0.07, 0.3),

@@ -36,6 +36,7 @@ def test_a_force_that_differs_by_a_share_changes_the_figures_by_that_share(facto
     assert found == pytest.approx(change, abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", [{}, {"friction": 0.5}, {"body": ball(10.0), "plate_radius": 10.0}], ids=str)
 def test_pressed_centrally_it_is_the_solid(scene):
     """Without harmonics both solve one problem, each in its own coordinates."""

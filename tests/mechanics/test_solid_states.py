@@ -81,6 +81,7 @@ def test_a_labs_own_resin_is_computed_not_looked_up(library):
     assert found.relative > 0.5
 
 
+@pytest.mark.slow
 def test_printed_flange_is_a_little_softer_than_the_clamped_base(paper):
     printed = predict("x", PAPER.replace(flange=(2.25, 2.25)), [0.0, 0.012, 0.022])
     assert 0.98 < printed.limit_point.driving_pressure / paper.limit_point.driving_pressure < 1.0
@@ -175,6 +176,7 @@ def test_a_wall_on_its_base_is_stated_and_changes_the_deep_press_alone():
         predict("paper", PAPER.replace(base=None), [0.0], model="atlas")
 
 
+@pytest.mark.slow
 def test_the_flange_of_a_printed_rim_carries_the_wall():
     sensor = PAPER.replace(flange=(2.25, 2.25))
     found = [

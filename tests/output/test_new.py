@@ -146,6 +146,7 @@ def written(tmp_path, name):
     return tomllib.loads((tmp_path / f"designs/{name}.toml").read_text())
 
 
+@pytest.mark.slow
 def test_a_process_brings_a_profile_a_seat_without_glue_and_pressures_that_it_stands(command, tmp_path):
     done = command("new", "mine", "--process", "casting", "--material", "DragonSkin20")
     assert (done.returncode, done.stdout) == (0, "designs/mine.toml\n")

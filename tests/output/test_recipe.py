@@ -163,6 +163,7 @@ def again(lab) -> Path:
         return build(evaluate_recipe(read_recipe(read_threemf(copy))), lab / "again")
 
 
+@pytest.mark.slow
 def test_a_3mf_builds_again_to_the_same_bytes_without_any_library(lab, again):
     assert content(again) == content(lab / "before/paper-dome")
 

@@ -234,6 +234,7 @@ def test_pdf_is_a_few_a4_pages_with_text_on_each(built):
         assert len(page.get_textpage().get_text_range()) > 300
 
 
+@pytest.mark.slow
 def test_pdf_pages_keep_text_inside_the_margins(built):
     """A column that is too narrow or a figure that is too wide shows as ink beyond the margin."""
     document = pypdfium2.PdfDocument(built("fingertip-dome") / "datasheet.pdf")

@@ -72,6 +72,7 @@ def least(library):
     )
 
 
+@pytest.mark.slow
 def test_page_and_pdf_have_every_text_of_the_sheet(sheet, files):
     page = page_words(files["measured-datasheet.html"])
     pdf = pdf_words(files["measured-datasheet.pdf"]).replace(" ", "")

@@ -39,6 +39,7 @@ def sheet_of(evaluated):
     return cache(lambda name: sheet_data(evaluated(name), "0"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DESIGNS)
 def test_no_label_lies_over_a_curve_or_another_label(name, sheet_of):
     sheet = sheet_of(name)

@@ -54,6 +54,7 @@ def test_the_solid_confirms_every_design_of_another_resin(fingertip, solid):
         assert state.figures.sensitivity == pytest.approx(stated, rel=0.012)
 
 
+@pytest.mark.slow
 def test_designs_keep_what_was_asked_for_and_every_limit(fingertip, solid):
     for number in range(len(fingertip.answer.designs[:4])):
         found, state = solid(number)
@@ -171,6 +172,7 @@ def test_a_depth_stated_in_the_base_follows_the_size_into_the_design(tmp_path):
     assert state.figures.sensitivity == pytest.approx(float(choice.pool.response.lines.sensitivity[0]), rel=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("diameter_mm", "sensitivity", "resin"), [(10.0, 4.6, "TangoPlus"), (10.0, 4.8, "TangoPlus")])
 def test_the_corner_of_least_wall_and_greatest_diameter_is_searched(diameter_mm, sensitivity, resin):
     found = answer({"sensitivity_kPa_per_N": sensitivity, "max_diameter_mm": diameter_mm}).answer.designs
@@ -178,6 +180,7 @@ def test_the_corner_of_least_wall_and_greatest_diameter_is_searched(diameter_mm,
     assert all(min(design.margins.values()) >= 0.0 for design in found)
 
 
+@pytest.mark.slow
 def test_steps_on_from_a_scan_come_nearer_to_a_target():
     """Of TangoPlus, at 10 mm, 5.2 kPa/N: the scan's best misses by more than what the steps from it reach."""
     problem = answer({"sensitivity_kPa_per_N": 5.2, "max_diameter_mm": 10.0}).problem

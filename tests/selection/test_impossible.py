@@ -60,6 +60,7 @@ def test_the_document_says_so():
     assert said["nearest"]["margins"]["force range"] < 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("wanted", "count"),
     [

@@ -35,6 +35,7 @@ def fingertip():
     return answer(FINGERTIP)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("written", [None, 1])
 def test_rejected_designs_leave_the_answer_and_are_named(fingertip, monkeypatch, written):
     """Those ranked first are rejected here; the first that passes takes their place, and the rest is not looked at."""

@@ -42,6 +42,7 @@ def test_each_process_has_its_best_on_a_profile_that_makes_it(both, library):
         assert 1 in run.judged
 
 
+@pytest.mark.slow
 def test_a_cast_design_is_clamped_unless_the_target_says_otherwise(both, library, tmp_path):
     (_, run), (_, second) = both.best
     assert run.base.seat.family == "clamped-flange"

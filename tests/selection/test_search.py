@@ -10,6 +10,7 @@ from pneutouch.workflows.select.search import search
 TARGET = {"sensitivity_kPa_per_N": 1.9, "driving_pressure_kPa": 12.0, "force_range_N": 12.0}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "setting", [{}, {"gauge": "any"}, {"processes": ["polyjet"]}], ids=["plain", "gauge", "processes"]
 )

@@ -252,6 +252,7 @@ def test_a_source_that_says_nothing_is_refused(tmp_path):
         evaluate("paper-dome", library=Library((tmp_path, ROOT)))
 
 
+@pytest.mark.slow
 def test_a_resin_with_a_law_of_its_own_is_predicted_with_it(tmp_path):
     folder = tmp_path / "printprofiles/materials"
     folder.mkdir(parents=True)

@@ -67,6 +67,7 @@ CONVERGES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CONVERGES)
 def test_hostile_sensors_converge(case):
     assert holds(study(**CONVERGES[case])) == "complete"

@@ -7,6 +7,7 @@ from tests.stability.random_scenes import DOMES, PRESSES, ends
 PARTS = 50
 
 
+@pytest.mark.slow
 def test_the_presses_of_a_random_dome_end():
     assert len(ends(3)) == PRESSES
 

@@ -66,6 +66,7 @@ def test_an_absolute_tolerance_accepts_the_start_or_is_never_met():
     assert ends[1000.0][0] == "unfinished"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("radius", "mu"), SIZES)
 def test_radii_from_a_tenth_of_a_millimetre_to_a_metre_and_moduli_from_a_kilopascal_to_a_gigapascal(radius, mu):
     assert figures(radius, mu) == pytest.approx(figures(9.25, 0.17), rel=1e-9)

@@ -107,6 +107,7 @@ def test_thick_walls_leave_membrane_theory_and_ours_meets_the_exact_sphere():
     assert ours.pressure == pytest.approx(fine.pressure, rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ratio", [0.02, 0.05, 0.3, 0.5])
 @pytest.mark.parametrize("share", [0.0, 0.5, 0.8])
 def test_thin_and_thick_walls_are_pressed_to_half_the_radius(ratio, share):

@@ -45,6 +45,7 @@ def test_every_state_breaks_no_rule_at_every_width_in_light_and_dark(width, dark
     assert violations(page) == []
 
 
+@pytest.mark.slow
 def test_a_page_with_faults_is_found_out(pages):
     page = pages.open("data:text/html,<html><body><img src='data:,'><p style='color:%23aaa'>grey</p></body></html>")
     broken = {each.partition(":")[0] for each in violations(page)}

@@ -17,6 +17,7 @@ _UNNAMED = """[...document.querySelectorAll('input, select, button, canvas')].fi
 _WALL = "document.getElementById('field-membrane-wall_thickness_mm')"
 
 
+@pytest.mark.slow
 def test_a_slider_moves_the_figures_of_the_commands(screen, command):
     solved(screen, "#paper-dome")
     move(screen, "Wall thickness, mm", 280)
@@ -46,6 +47,7 @@ def test_a_resin_takes_a_printer_that_runs_it(screen, pages):
     until(screen, "location.hash === '#paper-dome' && document.querySelectorAll('.faulty').length === 0")
 
 
+@pytest.mark.slow
 def test_the_mould_is_shown_for_a_cast_membrane_alone(screen):
     mould = screen.locator("#form details", has_text="Mould: more")
     assert mould.is_hidden()
@@ -65,6 +67,7 @@ def test_the_mould_is_shown_for_a_cast_membrane_alone(screen):
     assert mould.is_hidden()
 
 
+@pytest.mark.slow
 def test_an_error_stands_at_its_field_and_goes_again(screen):
     screen.evaluate("location.hash = '#paper-dome&membrane.wall_thickness_mm=14'")
     until(screen, "document.querySelectorAll('.faulty').length === 2")

@@ -53,6 +53,7 @@ def printed(done):
     return json.loads(done.stdout)
 
 
+@pytest.mark.slow
 def test_every_run_of_a_plan_is_recognised(campaign, ask):
     found = ask(measuring.recognised, uploaded(campaign))
     assert (found["planned"], found["design"], found["simulated"]) == (True, "paper-dome", True)

@@ -64,6 +64,7 @@ def test_a_page_that_is_left_in_the_middle_of_a_move_keeps_it_in_its_address(scr
     assert "membrane.wall_thickness_mm=" in screen.evaluate("location.hash")
 
 
+@pytest.mark.slow
 def test_a_slider_that_is_let_go_asks_once(screen, pages):
     """It reports the place of its last move again, which is no other question."""
     solved(screen, "#paper-dome")

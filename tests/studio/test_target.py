@@ -89,6 +89,7 @@ def test_the_chart_holds_its_designs_under_their_fronts(found):
         assert at["sensitivity_kPa_per_N"] * at["force_N"] <= chart["gauge_kPa"]
 
 
+@pytest.mark.slow
 def test_where_nothing_is_found_it_says_so_in_the_words_of_select(command):
     content = asked({**FIELDS, "target.force_range_N": "150"})
     said = command("select", "--sensitivity", "1.9", "--at", "12", "--force-range", "150", "--max-diameter", "25")

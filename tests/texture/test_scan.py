@@ -181,6 +181,7 @@ def test_separation_takes_the_states_that_lean_most():
     assert not separate(batch, np.zeros(4), 0.5, MATRIX, patterns, (1.0, 1.0)).dome.size
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(1, 6))
 def test_the_stiff_state_shows_both_patterns_whatever_the_noise(seed, library):
     from pneutouch.spec.options import ScanOptions

@@ -27,6 +27,7 @@ def record(values):
     return Signal(0.0, 1 / RATE, 1e-3 * values)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("colour", ["white", "red"])
 def test_a_pattern_stands_out_of_noise(colour):
     rng = np.random.default_rng(4)
@@ -48,6 +49,7 @@ def rate_of_alarms(colour, count, surrogates):
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("colour", ["white", "red"])
 def test_noise_alone_raises_no_more_alarms_than_stated(colour):
     """30 records at 5 %: 0 to 5 alarms hold 99.7 % of the binomial distribution."""
@@ -91,6 +93,7 @@ def test_a_constant_signal_has_nothing_in_it():
         detect(record(np.ones(800)), [0.667])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("colour", ["white", "red"])
 def test_patterns_an_octave_apart_are_found_whatever_the_noise(colour):
     """Power: two lines of one amplitude, one at twice the frequency of the other, with overtones of their own."""

@@ -179,6 +179,7 @@ def test_a_folder_that_cannot_be_written_is_an_input_error():
         write_folder(Path("/proc/self/outputs"), {"manifest.json": b"{}"})
 
 
+@pytest.mark.slow
 def test_input_hash_changes_with_the_inputs_alone(evaluated):
     from pneutouch.workflows.build import input_hash
 

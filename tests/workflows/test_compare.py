@@ -94,6 +94,7 @@ def test_a_design_is_compared_with_its_calibrated_self(library, tmp_path):
     assert own < alike.high_percent < 1.5 * own < apart.high_percent
 
 
+@pytest.mark.slow
 def test_results_alone_are_their_measurement_and_their_prediction(results, library):
     figures = json.loads((results / "figures.json").read_text())
     result = compare([str(results)], library=library)

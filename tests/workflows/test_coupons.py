@@ -80,6 +80,7 @@ def test_what_does_not_fit_is_refused():
         lay("objet260-connex", order(CouponOptions(copies={"dumbbell": 60}), LIBRARY).items)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "asked",
     [

@@ -45,6 +45,7 @@ def found(subject):
     return pressed(subject.name, subject.sensor, [0.0, 22 * KPA], 0.9 * R0, "solid")
 
 
+@pytest.mark.slow
 def test_runs_last_as_long_as_their_protocols_and_the_plan_as_its_runs(plan):
     runs = plan.record.runs
     for run in runs:

@@ -36,20 +36,24 @@ def one_wall(monkeypatch):
     return stale.solid_fingerprint()
 
 
+@pytest.mark.slow
 def test_the_fingerprint_repeats(one_wall):
     assert stale.solid_fingerprint() == one_wall
 
 
+@pytest.mark.slow
 def test_another_poisson_ratio_shows(one_wall, monkeypatch):
     monkeypatch.setattr(stale, "RECIPE", replace(RECIPE, poisson_ratio=0.4899))
     assert stale.solid_fingerprint() != one_wall
 
 
+@pytest.mark.slow
 def test_another_mesh_shows(one_wall, monkeypatch):
     monkeypatch.setattr(mesh, "_ARC_CELLS", (26, 48))
     assert stale.solid_fingerprint() != one_wall
 
 
+@pytest.mark.slow
 def test_what_does_not_change_the_solid_does_not_show(one_wall, monkeypatch):
     monkeypatch.setattr(stale, "RECIPE", replace(RECIPE, folds=12, walls=9))
     assert stale.solid_fingerprint() == one_wall

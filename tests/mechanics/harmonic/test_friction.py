@@ -64,6 +64,7 @@ def _followed(body: RigidObject | None, offset: float, tilt: float, friction: fl
     return follower
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("body", "friction", "order", "accuracy"),
     [(None, 0.3, 0, 1e-9), (BALL, 1.0, 0, 1e-9), (None, np.inf, 0, 1e-9), (None, 0.3, 4, 1e-6), (BALL, 1.0, 2, 1e-6)],
@@ -82,6 +83,7 @@ def test_a_central_press_with_friction_is_the_solids(
     assert np.abs(ours.column("sideways")).max() < 1e-7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("body", "offset", "tilt"), [(BALL, 2.0, 0.0), (None, 0.0, 6.0)], ids=["ball", "plate"])
 def test_the_mirrored_scene_has_mirrored_forces(body: RigidObject | None, offset: float, tilt: float) -> None:
     one, other = _pressed(body, offset, tilt, 0.6, 2.0), _pressed(body, -offset, -tilt, 0.6, 2.0)
@@ -102,6 +104,7 @@ def test_friction_takes_from_the_sideways_force_of_a_leaning_plate() -> None:
     assert -slope * end.force < end.sideways < 0.5 * slope * end.force
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("body", "offset", "tilt"), [(BALL, 2.0, 0.0), (None, 0.0, 6.0)], ids=["ball", "plate"])
 def test_no_traction_passes_the_largest_and_both_kinds_of_points_obey_the_law(
     body: RigidObject | None, offset: float, tilt: float
@@ -182,6 +185,7 @@ def test_the_tractions_foreseen_follow_the_tangent_of_the_path() -> None:
     assert np.array(off[0]) == pytest.approx(4.0 * np.array(off[1]), rel=0.25)
 
 
+@pytest.mark.slow
 def test_a_solve_that_halves_its_residual_is_not_ended_by_the_number_of_its_steps() -> None:
     follower = _followed(BALL, 3.0, 0.0, 0.3)
     height = follower.here.height - 0.03

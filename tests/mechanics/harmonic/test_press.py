@@ -51,6 +51,7 @@ def _placed(body: RigidObject | None, offset: float, tilt: float, depth: float, 
     return OffAxisPress(solid, free, _press(body, depth), surface, StrainProbe(solid)).run(order)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("body", "order", "accuracy"), [(None, 0, 1e-10), (BALL, 0, 1e-9), (None, 2, 1e-8)])
 def test_a_central_press_is_the_solids(body: RigidObject | None, order: int, accuracy: float) -> None:
     ours, theirs = _placed(body, 0.0, 0.0, 4.0, order), _central(body, 4.0)

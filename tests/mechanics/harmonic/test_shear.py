@@ -72,6 +72,7 @@ def _gripped() -> SurfaceFrictionFollower:
     return follower
 
 
+@pytest.mark.slow
 def test_the_shear_begins_where_the_press_ended() -> None:
     end, first = _pressed(0.3, 2.0, 6.0).states[-1], _sheared(0.3, 2.0, 6.0).states[0]
     for name in ("force", "sideways", "moment", "rise"):
@@ -116,6 +117,7 @@ def test_with_grip_the_slope_is_the_second_derivative_of_the_energy() -> None:
     assert (push - pull) / 2e-3 == pytest.approx(-start.stiffness, rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tilt", [0.0, 6.0])
 def test_the_mirrored_travel_has_the_mirrored_force(tilt: float) -> None:
     one, other = _sheared(0.3, 2.0, tilt), _sheared(0.3, -2.0, -tilt)

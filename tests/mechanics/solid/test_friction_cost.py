@@ -30,6 +30,7 @@ def cost(solid: SolidModel, free: FreeState, friction: float) -> tuple[int, int]
     return tangents.call_count, len(follower.path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("friction", "mu", "wall"), [(np.inf, 0.72, 0.101), (np.inf, 3.06, 0.119), (0.88, 2.24, 0.211), (1.05, 1.52, 0.228)]
 )

@@ -204,6 +204,7 @@ def assert_none_falls(seed: int, count: int) -> None:
                 assert not other[name] < value - 1e-7 * abs(value), name
 
 
+@pytest.mark.slow
 def test_a_wall_stiffer_anywhere_gives_less_and_bears_more():
     assert_none_falls(seed=1, count=3)
 
@@ -232,6 +233,7 @@ def test_a_grade_of_two_knots_bears_a_pressure_between_its_ends():
             assert low[name] < here[name] < high[name], name
 
 
+@pytest.mark.slow
 def test_the_sensitivity_of_a_grade_need_not_lie_between_its_ends():
     """It is a slope of pressure over force: a stiff pole spreads the contact, a soft rim gives the volume."""
     found = {
@@ -261,6 +263,7 @@ def assert_solved(seed: int, count: int) -> None:
             assert state.range_end <= min(lost, default=np.inf)
 
 
+@pytest.mark.slow
 def test_random_grades_are_solved():
     assert_solved(seed=11, count=5)
 

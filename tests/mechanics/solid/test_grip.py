@@ -58,6 +58,7 @@ def squeeze(solid: SolidModel, strain: float, friction: float) -> float:
     return follower.here.force
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("strain", [0.01, 0.2])
 @pytest.mark.parametrize("height", [0.25, 0.5])
 def test_a_disc_that_is_gripped_is_a_disc_that_is_bonded(height, strain, monkeypatch):
@@ -131,6 +132,7 @@ def press(follower: PathFollower, steps: int) -> tuple[Array, Array]:
     return force, pressure
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("mu", "pressure"), [(0.91, 0.0), (0.17, 0.01)])
 def test_grip_holds_every_point_where_it_first_touched(mu, pressure):
     solid = SolidModel(dome(Hemisphere(9.25, 1.5), arc=16, through=1), neo_hookean(mu))

@@ -76,6 +76,7 @@ def test_scale_invariance():
     assert run.figures().sensitivity * length**2 == pytest.approx(base.figures().sensitivity, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_sensitivity_is_within_one_per_cent_of_a_refined_mesh():
     for mu, pressure in ((0.17, 0.0), (0.17, 0.022), (0.91, 0.0), (4.0, 0.022)):
         coarse = press(mu, pressure, steps=10).figures().sensitivity
@@ -203,12 +204,14 @@ def test_levels_passed_from_the_start_are_reported_at_zero():
     assert ("break", 0.0) in [(e.kind, e.indentation) for e in run.events]
 
 
+@pytest.mark.slow
 def test_a_refined_mesh_finds_the_fold_at_the_clamp():
     run = press(0.17, 0.0, depth=0.7 * 9.25, mesh=dome(Hemisphere(9.25, 1.5), arc=72, through=3))
     assert run.events[-1].kind == "clamp_fold" and not run.complete
     assert run.figures().sensitivity == pytest.approx(2.64, rel=0.01)
 
 
+@pytest.mark.slow
 def test_contact_radius_and_snap_depth_hold_under_refinement():
     coarse, fine = (
         press(4.0, 0.0, depth=0.75 * 9.25),

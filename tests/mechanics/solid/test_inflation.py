@@ -42,6 +42,7 @@ def sphere_limit(a, b):
     return -best.fun, best.x
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("a", "b"), [(1.0, 2.0), (10.0, 11.0), (9.25, 10.75), (8.5, 10.0)])
 def test_thick_sphere_limit_point(a, b):
     # nu 0.4999 and 0.49995 extrapolated to 0.5: the solid is compressible, the exact result is not

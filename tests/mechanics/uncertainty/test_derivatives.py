@@ -63,6 +63,7 @@ def test_limit_pressure_goes_with_the_modulus_and_the_wall_ratio():
     assert found[[DEAD, AMBIENT, DRIVING]] == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
 
 
+@pytest.mark.slow
 def test_neither_noise_nor_curvature_matters_at_the_step(library):
     """Half and twice the step: derivatives of the sensitivity of about one, and what they make of the inputs' spreads."""
     for case in TEN:

@@ -29,6 +29,7 @@ def compare(library, case, count):
     assert sampled.lost.max() < 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", [TEN[1], TEN[5]], ids=lambda case: case.resin)
 def test_a_few_thousand_samples_agree(library, case):
     compare(library, case, 4000)

@@ -63,6 +63,7 @@ def sensitivities(outcome):
     return {g.driving_pressure_kPa: g.figures["sensitivity_kPa_per_N"] for g in outcome.figures.groups}
 
 
+@pytest.mark.slow
 def test_a_sound_campaign_is_read_whole_and_near_its_prediction(folder, library):
     outcome = run(folder, library)
     assert not outcome.failed and not outcome.measured.questions

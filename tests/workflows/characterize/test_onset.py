@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 
 import numpy as np
+import pytest
 
 from pneutouch.bench.indents import find_indents, protocol
 from pneutouch.bench.reading import PLATE, read_blocks
@@ -17,6 +18,7 @@ RADIUS = 8.73
 SOFT = {"membrane.inner_radius_mm": RADIUS, "membrane.wall_thickness_mm": 0.9}
 
 
+@pytest.mark.slow
 def test_the_lightest_steps_do_not_decide_where_a_run_begins(tmp_path, library):
     options = SimulationOptions(kinds=["steps"], driving_pressures_kPa=[0.0], model="atlas", rest_s=10.0)
     folder = simulate("paper-dome", tmp_path, SOFT, options, library=library)

@@ -28,6 +28,7 @@ def folder(tmp_path_factory) -> Path:
     return build_specimen(NAME, tmp_path_factory.mktemp("specimen"), library=LIBRARY)[0]
 
 
+@pytest.mark.slow
 def test_the_folder_holds_every_file_of_the_manifest(folder):
     manifest = json.loads((folder / "manifest.json").read_text())
     for name, said in manifest["files"].items():
@@ -45,6 +46,7 @@ def test_the_folder_holds_every_file_of_the_manifest(folder):
     }
 
 
+@pytest.mark.slow
 def test_the_same_input_gives_the_same_bytes(folder, tmp_path):
     again, _ = build_specimen(NAME, tmp_path, library=LIBRARY)
     for path in folder.rglob("*"):
@@ -118,6 +120,7 @@ def test_the_frequency_gives_the_pitch(tmp_path):
     assert draw(load_specimen(written(tmp_path, lattice), library=LIBRARY)).patterns[0].truth["cell_mm"] == 4.0
 
 
+@pytest.mark.slow
 def test_the_shipped_specimen_breaks_no_rule():
     assert [f for f in check_specimen(NAME, library=LIBRARY) if f.severity != "note"] == []
 
@@ -147,6 +150,7 @@ def written(folder: Path, layers: str, rest: str = "", block: str = "length_mm =
     return str(path)
 
 
+@pytest.mark.slow
 def test_a_check_ends_without_words_of_a_library(process):
     done = process("check", "texture-specimen")
     assert (done.returncode, done.stdout) == (0, "no findings\n")

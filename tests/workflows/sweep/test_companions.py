@@ -67,6 +67,7 @@ def test_bands_hold_the_figure_and_resins_are_categories(swept):
     assert (figure.low[known] < figure.value[known]).all() and (figure.value[known] < figure.high[known]).all()
 
 
+@pytest.mark.slow
 def test_pictures_are_written_for_each_field_the_same_twice(swept, tmp_path):
     again = tmp_path / "x.nc"
     again.write_bytes(swept.read_bytes())
@@ -145,6 +146,7 @@ def test_a_dataset_with_one_changed_value_is_refused(swept, tmp_path, name):
     assert [path.name for path in tmp_path.iterdir()] == ["x.nc"]
 
 
+@pytest.mark.slow
 def test_no_changed_byte_of_a_dataset_is_reported_as_a_result(swept, tmp_path):
     """200 bytes in turn, each replaced by another: refused, or the content is the same (padding)."""
     whole, out = swept.read_bytes(), tmp_path / "x.nc"
@@ -185,6 +187,7 @@ def test_the_printed_table_has_the_rated_pressure_and_one_number_of_decimals_a_c
             assert 0 <= row["rated_pressure_kPa"] - float(cells["rated kPa"]) < 0.1
 
 
+@pytest.mark.slow
 def test_friction_to_grip_objects_and_flags_are_swept_as_categories(tmp_path, library):
     """The membrane's closed form refuses them all; what counts here is that table, dataset and axes hold them."""
     over = ["contact.friction=0,0.3,inf", "contact.object=plate,ball", "contact.base=true,false"]

@@ -146,6 +146,7 @@ def test_a_map_with_nothing_known_and_one_with_a_constant_are_drawn():
         assert text.endswith("</svg>\n") and image.startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_the_same_dataset_gives_the_same_bytes(mapped, tmp_path):
     first = pt.map_sweep(mapped, tmp_path / "a")
     again = write_maps(load(mapped), tmp_path / "b")
@@ -181,6 +182,7 @@ def test_numbers_are_dense_from_four_values_on(values, dense):
 WORDS = ["--design", "paper-dome", "--over", f"{WALL}=1:1.6:4", "--over", f"{RADIUS}=8:10:4", "--model", "membrane"]
 
 
+@pytest.mark.slow
 def test_the_command_draws_maps_and_later_ones_without_computing(command, tmp_path):
     plain = command("sweep", *WORDS, "--fresh")
     assert plain.returncode == 0, plain.stderr
@@ -226,6 +228,7 @@ def test_a_list_of_points_has_no_map(library):
         check_dense({})
 
 
+@pytest.mark.slow
 def test_the_page_shows_the_map_of_its_command():
     page = (ROOT / "docs/howto/sweep.md").read_text(encoding="utf-8")
     assert "](sweep-map.svg)" in page and all(f"--over {over}" in page for over in DRAWN)

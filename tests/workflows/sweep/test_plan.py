@@ -219,6 +219,7 @@ def test_a_grid_is_its_outer_product_with_the_last_key_fastest(grid):
     assert len({plan.position(k) for k in range(plan.count)}) == plan.count
 
 
+@pytest.mark.slow
 @given(grids)
 def test_a_file_says_the_same_in_both_spellings(tmp_path_factory, grid):
     path = tmp_path_factory.getbasetemp() / "grid.toml"

@@ -77,6 +77,7 @@ KILLS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("moment", KILLS)
 def test_a_kill_within_the_last_writes_loses_nothing(moment, library, tmp_path, root):
     out, plain = tmp_path / "sweep.nc", tmp_path / "plain.nc"
@@ -106,6 +107,7 @@ def test_a_kill_within_the_last_writes_loses_nothing(moment, library, tmp_path, 
     assert names(tmp_path) == ["plain.nc", "sweep.nc"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", ["torn", "flipped", "no newline", "garbage before", "emptied", "twice"])
 def test_a_damaged_journal_is_computed_again_where_it_is_damaged(damage, single, library, tmp_path):
     sweep(six(), tmp_path / "plain.nc", ALONE, library=library)

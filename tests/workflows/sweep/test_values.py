@@ -145,6 +145,7 @@ def test_every_variable_says_its_unit_and_the_file_its_origin(library, tmp_path)
     assert "Table S1" in data.attrs["error_estimate"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["membrane", "solid"])
 def test_pressures_beyond_the_limit_are_refused_and_the_others_predicted(model, evaluated, library, tmp_path):
     plan = small(["pneumatics.driving_pressures_kPa=5,45,60"], model=model)
