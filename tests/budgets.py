@@ -21,6 +21,8 @@ PACKAGE = ROOT / "generator" / "pneutouch"
 KEY = "sensitivity_kPa_per_N"
 COMPUTING = ("mechanics", "results", "evaluation", "report")
 """Folders that a sensitivity passes from the solver to the sheet."""
+ELSEWHERE = ("results/driving.py", "results/selection.py")
+"""Answers of other commands, which no sheet holds."""
 
 
 class Budget(NamedTuple):
@@ -71,13 +73,9 @@ def files_with_the_key() -> int:
 
 def classes_with_a_sensitivity() -> int:
     """Classes between solver and sheet that have a field of the sensitivity, by its name inside or outside."""
-    classes = (
-        node
-        for name in COMPUTING
-        for tree in trees(PACKAGE / name)
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ClassDef)
-    )
+    paths = (path for name in COMPUTING for path in sources(PACKAGE / name))
+    passed = (tree_of(path) for path in paths if path.relative_to(PACKAGE).as_posix() not in ELSEWHERE)
+    classes = (node for tree in passed for node in ast.walk(tree) if isinstance(node, ast.ClassDef))
     return sum(
         any(isinstance(one, ast.AnnAssign) and ast.unparse(one.target) in (KEY, "sensitivity") for one in node.body)
         for node in classes

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 import shutil
+from dataclasses import replace
 
 import pytest
 
@@ -13,6 +14,7 @@ from pneutouch.errors import InputError
 from pneutouch.results.record import plain
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.studio import measuring
+from tests.bench.recordings import READ, by_hand
 from tests.bench.rig import small
 from tests.studio.campaigns import BASES, NAME, PLAIN, SENSOR, silent, simulated, uploaded
 from tests.tables.instruments import INSTRUMENTS
@@ -102,6 +104,19 @@ def test_runs_without_a_plan_are_proposed_at_the_pressure_that_they_show(campaig
     assert found["unused"] == ["truth.json"]
     with pytest.raises(InputError, match="names the design"):
         ask(measuring.recognised, uploaded(campaign, only=("*steps*.csv",)), design=None)
+
+
+def test_runs_without_a_plan_are_proposed_as_what_they_show(tmp_path, ask):
+    """Presses without a stay, a press by hand and a leak: read as steps they would give no curve, or a wrong one."""
+    (tmp_path / "lab").mkdir()
+    hand = replace(READ["triangular"], write=by_hand)
+    for name, recording in (("a.csv", READ["triangular"]), ("b.csv", hand), ("c.csv", READ["stairs without return"])):
+        (tmp_path / "lab" / name).write_text(recording.text())
+    rows = "\n".join(f"{0.01 * k:.2f},{5 - 1e-5 * k:.5f}" for k in range(3000))
+    (tmp_path / "lab/d.csv").write_text(f"time_s,pressure_kPa\n{rows}\n")
+    found = ask(measuring.recognised, uploaded(tmp_path / "lab", within=""))
+    assert [run["problem"] for run in found["runs"]] == [None] * 4
+    assert [run["kind"] for run in found["runs"]] == ["loop", "hand", "steps", "leak"]
 
 
 def test_text_that_is_no_run_is_refused_in_the_words_of_the_command(tmp_path, ask):

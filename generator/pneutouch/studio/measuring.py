@@ -183,8 +183,9 @@ def _proposed(given: _Given, source: DesignSource, report: Report) -> Recognised
         try:
             loaded = load_curves(given.data / file, scene, reading=given.reading)
             sources[file] = loaded.sources[Path(file).name]
-            read_kPa = loaded.curves[0].run.driving_pressure_kPa
-            run = run.model_copy(update={"driving_pressure_kPa": read_kPa})
+            (shown,) = loaded.campaign.runs
+            read_kPa = shown.driving_pressure_kPa
+            run = run.model_copy(update={"driving_pressure_kPa": read_kPa, "kind": shown.kind})
         except PneutouchError as error:
             problem = str(error).removeprefix(f"{given.data / file}: none of its files can be read\n")
         seen[run.driving_pressure_kPa] += 1

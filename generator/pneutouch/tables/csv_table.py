@@ -147,7 +147,11 @@ def _parse(data: bytes, row: int, reader: _Reader) -> tuple[Array, Array, int]:
     lines, spaces = data.count(b"\n"), reader.delimiter == " "
     # The parser ignores superfluous fields without an error, so they are counted here; a comment has other ones.
     count = data.count(reader.delimiter.encode())
-    uneven = spaces or any(mark in data for mark in _MARKS) or count not in (lines * (reader.most - 1), lines * (reader.least - 1))
+    uneven = (
+        spaces
+        or any(mark in data for mark in _MARKS)
+        or count not in (lines * (reader.most - 1), lines * (reader.least - 1))
+    )
     kept = _check_widths(data, row, reader) if uneven or b'"' in data or reader.most == 1 else None
     rows = row + (np.arange(lines, dtype=float) if kept is None else kept)
     table = data

@@ -186,10 +186,8 @@ def unexpected(comparisons: Iterable[GroupComparison]) -> tuple[tuple[str, str],
 
 
 _EXPLAINED = {
-    SENSITIVITY_KEY: "units of force or pressure, another resin, or gas behind the cavity "
-    "(pneumatics.dead_volume_mL)",
-    STIFFNESS_KEY: "units of force or travel, another resin or wall, or a record that begins with the sensor "
-    "pressed",
+    SENSITIVITY_KEY: "units of force or pressure, another resin, or gas behind the cavity (pneumatics.dead_volume_mL)",
+    STIFFNESS_KEY: "units of force or travel, another resin or wall, or a record that begins with the sensor pressed",
 }
 """Figures that are questioned outside the predicted interval, and what would explain them."""
 
