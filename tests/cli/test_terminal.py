@@ -164,7 +164,7 @@ def test_no_colour_in_a_pipe_unless_it_is_required(names, coloured, tmp_path):
 
 
 def test_a_stage_escapes_control_characters(capsys):
-    from pneutouch.cli.progress import bar
+    from pneutouch.cli.terminal import bar
 
     with bar("reading \x1b[31mred") as report:
         report(0, 1, "evaluating a\x08b")

@@ -15,8 +15,7 @@ import typer
 from pneutouch import __version__
 from pneutouch.cli.commands import CHANGES, Commands
 from pneutouch.cli.complete import assignment, error_in_percent, names
-from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, notify, open_closed_streams, put
+from pneutouch.cli.terminal import bar, echo, notify, open_closed_streams, put
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.stopping import refuse_stopped
 

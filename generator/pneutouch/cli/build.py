@@ -28,8 +28,7 @@ from pneutouch.cli.app import (
     reporting,
 )
 from pneutouch.cli.complete import names
-from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, notify, report_next, set_words
+from pneutouch.cli.terminal import bar, echo, notify, report_next, set_words
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.evaluate import Evaluation

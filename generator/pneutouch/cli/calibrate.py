@@ -49,7 +49,7 @@ def calibrate(
 ) -> None:
     """Fit modulus, wall, dead volume and contact offset to a sensor's runs."""
     with reporting():
-        from pneutouch.cli.progress import bar
+        from pneutouch.cli.terminal import bar
         from pneutouch.results.record import plain
         from pneutouch.workflows.calibrate.calibrate import run_calibration
 

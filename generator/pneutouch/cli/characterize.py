@@ -70,7 +70,7 @@ def characterize(
 ) -> None:
     """Turn measured runs into figures and compare them with the prediction; exit 3 where files are not used."""
     with reporting():
-        from pneutouch.cli.progress import bar
+        from pneutouch.cli.terminal import bar
         from pneutouch.errors import InputError, nearest
         from pneutouch.mechanics.models.choice import USUAL
         from pneutouch.results.record import plain

@@ -45,7 +45,7 @@ def compare(
 ) -> None:
     """Compare designs, builds and measurements: their differences, and those that exceed their uncertainty."""
     with reporting():
-        from pneutouch.cli.progress import bar
+        from pneutouch.cli.terminal import bar
         from pneutouch.mechanics.models.choice import model_options
         from pneutouch.results.record import plain
         from pneutouch.workflows.compare import compare as run

@@ -14,8 +14,7 @@ import typer
 from pneutouch.cli.app import JsonOption, app, print_json, reporting
 from pneutouch.cli.complete import coupon_names, names
 from pneutouch.cli.declared import words
-from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, report_next, table_text
+from pneutouch.cli.terminal import bar, echo, report_next, table_text
 from pneutouch.results.coupons import CouponReport
 from pneutouch.results.record import plain
 

@@ -11,8 +11,7 @@ from typing import Any
 
 import typer
 
-from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, put, report_next, set_words, table_text
+from pneutouch.cli.terminal import bar, echo, put, report_next, set_words, table_text
 from pneutouch.results.driving import (
     DrivingRecord,
     FigureReach,

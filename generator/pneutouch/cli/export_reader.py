@@ -49,7 +49,7 @@ def export_reader(
 ) -> None:
     """Write the sensor's pressure-to-force model: a table, a C header, a Python module, an Arduino sketch."""
     with reporting():
-        from pneutouch.cli.progress import bar
+        from pneutouch.cli.terminal import bar
         from pneutouch.evaluation.evaluate import evaluate
         from pneutouch.mechanics.models.choice import model_options
         from pneutouch.workflows.export_reader import make_reader, write_reader
@@ -79,7 +79,7 @@ def _export_simulator(
     design: str, changed: dict[str, Any], simulator: str, out: Path, options: Mapping[str, Any], *, json: bool
 ) -> None:
     """Write the model for a simulator and list its content."""
-    from pneutouch.cli.progress import bar
+    from pneutouch.cli.terminal import bar
     from pneutouch.evaluation.evaluate import evaluate
     from pneutouch.workflows.export_reader import make_simulator, write_simulator
 

@@ -13,8 +13,7 @@ import typer
 
 from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
 from pneutouch.cli.declared import given, with_options
-from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, notify, report_next, table_text
+from pneutouch.cli.terminal import bar, echo, notify, report_next, table_text
 from pneutouch.results.fit import MaterialFit
 from pneutouch.results.record import plain
 from pneutouch.spec.options import FitOptions

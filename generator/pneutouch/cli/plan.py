@@ -21,8 +21,7 @@ from pneutouch.cli.app import (
     reporting,
 )
 from pneutouch.cli.declared import given, with_options
-from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, notify, report_next, table_text
+from pneutouch.cli.terminal import bar, echo, notify, report_next, table_text
 from pneutouch.spec.options import PlanOptions
 from pneutouch.wording import counted
 

@@ -24,8 +24,7 @@ from pneutouch.cli.app import (
     print_json,
     reporting,
 )
-from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, notify, report_next, set_words, table_text
+from pneutouch.cli.terminal import bar, echo, notify, report_next, set_words, table_text
 from pneutouch.results.record import plain
 from pneutouch.results.response import LoadResponse
 

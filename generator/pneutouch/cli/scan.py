@@ -24,8 +24,7 @@ from pneutouch.cli.app import (
 )
 from pneutouch.cli.complete import names
 from pneutouch.cli.declared import given, with_options
-from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, table_text
+from pneutouch.cli.terminal import bar, echo, table_text
 from pneutouch.results.record import plain
 from pneutouch.results.scan import FavouringState, ScanRecord, SeparationRecord, SimulatedSignal, SoughtPattern
 from pneutouch.spec.options import ScanOptions, flag_of

@@ -26,8 +26,7 @@ from pneutouch.cli.app import (
 )
 from pneutouch.cli.complete import percent_of
 from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, with_fields, words
-from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, notify, report_next, report_written
+from pneutouch.cli.terminal import bar, echo, notify, report_next, report_written
 from pneutouch.errors import InputError, RuleBrokenError
 from pneutouch.results.record import SENSITIVITY_KEY, plain
 from pneutouch.results.selection import GradedRecord

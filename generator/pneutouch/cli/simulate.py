@@ -10,8 +10,7 @@ import typer
 from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
 from pneutouch.cli.complete import names
 from pneutouch.cli.declared import given, with_options
-from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, notify, report_next
+from pneutouch.cli.terminal import bar, echo, notify, report_next
 from pneutouch.spec.options import SimulationOptions
 from pneutouch.wording import counted
 

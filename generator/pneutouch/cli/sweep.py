@@ -14,8 +14,7 @@ import typer
 
 from pneutouch.cli.app import CalibrationOption, JsonOption, SetOption, app, changes, print_json, reporting
 from pneutouch.cli.complete import assignment, names
-from pneutouch.cli.progress import bar
-from pneutouch.cli.terminal import echo, notify, report_next, table_text
+from pneutouch.cli.terminal import bar, echo, notify, report_next, table_text
 from pneutouch.errors import InputError
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.rounding import tenths_below

@@ -5,6 +5,8 @@ In a pipe a line stays whole, so that ``grep`` finds it, and nothing is coloured
 Tables fitted to the width of the terminal; whole lines if stdout is no terminal.
 
 The last line of a command between a target and a measured sensor: the command that comes next.
+
+Progress of a command: a bar on a terminal, one line a stage elsewhere, on stderr both.
 """
 
 import contextlib
@@ -15,11 +17,11 @@ import shlex
 import shutil
 import sys
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TextIO
+from typing import Protocol, TextIO
 
-from pneutouch.errors import ComputationError
+from pneutouch.errors import ComputationError, one_line
 
 _SEVERITIES = {"error": "1;31", "warning": "33", "note": "36", "next": "32"}
 _SEVERITY = re.compile(rf"^({'|'.join(_SEVERITIES)})(?=: )", re.MULTILINE)
@@ -192,3 +194,47 @@ def report_written(path: Path) -> None:
     echo(f"\nwritten: {path}")
     known = Library.default().paths("designs").get(path.stem)
     report_next("check", path.stem if known is not None and known.resolve() == path.resolve() else path)
+
+
+class ProgressCallback(Protocol):
+    """Receives how many of all are done and, where it changes, the current task."""
+
+    def __call__(self, done: int, total: int, what: str | None = None) -> None:
+        """Move the bar."""
+
+
+@contextlib.contextmanager
+def bar(what: str, *, unit: str = "") -> Iterator[ProgressCallback]:
+    """A stage, such as "reading runs", or "" where the callback names its stages; a bar that moves by the callback.
+
+    ``unit`` is that of the counts at the bar, where they are not of things."""
+    if not sys.stderr.isatty():
+        yield _lines(what)
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    counts = (MofNCompleteColumn(), TextColumn(unit)) if unit else (MofNCompleteColumn(),)
+    columns = (TextColumn("{task.description}"), BarColumn(), *counts, TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as shown:
+        task = shown.add_task(what, total=None)
+
+        def report(done: int, total: int, what: str | None = None) -> None:
+            shown.update(task, description=what if what is None else one_line(what), completed=done, total=total)
+
+        yield report
+
+
+def _lines(what: str) -> ProgressCallback:
+    """One line a stage, the first at once."""
+    last = what
+    if what:
+        notify(f"{one_line(what)} ...")
+
+    def report(done: int, total: int, what: str | None = None) -> None:
+        nonlocal last
+        if what is not None and what != last:
+            last = what
+            notify(f"{one_line(what)} ...")
+
+    return report
