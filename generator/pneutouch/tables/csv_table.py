@@ -68,8 +68,8 @@ class _Reader(NamedTuple):
 def csv_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[RowChunk]:
     """Chunks of a text file; see `read.chunks`.
 
-    Empty lines and comments are skipped but counted. A complete last row without a line end is returned as `RowChunk.last`, because
-    its last number may be cut."""
+    Empty lines and comments are skipped but counted. A complete last row without a line end is returned as
+    `RowChunk.last`, because its last number may be cut."""
     how = layout.format
     reader = _Reader(
         path,

@@ -11,7 +11,10 @@ from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign, CampaignRun
 from pneutouch.workflows.characterize.campaign import characterize
 from pneutouch.workflows.characterize.load import load_curves
+from tests.bench.reads import refuse
 from tests.bench.recordings import CLEAR, DEEP, READ, Recording, by_hand, plain, presses, true_figures, truth
+
+NAMES = {"position": "position_mm", "force": "force_N", "pressure": "pressure_kPa"}
 
 
 def read(folder, recording, **options):
@@ -107,8 +110,9 @@ def test_columns_that_are_one_are_refused(first, second, factor, tmp_path):
         samples[rows[second]] = factor * samples[rows[first]]
         return samples
 
-    with pytest.raises(InputError, match="hold the same values"):
-        read(tmp_path, Recording(spoil=copied))
+    path = tmp_path / "run.csv"
+    path.write_text(Recording(spoil=copied).text())
+    refuse(path, f"columns {NAMES[first]} and {NAMES[second]} hold the same values")
 
 
 def asked(measured, *words):
@@ -135,7 +139,7 @@ def test_a_tare_is_subtracted_with_a_question(tmp_path):
 
 def test_a_record_that_begins_in_contact_is_refused_or_asked_about(tmp_path):
     moving = Recording(presses(1), spoil=lambda s: s[:, 2500:6000])
-    with pytest.raises(InputError, match="begins with the sensor pressed"):
+    with pytest.raises(InputError, match="pressed"):
         read(tmp_path, moving)
     resting = [(0.1, 1.5), (2.0, 1.5), (6.0, DEEP), (6.0, 1.5), (2.0, 1.5)]
     assert asked(read(tmp_path, Recording(resting, spoil=lambda s: s[:, 60:])), "Mean stiffness", "pressed")
@@ -170,7 +174,7 @@ def test_one_recording_is_no_two_runs(tmp_path):
     measured = characterize(tmp_path, "paper-dome", model="atlas").figures
     assert [run.file for run in measured.runs] == ["1.csv"]
     (failure,) = measured.failures
-    assert failure.file == "2.csv" and "the same bytes as 1.csv" in failure.message
+    assert failure.file == "2.csv" and "1.csv" in failure.message
 
 
 def test_a_unit_that_is_wrong_is_refused_of_one_file_as_of_a_campaign(tmp_path):
@@ -189,8 +193,9 @@ def test_an_empty_cell_is_refused_with_its_row_and_column(tmp_path):
         rows[500] = rows[500].rpartition(",")[0] + ","
         return "\n".join(rows) + "\n"
 
-    with pytest.raises(InputError, match="row 501: column pressure_kPa: empty"):
-        read(tmp_path, Recording(write=emptied))
+    path = tmp_path / "run.csv"
+    path.write_text(Recording(write=emptied).text())
+    refuse(path, "row 501: column pressure_kPa: empty")
 
 
 def test_a_leak_is_told_from_its_columns(tmp_path):
