@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from pneutouch.errors import InputError
 from pneutouch.formats import format_of
+from pneutouch.output import files as output_files
 from pneutouch.output.files import check_writable, replacing, with_manifest, write_folder
 from tests.refusals import refused
 
@@ -184,3 +187,90 @@ def test_a_file_whose_digest_the_manifest_does_not_give_is_not_ours(folder: Path
     with pytest.raises(InputError):
         write_folder(folder, NEW)
     assert content(folder) == before
+
+
+def rename_by_way_of_a_third(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A system that cannot exchange two names in one step."""
+    monkeypatch.setattr(output_files, "_at_once", lambda one, other: False)
+
+
+@pytest.mark.parametrize("prepare", [lambda patch: None, rename_by_way_of_a_third], ids=["at once", "by a third name"])
+def test_a_file_that_comes_while_the_names_are_exchanged_stays(folder: Path, prepare, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    prepare(monkeypatch)
+    keep = output_files._keep_foreign
+
+    def late(old: Path, new: Path, *, again: bool = False) -> None:
+        keep(old, new, again=again)
+        if not again:
+            (folder / "runs" / "late.csv").write_bytes(b"measured meanwhile")
+
+    monkeypatch.setattr(output_files, "_keep_foreign", late)
+    write_folder(folder, NEW)
+    assert (folder / "runs" / "late.csv").read_bytes() == b"measured meanwhile"
+    assert (folder / "sheet.md").read_bytes() == b"new"
+    assert [path.name for path in folder.parent.iterdir()] == ["x"]
+
+
+@pytest.mark.parametrize("prepare", [lambda patch: None, rename_by_way_of_a_third], ids=["at once", "by a third name"])
+def test_a_file_of_ours_that_is_changed_while_the_names_are_exchanged_stays(folder: Path, prepare, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    prepare(monkeypatch)
+    keep = output_files._keep_foreign
+
+    def late(old: Path, new: Path, *, again: bool = False) -> None:
+        keep(old, new, again=again)
+        if not again:
+            (folder / "sheet.md").write_bytes(b"annotated meanwhile")
+
+    monkeypatch.setattr(output_files, "_keep_foreign", late)
+    with pytest.raises(InputError):
+        write_folder(folder, NEW)
+    assert (folder / "sheet.md").read_bytes() == b"annotated meanwhile"
+    assert [path.name for path in folder.parent.iterdir()] == ["x"]
+
+
+KILLED = """
+import os, sys
+from pathlib import Path
+from pneutouch.output import files
+
+files._at_once = lambda one, other: False
+rename = Path.rename
+
+def killed(self, target):
+    rename(self, target)
+    if str(target).endswith(".old"):
+        os._exit(9)
+
+Path.rename = killed
+files.write_folder(Path(sys.argv[1]), {"manifest.json": b"{}"})
+"""
+
+
+def test_a_process_killed_between_two_renames_leaves_the_folder_to_be_found(folder: Path) -> None:
+    (folder / "notes.md").write_bytes(b"a person's")
+    done = subprocess.run([sys.executable, "-c", KILLED, str(folder)], check=False)
+    assert done.returncode == 9 and not folder.exists()
+    write_folder(folder, NEW)
+    assert (folder / "notes.md").read_bytes() == b"a person's"
+    assert (folder / "sheet.md").read_bytes() == b"new"
+
+
+ROUNDS = """
+import sys
+from pathlib import Path
+from pneutouch.output.files import with_manifest, write_folder
+
+folder, name = Path(sys.argv[1]), sys.argv[2]
+for number in range(15):
+    write_folder(folder, with_manifest({f"{name}.txt": b"%d" % number, "both.txt": name.encode()}, "x", {}))
+"""
+
+
+def test_two_processes_in_one_folder_lose_no_file_of_a_person(folder: Path) -> None:
+    (folder / "notes.md").write_bytes(b"a person's")
+    both = [subprocess.Popen([sys.executable, "-c", ROUNDS, str(folder), name]) for name in ("first", "second")]
+    assert [process.wait() for process in both] == [0, 0]
+    assert (folder / "notes.md").read_bytes() == b"a person's"
+    last = (folder / "both.txt").read_bytes().decode()
+    assert content(folder).keys() == {"notes.md", "both.txt", f"{last}.txt", "manifest.json"}
+    assert [path.name for path in folder.parent.iterdir()] == ["x"]

@@ -4,6 +4,7 @@ The manifest of an output folder: its inputs, the versions that made it, and the
 """
 
 import contextlib
+import ctypes
 import errno
 import hashlib
 import importlib.metadata
@@ -11,7 +12,7 @@ import json
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,12 @@ from pneutouch.spec.files import check_plain, read_bytes
 from pneutouch.stopping import parent_folders, refuse_stopped, temporary_folder, uninterrupted
 
 MANIFEST = "manifest.json"
+
+_OLD = ".old"
+"""Ending of the third name by way of which two folders exchange theirs."""
+
+_HERE, _EXCHANGE = -100, 2
+"""AT_FDCWD and RENAME_EXCHANGE of Linux (linux/fcntl.h, linux/fs.h)."""
 
 _MOST_MANIFEST = 100_000_000
 """Bytes; a campaign of many runs has a long one."""
@@ -141,7 +148,8 @@ def check_writable(folder: Path, key: str = "out") -> None:
     if folder.is_symlink():
         raise InputError(f"{folder} is a link", key=key, remedy="give the folder it leads to")
     if folder.is_dir() and any(folder.iterdir()):
-        _our_files(folder)
+        with alone_in(folder.parent):
+            _our_files(folder)
     parent = next(path for path in (folder.parent, *folder.parent.parents) if path.exists())
     if not parent.is_dir():
         raise InputError(f"{parent} is a file", key=key, remedy="it must be a folder")
@@ -167,14 +175,16 @@ def replacing(folder: Path) -> Iterator[Path]:
     """A hidden folder to write into, put in the place of ``folder`` when the block ends; what others put there is kept.
 
     Raises InputError if it cannot be written, half way too, and rather than replace or remove a file that is not as
-    the folder's manifest states; the previous output then stays and nothing else does.
+    the folder's manifest states; the previous output then stays and nothing else does. Of two processes in one folder
+    the later one replaces the output of the other.
     """
+    _restore(folder)
     check_writable(folder)
     try:
         with parent_folders(folder), temporary_folder(prefix=f".{folder.name}.", within=folder.parent) as fresh:
             yield fresh
             refuse_stopped()
-            with uninterrupted():
+            with uninterrupted(), alone_in(folder.parent):
                 _swap(folder, fresh)
     except OSError as error:
         problem = f"{folder}: {error.strerror}"
@@ -189,19 +199,79 @@ def _swap(folder: Path, fresh: Path) -> None:
         return
     if any(folder.iterdir()):
         _keep_foreign(folder, fresh)
-    exchange(folder, fresh)
+    exchange(folder, fresh, lambda old, new: _keep_foreign(old, new, again=True))
 
 
-def exchange(folder: Path, fresh: Path) -> None:
-    """Rename ``fresh`` to ``folder``, which is there and is removed; an interruption leaves one of the two whole."""
-    aside = fresh.with_name(f"{fresh.name}.old")
-    folder.rename(aside)
+def exchange(folder: Path, fresh: Path, keep: Callable[[Path, Path], None] = lambda old, new: None) -> None:
+    """Put ``fresh`` in the place of ``folder``, which is there and is removed; ``keep`` takes both, the old one first,
+    and brings over what came meanwhile, or raises, so that the old one is put back.
+
+    A process that is killed leaves one of the two whole in the place of ``folder``, or one that `_restore` finds.
+    """
+    aside = fresh.with_name(f"{fresh.name}{_OLD}")
+    _exchange_names(folder, fresh, aside)
     try:
-        fresh.rename(folder)
+        if any(fresh.iterdir()):
+            keep(fresh, folder)
     except BaseException:
-        aside.rename(folder)
+        _exchange_names(folder, fresh, aside)
         raise
-    shutil.rmtree(aside, ignore_errors=True)
+    shutil.rmtree(fresh, ignore_errors=True)
+
+
+def _exchange_names(one: Path, other: Path, aside: Path) -> None:
+    """Exchange the names of two folders, at once where the system can, else by way of a third name."""
+    if _at_once(one, other):
+        return
+    one.rename(aside)
+    try:
+        other.rename(one)
+    except BaseException:
+        aside.rename(one)
+        raise
+    aside.rename(other)
+
+
+def _at_once(one: Path, other: Path) -> bool:
+    """Exchange two names in one step; False where the system or its disk cannot. Python has no call for it."""
+    try:
+        rename = ctypes.CDLL(None, use_errno=True).renameat2
+    except (OSError, AttributeError, TypeError):
+        return False
+    if rename(_HERE, os.fsencode(one.absolute()), _HERE, os.fsencode(other.absolute()), _EXCHANGE) == 0:
+        return True
+    number = ctypes.get_errno()
+    if number in (errno.ENOSYS, errno.EINVAL, errno.EOPNOTSUPP):
+        return False
+    raise OSError(number, os.strerror(number), str(one))
+
+
+def _restore(folder: Path) -> None:
+    """Bring back the folder that a process left under its third name when it was killed while it exchanged names."""
+    if os.path.lexists(folder) or not folder.parent.is_dir():
+        return
+    left = [path for path in folder.parent.iterdir() if path.name.startswith(f".{folder.name}.")]
+    olds = [path for path in left if path.name.endswith(_OLD) and path.is_dir() and not path.is_symlink()]
+    if olds:
+        with contextlib.suppress(OSError):
+            max(olds, key=lambda path: path.stat().st_mtime).rename(folder)
+
+
+@contextlib.contextmanager
+def alone_in(parent: Path) -> Iterator[None]:
+    """Wait until no other process exchanges folders here; where folders cannot be locked, nobody is waited for."""
+    try:
+        import fcntl
+    except ImportError:
+        yield
+        return
+    handle = os.open(parent, os.O_RDONLY)
+    try:
+        with contextlib.suppress(OSError):
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
 
 
 def _our_files(folder: Path) -> set[str]:
@@ -228,13 +298,18 @@ def _of_others(path: Path) -> InputError:
     return InputError(problem, file=path, remedy="move it away, or give another folder with `out`")
 
 
-def _keep_foreign(folder: Path, fresh: Path) -> None:
-    """Bring over files, links and empty folders of others; raises InputError where one is in the way or is a pipe."""
+def _keep_foreign(folder: Path, fresh: Path, *, again: bool = False) -> None:
+    """Bring over files, links and empty folders of others; raises InputError where one is in the way or is a pipe.
+
+    ``again``: those that are there were brought before.
+    """
     listed = _our_files(folder)
     for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder).as_posix()
         target, is_folder = fresh / name, path.is_dir() and not path.is_symlink()
         if name in listed or (is_folder and (target.is_dir() or any(path.iterdir()))):
+            continue
+        if again and os.path.lexists(target):
             continue
         if os.path.lexists(target) or not (is_folder or path.is_symlink() or path.is_file()):
             raise _of_others(path)

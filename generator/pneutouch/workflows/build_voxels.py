@@ -14,7 +14,7 @@ from pneutouch.export.voxels.raster import BACKGROUND, VoxelBody, VoxelJob, blen
 from pneutouch.export.voxels.slices import VoxelSlicer
 from pneutouch.export.voxels.stack import MANIFEST, shortfalls, slice_name, stack_record, stated_slices
 from pneutouch.formats import versioned
-from pneutouch.output.files import check_writable, digest, exchange, file_digest, json_bytes
+from pneutouch.output.files import alone_in, check_writable, digest, exchange, file_digest, json_bytes
 from pneutouch.parts import Assembly
 from pneutouch.printability import Finding, refuse
 from pneutouch.printability.rules.resins import check_stack
@@ -125,7 +125,7 @@ def write_stack(
                 progress(number + 1, len(job.raster.z))
             record = plain(stack_record(job, slicer, hashes, about, prefix))
             (fresh / MANIFEST).write_bytes(json_bytes(versioned("stack", record)))
-            with uninterrupted():
+            with uninterrupted(), alone_in(folder.parent):
                 fresh.chmod(0o755)
                 if folder.exists():
                     check_stack_folder(folder)
