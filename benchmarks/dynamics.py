@@ -12,9 +12,8 @@ from benchmarks.store import store
 from pneutouch.catalogue.scene import DEFAULT
 from pneutouch.evaluation.dynamics import DynamicState
 from pneutouch.evaluation.evaluate import evaluate
-from pneutouch.mechanics.line.air import AirState
 from pneutouch.mechanics.line.dynamics import GasLine, SensorDynamics
-from pneutouch.mechanics.line.elements import Duct, GasVolume
+from pneutouch.mechanics.line.elements import AirState, Duct, GasVolume
 from pneutouch.mechanics.line.transient import band_figures
 
 LENGTHS = (50.0, 300.0, 1000.0)

@@ -61,9 +61,12 @@ def stairs(*, back: bool) -> list[tuple[float, float]]:
     return [(3.0, CLEAR), *up, *(down if back else []), *([(0.5, CLEAR), (3.0, CLEAR)] if back else [])]
 
 
-def steps() -> list[tuple[float, float]]:
-    each = [((depth - CLEAR) / 5, depth) for depth in depths()]
-    return [(3.0, CLEAR)] + [leg for move in each for leg in (move, (4.0, move[1]), (move[0], CLEAR), (4.0, CLEAR))]
+def steps(overshoot: float = 0.0) -> list[tuple[float, float]]:
+    legs = [(3.0, CLEAR)]
+    for depth in depths():
+        seconds = (depth - CLEAR) / 5
+        legs += [(seconds, depth + overshoot), (0.1, depth), (4.0, depth), (seconds, CLEAR), (4.0, CLEAR)]
+    return legs
 
 
 @dataclass(frozen=True)
@@ -135,6 +138,12 @@ def without(*parts: tuple[int, int]) -> Callable[[np.ndarray], np.ndarray]:
     return cut
 
 
+def spiked(samples: np.ndarray, force: float) -> np.ndarray:
+    """A sample of the rest that no plate makes."""
+    samples[2, 400] = force
+    return samples
+
+
 READ = {
     "triangular": Recording(),
     "single press": Recording(presses(1)),
@@ -151,6 +160,17 @@ READ = {
     "drift": Recording(drift=-0.005),
     "gaps": Recording(spoil=without((5000, 9000), (12000, 15000))),
     "noise": Recording(noise=0.15),
+    "slow": Recording([(4.0, CLEAR), (15.0, DEEP), (15.0, CLEAR), (2.0, CLEAR)]),
+    "shallow second press": Recording([*presses(1), (6.5, 5.5), (6.5, CLEAR), (2.0, CLEAR)]),
+    "touches before": Recording([(2.0, CLEAR), *2 * [(2.0, 1.0), (2.0, CLEAR), (2.0, CLEAR)], *presses(1)]),
+    "stopped in the second press": Recording([*presses(1), (4.0, 3.0)]),
+    "a peak after stairs": Recording([*stairs(back=True), (7.5, DEEP), (7.5, CLEAR), (2.0, CLEAR)], "steps", depths),
+    "overshoot": Recording(steps(overshoot=0.12), "steps", depths),
+    "short hold": Recording([(2.0, CLEAR), (7.5, DEEP), (2.0, DEEP), (7.5, CLEAR), (2.0, CLEAR)]),
+    "hold of ten seconds": Recording(
+        [(3.0, CLEAR), (1.5, DEEP), (10.0, DEEP), (1.5, CLEAR), (3.0, CLEAR)], "relaxation"
+    ),
+    "spike": Recording(spoil=lambda s: spiked(s, 60.0)),
 }
 """Recordings that give figures without a word more."""
 

@@ -11,13 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pneutouch.bench.curve import curve_of
+from pneutouch.bench.questions import check_leak, outliers
 from pneutouch.bench.reading import LEAK, PLATE, read_blocks
 from pneutouch.bench.record import MeasuredCurve
-from pneutouch.bench.run_checks import ExpectedRun, check_leak, check_plausible, outliers
+from pneutouch.bench.run_checks import ExpectedRun, check_plausible
 from pneutouch.bench.source import identify
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap, Rig
-from pneutouch.tables.layout import UNITS
+from pneutouch.tables.unit_words import UNITS
 from pneutouch.units import KPA
 from tests.bench.rig import HEADER, Sensor, run_of, small, write
 

@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pneutouch.bench.curve import MOST, curve_of
+from pneutouch.bench.curve import curve_of
 from pneutouch.bench.reading import PLATE, read_blocks
 from pneutouch.bench.record import SuspectInterval, blocks_of
+from pneutouch.bench.run_warnings import MOST
 from pneutouch.bench.source import identify
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap, Rig

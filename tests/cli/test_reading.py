@@ -19,7 +19,7 @@ from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign, ColumnMap
 from pneutouch.spec.options import SimulationOptions
 from pneutouch.spec.read import validate
-from pneutouch.tables.layout import UNITS
+from pneutouch.tables.unit_words import UNITS
 from pneutouch.workflows.characterize import parse_columns
 from pneutouch.workflows.characterize.load import with_reading
 from pneutouch.workflows.simulate import simulate
@@ -163,7 +163,8 @@ def twins(tmp_path, recording, unit):
     """A campaign of two files of one instrument, whose forces are named to be in ``unit``."""
     path = logger(tmp_path, *recording)
     path.write_text(path.read_text().replace("load_g", f"load_{unit}"))
-    (tmp_path / "other.log").write_bytes(path.read_bytes())
+    # The last row is left out: the same bytes would be no second run.
+    (tmp_path / "other.log").write_text("\n".join(path.read_text().splitlines()[:-1]) + "\n")
     entries = [
         f'[[runs]]\nfile = "{name}"\nsensor = "A"\nresin = "TangoPlus"\nrun = {k + 1}\n'
         for k, name in enumerate((path.name, "other.log"))

@@ -159,7 +159,7 @@ def test_same_campaign_same_bytes(least):
     assert measured_datasheet(least) == measured_datasheet(least)
 
 
-def test_one_run_is_shown_without_interval_and_without_empty_headings(least):
+def test_one_run_is_shown_with_the_intervals_of_its_samples_alone_and_without_empty_headings(least):
     sheet = described(least)
     assert dict(sheet.facts)["Contains"] == "1 specimen, 1 run, 1 resin"
     assert set(headings(sheet)) == {
@@ -169,7 +169,9 @@ def test_one_run_is_shown_without_interval_and_without_empty_headings(least):
         "Conditions",
         "Definitions",
     }
-    assert {row[5] for row in table_under(sheet, "Figures of TangoPlus").rows} == {"–"}
+    rows = table_under(sheet, "Figures of TangoPlus").rows
+    known = [row for row in rows if row[5] != "–"]
+    assert rows[0][5] == "–" and len(known) <= 2
     assert len(found(sheet.blocks, Plot)) == 3
 
 

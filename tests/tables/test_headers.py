@@ -10,8 +10,9 @@ from pneutouch.bench.tensile.read import _facts
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap
 from pneutouch.spec.values import plain_number
-from pneutouch.tables.layout import UNITS, score, unit_of
+from pneutouch.tables.layout import score
 from pneutouch.tables.read import whole
+from pneutouch.tables.unit_words import UNITS, unit_of
 
 ANY = ColumnMap()
 NUMBERS = "0.0,1.5,0.25,10.5\n0.1,1.6,0.35,10.6\n0.2,1.7,0.45,10.7\n"

@@ -17,8 +17,8 @@ from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.selection.graded import cost
 from pneutouch.spec.target import Target
 from pneutouch.spec.toml_text import toml_text
+from pneutouch.workflows.select.document import graded
 from pneutouch.workflows.select.graded import select_graded
-from pneutouch.workflows.select.graded_document import graded
 from pneutouch.workflows.select.search import FoundChoice
 from tests.conftest import ROOT
 

@@ -1,183 +1,34 @@
-"""A run's blocks to its curve: points read at the ends of holds, or the loading of a run without holds.
+"""A run's blocks to its curve: points read at the ends of holds, or the loading of a run without holds."""
 
-Warnings about a run, each with its time interval and reason; nothing is dropped without one.
-"""
-
-import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from types import MappingProxyType
 
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.excursions import NEAR, Excursion
+from pneutouch.bench.excursions import Excursion, smoothed
 from pneutouch.bench.first_contact import BEFORE, Baseline, baseline
-from pneutouch.bench.indents import HOLD, RELAXATION, RunIndentations, find_indents, read_window
-from pneutouch.bench.record import Blocks, MeasuredCurve, MeasuredIndentation, SuspectInterval
+from pneutouch.bench.indents import RunIndentations, find_indents
+from pneutouch.bench.record import BLOCK_ARRAYS, Blocks, MeasuredCurve, MeasuredIndentation, SuspectInterval
+from pneutouch.bench.run_warnings import (
+    SURELY,
+    cut_short,
+    goes_on,
+    listed,
+    pressed_before,
+    run_warnings,
+    slope_variance,
+    untrusted,
+)
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import CampaignRun, Rig, RunKind
-from pneutouch.units import KPA
 
-SHORT = 0.5
-"""A hold is short below this share of the paper's: our choice."""
+Loadings = Sequence[tuple[Array, Array, Array]]
+Warnings = list[SuspectInterval]
 
-SETTLED = 0.01
-"""Share of the force or the rise by which the two halves of a read window may differ: our choice."""
-
-LEAK = 0.02
-"""Share of the greatest rise that a leak may take in a hold: our choice, about the difference between three runs."""
-
-SAME_DEPTH = 0.03
-"""mm within which two indentations have one depth: some standard deviations of an onset (0.004 to 0.01 mm)."""
-
-MOST = 20
-"""Gaps, clipped parts and spikes that are listed one by one, of each kind: our choice, for a readable list."""
-
-_MANY = MappingProxyType({"gap": "gaps", "clipped": "clipped parts", "spike": "spikes"})
-
-MISSING, PRESSED = 0.1, 0.002
-"""Share of a loading that may be missing, and of its force that the force may change by before contact: our choice."""
-
-_SURELY = 8.0
-"""Standard errors of that change that are no chance, noise alike from sample to sample included: our choice."""
-
-_SIGNIFICANT = 4.0
-"""Standard errors that a change must exceed before it is reported: one false alarm in 10^4."""
-
-
-def untrusted(blocks: Blocks, indent: MeasuredIndentation, before: float) -> str | None:
-    """Reason why an indentation cannot be used: a channel clipped before contact or while read, or half of it missing;
-    None if it can."""
-    lost = 0.0
-    for warning in blocks.warnings:
-        if warning.used:
-            continue
-        in_read = min(warning.end, indent.read[1]) - max(warning.start, indent.read[0])
-        if warning.kind == "gap":
-            lost += max(in_read, 0.0)
-        elif in_read >= 0 or (warning.end >= indent.contact - before and warning.start <= indent.contact):
-            return warning.why
-    return "most of its samples are missing" if lost > 0.5 * (indent.read[1] - indent.read[0]) else None
-
-
-def listed(warnings: Sequence[SuspectInterval]) -> list[SuspectInterval]:
-    """Warnings as listed: of gaps, clipped parts and spikes the first `MOST` of each and a sum of the others."""
-    shown = [warning for warning in warnings if warning.kind not in _MANY]
-    for kind, name in _MANY.items():
-        alike = [warning for warning in warnings if warning.kind == kind]
-        shown += alike[:MOST]
-        more = alike[MOST:]
-        if more:
-            lasts = sum(warning.end - warning.start for warning in more)
-            first, last = min(warning.start for warning in more), max(warning.end for warning in more)
-            why = f"{len(more)} more {name}: {lasts:.3g} s in all"
-            shown.append(SuspectInterval(first, last, why, False, more[0].kind))
-    return shown
-
-
-def run_warnings(run: CampaignRun, blocks: Blocks, indentations: RunIndentations) -> list[SuspectInterval]:
-    """Warnings about holds, contacts, releases, depths and the pressure without contact, in order of time."""
-    warnings: list[SuspectInterval] = []
-    if indentations.pressed:
-        end = indentations.parts[0].clear[0] if indentations.parts else blocks.time.size - 1
-        why = "the record begins with the plate in; left out"
-        warnings.append(SuspectInterval(float(blocks.time[0]), float(blocks.time[end]), why, False))
-    usual, turns = RELAXATION if run.kind == "relaxation" else HOLD, run.kind in ("loop", "hand")
-    for number, indent in enumerate(indentations.indents, start=1):
-        warnings += _of_one(number, indent, blocks, indentations, usual, not turns)
-    if not turns:
-        warnings += _of_depths([indent for indent in indentations.indents if not math.isnan(indent.contact)])
-    return warnings + _leak(blocks, indentations)
-
-
-def _of_one(
-    number: int, indent: MeasuredIndentation, blocks: Blocks, indentations: RunIndentations, usual: float, held: bool
-) -> list[SuspectInterval]:
-    begin, end = indent.hold
-    if math.isnan(indent.contact):
-        return [SuspectInterval(begin, end, f"indentation {number}: no contact found", False)]
-    warnings = []
-    contact = indentations.contacts[number - 1]
-    if contact is not None and not contact.fitted:
-        light = "too light for an onset by itself; its onset is the median of the others"
-        warnings.append(SuspectInterval(indent.contact, begin, f"indentation {number}: {light}", True))
-    if held and end - begin < SHORT * usual:
-        short = f"indentation {number}: held for {end - begin:.3g} s, usual are {usual:g} s"
-        warnings.append(SuspectInterval(begin, end, short, True))
-    elif held and (why := _unsettled(blocks, indentations, number - 1)):
-        warnings.append(SuspectInterval(*indent.read, f"indentation {number}: {why}", True))
-    if math.isnan(indent.release) and not _goes_on(indentations, number - 1):
-        lasting = f"indentation {number}: no release: the force does not go back"
-        warnings.append(SuspectInterval(end, float(blocks.time[-1]), lasting, True))
-    return warnings
-
-
-def _goes_on(indentations: RunIndentations, number: int) -> bool:
-    """True if the next indentation is a further step of the same loading."""
-    parts = indentations.parts
-    return number + 1 < len(parts) and parts[number + 1].clear == parts[number].clear
-
-
-def _unsettled(blocks: Blocks, indentations: RunIndentations, number: int) -> str | None:
-    start, end = read_window(blocks, indentations.parts[number].hold)
-    middle, indent = (start + end) // 2, indentations.indents[number]
-    if end - start < 4:
-        return None
-    for key, values, whole in (("force", blocks.force, indent.force), ("pressure", blocks.pressure, indent.rise)):
-        first, last = values[start:middle], values[middle:end]
-        change = float(last.mean() - first.mean())
-        error = math.sqrt(first.var() / first.size + last.var() / last.size)
-        if abs(change) > max(SETTLED * abs(whole), _SIGNIFICANT * error):
-            return f"{key} not settled: changes by {100 * change / whole:.2g} % within the stretch that is read"
-    return None
-
-
-def _of_depths(indents: list[MeasuredIndentation]) -> list[SuspectInterval]:
-    warnings = []
-    for before, after in itertools.pairwise(indents):
-        if after.indentation < before.indentation - SAME_DEPTH:
-            why = f"out of order: {after.indentation:.3g} mm after {before.indentation:.3g} mm; sorted by depth"
-            warnings.append(SuspectInterval(*after.hold, why, True))
-    by_depth = sorted(indents, key=lambda one: one.indentation)
-    for less, more in itertools.pairwise(by_depth):
-        if more.indentation - less.indentation <= SAME_DEPTH:
-            later = max(less, more, key=lambda one: one.contact)
-            why = f"two indentations at one depth, {less.indentation:.4g} and {more.indentation:.4g} mm"
-            warnings.append(SuspectInterval(*later.hold, why, True))
-    return warnings
-
-
-def _leak(blocks: Blocks, indentations: RunIndentations) -> list[SuspectInterval]:
-    """A drift of the pressure without contact: during a hold by more than a share of the greatest rise."""
-    touched = [
-        (base, one)
-        for base, one in zip(indentations.bases, indentations.indents, strict=True)
-        if not math.isnan(one.contact) and base.end - base.start > 3
-    ]
-    if not touched:
-        return []
-    slopes = np.array([base.slope[1] for base, _ in touched])
-    longest = max(one.hold[1] - one.contact for _, one in touched)
-    top = max(abs(one.rise) for _, one in touched)
-    slope = float(slopes.mean())
-    error = math.sqrt(sum(_slope_variance(blocks, base) for base, _ in touched)) / slopes.size
-    if abs(slope) * longest <= LEAK * top or abs(slope) <= _SIGNIFICANT * error:
-        return []
-    first, last = touched[0][0], touched[-1][0]
-    why = (
-        f"pressure without contact drifts by {60 * slope / KPA:.3g} kPa a minute, "
-        f"{100 * abs(slope) * longest / top:.2g} % of the greatest rise during an indentation: a leak, or a reset "
-        "that has not settled"
-    )
-    return [SuspectInterval(float(blocks.time[first.start]), float(blocks.time[last.end - 1]), why, True)]
-
-
-def _slope_variance(blocks: Blocks, base: Baseline) -> float:
-    time = blocks.time[base.start : base.end]
-    return base.between[1] / float(((time - time.mean()) ** 2).sum())
-
+ALIKE_DEEP = 0.95
+"""Share of the deepest loading that others must reach to be averaged with it: our choice."""
 
 LOADING_POINTS = 25
 """Points of the loading of a loop or a relaxation run: our choice, about twice as many as the stairs have."""
@@ -201,7 +52,8 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     travels = _travel(blocks, rig)
     if run.kind == "hand":
         blocks = _by_force(blocks)
-    indentations = find_indents(blocks, steps=run.kind != "hand")
+    blocks = _without_spikes(blocks)
+    indentations = find_indents(blocks, by_hand=run.kind == "hand")
     shows: RunKind = "hand" if run.kind == "hand" else indentations.kind(blocks)
     told = "kind" not in run.model_fields_set
     if told:
@@ -209,15 +61,20 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     touched = [k for k, contact in enumerate(indentations.contacts) if contact is not None]
     if not touched:
         raise InputError(_no_contact(blocks, indentations))
-    warnings = [*listed(blocks.warnings), *travels, *run_warnings(run, blocks, indentations)]
-    kept, left_out = _kept(blocks, indentations, touched)
+    warnings: Warnings = [*listed(blocks.warnings), *travels, *run_warnings(run, blocks, indentations)]
+    kept, left_out = _kept(blocks, indentations, touched, steps=told and run.kind == "steps")
     warnings += left_out
     if not kept:
         reasons = "; ".join(sorted({warning.why for warning in left_out}))
         raise InputError(f"none of {len(touched)} indentations can be used: {reasons}", file=blocks.file)
     turns = run.kind in ("loop", "hand")
-    loadings = [_loading(blocks, indentations, k) for k in kept] if turns or run.kind == "relaxation" else []
-    points = _averaged(loadings) if loadings else _points(indentations, kept)
+    if turns or run.kind == "relaxation":
+        loadings = [_loading(blocks, indentations, k) for k in kept]
+        deep, shallow = _deep(loadings, kept, indentations.indents)
+        points = _averaged([loading for k, loading in zip(kept, loadings, strict=True) if k in deep])
+        kept, warnings = deep, [*warnings, *shallow]
+    else:
+        points = _points(indentations, kept)
     indents = indentations.indents
     if run.kind == "hand":
         points = np.full(points[0].size, np.nan), *points[1:]
@@ -239,8 +96,25 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     )
 
 
+def _without_spikes(blocks: Blocks) -> Blocks:
+    """The blocks but for those in which a channel read what no plate makes, for a moment."""
+    clean = np.ones(blocks.time.size, bool)
+    for spike in (one for one in blocks.warnings if one.kind == "spike" and not one.used):
+        clean &= (blocks.time < spike.start) | (blocks.time > spike.end)
+    if clean.all() or not clean.any():
+        return blocks
+    arrays = {name: getattr(blocks, name)[clean] for name in BLOCK_ARRAYS}
+    return replace(blocks, **arrays)
+
+
 def _by_force(blocks: Blocks) -> Blocks:
     """A press by hand with its force in place of the travel, which nobody knows: loadings are found by it."""
+    if np.ptp(blocks.force) <= SURELY * float(np.median(blocks.force_spread)):
+        raise InputError(
+            f"the force never changes: from {blocks.force.min():.3g} to {blocks.force.max():.3g} N",
+            file=blocks.file,
+            remedy='a leak? give `kind` "leak"',
+        )
     rest = float(np.median(blocks.force[: max(blocks.force.size // 50, 3)]))
     if rest - float(blocks.force.min()) > float(blocks.force.max()) - rest:
         raise InputError(
@@ -275,46 +149,25 @@ def _travel(blocks: Blocks, rig: Rig) -> list[SuspectInterval]:
     return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True)]
 
 
-def _kept(blocks: Blocks, indentations: RunIndentations, touched: list[int]) -> tuple[list[int], list[SuspectInterval]]:
+def _kept(
+    blocks: Blocks, indentations: RunIndentations, touched: list[int], *, steps: bool
+) -> tuple[list[int], Warnings]:
+    """The indentations that can be used, and why others cannot; of ``steps`` those at which the plate stays."""
     kept, warnings = [], []
     for k in touched:
         indent, part = indentations.indents[k], indentations.parts[k]
         why = untrusted(blocks, indent, BEFORE)
-        if not part.held and k - 1 in touched and _goes_on(indentations, k - 1):
-            why = why or "the plate does not stay there, as it does at the steps before"
-        why = why or _cut(blocks, indent, part.held) or _pressed(blocks, part, indent)
+        if not part.held and (steps or (k - 1 in touched and goes_on(indentations, k - 1))):
+            why = why or "the plate does not stay there, as it does at the steps"
+        why = why or cut_short(blocks, indent, part.held) or pressed_before(blocks, part, indent)
         if why is None:
             kept.append(k)
         else:
-            message = f"indentation {k + 1}, {indent.indentation:.4g} mm, left out: {why}"
+            # By hand the travel is not known, and the force stands in its place.
+            reach = f"{indent.force:.4g} N" if blocks.position is blocks.force else f"{indent.indentation:.4g} mm"
+            message = f"indentation {k + 1}, {reach}, left out: {why}"
             warnings.append(SuspectInterval(*indent.read, message, False))
     return kept, warnings
-
-
-def _cut(blocks: Blocks, indent: MeasuredIndentation, held: bool) -> str | None:
-    """Reason why a loading without a stay cannot be used: much of it was not recorded, its deep end perhaps."""
-    if held:
-        return None
-    begin, end = indent.contact, indent.hold[1] + max(indent.hold[1] - indent.contact, 0.0)
-    gaps = [warning for warning in blocks.warnings if warning.kind == "gap"]
-    lost = sum(max(min(gap.end, end) - max(gap.start, begin), 0.0) for gap in gaps)
-    return "much of its way in and out is missing" if lost > MISSING * (end - begin) else None
-
-
-def _pressed(blocks: Blocks, part: Excursion, indent: MeasuredIndentation) -> str | None:
-    """Reason why an indentation cannot be used: the force rises with the plate already where it should be clear."""
-    end = int(np.searchsorted(blocks.time, indent.contact))
-    start = part.clear[0]
-    # Where the plate rests first, the force may change for other reasons, and contact is found against its level.
-    rests = np.ptp(blocks.position[slice(*part.clear)]) <= NEAR * indent.indentation
-    if rests or end - start < 4:
-        return None
-    base = baseline(blocks, start, end)
-    change = abs(base.slope[0]) * float(blocks.time[end - 1] - blocks.time[start])
-    noise = math.sqrt(12 * base.between[0] / (end - start))
-    if change <= max(_SURELY * noise, PRESSED * abs(indent.force)):
-        return None
-    return f"the force changes by {change:.2g} N before contact: the record begins with the sensor pressed"
 
 
 def _points(indentations: RunIndentations, kept: Sequence[int]) -> tuple[Array, Array, Array]:
@@ -329,16 +182,27 @@ def _loading(blocks: Blocks, indentations: RunIndentations, k: int) -> tuple[Arr
     """Indentation, force and rise of the blocks of a loading, from contact to the deepest point."""
     part, base, indent = indentations.parts[k], indentations.bases[k], indentations.indents[k]
     start = int(np.searchsorted(blocks.time, indent.contact))
-    end = _deepest(blocks, part.hold) + 1
+    end = _deepest(blocks, part) + 1
     at = slice(min(start, end - 1), end)
     return blocks.position[at] - indentations.onset, blocks.force[at] - base.mean[0], blocks.pressure[at] - base.mean[1]
 
 
-def _deepest(blocks: Blocks, hold: tuple[int, int]) -> int:
-    """Block at which the loading ends: the deepest of a short stay, else the first at the depth of the stay."""
-    begin, end = hold
+def _deepest(blocks: Blocks, part: Excursion) -> int:
+    """Block at which the loading ends: the first at the depth of a stay, else the deepest."""
+    begin, end = part.hold
     place = blocks.position[begin:end]
-    return begin + int(place.argmax() if end - begin < LOADING_POINTS else (place >= np.median(place)).argmax())
+    # A quick turn has one deepest block; a slow one many, of which noise must not choose.
+    place = smoothed(place) if place.size >= LOADING_POINTS else place
+    return begin + int((place >= np.median(place)).argmax() if part.held else place.argmax())
+
+
+def _deep(loadings: Loadings, kept: list[int], indents: Sequence[MeasuredIndentation]) -> tuple[list[int], Warnings]:
+    """Those of the loadings that go as deep as the deepest, whose average goes as far; the others are left out."""
+    ends = [float(loading[0].max()) for loading in loadings]
+    deep = [k for k, end in zip(kept, ends, strict=True) if end >= ALIKE_DEEP * max(ends)]
+    why = f"left out of the average: it ends before {ALIKE_DEEP:.0%} of the deepest"
+    shallow = [k for k in kept if k not in deep]
+    return deep, [SuspectInterval(*indents[k].read, f"indentation {k + 1} {why}", False) for k in shallow]
 
 
 def _averaged(loadings: list[tuple[Array, Array, Array]]) -> tuple[Array, Array, Array]:
@@ -356,7 +220,7 @@ def _averaged(loadings: list[tuple[Array, Array, Array]]) -> tuple[Array, Array,
 def _cycle(blocks: Blocks, indentations: RunIndentations, k: int) -> tuple[Array, Array, Array, Array]:
     _, force, rise = _loading(blocks, indentations, k)
     part, base, indent = indentations.parts[k], indentations.bases[k], indentations.indents[k]
-    start = _deepest(blocks, part.hold)
+    start = _deepest(blocks, part)
     end = part.out if math.isnan(indent.release) else int(np.searchsorted(blocks.time, indent.release))
     out = slice(start, max(end, start + 1))
     return force, rise, blocks.force[out] - base.mean[0], blocks.pressure[out] - base.mean[1]
@@ -375,7 +239,7 @@ def _drift(blocks: Blocks, indentations: RunIndentations) -> tuple[float, float]
     """
     start, end = indentations.parts[0].clear
     base = baseline(blocks, end - max((end - start) // 3, 1), end)
-    return base.slope[1], math.sqrt(_slope_variance(blocks, base)) if base.end - base.start > 3 else math.inf
+    return base.slope[1], math.sqrt(slope_variance(blocks, base)) if base.end - base.start > 3 else math.inf
 
 
 def _noise(bases: Sequence[Baseline], channel: int) -> float:

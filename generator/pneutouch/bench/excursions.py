@@ -39,14 +39,17 @@ _MOVES = 0.2
 
 
 _SPREADS = 1.7
-"""A plate that stays is near its deep end hardly longer by a limit four times as wide; one that turns evenly is four
-times as long within it, and one that follows a sine twice."""
+"""Greatest ratio of the time within four times a distance of the deep end to the time within it, for a stay. A stay has
+about 1, a sine 2, an even turn 4."""
 
 _LINGERS = 4.0
-"""A stay on the way in lasts so many times longer than the plate is near the other places of the way: our choice."""
+"""Least ratio of the time at a stay on the way in to the time at the other places of the way: our choice."""
 
 _SCATTERED = 1.5
-"""Blocks between the first and the last of a stay over those within its limits: more is no one stay."""
+"""Greatest ratio of the blocks from a stay's first to its last to those at its depth: with more it came twice."""
+
+LONG = 5.0
+"""Seconds from which a stay at one depth is a relaxation run, if it is longer than the way in: our choice."""
 
 
 class Excursion(NamedTuple):
@@ -63,16 +66,17 @@ class Excursion(NamedTuple):
     held: bool = True
 
 
-def excursions(blocks: Blocks, *, steps: bool = True) -> tuple[list[Excursion], bool]:
+def excursions(blocks: Blocks, *, steps: bool = True, turn: float = TURN) -> tuple[list[Excursion], bool]:
     """All loadings and unloadings, and whether the record begins with the plate in (that one is left out).
 
-    A loading in ``steps`` is as many excursions as it has stays.
+    A loading in ``steps`` is as many excursions as it has stays. ``turn`` is the share of the whole travel by which the
+    plate must turn back to begin another.
 
     No speed and no length is presumed: all limits are shares of the travel or multiples of the position's noise, so
     that a run in a wrong unit is still segmented correctly, and its magnitude reveals the unit. Missed samples do not
     matter, as no differences of neighbours are taken. Raises InputError if the plate does not move, or moves out of
     the sensor when it presses."""
-    place = _smooth(blocks.position)
+    place = smoothed(blocks.position)
     noise, span = position_noise(blocks.position), float(np.ptp(place))
     if span <= _LEAST_SHARE * noise or place.size < FEW:
         raise InputError(
@@ -81,7 +85,7 @@ def excursions(blocks: Blocks, *, steps: bool = True) -> tuple[list[Excursion], 
             remedy="is columns.position the right column?",
         )
     _check_direction(blocks, place, span)
-    turns = _turns(place, max(2 * NOISE * noise, TURN * span))
+    turns = _turns(place, max(2 * NOISE * noise, turn * span))
     tops = [at for at, high in turns if high]
     lows = [at for at, high in turns if not high]
     parts: list[Excursion] = []
@@ -94,7 +98,7 @@ def excursions(blocks: Blocks, *, steps: bool = True) -> tuple[list[Excursion], 
             continue
         start = max(previous, parts[-1].hold[1] if parts else 0)
         way = place[before[-1] : after + 1]
-        first, last = _stay(way, way[0], noise)
+        first, last = _stay(way, span, noise)
         hold = (first + before[-1], last + before[-1])
         clear = _clear(place[start : hold[0]], float(way[0]), float(place[top]), noise)
         held = _held(way, float(np.median(way[first:last])), noise)
@@ -114,7 +118,7 @@ def position_noise(position: Array) -> float:
     return float(1.4826 * np.median(np.abs(np.diff(position, 2))) / np.sqrt(6))
 
 
-def _smooth(values: Array) -> Array:
+def smoothed(values: Array) -> Array:
     """Running median of three: a single wild position is no turn."""
     if values.size < 3:
         return values
@@ -161,10 +165,11 @@ def _turns(place: Array, least: float) -> list[tuple[int, bool]]:
     return turns
 
 
-def _stay(place: Array, low: float, noise: float) -> tuple[int, int]:
-    """Blocks for which the plate stays at the deep end of an excursion: the first, and the one after the last."""
-    top = float(place.max())
-    level = float(np.median(place[place >= top - max(NEAR * (top - low), NOISE * noise)]))
+def _stay(place: Array, span: float, noise: float) -> tuple[int, int]:
+    """Blocks for which the plate stays at the deep end of an excursion: the first, and the one after the last. It may
+    overshoot by a share of the run's whole travel, ``span``."""
+    top, low = float(place.max()), float(place[0])
+    level = float(np.median(place[place >= top - max(NEAR * span, NOISE * noise)]))
     at = np.flatnonzero(np.abs(place - level) <= max(STAY * (top - low), NOISE * noise))
     if not at.size:
         peak = int(place.argmax())
@@ -219,11 +224,18 @@ def _stays(way: Array, top: float, noise: float) -> list[tuple[int, int]]:
     return sorted(stays)
 
 
-def kind_of(position: Array, parts: list[Excursion]) -> RunKind:
+def kind_of(blocks: Blocks, parts: list[Excursion]) -> RunKind:
     """The kind of a run with a plate, by the excursions that touch: steps where the plate stays at several depths, a
-    relaxation where it stays at one, a loop where it turns without a stay."""
+    relaxation where it stays long at one, else a loop."""
     held = [one for one in parts if one.held]
     if 2 * len(held) < len(parts) or not parts:
         return "loop"
-    depths = [float(np.median(position[slice(*one.hold)])) for one in held]
-    return "steps" if np.ptp(depths) > TURN * np.ptp(position) else "relaxation"
+    depths = [float(np.median(blocks.position[slice(*one.hold)])) for one in held]
+    if np.ptp(depths) > TURN * np.ptp(blocks.position):
+        return "steps"
+    return "relaxation" if all(_is_long(blocks.time, one) for one in held) else "loop"
+
+
+def _is_long(time: Array, one: Excursion) -> bool:
+    begin, end = float(time[one.hold[0]]), float(time[one.hold[1] - 1])
+    return end - begin > max(LONG, begin - float(time[one.clear[1] - 1]))

@@ -268,7 +268,8 @@ class RunGroup:
     @property
     def lined(self) -> list[MeasuredCurve]:
         """The curves whose loading gives sensitivity and stiffness: steps where there are any, else what turns."""
-        return self.of_kind("steps") or [curve for curve in self.curves if curve.run.kind != "saturation"]
+        turning = [curve for curve in self.curves if curve.run.kind not in ("saturation", "hand")]
+        return self.of_kind("steps") or turning or self.of_kind("hand")
 
 
 def summarize(curves: Iterable[MeasuredCurve]) -> list[RunGroup]:
@@ -295,8 +296,8 @@ def _ages(days: set[float]) -> dict[float, float]:
 
 
 def _group(key: GroupKey, curves: list[MeasuredCurve]) -> RunGroup:
-    stepped = any(curve.run.kind == "steps" for curve in curves)
-    each = tuple(_without_line(curve, run_figures(curve)) if stepped else run_figures(curve) for curve in curves)
+    lined = RunGroup(key, tuple(curves), {}, ()).lined
+    each = tuple(run_figures(curve) if curve in lined else _without_line(curve, run_figures(curve)) for curve in curves)
     pooled: dict[str, Estimate] = {}
     for figure in FIGURES:
         by_sensor: dict[str, list[float]] = {}
@@ -313,8 +314,8 @@ def _group(key: GroupKey, curves: list[MeasuredCurve]) -> RunGroup:
 
 
 def _without_line(curve: MeasuredCurve, values: dict[str, float]) -> dict[str, float]:
-    """Figures of a run beside steps runs, whose straight line is taken: that of a loading without stays is another."""
-    if curve.run.kind in ("steps", "saturation"):
+    """Figures of a run beside others whose straight line is taken: that over other points is another."""
+    if curve.run.kind == "saturation":
         return values
     return {key: value for key, value in values.items() if key not in _OF_LINE}
 
@@ -322,15 +323,18 @@ def _without_line(curve: MeasuredCurve, values: dict[str, float]) -> dict[str, f
 def _drift_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Estimate:
     """The drift of the only run with the interval of its own slope; a slope without one is no drift."""
     error = next(curve.drift[1] for curve in curves if curve.run.kind not in ("loop", "hand"))
-    half = COVERED * 60 * error / KPA
-    if not np.isfinite(half):
+    half_kPa_per_min = COVERED * 60 * error / KPA
+    if not np.isfinite(half_kPa_per_min):
         return replace(estimate, value=float("nan"))
-    return replace(estimate, low=estimate.value - half, high=estimate.value + half, over="samples")
+    return replace(
+        estimate, low=estimate.value - half_kPa_per_min, high=estimate.value + half_kPa_per_min, over="samples"
+    )
 
 
 def _stiffness_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Estimate:
     """The stiffness of the only run with the interval that its first contact leaves."""
-    curve = next((curve for curve in curves if len(curve.force) > 2), None)
+    pressed = (curve for curve in curves if len(curve.force) > 2 and np.isfinite(curve.indentation[-1]))
+    curve = next(pressed, None)
     if curve is None or not np.isfinite(curve.onset_error):
         return estimate
     half = COVERED * abs(estimate.value) * curve.onset_error / float(curve.indentation[-1])

@@ -38,6 +38,9 @@ _BACK = 3
 
 _GRID = 81
 
+_UNKNOWN = 10.0
+"""Lengths of the fitted stretch from which on the error of an onset means that nothing is known."""
+
 
 class Baseline(NamedTuple):
     """A stretch without contact: block numbers, means, slopes (per s) and detrended variances of force and pressure."""
@@ -170,7 +173,9 @@ def _error(loading: _Loading, onset: float, bend: float, length: float, *, bends
     others = np.stack([shape, over**2 - over] if bends else [shape], axis=1)
     slope = factor * (slope - others @ np.linalg.lstsq(others, slope, rcond=None)[0])
     steep = float(slope @ slope)
-    return float(np.sqrt(rest @ rest / max(loading.force.size - 2, 1) / steep)) if steep > 0 else float(np.inf)
+    error = float(np.sqrt(rest @ rest / max(loading.force.size - 2, 1) / steep)) if steep > 0 else float(np.inf)
+    # A place that the data do not determine has an error of rounding alone.
+    return error if error < _UNKNOWN * length else float(np.inf)
 
 
 def _crossing(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign: int) -> int | None:

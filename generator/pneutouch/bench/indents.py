@@ -119,6 +119,9 @@ contacts come deeper, while the model counts from the dome as it was. Enough tha
 choice."""
 
 
+TREMBLES = 0.5
+"""Share of the greatest force by which a hand must let go to begin another press: our choice."""
+
 BIAS = 0.02
 """Bias of a first contact, mm, that its interval counts as a standard error: half of the one tested for a dome."""
 
@@ -156,13 +159,13 @@ class RunIndentations:
     def kind(self, blocks: Blocks) -> RunKind:
         """The kind of run that the indentations make."""
         touching = [one for one, contact in zip(self.parts, self.contacts, strict=True) if contact is not None]
-        return kind_of(blocks.position, touching)
+        return kind_of(blocks, touching)
 
 
-def find_indents(blocks: Blocks, *, steps: bool = True) -> RunIndentations:
-    """Cut a run into its indentations, one each of the ``steps`` of a loading, and read them. Raises InputError if the
-    plate does not move."""
-    parts, pressed = excursions(blocks, steps=steps)
+def find_indents(blocks: Blocks, *, by_hand: bool = False) -> RunIndentations:
+    """Cut a run into its indentations, one each of the steps of a loading, and read them; ``by_hand`` one each press,
+    however the hand trembles. Raises InputError if the plate does not move."""
+    parts, pressed = excursions(blocks, steps=False, turn=TREMBLES) if by_hand else excursions(blocks)
     if not parts:
         return RunIndentations([], [], [], (), pressed, 1, 0.0, math.nan)
     bases = [first_baseline(blocks, one) for one in parts]

@@ -15,8 +15,8 @@ from pneutouch.bench.source import MeasuredFile
 from pneutouch.bench.statistics import Mean
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap, Rig
-from pneutouch.tables.layout import ABSOLUTE, UNITS
 from pneutouch.tables.read import chunks, whole
+from pneutouch.tables.unit_words import ABSOLUTE, UNITS
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 
 CLIPPED = 0.98
@@ -178,7 +178,7 @@ def _clipped(
             f"{key} goes to {extreme.max() / unit:.4g} {name}, beyond the rig's range of {top:g}: is its unit right, "
             "or the rig's range?"
         )
-        return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True)]
+        return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True, "asked")]
     warnings = [
         SuspectInterval(
             start, end, f"{key} clipped: at {CLIPPED:g} of the range of {top:g} {name} or beyond", False, "clipped"
@@ -263,15 +263,17 @@ _ABSOLUTE = 0.7
 """Share of the ambient pressure above which a table that begins there is taken for one of absolute pressures."""
 
 
-def read_injection(source: MeasuredFile) -> tuple[Array, Array]:
+def read_injection(source: MeasuredFile, ambient: float = STANDARD_ATMOSPHERE) -> tuple[Array, Array]:
     """Injected volume (mm3, at ambient pressure) and gauge pressure (MPa), (n,) each, in the file's order.
+
+    Of absolute pressures ``ambient`` (MPa) is subtracted.
 
     Raises InputError as `tables.read.chunks`, for fewer than three rows, a volume that does not vary, and a
     pressure that does not rise with it.
     """
     path, columns = source.path, source.columns
     rows, values = whole(path, [getattr(columns, key).name for key in INJECTION], source.layout)
-    volume, pressure = scaled(path, columns, INJECTION, rows, values)
+    volume, pressure = scaled(path, columns, INJECTION, rows, values, ambient)
     if rows.size < LEAST_POINTS:
         raise InputError(f"{rows.size} rows", file=path, remedy=f"at least {LEAST_POINTS}, for a line and its error")
     if np.ptp(volume) <= 0:

@@ -11,14 +11,14 @@ from pneutouch.arrays import Array, Indices
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import CampaignRun, RunKind
 
-SuspectKind = Literal["gap", "clipped", "spike", "note", "other"]
+SuspectKind = Literal["gap", "clipped", "spike", "note", "asked", "other"]
 
 
 class SuspectInterval(NamedTuple):
     """A time interval (s) of a run that may be wrong, and the reason.
 
     ``used``: whether it is used nevertheless.  ``kind``: a gap, a channel at the end of its range, a reading beyond
-    that, a note of a usual defect, or another."""
+    that, a note of a usual defect, a doubt that is asked about, or another."""
 
     start: float
     end: float
@@ -182,7 +182,7 @@ noise."""
 
 _NAMES = {"time": "time", "position": "position", "force": "force", "pressure": "pressure"}
 _EXTREMES = ("force_spread", "pressure_spread", "force_extreme", "pressure_extreme")
-_COLUMNS = ("first_row", "time", "position", "force", "pressure", *_EXTREMES)
+BLOCK_ARRAYS = ("first_row", "time", "position", "force", "pressure", *_EXTREMES)
 """Fields of `Blocks` in the order of the averaged rows."""
 
 _ROUNDING = 1e-6
@@ -293,7 +293,7 @@ class BlockCollector:
                 file=self.file,
                 remedy=f"column {self.names['time']} must be that of one recording",
             )
-        columns = dict(zip(_COLUMNS, np.concatenate(self._parts, axis=1), strict=True))
+        columns = dict(zip(BLOCK_ARRAYS, np.concatenate(self._parts, axis=1), strict=True))
         return Blocks(self.file, self.rate, self.size, warnings=(*self._gaps(), *warnings), **columns)
 
     def _gaps(self) -> list[SuspectInterval]:

@@ -14,8 +14,9 @@ from pneutouch.results.measured import ReadColumn, ReadTables
 from pneutouch.results.record import plain
 from pneutouch.spec.campaign import Column, ColumnMap, FileFormat
 from pneutouch.spec.toml_text import value_text
-from pneutouch.tables.layout import BRACKETS, UNITS, TableFormat, TableLayout, unit_of
+from pneutouch.tables.layout import TableFormat, TableLayout
 from pneutouch.tables.read import layout_of
+from pneutouch.tables.unit_words import BRACKETS, UNITS, unit_of
 
 _WORDS = {
     "time": "time t zeit temps tiempo tempo x_value elapsed seconds millis timestamp datetime",
@@ -62,6 +63,7 @@ _SPLIT = re.compile(r"[^\W_]+")
 _LONGEST = 200
 """Letters of a name that may state its unit without brackets."""
 
+_ABSOLUTE = re.compile(r"(.*?)[\s_]+(\w+?)_abs")
 _LAST = re.compile(r"(.*?)(?:[\s_,:;/.-]+|\bin\s+)([^\s_,:;/]+)")
 
 
@@ -117,6 +119,9 @@ def _parted(name: str) -> tuple[str, str]:
     if brackets:
         last = brackets[-1]
         return f"{name[: last.start()]} {name[last.end() :]}".strip(), last[1] or "?"
+    absolute = _ABSOLUTE.fullmatch(name.strip()) if len(name) <= _LONGEST else None
+    if absolute and unit_of(f"{absolute[2]}_abs"):
+        return absolute[1], f"{absolute[2]}_abs"
     # The pattern takes the square of the length.
     parts = _LAST.fullmatch(name.strip()) if len(name) <= _LONGEST else None
     if parts and parts[1].strip() and unit_of(parts[2]):

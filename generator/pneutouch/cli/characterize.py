@@ -30,6 +30,17 @@ DesignOption = Annotated[
 ]
 
 
+KindOption = Annotated[
+    str | None,
+    typer.Option(
+        "--kind",
+        metavar="KIND",
+        help=f"Kind of a single run: {', '.join(get_args(RunKind))}.",
+        show_default="by its record",
+    ),
+]
+
+
 @app.command()
 @with_fields(Campaign, READING_FIELDS)
 def characterize(
@@ -53,15 +64,7 @@ def characterize(
         str, typer.Option("--evidence", help="Runs whose evidence is plotted: doubtful, all or none.")
     ] = "doubtful",
     columns: ColumnsOption = None,
-    kind: Annotated[
-        str | None,
-        typer.Option(
-            "--kind",
-            metavar="KIND",
-            help=f"Kind of a single run: {', '.join(get_args(RunKind))}.",
-            show_default="by its record",
-        ),
-    ] = None,
+    kind: KindOption = None,
     set_: SetOption = None,
     calibration: CalibrationOption = None,
     out: OutOption = Path("outputs"),
@@ -71,17 +74,14 @@ def characterize(
     """Turn measured runs into figures and compare them with the prediction; exit 3 where files are not used."""
     with reporting():
         from pneutouch.cli.terminal import bar
-        from pneutouch.errors import InputError, nearest
+        from pneutouch.errors import InputError
         from pneutouch.mechanics.models.choice import USUAL
         from pneutouch.results.record import plain
-        from pneutouch.workflows.characterize.campaign import EVIDENCE, write
+        from pneutouch.workflows.characterize.campaign import write
         from pneutouch.workflows.characterize.campaign import characterize as run
         from pneutouch.workflows.characterize.load import same_failures
 
-        if evidence not in EVIDENCE:
-            raise InputError(f"--evidence {evidence}: unknown.{nearest(evidence, EVIDENCE)}")
-        if kind is not None and kind not in get_args(RunKind):
-            raise InputError(f"unknown.{nearest(kind, get_args(RunKind))}", key="kind", value=kind)
+        _check(evidence, kind)
         with bar("reading runs", unit="MB") as progress:
             given, reading = changes(set_, calibration), reading_of(columns, fields)
             how: Any = {"target": target, "model": model or USUAL, "reading": reading, "kind": kind}
@@ -103,6 +103,17 @@ def characterize(
             raise typer.Exit(1)
         if not json and (data.is_dir() or data.suffix == ".toml"):
             _report_next(outcome, data, folder, design, set_, reading_words(columns, fields))
+
+
+def _check(evidence: str, kind: str | None) -> None:
+    """Check the options that choose among names. Raises InputError with the nearest one."""
+    from pneutouch.errors import InputError, nearest
+    from pneutouch.workflows.characterize.campaign import EVIDENCE
+
+    if evidence not in EVIDENCE:
+        raise InputError(f"unknown.{nearest(evidence, EVIDENCE)}", key="evidence", value=evidence)
+    if kind is not None and kind not in get_args(RunKind):
+        raise InputError(f"unknown.{nearest(kind, get_args(RunKind))}", key="kind", value=kind)
 
 
 def _report_next(

@@ -149,14 +149,14 @@ def graded_table(selection: GradedSelectionRun) -> tuple[list[str], list[list[st
 
 def graded_lines(selection: GradedSelectionRun) -> list[str]:
     """Verdict on a grade against the target: its misses, its cost and the parts that were left out."""
-    from pneutouch.workflows.select.graded_document import missed, rated_warning
+    from pneutouch.workflows.select.document import graded_missed, rated_warning
 
     sensor = selection.sensor
     size = f"R0 {sensor.dome.inner_radius:g} mm, t0 {sensor.dome.wall_thickness:g} mm, on {selection.base.where}"
     met = "a grade meets the target" if selection.search.met else "no grade of this size meets the target; the nearest"
     lines = [f"{met}: {size}"]
     if not selection.search.met:
-        lines += [f"it misses {line}" if k == 0 else line for k, line in enumerate(missed(selection))]
+        lines += [f"it misses {line}" if k == 0 else line for k, line in enumerate(graded_missed(selection))]
     warning = rated_warning(selection)
     lines += [] if warning is None else [f"warning: {warning}"]
     constant = [c.name for c in selection.constants if selection.meets(c.trial)]

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneutouch.mechanics.line.air import AirState
 from pneutouch.mechanics.line.dynamics import GasLine, SensorDynamics
-from pneutouch.mechanics.line.elements import Duct, GasVolume
+from pneutouch.mechanics.line.elements import AirState, Duct, GasVolume
 from pneutouch.mechanics.line.transient import BandFigures, StepFigures, band_figures, step_figures
 from pneutouch.mechanics.viscous.prony import Prony, prony_series
 from pneutouch.parts.air_path import AirPiece, air_path

@@ -9,7 +9,7 @@ import numpy as np
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.mechanics import SensorPrediction, SensorState
 from pneutouch.mechanics.gauge_reading import SIGMAS, GaugeReading, gauge_reading
-from pneutouch.mechanics.line.air import REFERENCE_TEMPERATURE
+from pneutouch.mechanics.line.elements import REFERENCE_TEMPERATURE
 from pneutouch.results.behaviour import GaugeFigures, GaugeState
 from pneutouch.rounding import rounded
 from pneutouch.units import KPA

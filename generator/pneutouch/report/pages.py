@@ -1,4 +1,5 @@
-"""A sheet as a page and as a PDF: Jinja writes the page and the source of the PDF, which Typst sets."""
+"""A sheet as a page, as a PDF and as Markdown: Jinja writes the page, the source of the PDF, which Typst sets, and the
+Markdown of those who print and measure."""
 
 from __future__ import annotations
 
@@ -6,7 +7,7 @@ import base64
 import datetime
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -116,3 +117,37 @@ def _filled(template: str, sheet: Sheet, finalize: Callable[[Any], Any] | None, 
     )
     environment.filters["kind"] = lambda block: type(block).__name__
     return environment.get_template(template).render(sheet=sheet, **more)
+
+
+def filled(template: str, **values: Any) -> str:
+    """A template with its values: filters write numbers, times and lists, and keep text from being read as Markdown."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    environment = Environment(
+        loader=FileSystemLoader(TEMPLATES),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        autoescape=False,
+    )
+    environment.filters |= {"f": format, "md": _escaped, "listed": _listed, "time": _time, "value": _value}
+    return environment.get_template(template).render(**values).rstrip() + "\n"
+
+
+def _escaped(text: str) -> str:
+    """Text that Markdown takes for no table, HTML or escape."""
+    return text.replace("\\", "\\\\").replace("|", "\\|").replace("<", "&lt;")
+
+
+def _value(value: float | None) -> str:
+    return "–" if value is None else f"{value:.2f}"
+
+
+def _listed(values: Iterable[float]) -> str:
+    return ", ".join(f"{value:g}" for value in values)
+
+
+def _time(seconds: float) -> str:
+    if seconds < 100:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.1f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"

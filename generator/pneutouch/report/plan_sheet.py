@@ -2,7 +2,7 @@
 
 from itertools import groupby
 
-from pneutouch.report.markdown import filled
+from pneutouch.report.pages import filled
 from pneutouch.results.plan import ExpectedPoint, PlannedCampaign, PlannedRun
 from pneutouch.rounding import tenths_below
 from pneutouch.wording import counted

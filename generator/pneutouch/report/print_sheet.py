@@ -12,8 +12,8 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.parts.glue import GLUES, glue_of
 from pneutouch.parts.mould.assembly import SiliconeBatch
-from pneutouch.report.markdown import filled
 from pneutouch.report.mould import mould_rows
+from pneutouch.report.pages import filled
 from pneutouch.report.section import port_steps
 from pneutouch.results.printing import JobEstimate
 from pneutouch.spec.part import CastRing, ClampedFlange, OnePiece, RobotFlange, Sleeve

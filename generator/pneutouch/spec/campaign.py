@@ -18,7 +18,7 @@ from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, number
 from pneutouch.spec.files import design_inside, inside
 from pneutouch.spec.read import read_toml, validate
-from pneutouch.tables.layout import UNITS
+from pneutouch.tables.unit_words import UNITS
 
 Encoding = Literal[
     "utf-8",

@@ -51,9 +51,10 @@ class _Reader(NamedTuple):
         """The number of a cell, of a date and time the seconds since the column's first; None if it is neither."""
         if place not in self.stamps:
             return self.number(text)
-        if not STAMP.fullmatch(text):
+        try:
+            return float(self.seconds([text], place)[0]) if STAMP.fullmatch(text) else None
+        except ValueError:
             return None
-        return float(self.seconds([text], place)[0])
 
     def seconds(self, texts: Sequence[str], place: int) -> Array:
         """Seconds since the first cell of a column of dates and times. Raises ValueError for other texts."""
@@ -221,7 +222,7 @@ def _raise_fault(data: bytes, row: int, reader: _Reader) -> None:
     lines = data.decode("utf-8").split("\n")[:-1]
     mark = "decimal point" if reader.decimal == "." else "decimal comma"
     for k, line in enumerate(lines):
-        if blank(line, reader.delimiter):
+        if blank(line, reader.delimiter) or comment(line):
             continue
         in_row = cells(line, reader.delimiter)
         for name, place in zip(reader.names, reader.places, strict=True):

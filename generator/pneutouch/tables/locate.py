@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from pneutouch.errors import InputError
-from pneutouch.tables.layout import DECIMALS, NAMES, TableFormat, TableLayout, blank, cells, score, unit_of
+from pneutouch.tables.layout import DECIMALS, NAMES, TableFormat, TableLayout, blank, cells, score
+from pneutouch.tables.unit_words import unit_of
 
 COMMENT = ("#", "%", "!")
 """Marks that begin a comment."""

@@ -186,7 +186,7 @@ def _of_rows(path: Path, lines: Sequence[str], given: TableFormat, known: Sequen
     units = [*located.units, *[""] * len(names)][: len(names)]
     stamps = tuple(k for k, cell in enumerate(data[0][: len(names)] if data else []) if STAMP.fullmatch(cell))
     for k in stamps:
-        units[k] = units[k] or "s"
+        units[k] = "s"
     at = None if located.header is None else begin + located.header + 1
     before = begin + (located.first if located.header is None else located.header)
     if skip is None and all(comment(line) or not line.strip() for line in rows[:before]):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pneutouch.mechanics.line.air import AirState
+from pneutouch.mechanics.line.elements import AirState
 
 
 class Lossless(AirState):

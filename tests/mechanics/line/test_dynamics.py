@@ -11,9 +11,8 @@ from benchmarks.dynamics import BERGH_TIJDEMAN
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pneutouch.mechanics.line.air import ADIABATIC, AirState
 from pneutouch.mechanics.line.dynamics import GasLine, SensorDynamics, on_axis
-from pneutouch.mechanics.line.elements import Duct, GasVolume
+from pneutouch.mechanics.line.elements import ADIABATIC, AirState, Duct, GasVolume
 from pneutouch.mechanics.line.transient import GAS, LINE, WALL, band_figures, gain_at
 
 AIR = AirState(0.101325)

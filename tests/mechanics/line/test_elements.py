@@ -13,9 +13,8 @@ from scipy.linalg import solve_banded
 from scipy.special import ive, spherical_jn
 
 from pneutouch.errors import InputError
-from pneutouch.mechanics.line.air import ADIABATIC, AirState
 from pneutouch.mechanics.line.dynamics import GasLine, on_axis
-from pneutouch.mechanics.line.elements import Duct, GasVolume, second_over_zeroth
+from pneutouch.mechanics.line.elements import ADIABATIC, AirState, Duct, GasVolume, second_over_zeroth
 
 AIR = AirState(0.101325)
 FREQUENCIES = st.floats(0.01, 5000.0)

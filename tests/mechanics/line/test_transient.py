@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from pneutouch.mechanics.line.air import AirState
 from pneutouch.mechanics.line.dynamics import GasLine, SensorDynamics, on_axis
-from pneutouch.mechanics.line.elements import Duct, GasVolume
+from pneutouch.mechanics.line.elements import AirState, Duct, GasVolume
 from pneutouch.mechanics.line.transient import _reaches, step_figures, step_response, through
 
 AIR = AirState(0.101325)

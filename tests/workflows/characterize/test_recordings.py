@@ -80,6 +80,69 @@ def test_a_press_by_hand_has_a_sensitivity_and_no_stiffness(tmp_path):
     assert "stiffness_N_per_mm" not in found and "hysteresis_width_percent" in found
 
 
+def test_a_hand_that_trembles_or_lets_go_in_part_presses_once_or_as_often_as_it_does(tmp_path):
+    held = [(2.0, CLEAR), (5.0, 6.2), *8 * [(0.4, 5.9), (0.4, 6.5)], (5.0, CLEAR), (2.0, CLEAR)]
+    partly = [(2.0, CLEAR), (5.0, DEEP), (3.0, 2.0), (3.0, 6.0), (3.0, 1.0), (3.0, DEEP), (5.0, CLEAR), (2.0, CLEAR)]
+    for legs in (held, partly):
+        measured = read(tmp_path, Recording(legs, write=by_hand))
+        (group,) = measured.groups
+        assert group.driving_pressure_kPa == 0.0
+        assert group.figures["force_range_N"].value == pytest.approx(24.5, rel=0.03)
+        assert group.figures["sensitivity_kPa_per_N"].value == pytest.approx(2.34, rel=0.02)
+
+
+def test_a_press_by_hand_with_another_unit_or_swapped_is_refused_without_naming_one(tmp_path):
+    for factors in ([1, 1, 102.0, 1], [1, 1, 1, 20.0]):
+        wrong = Recording(write=by_hand, spoil=lambda s, f=factors: s * np.array(f)[:, None])
+        assert "swapped" in read(tmp_path, wrong).failures[0].message
+
+
+def test_a_press_by_hand_and_one_of_a_plate_are_not_averaged(tmp_path):
+    for name, recording in (("a.csv", Recording(write=by_hand)), ("b.csv", READ["triangular"])):
+        (tmp_path / name).write_text(recording.text())
+    rows = [f'[[runs]]\nfile = "{name}.csv"\nsensor = "A1"\n' for name in "ab"]
+    (tmp_path / "campaign.toml").write_text("\n".join([rows[0] + 'kind = "hand"\n', rows[1]]))
+    measured = characterize(tmp_path, "paper-dome", model="atlas").figures
+    assert figures(measured)["sensitivity_kPa_per_N"].runs == 1
+    value = true_figures(READ["triangular"].at())["sensitivity_kPa_per_N"]
+    assert figures(measured)["sensitivity_kPa_per_N"].value == pytest.approx(value, rel=0.02)
+
+
+def test_presses_without_a_column_of_force_are_no_leak(tmp_path):
+    blind = Recording(write=lambda s, h: plain(s[[0, 3]], "time_s,pressure_kPa"))
+    path = tmp_path / "run.csv"
+    path.write_text(blind.text())
+    assert any("up and down" in text for _, text in load_curves(path, characterize_scene()).questions)
+
+
+def test_a_force_that_never_changes_is_asked_about_as_a_leak(tmp_path):
+    still = Recording(write=lambda s, h: by_hand(s * np.array([[1], [1], [0], [1]]), h))
+    with pytest.raises(InputError, match="leak"):
+        read(tmp_path, still)
+
+
+def test_a_force_whose_fit_knows_no_first_contact_has_no_interval(tmp_path):
+    drifting = Recording(spoil=lambda s: s + np.array([[0], [0], [1], [0]]) * s[0] / 60)
+    figure = figures(read(tmp_path, drifting))["stiffness_N_per_mm"]
+    assert figure.low is None or figure.high - figure.low < figure.value
+
+
+def test_a_great_leak_is_a_question(tmp_path):
+    assert asked(read(tmp_path, replace(READ["stairs without return"], drift=-5.0)), "without contact")
+
+
+@pytest.mark.parametrize("stamp", ["2026-13-05T10:00:00", "2026-02-30T10:00:00", "2026-02-20T25:00:00"])
+def test_an_impossible_date_is_refused_with_its_row(stamp, tmp_path):
+    def wrong(samples, header):
+        rows = READ["timestamps"].text().splitlines()
+        rows[7] = ",".join([stamp, *rows[7].split(",")[1:]])
+        return "\n".join(rows) + "\n"
+
+    path = tmp_path / "run.csv"
+    path.write_text(Recording(write=wrong).text())
+    refuse(path, "row 8: column timestamp")
+
+
 def test_a_press_by_hand_of_the_wrong_sign_is_refused_with_the_sign(tmp_path):
     upside = Recording(write=by_hand, spoil=lambda s: s * np.array([[1], [1], [-1], [1]]))
     with pytest.raises(InputError, match=r"columns\.force\.sign"):

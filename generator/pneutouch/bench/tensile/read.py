@@ -15,9 +15,10 @@ from pneutouch.arrays import Array
 from pneutouch.bench.tensile.law_fit import LawForm, TensionCurve, fit_law
 from pneutouch.errors import InputError
 from pneutouch.spec.material import STIFFEST_ELASTOMER_MPA
-from pneutouch.tables.layout import BRACKETS, UNITS, TableLayout, unit_of
+from pneutouch.tables.layout import TableLayout
 from pneutouch.tables.read import layout_of, whole
 from pneutouch.tables.text import head_lines
+from pneutouch.tables.unit_words import BRACKETS, UNITS, unit_of
 
 _WORDS = {
     "stress": ("stress", "spannung", "contrainte"),

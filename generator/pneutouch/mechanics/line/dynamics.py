@@ -20,8 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array, Complex
-from pneutouch.mechanics.line.air import ADIABATIC, AirState
-from pneutouch.mechanics.line.elements import Duct, GasVolume, LineEnd, profiles
+from pneutouch.mechanics.line.elements import ADIABATIC, AirState, Duct, GasVolume, LineEnd, profiles
 
 LineElement = Duct | GasVolume
 

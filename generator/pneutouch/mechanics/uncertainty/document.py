@@ -15,7 +15,7 @@ from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.figures import FIGURES, INPUTS, SENSITIVITY, log_figures, moved, neighbourhood
 from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.line.air import ADIABATIC, REFERENCE_TEMPERATURE
+from pneutouch.mechanics.line.elements import ADIABATIC, REFERENCE_TEMPERATURE
 from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget, propagate
 from pneutouch.mechanics.uncertainty.source import FIGURE, JOINT, UncertaintySource

@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch.bench.figures import summarize
+from pneutouch.bench.questions import outliers
 from pneutouch.bench.reading import dead_volume_of_cap
 from pneutouch.bench.record import MeasuredCurve, Trace
-from pneutouch.bench.run_checks import check_plausible, outliers
+from pneutouch.bench.run_checks import check_plausible
 from pneutouch.bench.source import MeasuredFile
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.catalogue.library import example_remedy

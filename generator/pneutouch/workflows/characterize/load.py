@@ -11,9 +11,9 @@ from typing import Any
 
 from pneutouch.arrays import Array
 from pneutouch.bench.curve import curve_of
+from pneutouch.bench.questions import check_leak, looks_absolute
 from pneutouch.bench.reading import HAND, INJECTION, LEAK, PLATE, leak_rate, read_blocks, read_injection
 from pneutouch.bench.record import MeasuredCurve, Trace, trace
-from pneutouch.bench.run_checks import check_leak, looks_absolute
 from pneutouch.bench.source import MeasuredFile, MissingChannelError, campaign_lines, identify
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.catalogue.library import example_remedy
@@ -25,7 +25,7 @@ from pneutouch.spec.campaign import Campaign, CampaignRun, ColumnMap, FileFormat
 from pneutouch.spec.files import exists, is_file
 from pneutouch.spec.read import validate
 from pneutouch.spec.values import file_name
-from pneutouch.tables.layout import ABSOLUTE, UNITS, unit_of
+from pneutouch.tables.unit_words import ABSOLUTE, UNITS, unit_of
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 from pneutouch.wording import listed
 
@@ -59,10 +59,7 @@ def parse_columns(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
 
 
 def with_reading(campaign: Campaign, reading: Reading | None) -> Campaign:
-    """The campaign with ``reading`` in place of its columns and format, those of its runs too. Raises InputError.
-
-    Raises InputError.
-    """
+    """The campaign with ``reading`` in place of its columns and format, those of its runs too. Raises InputError."""
     if not reading:
         return campaign
     runs = []
@@ -222,7 +219,7 @@ def load_curves(
         raise InputError("\n".join([f"{data}: none of its files can be read", *lines]))
     if not (data.is_dir() or data.suffix == ".toml"):
         assert scene is not None
-        gathered.curves = [_at_its_pressure(curve, scene, gathered.sources) for curve in gathered.curves]
+        gathered.curves = [_at_its_pressure(curve, scene, gathered) for curve in gathered.curves]
     as_read = {curve.run.file: curve.run for curve in gathered.curves}
     as_read |= {run.file: run for run, *_ in (*gathered.injections, *gathered.leaks)}
     campaign = campaign.model_copy(update={"runs": [as_read.get(run.file, run) for run in campaign.runs]})
@@ -278,8 +275,11 @@ def _read(
         )
     run = _of_its_channels(run, source)
     if run.kind == "injection":
-        gathered.injections.append((run, *read_injection(source)))
+        gathered.injections.append((run, *read_injection(source, ambient)))
         return
+    if source.columns.pressure.unit.endswith(ABSOLUTE) and campaign.ambient_pressure_kPa is None:
+        said = f"the design's ambient pressure of {ambient / KPA:.6g} kPa is subtracted"
+        gathered.questions.append((run.file, f"{said}: was it that of the day (pneumatics.ambient_pressure_kPa)?"))
     blocks = read_blocks(source, campaign.rig, progress, ambient)
     gathered.traces[run.file] = trace(blocks)
     if run.kind == "leak":
@@ -334,8 +334,9 @@ def _single(data: Path, scene: ResolvedDesign | None, kind: RunKind | None) -> C
     return Campaign(title=f"Run {file_name(data.name)}"[:_LONGEST], runs=[run])
 
 
-def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, sources: Mapping[str, MeasuredFile]) -> MeasuredCurve:
-    """A single file's curve under that of the design's pressures that it was read at, else the read one.
+def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, gathered: _Gathered) -> MeasuredCurve:
+    """A single file's curve under that of the design's pressures that it was read at, else the read one, with a
+    question.
 
     Raises InputError for a pressure before contact that looks like an absolute one.
     """
@@ -344,7 +345,7 @@ def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, sources: Mappi
     nearest_kPa = min(stated_kPa, key=lambda p: abs(p - read_kPa))
     near = abs(nearest_kPa - read_kPa) <= max(_NEAR_KPA, _NEAR_SHARE * nearest_kPa)
     if not near and any(looks_absolute(read_kPa - p) for p in (0.0, *stated_kPa)):
-        column = sources[curve.run.file].columns.pressure
+        column = gathered.sources[curve.run.file].columns.pressure
         raise InputError(
             f"{read_kPa:.4g} kPa before contact, which looks like an absolute pressure",
             file=curve.run.file,
@@ -353,4 +354,7 @@ def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, sources: Mappi
             "the design is subtracted",
         )
     found_kPa = nearest_kPa if near else round(max(read_kPa, 0.0), 1)
+    if not near:
+        problem = f"{read_kPa:.3g} kPa before contact is none of the design's driving pressures"
+        gathered.questions.append((curve.run.file, f"{problem}: is the gauge zeroed, or state it in the design?"))
     return replace(curve, run=curve.run.model_copy(update={"driving_pressure_kPa": found_kPa}))

@@ -17,7 +17,7 @@ from pneutouch.arrays import Array
 from pneutouch.catalogue import DesignSource, Library
 from pneutouch.errors import PneutouchError
 from pneutouch.mechanics import predict
-from pneutouch.mechanics.line.air import REFERENCE_TEMPERATURE
+from pneutouch.mechanics.line.elements import REFERENCE_TEMPERATURE
 from pneutouch.mechanics.sealed_gas import SealedGas
 from pneutouch.results.driving import (
     DrivingRecord,

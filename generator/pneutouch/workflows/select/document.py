@@ -1,4 +1,4 @@
-"""A selection as a record, and in words for the terminal and the studio."""
+"""A selection, or a search for a grade, as a record, and in words for the terminal and the studio."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -10,20 +10,27 @@ from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.parts import assemble
 from pneutouch.results.record import extended
 from pneutouch.results.selection import (
+    ConstantMembrane,
     DroppedChoice,
     FoundDesign,
+    FoundGrade,
+    GradedRecord,
+    GradeFigures,
     NearestDesign,
     RankedDesign,
     RejectedChoice,
+    SearchCost,
     SelectionRecord,
     SolidCheck,
 )
 from pneutouch.rounding import tenths_below
 from pneutouch.selection import Candidate, DroppedRequirement
 from pneutouch.selection.choose import missed_percent
+from pneutouch.selection.graded import GradeTrial, shares
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.select.checks import RejectedDesign, contact_notes, contact_text
+from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.select import Confirmation, SelectionRun
 
 
@@ -201,3 +208,90 @@ def _rejected_words(one: RejectedDesign) -> str:
     pool = one.choice.pool
     size = f"{one.choice.resin.name}, R0 {pool.radius[0]:.2f} mm, t0 {pool.wall[0]:.2f} mm"
     return f"rejected: {size}: {one.rule + ': ' if one.rule else ''}{one.reason}"
+
+
+def graded(selection: GradedSelectionRun) -> GradedRecord:
+    """The search as ``select`` prints it."""
+    search, sensor = selection.search, selection.sensor
+    return GradedRecord(
+        target=selection.target.model_dump(mode="json"),
+        base=selection.base.where,
+        contact=contact_document(selection.base).get("contact"),
+        met=search.met,
+        design=extended(
+            FoundGrade,
+            _figures(selection, search.best),
+            material=selection.grade.model_dump(by_alias=True, exclude_none=True),
+            inner_radius_mm=sensor.dome.inner_radius,
+            wall_thickness_mm=sensor.dome.wall_thickness,
+            dead_volume_mL=sensor.gas.dead_volume / ML,
+            share_used=shares(selection.grade_target, search.best),
+            passes_check=True if selection.passes else None,
+            set=tuple(selection.assignments()),
+        ),
+        rejected=selection.rejected,
+        constant=tuple(
+            extended(ConstantMembrane, _figures(selection, each.trial), name=each.name, fraction=each.fraction)
+            for each in selection.constants
+        ),
+        nearest_constant_mix=selection.nearest.name,
+        cost=SearchCost(selection.solves, len(search.trials)),
+        model="solid",
+        left_out=selection.left_out,
+    )
+
+
+def _figures(selection: GradedSelectionRun, trial: GradeTrial) -> GradeFigures:
+    return GradeFigures(
+        driving_pressures_kPa=tuple(p / KPA for p in selection.grade_target.pressures),
+        sensitivity_kPa_per_N=_each_known(trial.sensitivity),
+        difference_percent=_each_known((100 * trial.difference,))[0],
+        force_range_end_N=_each_known(trial.force),
+        range_ends_with=tuple(trial.ends),
+        rated_pressure_kPa=None if trial.note else trial.rated / KPA,
+        above_rated_pressure=max(selection.grade_target.pressures) > trial.rated,
+        meets=selection.meets(trial),
+        reason=trial.note or None,
+    )
+
+
+def _each_known(values: tuple[float, ...]) -> tuple[float | None, ...]:
+    return tuple(float(value) if np.isfinite(value) else None for value in values)
+
+
+def graded_missed(selection: GradedSelectionRun) -> list[str]:
+    """Requirements that the best grade misses, and the range over which it can be moved at this size, in words."""
+    grade_target, best = selection.grade_target, selection.search.best
+    values = ", ".join(f"{value:.3f}" for value in best.sensitivity)
+    texts = {
+        "sensitivity": f"{values} kPa/N instead of {grade_target.sensitivity:g} within "
+        f"{100 * grade_target.tolerance:g} %",
+        "same sensitivity": f"{100 * best.difference:+.1f} % apart instead of "
+        f"{100 * (grade_target.same_within or 0):g} %",
+        "limit pressure": f"0.9 of it is {best.highest / KPA:.1f} kPa, less than "
+        f"{max(grade_target.pressures) / KPA:g} kPa",
+        "force range": f"{best.reach:.3g} N instead of {grade_target.force or 0:g}",
+        "no figures": best.note or "no straight part to fit",
+    }
+    lines = [f"{name}: {texts[name]}" for name, used in shares(grade_target, best).items() if used > 1.0]
+    known_kPa_per_N = np.array(
+        [trial.sensitivity for trial in selection.search.trials if np.isfinite(trial.sensitivity).all()]
+    )
+    if known_kPa_per_N.size:
+        lines.append(
+            f"all grades tried of this size have {known_kPa_per_N[:, 0].min():.2f} to "
+            f"{known_kPa_per_N[:, 0].max():.2f} kPa/N at "
+            f"{grade_target.pressures[0] / KPA:g} kPa"
+        )
+    return lines
+
+
+def rated_warning(selection: GradedSelectionRun) -> str | None:
+    """Warning of a driving pressure above the rated one, in words; None if there is none."""
+    best, highest = selection.search.best, max(selection.grade_target.pressures)
+    if best.note or highest <= best.rated:
+        return None
+    return (
+        f"{highest / KPA:g} kPa is above the grade's rated pressure of {tenths_below(best.rated / KPA):.1f} kPa: its "
+        "modulus follows from an assumed mixing curve; measure it on coupons before driving it so far"
+    )

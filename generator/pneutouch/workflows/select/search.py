@@ -12,9 +12,8 @@ from pneutouch.errors import InputError
 from pneutouch.results.selection import GradedRecord, ProcessesRecord, SelectionRecord
 from pneutouch.spec.target import Target
 from pneutouch.workflows.select.checks import write_assigned
-from pneutouch.workflows.select.document import selected
+from pneutouch.workflows.select.document import graded, selected
 from pneutouch.workflows.select.graded import GradedSelectionRun, select_graded
-from pneutouch.workflows.select.graded_document import graded
 from pneutouch.workflows.select.processes import ProcessSelection, select, select_processes
 from pneutouch.workflows.select.select import STEPS, SelectionRun
 

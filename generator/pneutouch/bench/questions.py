@@ -1,0 +1,203 @@
+"""Questions about runs that may nevertheless be right, and runs that deviate from the others of their sensor."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from pneutouch.bench.record import Blocks, MeasuredCurve
+from pneutouch.errors import InputError
+from pneutouch.mechanics.response import figures
+from pneutouch.spec.campaign import CampaignRun, ColumnMap, Rig
+from pneutouch.units import KPA, STANDARD_ATMOSPHERE
+
+FAR = 3.0
+"""Factor from the prediction beyond which a question is reported: our choice. The solid's predictions meet the paper's
+table with a median error of 8 % and are off by two for its stiffest resin."""
+
+RESET_KPA, RESET_SHARE = 1.0, 0.1
+"""Largest distance of the pressure before contact from the driving pressure: our choice, a regulator's scatter."""
+
+ABSOLUTE = (0.6, 1.1)
+"""Excess before contact, in standard atmospheres, that looks like an absolute pressure: up to 4 km above the sea."""
+
+_SURELY_ABSOLUTE = (0.85, 1.1)
+"""The same where a pressure may be off for other reasons: up to 1.3 km above the sea."""
+
+LOADED = 0.1
+"""Share of the greatest force from which one before contact may be a preload, and of the greatest rise that goes on
+while the force stays: our choice."""
+
+_FLAT_POINTS, _NOISES, _LEVEL = 3, 6.0, 2e-3
+"""Points at the greatest force that may be a channel's end; noise, or share of the force, within which they count."""
+
+_PARTS, _SWINGS = 200, 0.3
+"""Parts of a leak run whose means show presses, and the share of their span that they go up and down: our choice."""
+
+_START = 1.0
+"""Seconds in which a leaking line loses little, long enough to average the noise of a gauge: our choice."""
+
+
+def number(value: float) -> str:
+    """A number to two digits."""
+    return f"{value:.2g}" if abs(value) < 1e4 else f"{value:.1e}".replace("e+0", "e")
+
+
+def looks_absolute(off_kPa: float, within: tuple[float, float] = ABSOLUTE) -> bool:
+    """True if a pressure before contact is above the driving pressure by about an atmosphere."""
+    return within[0] < off_kPa * KPA / STANDARD_ATMOSPHERE < within[1]
+
+
+def run_questions(curve: MeasuredCurve, columns: ColumnMap) -> list[str]:
+    """Questions that a record raises by itself: its kind, a preload, a force at its end, and doubts about its parts."""
+    doubts = (warning.why for warning in curve.warnings if warning.kind == "asked")
+    asked = (_kind(curve), _loaded(curve, columns), _flat(curve, columns), *doubts)
+    return [text for text in asked if text is not None]
+
+
+def _kind(curve: MeasuredCurve) -> str | None:
+    """Question about a stated kind of run whose record shows another."""
+    stated, shows = curve.run.kind, curve.shows
+    stays = {"steps": True, "saturation": True, "relaxation": True, "loop": False}
+    if stated not in stays or stays[stated] == stays.get(shows):
+        return None
+    does = "stays at its deep ends" if stays.get(shows) else "turns at its deep ends without a stay"
+    return f"stated as a run of kind {stated}, but the plate {does}, as in one of kind {shows}: state that kind?"
+
+
+def _loaded(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
+    """Question about a force before contact that may be a preload."""
+    zeros = [one.zero_force for one in curve.indents if not math.isnan(one.contact)]
+    top = float(np.abs(curve.force).max())
+    if not zeros or abs(zeros[0]) <= LOADED * top:
+        return None
+    return (
+        f"column {columns.force.name}: reads {number(zeros[0])} N before contact, {abs(zeros[0]) / top:.2g} times "
+        "what the press adds; it is subtracted: a scale that was not zeroed, or was the sensor pressed already?"
+    )
+
+
+def _flat(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
+    """Question about a force that stays at its greatest value while the pressure goes on rising."""
+    force, rise = curve.force, curve.rise
+    if force.size < _FLAT_POINTS + 2 or not math.isfinite(curve.noise[0]):
+        return None
+    top = force >= force.max() - max(_NOISES * curve.noise[0], _LEVEL * float(force.max()))
+    first = int(top.argmax())
+    if force.size - first < _FLAT_POINTS or rise[-1] - rise[first] < LOADED * float(np.ptp(rise)):
+        return None
+    return (
+        f"column {columns.force.name}: stays at {number(float(force.max()))} N over the last {force.size - first} "
+        f"points while the pressure rises by {number(float(rise[-1] - rise[first]) / KPA)} kPa: is the force sensor "
+        "at its end?"
+    )
+
+
+def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
+    """Questions about a leak run that may nevertheless be correct; its pressure is the median of the first `_START`
+    seconds.
+
+    Raises InputError if the pressure is at the end of the gauge's range (`reading.CLIPPED`) or at a flat top for
+    more than half of the run, or begins at more than `FAR` times or less than 1 / `FAR` of the driving pressure in the
+    campaign; of a run without a stated driving pressure that is not looked at."""
+    questions: list[str] = []
+    started = int(np.searchsorted(blocks.time, blocks.time[0] + _START))
+    read_kPa, stated_kPa = float(np.median(blocks.pressure[: max(started, 1)])) / KPA, run.driving_pressure_kPa
+    if looks_absolute(read_kPa - stated_kPa, _SURELY_ABSOLUTE):
+        problem = f"a leak run that begins at {read_kPa:.4g} kPa, which looks like an absolute pressure"
+        remedy = "give `columns` the unit kPa_abs or mbar_abs, of which the ambient pressure is subtracted"
+        raise InputError(problem, file=blocks.file, remedy=remedy)
+    if (swing := _swing(blocks)) is not None:
+        questions.append(swing)
+    lost = [warning for warning in blocks.warnings if warning.kind == "clipped"]
+    length, at = float(np.ptp(blocks.time)), sum(warning.end - warning.start for warning in lost)
+    if at > 0.5 * length:
+        raise InputError(
+            f"a leak run of {length:.3g} s of which {at:.3g} s are clipped ({lost[0].why}); the gauge has a "
+            f"range of {rig.pressure_range_kPa:g} kPa; must be run within it",
+            file=blocks.file,
+        )
+    if lost:
+        questions.append(f"{at:.2g} s of {length:.3g} s are clipped ({lost[0].why}); is the leak greater?")
+    if "driving_pressure_kPa" not in run.model_fields_set or abs(read_kPa - stated_kPa) <= max(
+        RESET_KPA, RESET_SHARE * stated_kPa
+    ):
+        return tuple(questions)
+    stated = f"the campaign states driving_pressure_kPa = {stated_kPa:g}"
+    problem = f"a leak run that begins at {read_kPa:.3g} kPa; {stated}"
+    if stated_kPa > 0 and not stated_kPa / FAR <= read_kPa <= stated_kPa * FAR:
+        raise InputError(
+            f"{problem}; the unit of the pressure (columns.pressure.unit), or another run's file?", file=blocks.file
+        )
+    return (*questions, f"{problem}; was it left out, is the gauge not zeroed, or does the line lose it at once?")
+
+
+def _swing(blocks: Blocks) -> str | None:
+    """Question about a leak run whose pressure goes both up and down, as under presses."""
+    parts = np.array_split(blocks.pressure, _PARTS)
+    means = np.array([part.mean() for part in parts if part.size])
+    up = float((means - np.minimum.accumulate(means)).max())
+    down = float((np.maximum.accumulate(means) - means).max())
+    noise = float(np.median(np.abs(np.diff(means))))
+    if min(up, down) <= max(_SWINGS * float(np.ptp(means)), 2 * _NOISES * noise):
+        return None
+    return (
+        f"the pressure goes up and down by {number(float(np.ptp(means)) / KPA)} kPa: presses, whose force is not named?"
+    )
+
+
+APART = 0.15
+"""Share by which runs of one sensor may differ: our choice. The paper's three runs differ by 1 % in sensitivity, its
+three identical sensors by 2 to 10 % (Fig. 7 and S2)."""
+
+TIMES = 5.0
+"""Factor on the scatter of the others (1.4826 times their median deviation) that must be exceeded too."""
+
+
+def outliers(curves: Sequence[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
+    """Runs that deviate from the others of one sensor, kind, driving pressure and age, and the reason.
+
+    The force at the greatest common depth and the slope of pressure over force are compared, as logarithms: a run
+    deviates where one of them is off the median of the others by more than `APART` and `TIMES` their scatter. Of two
+    runs that differ by `APART` both are reported.
+    """
+    groups: dict[tuple[object, ...], list[MeasuredCurve]] = {}
+    for curve in curves:
+        run = curve.run
+        groups.setdefault((run.sensor, run.kind, run.driving_pressure_kPa, run.age_days), []).append(curve)
+    odd: list[tuple[MeasuredCurve, str]] = []
+    for group in groups.values():
+        odd += _apart(group)
+    return odd
+
+
+def _apart(group: list[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
+    if len(group) < 2:
+        return []
+    depth = min(float(curve.indentation[-1]) for curve in group)
+    forces = np.array([float(np.interp(depth, curve.indentation, curve.force)) for curve in group])
+    reach = min(float(curve.force.max()) for curve in group)
+    slopes_kPa_per_N = np.array([_sensitivity(curve, reach) for curve in group])
+    reasons: dict[int, str] = {}
+    for name, values in ((f"force at {depth:.3g} mm", forces), ("slope of pressure over force", slopes_kPa_per_N)):
+        if not (values > 0).all():
+            continue
+        for k in range(len(group)):
+            others = np.delete(values, k)
+            middle = float(np.median(others))
+            scatter = 1.4826 * float(np.median(np.abs(np.log(others / middle))))
+            if abs(np.log(values[k] / middle)) > max(np.log1p(APART), TIMES * scatter):
+                reasons.setdefault(k, f"{name} is {values[k] / middle:.2f} times that of")
+    which = "the other run" if len(group) == 2 else f"the other {len(group) - 1} runs"
+    question = "is one of them" if len(group) == 2 else "is it"
+    return [
+        (group[k], f"{why} {which} of sensor {group[k].run.sensor}; {question} of another sensor?")
+        for k, why in sorted(reasons.items())
+    ]
+
+
+def _sensitivity(curve: MeasuredCurve, reach: float) -> float:
+    """Sensitivity of a curve up to a force, kPa/N."""
+    to = curve.force <= reach
+    values = figures(curve.indentation[to], curve.force[to], curve.rise[to] / KPA)
+    return float("nan") if values is None else values.sensitivity

@@ -1,0 +1,202 @@
+"""Warnings about a run, each with its time interval and reason, and reasons why an indentation cannot be used."""
+
+import itertools
+import math
+from collections.abc import Sequence
+from types import MappingProxyType
+
+import numpy as np
+
+from pneutouch.bench.excursions import NEAR, Excursion
+from pneutouch.bench.first_contact import Baseline, baseline
+from pneutouch.bench.indents import HOLD, RELAXATION, RunIndentations, read_window
+from pneutouch.bench.record import Blocks, MeasuredIndentation, SuspectInterval, SuspectKind
+from pneutouch.spec.campaign import CampaignRun
+from pneutouch.units import KPA
+
+SHORT = 0.5
+"""A hold is short below this share of the paper's: our choice."""
+
+SETTLED = 0.01
+"""Share of the force or the rise by which the two halves of a read window may differ: our choice."""
+
+LEAK, ASKED = 0.02, 0.05
+"""Shares of the greatest rise that a leak may take in a hold before it is noted, and before it is a question: our
+choice, the first about the difference between three runs."""
+
+SAME_DEPTH = 0.03
+"""mm within which two indentations have one depth: some standard deviations of an onset (0.004 to 0.01 mm)."""
+
+MOST = 20
+"""Gaps, clipped parts and spikes that are listed one by one, of each kind: our choice, for a readable list."""
+
+_MANY = MappingProxyType({"gap": "gaps", "clipped": "clipped parts", "spike": "spikes"})
+
+MISSING, PRESSED = 0.1, 0.002
+"""Share of a loading that may be missing, and of its force that the force may change by before contact: our choice."""
+
+SURELY = 8.0
+"""Standard errors of that change that are no chance, noise alike from sample to sample included: our choice."""
+
+_SIGNIFICANT = 4.0
+"""Standard errors that a change must exceed before it is reported: one false alarm in 10^4."""
+
+
+def untrusted(blocks: Blocks, indent: MeasuredIndentation, before: float) -> str | None:
+    """Reason why an indentation cannot be used: a channel clipped before contact or while read, or half of it missing;
+    None if it can."""
+    lost = 0.0
+    for warning in blocks.warnings:
+        if warning.used:
+            continue
+        in_read = min(warning.end, indent.read[1]) - max(warning.start, indent.read[0])
+        if warning.kind == "gap":
+            lost += max(in_read, 0.0)
+        elif in_read >= 0 or (warning.end >= indent.contact - before and warning.start <= indent.contact):
+            return warning.why
+    return "most of its samples are missing" if lost > 0.5 * (indent.read[1] - indent.read[0]) else None
+
+
+def listed(warnings: Sequence[SuspectInterval]) -> list[SuspectInterval]:
+    """Warnings as listed: of gaps, clipped parts and spikes the first `MOST` of each and a sum of the others."""
+    shown = [warning for warning in warnings if warning.kind not in _MANY]
+    for kind, name in _MANY.items():
+        alike = [warning for warning in warnings if warning.kind == kind]
+        shown += alike[:MOST]
+        more = alike[MOST:]
+        if more:
+            lasts = sum(warning.end - warning.start for warning in more)
+            first, last = min(warning.start for warning in more), max(warning.end for warning in more)
+            why = f"{len(more)} more {name}: {lasts:.3g} s in all"
+            shown.append(SuspectInterval(first, last, why, False, more[0].kind))
+    return shown
+
+
+def run_warnings(run: CampaignRun, blocks: Blocks, indentations: RunIndentations) -> list[SuspectInterval]:
+    """Warnings about holds, contacts, releases, depths and the pressure without contact, in order of time."""
+    warnings: list[SuspectInterval] = []
+    if indentations.pressed:
+        end = indentations.parts[0].clear[0] if indentations.parts else blocks.time.size - 1
+        why = "the record begins with the plate in; left out"
+        warnings.append(SuspectInterval(float(blocks.time[0]), float(blocks.time[end]), why, False))
+    usual, turns = RELAXATION if run.kind == "relaxation" else HOLD, run.kind in ("loop", "hand")
+    for number, indent in enumerate(indentations.indents, start=1):
+        warnings += _of_one(number, indent, blocks, indentations, usual, not turns)
+    if not turns:
+        warnings += _of_depths([indent for indent in indentations.indents if not math.isnan(indent.contact)])
+    return warnings + _leak(blocks, indentations)
+
+
+def _of_one(
+    number: int, indent: MeasuredIndentation, blocks: Blocks, indentations: RunIndentations, usual: float, held: bool
+) -> list[SuspectInterval]:
+    begin, end = indent.hold
+    if math.isnan(indent.contact):
+        return [SuspectInterval(begin, end, f"indentation {number}: no contact found", False)]
+    warnings = []
+    contact = indentations.contacts[number - 1]
+    if contact is not None and not contact.fitted:
+        light = "too light for an onset by itself; its onset is the median of the others"
+        warnings.append(SuspectInterval(indent.contact, begin, f"indentation {number}: {light}", True))
+    if held and end - begin < SHORT * usual:
+        short = f"indentation {number}: held for {end - begin:.3g} s, usual are {usual:g} s"
+        warnings.append(SuspectInterval(begin, end, short, True))
+    elif held and (why := _unsettled(blocks, indentations, number - 1)):
+        warnings.append(SuspectInterval(*indent.read, f"indentation {number}: {why}", True))
+    if math.isnan(indent.release) and not goes_on(indentations, number - 1):
+        lasting = f"indentation {number}: no release: the force does not go back"
+        warnings.append(SuspectInterval(end, float(blocks.time[-1]), lasting, True))
+    return warnings
+
+
+def goes_on(indentations: RunIndentations, number: int) -> bool:
+    """True if the next indentation is a further step of the same loading."""
+    parts = indentations.parts
+    return number + 1 < len(parts) and parts[number + 1].clear == parts[number].clear
+
+
+def _unsettled(blocks: Blocks, indentations: RunIndentations, number: int) -> str | None:
+    start, end = read_window(blocks, indentations.parts[number].hold)
+    middle, indent = (start + end) // 2, indentations.indents[number]
+    if end - start < 4:
+        return None
+    for key, values, whole in (("force", blocks.force, indent.force), ("pressure", blocks.pressure, indent.rise)):
+        first, last = values[start:middle], values[middle:end]
+        change = float(last.mean() - first.mean())
+        error = math.sqrt(first.var() / first.size + last.var() / last.size)
+        if abs(change) > max(SETTLED * abs(whole), _SIGNIFICANT * error):
+            return f"{key} not settled: changes by {100 * change / whole:.2g} % within the stretch that is read"
+    return None
+
+
+def _of_depths(indents: list[MeasuredIndentation]) -> list[SuspectInterval]:
+    warnings = []
+    for before, after in itertools.pairwise(indents):
+        if after.indentation < before.indentation - SAME_DEPTH:
+            why = f"out of order: {after.indentation:.3g} mm after {before.indentation:.3g} mm; sorted by depth"
+            warnings.append(SuspectInterval(*after.hold, why, True))
+    by_depth = sorted(indents, key=lambda one: one.indentation)
+    for less, more in itertools.pairwise(by_depth):
+        if more.indentation - less.indentation <= SAME_DEPTH:
+            later = max(less, more, key=lambda one: one.contact)
+            why = f"two indentations at one depth, {less.indentation:.4g} and {more.indentation:.4g} mm"
+            warnings.append(SuspectInterval(*later.hold, why, True))
+    return warnings
+
+
+def _leak(blocks: Blocks, indentations: RunIndentations) -> list[SuspectInterval]:
+    """A drift of the pressure without contact: during a hold by more than a share of the greatest rise."""
+    touched = [
+        (base, one)
+        for base, one in zip(indentations.bases, indentations.indents, strict=True)
+        if not math.isnan(one.contact) and base.end - base.start > 3
+    ]
+    if not touched:
+        return []
+    slopes = np.array([base.slope[1] for base, _ in touched])
+    longest = max(one.hold[1] - one.contact for _, one in touched)
+    top = max(abs(one.rise) for _, one in touched)
+    slope = float(slopes.mean())
+    error = math.sqrt(sum(slope_variance(blocks, base) for base, _ in touched)) / slopes.size
+    if abs(slope) * longest <= LEAK * top or abs(slope) <= _SIGNIFICANT * error:
+        return []
+    first, last = touched[0][0], touched[-1][0]
+    why = (
+        f"pressure without contact drifts by {60 * slope / KPA:.3g} kPa a minute, "
+        f"{100 * abs(slope) * longest / top:.2g} % of the greatest rise during an indentation: a leak, or a reset "
+        "that has not settled"
+    )
+    kind: SuspectKind = "asked" if abs(slope) * longest > ASKED * top else "other"
+    return [SuspectInterval(float(blocks.time[first.start]), float(blocks.time[last.end - 1]), why, True, kind)]
+
+
+def slope_variance(blocks: Blocks, base: Baseline) -> float:
+    """Variance of the slope of the pressure over a stretch without contact, (MPa/s)^2."""
+    time = blocks.time[base.start : base.end]
+    return base.between[1] / float(((time - time.mean()) ** 2).sum())
+
+
+def cut_short(blocks: Blocks, indent: MeasuredIndentation, held: bool) -> str | None:
+    """Reason why a loading without a stay cannot be used: much of it was not recorded, its deep end perhaps."""
+    if held:
+        return None
+    begin, end = indent.contact, indent.hold[1] + max(indent.hold[1] - indent.contact, 0.0)
+    gaps = [warning for warning in blocks.warnings if warning.kind == "gap"]
+    lost = sum(max(min(gap.end, end) - max(gap.start, begin), 0.0) for gap in gaps)
+    return "much of its way in and out is missing" if lost > MISSING * (end - begin) else None
+
+
+def pressed_before(blocks: Blocks, part: Excursion, indent: MeasuredIndentation) -> str | None:
+    """Reason why an indentation cannot be used: the force rises with the plate already where it should be clear."""
+    end = int(np.searchsorted(blocks.time, indent.contact))
+    start = part.clear[0]
+    # Where the plate rests first, the force may change for other reasons, and contact is found against its level.
+    rests = np.ptp(blocks.position[slice(*part.clear)]) <= NEAR * indent.indentation
+    if rests or end - start < 4:
+        return None
+    base = baseline(blocks, start, end)
+    change = abs(base.slope[0]) * float(blocks.time[end - 1] - blocks.time[start])
+    noise = math.sqrt(12 * base.between[0] / (end - start))
+    if change <= max(SURELY * noise, PRESSED * abs(indent.force)):
+        return None
+    return f"the force changes by {change:.2g} N before contact: the record begins with the sensor pressed"

@@ -1,0 +1,107 @@
+"""Units of measured columns, and the words that instruments write for them.
+
+In a file of its own without numpy: completing a command line reads it.
+"""
+
+import re
+
+UNITS: dict[str, dict[str, float]] = {
+    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0},
+    "position": {"mm": 1.0, "um": 1e-3, "cm": 10.0, "m": 1e3, "in": 25.4},
+    "force": {"N": 1.0, "mN": 1e-3, "kN": 1e3, "gf": 9.80665e-3, "kgf": 9.80665, "lbf": 4.4482216152605},
+    "pressure": {
+        "kPa": 1e-3,
+        "Pa": 1e-6,
+        "MPa": 1.0,
+        "hPa": 1e-4,
+        "mbar": 1e-4,
+        "bar": 0.1,
+        "psi": 6.894757293168e-3,
+        "mmHg": 1.33322387415e-4,
+        "kPa_abs": 1e-3,
+        "Pa_abs": 1e-6,
+        "hPa_abs": 1e-4,
+        "mbar_abs": 1e-4,
+        "bar_abs": 0.1,
+        "psi_abs": 6.894757293168e-3,
+    },
+    "volume": {"mL": 1e3, "uL": 1.0, "mm3": 1.0, "L": 1e6},
+}
+"""Units a column may have, with their factor to the inner units: s, mm, N, MPa, mm3."""
+
+ABSOLUTE = "_abs"
+"""Ending of the units of absolute pressures, of which the ambient pressure is subtracted."""
+
+_WORDS: dict[str, dict[str, str]] = {
+    "time": {
+        "s": "sec secs second seconds sek sekunden",
+        "ms": "msec msecs millisecond milliseconds millis",
+        "us": "µs μs usec microsecond microseconds micros",
+        "min": "mins minute minutes minuten",
+    },
+    "position": {
+        "mm": "millimeter millimeters millimetre millimetres",
+        "um": "µm μm micron microns micrometer micrometers micrometre micrometres",
+        "cm": "centimeter centimeters centimetre centimetres",
+        "m": "meter meters metre metres",
+        "in": 'inch inches "',
+    },
+    "force": {
+        "N": "newton newtons",
+        "mN": "millinewton millinewtons",
+        "kN": "kilonewton kilonewtons",
+        "gf": "g gram grams grf",
+        "kgf": "kg kilogram kilograms kp",
+        "lbf": "lb lbs pound pounds",
+    },
+    "pressure": {
+        "kPa": "kpa KPa KPA kilopascal kPag kPa(g)",
+        "Pa": "pascal",
+        "MPa": "megapascal",
+        "hPa": "hpa",
+        "mbar": "millibar mbarg mbar(g)",
+        "bar": "barg bar(g)",
+        "psi": "psig psi(g) lbf/in2 lbf/in²",
+        "mmHg": "mmhg torr",
+        "kPa_abs": "kpaa kPaa kPa(a) kPa(abs)",
+        "hPa_abs": "hPa(a) hPaa",
+        "mbar_abs": "mbara mbar(a) mbar(abs)",
+        "bar_abs": "bara bar(a) bar(abs)",
+        "psi_abs": "psia psi(a)",
+    },
+    "volume": {
+        "mL": "ml cc ccm cm3 cm³ cm^3 milliliter milliliters",
+        "uL": "ul µL μL µl μl",
+        "mm3": "mm³ mm^3",
+        "L": "l",
+    },
+}
+"""Other spellings of the units. A mass stands for its weight."""
+
+_SMALL = frozenset({"psi", "bar", "lbf", "sec", "mm"})
+
+
+def _table() -> dict[str, tuple[str, str]]:
+    table = {unit: (key, unit) for key, units in UNITS.items() for unit in units}
+    for key, units in _WORDS.items():
+        for unit, words in units.items():
+            table |= dict.fromkeys(words.split(), (key, unit))
+    return table
+
+
+_TABLE = _table()
+_LONG = 4
+"""Letters from which a word may be in any case, as may `_SMALL`: of others the case distinguishes milli from mega."""
+
+BRACKETS = re.compile(r"[(\[{<]\s*([^(\[{<]*?(?:\((?:g|a|abs)\))?)\s*[)\]}>]")
+
+
+def unit_of(word: str) -> tuple[str, str] | None:
+    """Channel and unit that a word stands for, as of "kPa" or "[µm]"; None if it is no unit of a channel."""
+    word = word.strip()
+    bracketed = BRACKETS.fullmatch(word)
+    word = bracketed[1] if bracketed else word
+    if word in _TABLE:
+        return _TABLE[word]
+    small = word.lower()
+    return _TABLE.get(small) if len(word) >= _LONG or small in _SMALL else None
