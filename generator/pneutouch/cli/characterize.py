@@ -77,8 +77,8 @@ def characterize(
         from pneutouch.errors import InputError
         from pneutouch.mechanics.models.choice import USUAL
         from pneutouch.results.record import plain
-        from pneutouch.workflows.characterize.campaign import write
         from pneutouch.workflows.characterize.campaign import characterize as run
+        from pneutouch.workflows.characterize.campaign import write
         from pneutouch.workflows.characterize.load import same_failures
 
         _check(evidence, kind)
