@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import http.client
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -27,13 +28,20 @@ def hears_interrupts() -> None:
 
 
 @contextmanager
-def served(*words: str) -> Iterator[tuple[str, subprocess.Popen[str]]]:
-    """The address that ``pneutouch studio`` prints, and its process, which is stopped by Ctrl-C where it still runs."""
+def served(*words: str, files: int | None = None) -> Iterator[tuple[str, subprocess.Popen[str]]]:
+    """The address that ``pneutouch studio`` prints, and its process, which is stopped by Ctrl-C where it still runs.
+
+    It may have so many ``files`` and connections open at once; None: as many as the tests may.
+    """
+
+    def prepared() -> None:
+        hears_interrupts()
+        if files is not None:
+            resource.setrlimit(resource.RLIMIT_NOFILE, (files, files))
+
     command = [sys.executable, "-m", "pneutouch", "studio", "--no-browser", *words]
     pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    running = subprocess.Popen(
-        command, env={**os.environ, "PYTHONUNBUFFERED": "1"}, preexec_fn=hears_interrupts, **pipes
-    )
+    running = subprocess.Popen(command, env={**os.environ, "PYTHONUNBUFFERED": "1"}, preexec_fn=prepared, **pipes)
     try:
         address = running.stdout.readline().strip()
         assert address.startswith("http://127.0.0.1:"), running.stderr.read()
