@@ -23,7 +23,7 @@ LARGEST_FILE = 64 << 20
 """Bytes of one file."""
 
 _LARGEST_SUM = 256 << 20
-"""Bytes of all files; the oldest goes first."""
+"""Bytes of all files, also of those that are still coming; the oldest that is whole goes first."""
 
 _MOST_FILES = 500
 _LONGEST_NAME = 120
@@ -44,43 +44,55 @@ class Uploads:
 
     def __init__(self, folder: Path) -> None:
         self._folder, self._files, self._number = folder, dict[int, Upload](), 0
+        self._coming = dict[int, int]()
 
     def __getitem__(self, number: int) -> Upload:
         """A file by its number. Raises KeyError if unknown, or no longer."""
         return self._files[number]
 
     async def add(self, name: str, stream: AsyncIterator[bytes]) -> int:
-        """Keep a file; returns its number. Raises InputError if the name is no file name or the file is too large."""
+        """Keep a file; returns its number.
+
+        Raises InputError if the name is no file name, the file is too large, or too many come at once.
+        """
         if not _NAME.fullmatch(name) or len(name) > _LONGEST_NAME:
             remedy = "use letters, digits and . _ - + = @ ( ) , alone, and begin with a letter or a digit"
             raise InputError("not a name for a file", key="name", value=name[:_LONGEST_NAME], remedy=remedy)
         self._number += 1
-        number, size = self._number, 0
+        number = self._number
         path = self._folder / f"upload-{number}" / name
         path.parent.mkdir(parents=True)
+        self._coming[number] = 0
         try:
+            self._make_room(name, 0)
             with path.open("xb") as file:
                 async for part in stream:
-                    size += len(part)
-                    if size > LARGEST_FILE:
-                        remedy = f"give files of at most {LARGEST_FILE >> 20} MB, or use the commands"
-                        raise InputError("the file is too large", key=name, remedy=remedy)
+                    self._coming[number] += len(part)
+                    self._make_room(name, self._coming[number])
                     file.write(part)
+            self._files[number] = Upload(name, path, self._coming[number])
         except BaseException:
             path.unlink(missing_ok=True)
             path.parent.rmdir()
             raise
-        self._files[number] = Upload(name, path, size)
-        self._drop_oldest(number)
+        finally:
+            del self._coming[number]
         return number
 
-    def _drop_oldest(self, newest: int) -> None:
-        for number in [number for number in self._files if number != newest]:
-            if sum(each.bytes for each in self._files.values()) <= _LARGEST_SUM and len(self._files) <= _MOST_FILES:
-                return
-            old = self._files.pop(number)
+    def _make_room(self, name: str, size: int) -> None:
+        """Drop the oldest files for one that has come to ``size``. Raises InputError if that does not suffice."""
+        if size > LARGEST_FILE:
+            remedy = f"give files of at most {LARGEST_FILE >> 20} MB, or use the commands"
+            raise InputError("the file is too large", key=name, remedy=remedy)
+        while self._bytes() > _LARGEST_SUM or len(self._files) + len(self._coming) > _MOST_FILES:
+            if not self._files:
+                raise InputError("too many files come at once", key=name, remedy="give one after the other")
+            old = self._files.pop(next(iter(self._files)))
             old.path.unlink(missing_ok=True)
             old.path.parent.rmdir()
+
+    def _bytes(self) -> int:
+        return sum(each.bytes for each in self._files.values()) + sum(self._coming.values())
 
 
 LARGEST_BODY = 64 * 1024
