@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import http.client
+import json
 import os
 import resource
 import signal
@@ -16,6 +17,7 @@ from urllib.parse import urlsplit
 from playwright.sync_api import Page
 
 from pneutouch.spec.fields import Declaration
+from pneutouch.studio.guard import KEY, OPENING
 from tests.browser import Pages, until
 
 SOLVED = "document.getElementById('status').textContent.startsWith('Answered by the model')"
@@ -53,7 +55,7 @@ def served(*words: str, files: int | None = None) -> Iterator[tuple[str, subproc
 
 
 class Studio:
-    """A studio whose address was opened: any number of pages may use the cookie that it gave."""
+    """A studio whose address was opened: any number of pages may use the key that it gave."""
 
     def __init__(self, address: str, process: subprocess.Popen[str]) -> None:
         parts = urlsplit(address)
@@ -61,16 +63,13 @@ class Studio:
         self.home = f"http://{parts.netloc}/"
         self.token = parts.query.removeprefix("token=")
         with closing(http.client.HTTPConnection(parts.netloc)) as connection:
-            connection.request("GET", f"/?{parts.query}")
-            answer = connection.getresponse()
-            assert answer.status == 303
-            self.cookie = answer.getheader("Set-Cookie").partition(";")[0]
+            connection.request("POST", OPENING, headers={"Origin": self.home[:-1], KEY: self.token})
+            self.key = json.load(connection.getresponse())["key"]
 
     def profile(self) -> dict[str, Any]:
-        """The state of a browser's profile that holds the cookie."""
-        name, value = self.cookie.split("=", 1)
-        entry = {"name": name, "value": value, "domain": "127.0.0.1", "path": "/", "expires": -1}
-        return {"cookies": [{**entry, "httpOnly": True, "secure": False, "sameSite": "Strict"}], "origins": []}
+        """The state of a browser's profile that holds the key."""
+        kept = [{"name": KEY, "value": self.key}]
+        return {"cookies": [], "origins": [{"origin": self.home[:-1], "localStorage": kept}]}
 
     def open(self, pages: Pages, design: str = "", **options: Any) -> Page:
         """A page on ``design``, written as in the address (``#paper-dome&membrane.wall_thickness_mm=1.4``), painted."""

@@ -104,5 +104,5 @@ def test_a_job_of_files_that_are_not_there_is_refused(client):
     assert answer.status_code == 422
     assert "unknown kind of job" in answer.text
     assert client.get("/api/jobs/7").status_code == 404
-    assert client.get("/api/jobs/7/files/..%2f..%2fetc%2fpasswd").status_code == 404
+    assert client.get("/files/7/..%2f..%2fetc%2fpasswd").status_code == 404
     assert client.post("/api/jobs/7/cancel", json={}, headers=origin).status_code == 404

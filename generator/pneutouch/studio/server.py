@@ -167,7 +167,7 @@ def application(bases: dict[str, str], first: str, port: int, token: str) -> App
         Route("/{path:path}", page),
     ]
     handlers = {TooLargeError: _refused, Exception: _failed}
-    return Guard(Starlette(routes=routes, lifespan=studio.running, exception_handlers=handlers), port, token)
+    return Guard(Starlette(routes=routes, lifespan=studio.running, exception_handlers=handlers), port, token, known)
 
 
 async def _question(request: Request) -> Question:

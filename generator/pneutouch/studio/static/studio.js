@@ -1,7 +1,7 @@
 // The page: a state, its history and its address; questions to the studio, and what shows the answers.
 import * as address from "./address.js";
 import { Areas } from "./areas.js";
-import { Line, Stopped } from "./requests.js";
+import { Line, send, Stopped, unlock } from "./requests.js";
 import * as charts from "./charts.js";
 import { byId, element } from "./dom.js";
 import { Following } from "./following.js";
@@ -269,7 +269,8 @@ function listen() {
 }
 
 async function start() {
-  const declared = await (await fetch("/api/form")).json();
+  await unlock();
+  const declared = await (await send("/api/form")).json();
   byId("base").replaceChildren(...declared.designs.map((one) => element("option", { value: one.name, title: one.title }, one.name)));
   parts.words = new Map(declared.designs.map((one) => [one.name, one.words]));
   parts.version = declared.version;
