@@ -7,6 +7,7 @@ import os
 
 import pytest
 
+from pneutouch.cli.studio import forwarding
 from tests.browser import FOUND, WITHOUT_WEBGL, Pages, launched, leave_out_or_fail, until
 from tests.studio.served import PAINTED, SOLVED, Studio, move, served, solved
 
@@ -18,13 +19,14 @@ _REFUSED = "document.getElementById('status').textContent.includes('pneutouch st
 _WALL = "document.getElementById('field-membrane-wall_thickness_mm')"
 
 
-def test_the_address_opens_in_one_browser_once_and_stays_open_there(pages):
+def test_the_address_opens_in_one_browser_once_and_stays_open_there(pages, tmp_path):
     leave_out_or_fail(FOUND, os.environ)
     with served() as (address, _):
-        page = pages.open(f"{address}#paper-dome&membrane.wall_thickness_mm=1.4")
+        begin = "#paper-dome&membrane.wall_thickness_mm=1.4"
+        page, home = pages.open(forwarding(f"{address}{begin}", tmp_path).as_uri()), address.partition("?")[0]
+        page.wait_for_url(f"{home}*")
         until(page, PAINTED)
-        home = address.partition("?")[0]
-        assert page.url == f"{home}#paper-dome&membrane.wall_thickness_mm=1.4"
+        assert page.url == f"{home}{begin}"
         page.reload()
         until(page, PAINTED)
         second = page.context.new_page()
