@@ -240,8 +240,13 @@ def _limited(receive: Receive, largest: int) -> Receive:
     return counted
 
 
+CHANGED = 412
 BAD_INPUT = 422
 FAILED = 500
+
+
+class ChangedFileError(InputError):
+    """The file of a design was changed since the page read it, which shows other values beside its changes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -273,7 +278,9 @@ def faults_of(error: PneutouchError) -> PageFault:
 
 
 def fault_status(error: PneutouchError) -> int:
-    """The status of an answer: the input is wrong, or a computation could not be completed."""
+    """The status of an answer: a file was changed, the input is wrong, or a computation could not be completed."""
+    if isinstance(error, ChangedFileError):
+        return CHANGED
     return BAD_INPUT if isinstance(error, InputError) else FAILED
 
 

@@ -236,7 +236,7 @@ class Desk:
         self._place = tempfile.TemporaryDirectory(prefix="pneutouch-studio-", ignore_cleanup_errors=True)
         folder = Path(self._place.name)
         self.jobs, self.uploads = Jobs(folder), Uploads(folder)
-        self._one = asyncio.Lock()
+        self._one, self._saving = asyncio.Lock(), asyncio.Lock()
 
     def routes(self) -> list[Route]:
         """Its part of the application."""
@@ -267,7 +267,9 @@ class Desk:
     async def save(self, request: Request) -> Response:
         """Write a design into the user's folder; 409 where there is such a file and it is not to be replaced."""
         try:
-            document = await run_in_threadpool(save_design, await _object(request), self._bases)
+            content = await _object(request)
+            async with self._saving:
+                document = await run_in_threadpool(save_design, content, self._bases)
         except NameTakenError as error:
             return _fault(error, _CLASH)
         except PneutouchError as error:
