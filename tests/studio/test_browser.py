@@ -23,8 +23,9 @@ def test_the_address_opens_in_one_browser_once_and_stays_open_there(pages, tmp_p
     leave_out_or_fail(FOUND, os.environ)
     with served() as (address, _):
         begin = "#paper-dome&membrane.wall_thickness_mm=1.4"
-        page, home = pages.open(forwarding(f"{address}{begin}", tmp_path).as_uri()), address.partition("?")[0]
-        page.wait_for_url(f"{home}*")
+        page, home = pages.open("about:blank"), address.partition("?")[0]
+        page.goto(forwarding(f"{address}{begin}", tmp_path).as_uri(), wait_until="commit")
+        page.wait_for_url(lambda url: url.startswith(home))
         until(page, PAINTED)
         assert page.url == f"{home}{begin}"
         page.reload()
