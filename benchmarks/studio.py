@@ -32,9 +32,10 @@ for (let k = 0; k < {count}; k += 1) {{
 return times; }})()"""
 _ECHOES = """(async () => {{
 const times = [], body = JSON.stringify({{base: 'paper-dome', values: {{'membrane.wall_thickness_mm': '1.4'}}}});
+const headers = {{'Content-Type': 'application/json', 'pneutouch-key': localStorage.getItem('pneutouch-key')}};
 for (let k = 0; k < {count}; k += 1) {{
   const start = performance.now();
-  await (await fetch('/api/echo', {{method: 'POST', headers: {{'Content-Type': 'application/json'}}, body}})).json();
+  await (await fetch('/api/echo', {{method: 'POST', headers, body}})).json();
   await new Promise(done => requestAnimationFrame(done));
   times.push(performance.now() - start);
 }}

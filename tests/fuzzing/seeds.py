@@ -92,8 +92,8 @@ MEASURED = {
     "runs": [{"file": "a.csv", "kind": "steps", "sensor": "A", "resin": "TangoPlus", "driving_pressure_kPa": 0}],
 }
 HEADS = (
-    "GET /?token=the-token\nhost: 127.0.0.1:8123\n",
-    "POST /api/quick\nhost: localhost:8123\norigin: http://localhost:8123\ncookie: pneutouch-studio-8123=x\n"
+    "POST /api/open\nhost: 127.0.0.1:8123\norigin: http://127.0.0.1:8123\npneutouch-key: the-token\n",
+    "POST /api/quick\nhost: localhost:8123\norigin: http://localhost:8123\npneutouch-key: the-token\n"
     "content-type: application/json\ncontent-length: 12\n",
 )
 MODEL = """<?xml version="1.0" encoding="UTF-8"?>

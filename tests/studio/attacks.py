@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from pneutouch.studio.guard import LARGEST_BODY
+from pneutouch.studio.guard import FILES, KEY, LARGEST_BODY
 from tests.studio.raw import request
 from tests.studio.served import Studio
 
@@ -25,7 +25,7 @@ class Attack(NamedTuple):
 
 
 _ASK = b"POST /api/quick"
-_OPEN = ("/", "/studio.js", "/api/form", "/api/jobs/1")
+_CLOSED = ("/api/form", "/api/form/target", "/api/jobs", "/api/jobs/1", "/vendor/versions.json", "/nothing")
 _HOSTS = (
     "example.org",
     "{host}.example.org:{port}",
@@ -77,8 +77,8 @@ _PATHS = (
     b"/%ff%c0%ae%c0%ae/etc/passwd",
     b"/vendor/versions.json",
     b"/static/index.html",
-    b"/api/jobs/1/files/..%2f..%2fetc%2fpasswd",
-    b"/api/jobs/%2e%2e/files.zip",
+    b"/files/1/..%2f..%2fetc%2fpasswd",
+    b"/files/%2e%2e.zip",
     b"/api/jobs/" + b"9" * 5000,
     b"http://example.org/",
     b"file:///etc/passwd",
@@ -148,20 +148,40 @@ def _origins(studio: Studio) -> Iterable[bytes]:
 
 
 ATTACKS = (
-    Attack("no cookie", (403,), lambda to: [request(to, b"GET " + path.encode(), Cookie=None) for path in _OPEN]),
+    Attack("no key", (403,), lambda to: [request(to, b"GET " + path.encode(), **{KEY: None}) for path in _CLOSED]),
     Attack(
-        "a wrong cookie, or that of another studio",
+        "a wrong key",
+        (403,),
+        lambda to: [request(to, b"GET /api/form", **{KEY: each}) for each in (f"{to.key}x", to.key[1:], to.token, "")],
+    ),
+    Attack(
+        "the key as a cookie, or in the address",
         (403,),
         lambda to: [
-            request(to, Cookie=each)
-            for each in (f"{to.cookie}x", f"pneutouch-studio-1={to.cookie.partition('=')[2]}", '=;="\\')
+            request(to, b"GET /api/form", **{KEY: None, "Cookie": f"{KEY}={to.key}"}),
+            request(to, f"GET /api/form?{KEY}={to.key}&key={to.key}".encode(), **{KEY: None}),
         ],
     ),
     Attack(
         "a wrong token, none, or one that was used",
         (403,),
+        lambda to: [request(to, b"POST /api/open", **{KEY: each}) for each in ("wrong", "", "\xff", to.token, None)],
+    ),
+    Attack(
+        "the files of a job by a wrong ticket",
+        (404,),
         lambda to: [
-            request(to, b"GET /?token=" + each, Cookie=None) for each in (b"wrong", b"", b"%ff", to.token.encode())
+            request(to, f"GET {FILES}{each}".encode(), **{KEY: None})
+            for each in ("x/a.txt", "1.zip", "1/a.txt", "/", "")
+        ],
+    ),
+    Attack(
+        "a request that a browser makes for a page of another port or site",
+        (403,),
+        lambda to: [
+            request(to, b"GET " + path, **{"Sec-Fetch-Site": each})
+            for path in (b"/api/form", FILES.encode() + b"1.zip")
+            for each in ("same-site", "cross-site")
         ],
     ),
     Attack("another Host: rebound names, other ports, other writings of the address", (403,), _hosts),

@@ -30,6 +30,7 @@ pytest.importorskip("httpx2")
 from playwright.sync_api import Page
 from starlette.testclient import TestClient
 
+from pneutouch.studio.guard import KEY, OPENING
 from pneutouch.studio.server import application, bases_of
 from tests.browser import Pages
 from tests.studio.served import Studio, served
@@ -50,7 +51,13 @@ def stranger():
 @pytest.fixture
 def client(stranger):
     """A client that opened the address."""
-    assert stranger.get("/", params={"token": TOKEN}).status_code == 303
+    return admitted(stranger)
+
+
+def admitted(stranger: TestClient) -> TestClient:
+    """The client, from here on with the key that it was given for the token."""
+    answer = stranger.post(OPENING, headers={"Origin": HOME, KEY: TOKEN})
+    stranger.headers[KEY] = answer.json()["key"]
     return stranger
 
 

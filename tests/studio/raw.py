@@ -6,6 +6,7 @@ import contextlib
 import re
 import socket
 
+from pneutouch.studio.guard import KEY
 from tests.studio.served import Studio
 
 _PATIENCE = 60
@@ -14,7 +15,7 @@ _PATIENCE = 60
 
 def request(studio: Studio, line: bytes = b"GET /", body: bytes = b"", **changed: str | None) -> bytes:
     """A request of the studio's own page; ``changed`` heads replace its own, None leaves one out."""
-    heads: dict[str, str | None] = {"Host": studio.netloc, "Cookie": studio.cookie, "Connection": "close"}
+    heads: dict[str, str | None] = {"Host": studio.netloc, KEY: studio.key, "Connection": "close"}
     if line.startswith(b"POST"):
         heads |= {"Origin": studio.home[:-1], "Content-Type": "application/json", "Content-Length": str(len(body))}
     heads |= {name.replace("_", "-"): value for name, value in changed.items()}

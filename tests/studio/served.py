@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import http.client
+import json
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -15,6 +17,7 @@ from urllib.parse import urlsplit
 from playwright.sync_api import Page
 
 from pneutouch.spec.fields import Declaration
+from pneutouch.studio.guard import KEY, OPENING
 from tests.browser import Pages, until
 
 SOLVED = "document.getElementById('status').textContent.startsWith('Answered by the model')"
@@ -27,13 +30,20 @@ def hears_interrupts() -> None:
 
 
 @contextmanager
-def served(*words: str) -> Iterator[tuple[str, subprocess.Popen[str]]]:
-    """The address that ``pneutouch studio`` prints, and its process, which is stopped by Ctrl-C where it still runs."""
+def served(*words: str, files: int | None = None) -> Iterator[tuple[str, subprocess.Popen[str]]]:
+    """The address that ``pneutouch studio`` prints, and its process, which is stopped by Ctrl-C where it still runs.
+
+    It may have so many ``files`` and connections open at once; None: as many as the tests may.
+    """
+
+    def prepared() -> None:
+        hears_interrupts()
+        if files is not None:
+            resource.setrlimit(resource.RLIMIT_NOFILE, (files, files))
+
     command = [sys.executable, "-m", "pneutouch", "studio", "--no-browser", *words]
     pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    running = subprocess.Popen(
-        command, env={**os.environ, "PYTHONUNBUFFERED": "1"}, preexec_fn=hears_interrupts, **pipes
-    )
+    running = subprocess.Popen(command, env={**os.environ, "PYTHONUNBUFFERED": "1"}, preexec_fn=prepared, **pipes)
     try:
         address = running.stdout.readline().strip()
         assert address.startswith("http://127.0.0.1:"), running.stderr.read()
@@ -45,7 +55,7 @@ def served(*words: str) -> Iterator[tuple[str, subprocess.Popen[str]]]:
 
 
 class Studio:
-    """A studio whose address was opened: any number of pages may use the cookie that it gave."""
+    """A studio whose address was opened: any number of pages may use the key that it gave."""
 
     def __init__(self, address: str, process: subprocess.Popen[str]) -> None:
         parts = urlsplit(address)
@@ -53,16 +63,13 @@ class Studio:
         self.home = f"http://{parts.netloc}/"
         self.token = parts.query.removeprefix("token=")
         with closing(http.client.HTTPConnection(parts.netloc)) as connection:
-            connection.request("GET", f"/?{parts.query}")
-            answer = connection.getresponse()
-            assert answer.status == 303
-            self.cookie = answer.getheader("Set-Cookie").partition(";")[0]
+            connection.request("POST", OPENING, headers={"Origin": self.home[:-1], KEY: self.token})
+            self.key = json.load(connection.getresponse())["key"]
 
     def profile(self) -> dict[str, Any]:
-        """The state of a browser's profile that holds the cookie."""
-        name, value = self.cookie.split("=", 1)
-        entry = {"name": name, "value": value, "domain": "127.0.0.1", "path": "/", "expires": -1}
-        return {"cookies": [{**entry, "httpOnly": True, "secure": False, "sameSite": "Strict"}], "origins": []}
+        """The state of a browser's profile that holds the key."""
+        kept = [{"name": KEY, "value": self.key}]
+        return {"cookies": [], "origins": [{"origin": self.home[:-1], "localStorage": kept}]}
 
     def open(self, pages: Pages, design: str = "", **options: Any) -> Page:
         """A page on ``design``, written as in the address (``#paper-dome&membrane.wall_thickness_mm=1.4``), painted."""

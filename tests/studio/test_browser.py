@@ -7,14 +7,37 @@ import os
 
 import pytest
 
+from pneutouch.cli.studio import forwarding
 from tests.browser import FOUND, WITHOUT_WEBGL, Pages, launched, leave_out_or_fail, until
-from tests.studio.served import SOLVED, Studio, move, served, solved
+from tests.studio.served import PAINTED, SOLVED, Studio, move, served, solved
 
 _TOO_WIDE = """[...document.querySelectorAll('body *')].filter(e => !e.closest('.scroll') && !e.closest('svg') &&
 !e.matches('.skip') && e.getBoundingClientRect().right > innerWidth + 0.5).map(e => e.tagName + e.className)"""
 _UNNAMED = """[...document.querySelectorAll('input, select, button, canvas')].filter(e => !(e.labels && e.labels.length) &&
 !e.getAttribute('aria-label') && !e.textContent.trim()).map(e => e.outerHTML)"""
+_REFUSED = "document.getElementById('status').textContent.includes('pneutouch studio printed')"
 _WALL = "document.getElementById('field-membrane-wall_thickness_mm')"
+
+
+def test_the_address_opens_in_one_browser_once_and_stays_open_there(pages, tmp_path):
+    leave_out_or_fail(FOUND, os.environ)
+    with served() as (address, _):
+        begin = "#paper-dome&membrane.wall_thickness_mm=1.4"
+        page, home = pages.open("about:blank"), address.partition("?")[0]
+        page.goto(forwarding(f"{address}{begin}", tmp_path).as_uri(), wait_until="commit")
+        page.wait_for_url(lambda url: url.startswith(home))
+        until(page, PAINTED)
+        assert page.url == f"{home}{begin}"
+        page.reload()
+        until(page, PAINTED)
+        second = page.context.new_page()
+        second.goto(home)
+        until(second, PAINTED)
+        # The address again, as from the list of those that were opened: the browser has the key.
+        second.goto(address)
+        until(second, PAINTED)
+        for closed in (home, address):
+            until(pages.open(closed), _REFUSED)
 
 
 @pytest.mark.slow

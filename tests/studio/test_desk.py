@@ -15,12 +15,12 @@ from starlette.applications import Starlette
 from starlette.testclient import TestClient
 
 from pneutouch.studio.design_jobs import build_design
-from pneutouch.studio.guard import HEADERS, SHEET, Guard
+from pneutouch.studio.guard import HEADERS, KEY, SHEET, Guard
 from pneutouch.studio.jobs import Desk, Job, Jobs
 from pneutouch.workflows.build import CONTENTS, described
 from tests.conftest import ROOT
 from tests.refusals import refused
-from tests.studio.conftest import HOME, PORT, TOKEN
+from tests.studio.conftest import HOME, PORT, TOKEN, admitted
 from tests.studio.test_guard import ASK
 from tests.studio.test_jobs import PLAYED, gone
 
@@ -32,7 +32,9 @@ class Opened:
         self.desk = Desk({"paper-dome": "paper-dome"})
         self.place = Path(self.desk._place.name)
         self.desk.jobs = Jobs(self.place, (sys.executable, "-S", "-c", PLAYED))
-        guarded = Guard(Starlette(routes=self.desk.routes(), lifespan=self.running), PORT, TOKEN)
+        application = Starlette(routes=self.desk.routes(), lifespan=self.running)
+        application.router.redirect_slashes = False
+        guarded = Guard(application, PORT, TOKEN)
         self.client = TestClient(guarded, base_url=HOME, follow_redirects=False)
 
     @asynccontextmanager
@@ -40,8 +42,8 @@ class Opened:
         yield
         await self.desk.close()
 
-    def done(self, **files: bytes) -> None:
-        """A job that has written files."""
+    def done(self, **files: bytes) -> str:
+        """The ticket of a job that has written files."""
         job = Job(1, "build", self.place / "job-1")
         for name, content in files.items():
             path = job.folder / name
@@ -49,6 +51,7 @@ class Opened:
             path.write_bytes(content)
         job.state = "done"
         self.desk.jobs._jobs[1] = job
+        return job.ticket
 
     def post(self, path, content):
         return self.client.post(path, json=content, headers={"Origin": ASK["Origin"]})
@@ -58,20 +61,20 @@ class Opened:
 def opened():
     here = Opened()
     with here.client:
-        assert here.client.get("/", params={"token": TOKEN}).status_code == 303
+        admitted(here.client)
         yield here
     assert not here.place.exists()
 
 
 def test_a_sheet_shown_in_place_has_a_policy_of_its_own_and_nothing_else_has(opened):
-    opened.done(**{"dome/datasheet.html": b"<p>sheet</p>", "dome/dome.3mf": b"PK"})
-    shown = opened.client.get("/api/jobs/1/files/dome/datasheet.html?show=1")
+    ticket = opened.done(**{"dome/datasheet.html": b"<p>sheet</p>", "dome/dome.3mf": b"PK"})
+    shown = opened.client.get(f"/files/{ticket}/dome/datasheet.html?show=1")
     assert shown.headers.get_list("content-security-policy") == [SHEET["Content-Security-Policy"]]
     assert shown.headers["content-disposition"].startswith("inline")
     for name, value in HEADERS.items():
         assert name == "Content-Security-Policy" or shown.headers[name] == value
     for path in ("dome/datasheet.html", "dome/datasheet.html?show=0", "dome/dome.3mf", "none"):
-        taken = opened.client.get(f"/api/jobs/1/files/{path}")
+        taken = opened.client.get(f"/files/{ticket}/{path}")
         assert taken.headers.get_list("content-security-policy") == [HEADERS["Content-Security-Policy"]], path
         if path != "none":
             assert taken.headers["content-disposition"].startswith("attachment")
@@ -94,19 +97,32 @@ def test_the_policy_of_a_sheet_gives_it_no_origin_and_no_way_out():
 
 def test_an_archive_has_all_files_and_the_same_bytes_each_time(opened):
     files = {"dome/a.txt": b"a" * 99, "dome/stl/b.stl": b"b"}
-    opened.done(**files)
-    answer = opened.client.get("/api/jobs/1/files.zip")
+    ticket = opened.done(**files)
+    answer = opened.client.get(f"/files/{ticket}.zip")
     assert answer.headers["content-disposition"] == 'attachment; filename="dome.zip"'
     with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
         assert {name: archive.read(name) for name in archive.namelist()} == files
         assert {stat.S_IMODE(entry.external_attr >> 16) for entry in archive.infolist()} == {0o644}
     (opened.place / "job-1/dome.zip").unlink()
     os.utime(opened.place / "job-1/files/dome/a.txt", (1, 1))
-    assert opened.client.get("/api/jobs/1/files.zip").content == answer.content
+    assert opened.client.get(f"/files/{ticket}.zip").content == answer.content
+
+
+def test_a_ticket_reads_the_files_of_its_job_and_is_no_key(opened):
+    ticket = opened.done(**{"dome/a.txt": b"a"})
+    key = opened.client.headers.pop(KEY)
+    assert opened.client.get(f"/files/{ticket}/dome/a.txt").content == b"a"
+    assert opened.client.get(f"/files/{ticket}.zip").status_code == 200
+    for other in ("x", ticket[1:], f"{ticket}x", key, "1", "é"):
+        assert opened.client.get(f"/files/{other}/dome/a.txt").status_code == 404
+        assert opened.client.get(f"/files/{other}.zip").status_code == 404
+    assert opened.client.get("/api/jobs/1", headers={KEY: ticket}).status_code == 403
+    assert opened.client.get(f"/files/{ticket}.zip", headers={"Sec-Fetch-Site": "same-site"}).status_code == 403
+    assert opened.client.get(f"/files/{ticket}.zip", headers={"Host": "127.0.0.1:8124"}).status_code == 403
 
 
 def test_no_path_leads_out_of_a_job(opened):
-    opened.done(**{"dome/a.txt": b"a"})
+    ticket = opened.done(**{"dome/a.txt": b"a"})
     (opened.place / "job-1/secret").write_text("secret")
     (opened.place / "job-1/files/dome/link").symlink_to(opened.place / "job-1/secret")
     for path in (
@@ -119,7 +135,7 @@ def test_no_path_leads_out_of_a_job(opened):
         "dome",
         "",
     ):
-        assert opened.client.get(f"/api/jobs/1/files/{path}").status_code == 404, path
+        assert opened.client.get(f"/files/{ticket}/{path}").status_code == 404, path
 
 
 def test_a_second_page_is_refused_and_finds_the_job_of_the_first(opened):
@@ -131,13 +147,13 @@ def test_a_second_page_is_refused_and_finds_the_job_of_the_first(opened):
     (known,) = opened.client.get("/api/jobs").json()["jobs"]
     assert (known["job"], known["kind"], known["state"]) == (begun.json()["job"], "build", "running")
     assert opened.post(f"/api/jobs/{known['job']}/cancel", {}).json()["state"] == "cancelled"
-    assert opened.client.get("/api/jobs/1/files.zip").status_code == 404
+    assert opened.client.get(f"/files/{known['ticket']}.zip").status_code == 404
 
 
 def test_the_end_of_the_studio_ends_a_job_and_removes_what_was_kept():
     here = Opened()
     with here.client:
-        here.client.get("/", params={"token": TOKEN})
+        admitted(here.client)
         here.post("/api/jobs/build", {"waits": True})
         while here.client.get("/api/jobs/1").json()["progress"].get("done") != 1:
             pass

@@ -96,10 +96,12 @@ def test_a_page_that_is_left_open_overnight_sends_nothing(pages, studio):
 
 @contextmanager
 def foreign():
-    """A server of somebody else on this computer, whose pages are empty."""
+    """A server of somebody else on this computer, whose pages are empty: its address, and all that it was sent."""
+    heads = []
 
     class Empty(http.server.BaseHTTPRequestHandler):
         def do_GET(self):
+            heads.append(f"{self.path}\n{self.headers}")
             self.send_response(200)
             self.send_header("Content-Type", "text/html")
             self.end_headers()
@@ -112,7 +114,7 @@ def foreign():
         thread = threading.Thread(target=server.serve_forever)
         thread.start()
         try:
-            yield f"http://127.0.0.1:{server.server_port}/"
+            yield f"http://127.0.0.1:{server.server_port}/", heads
         finally:
             server.shutdown()
             thread.join()
@@ -135,8 +137,8 @@ return {
 
 
 def test_a_page_of_another_origin_on_this_computer_reads_and_shows_nothing(pages, studio):
-    """The browser has the studio's cookie and, since the address is the same but for its port, sends it."""
-    with foreign() as address:
+    """The browser has the studio's key, and sends it to no page and no server of another port."""
+    with foreign() as (address, heads):
         page = pages.open(address, storage_state=studio.profile())
         answers = []
         page.on("response", lambda answer: answers.append((answer.url, answer.status)))
@@ -150,6 +152,9 @@ def test_a_page_of_another_origin_on_this_computer_reads_and_shows_nothing(pages
             "picture": "refused",
         }
         assert {code for url, code in answers if url.endswith("/api/quick")} <= {403, 405}
+        assert page.evaluate("[localStorage.length, document.cookie]") == [0, ""]
+        assert heads
+        assert not any(studio.key in head or "Cookie" in head for head in heads)
         # A frame of the studio stays empty.
         page.evaluate(
             "home => { const made = document.createElement('iframe'); made.src = home; document.body.append(made); }",

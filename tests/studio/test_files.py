@@ -16,7 +16,7 @@ from tests.conftest import ROOT
 from tests.export import test_threemf_unsafe as unsafe
 from tests.export.threemf_files import read_strictly
 from tests.studio.access import violations
-from tests.studio.served import Studio, served
+from tests.studio.served import Studio, served, solved
 from tests.studio.test_opening import HOSTILE
 
 _DROP = """(files) => {
@@ -221,6 +221,46 @@ def test_a_design_is_saved_exported_and_opened_again(page, home, tmp_path):
     page.evaluate("location.hash = '#soft-pad'")
     dropped(page, (taken.value.suggested_filename, taken.value.path().read_bytes()))
     until(page, "location.hash === '#mine&membrane.wall_thickness_mm=1.1'")
+
+
+def save_over(page: Page, name: str) -> None:
+    """Save the design of a page by a name, over the file that is there."""
+    field = shown(page).get_by_label("Name").last
+    field.fill(name)
+    field.press("Enter")
+    until(page, "document.activeElement.id === 'save-replace'")
+    page.keyboard.press("Space")
+    page.get_by_role("button", name="Save", exact=True).click()
+
+
+@pytest.mark.slow
+def test_a_page_says_that_another_one_saved_its_design(own, pages, home):
+    file, wall = home / "designs/shared.toml", "document.getElementById('field-membrane-wall_thickness_mm').value"
+    first, second = own.open(pages), own.open(pages)
+    name = shown(first).get_by_label("Name").last
+    name.fill("shared")
+    name.press("Enter")
+    for page in (first, second):
+        page.evaluate("location.hash = '#shared'")
+        solved(page, "#shared")
+    first.evaluate("location.hash = '#shared&membrane.wall_thickness_mm=1.3'")
+    save_over(first, "shared")
+    solved(first, "#shared")
+    saved = file.read_text()
+    assert "wall_thickness_mm = 1.3" in saved
+    # The form of the second page has the other wall still: nothing is computed with what it does not show.
+    second.get_by_label("Friction").first.fill("0.2")
+    said = "document.getElementById('status').textContent"
+    until(second, f"{said}.includes('was changed since this page read it')")
+    assert second.evaluate(wall) == "1.5"
+    assert second.evaluate("document.getElementById('results').classList.contains('stale')")
+    shown(second).get_by_label("Name").last.fill("shared")
+    second.get_by_role("button", name="Save", exact=True).click()
+    until(second, "document.getElementById('save-problems').textContent.includes('was changed since')")
+    assert file.read_text() == saved
+    second.get_by_role("button", name="Reset").click()
+    solved(second, "#shared")
+    assert second.evaluate(wall) == "1.3"
 
 
 @pytest.mark.slow

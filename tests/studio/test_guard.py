@@ -4,36 +4,63 @@ from __future__ import annotations
 
 import pytest
 
-from pneutouch.studio.guard import HEADERS, LARGEST_BODY
-from tests.studio.conftest import HOME, TOKEN
+from pneutouch.studio.guard import HEADERS, KEY, LARGEST_BODY, OPENING
+from tests.studio.conftest import HOME, TOKEN, admitted
 
 ASK = {"Origin": HOME, "Content-Type": "application/json"}
 QUESTION = '{"base": "paper-dome", "values": {"membrane.wall_thickness_mm": "-1"}}'
 
 
-def test_the_token_opens_the_page_once_and_nothing_does_without(stranger):
-    for path in ("/", "/studio.js", "/api/form", "/?token=wrong", "/?token="):
+def test_the_token_gives_the_key_once_and_nothing_opens_without(stranger):
+    closed = ("/api/form", "/api/jobs", "/api/echo", "/nothing", "/api/open")
+    for path in closed:
         assert stranger.get(path).status_code == 403, path
-    opened = stranger.get("/", params={"token": TOKEN})
-    assert (opened.status_code, opened.headers["location"]) == (303, "/")
-    cookie = opened.headers["set-cookie"].lower()
-    assert "httponly" in cookie
-    assert "samesite=strict" in cookie
-    assert stranger.get("/").status_code == 200
-    assert TOKEN not in cookie
-    stranger.cookies.clear()
-    assert stranger.get("/", params={"token": TOKEN}).status_code == 403
+        assert stranger.post(path, json={}, headers={"Origin": HOME}).status_code == 403, path
+    given = stranger.post(OPENING, headers={"Origin": HOME, KEY: TOKEN})
+    assert "set-cookie" not in given.headers
+    key = given.json()["key"]
+    assert key != TOKEN
+    assert stranger.get("/api/form", headers={KEY: key}).status_code == 200
+    for wrong in (TOKEN, f"{key}x", ""):
+        assert stranger.get("/api/form", headers={KEY: wrong}).status_code == 403
+    assert stranger.post(OPENING, headers={"Origin": HOME, KEY: TOKEN}).status_code == 403
 
 
-def test_another_host_gets_nothing_even_with_the_cookie(client):
+@pytest.mark.parametrize("origin", [None, "null", "http://127.0.0.1:8124", "http://127.0.0.1"])
+def test_a_page_of_another_port_cannot_use_the_token_up(origin, stranger):
+    asked = {"Origin": origin} if origin else {}
+    assert stranger.post(OPENING, headers={KEY: TOKEN} | asked).status_code == 403
+    assert stranger.post(OPENING, headers={KEY: TOKEN, "Origin": HOME}).status_code == 200
+
+
+def test_a_browser_has_nothing_that_it_would_send_to_another_port(stranger):
+    """Cookies go to every port of an address: the studio gives none, and takes none."""
+    for path in ("/", f"/?token={TOKEN}", "/studio.js", "/nothing"):
+        assert "set-cookie" not in stranger.get(path).headers, path
+    key = admitted(stranger).headers.pop(KEY)
+    assert len(stranger.cookies.jar) == 0
+    assert stranger.get("/api/form", headers={"Cookie": f"{KEY}={key}"}).status_code == 403
+
+
+def test_the_page_itself_holds_nothing_and_opens_for_all(stranger):
+    assert stranger.get("/").content == stranger.get(f"/?token={TOKEN}").content
+    assert stranger.get("/studio.js").status_code == 200
+    assert stranger.post("/", json={}, headers={"Origin": HOME}).status_code == 405
+
+
+def test_another_host_gets_nothing_even_with_the_key(client):
     for host in ("example.org", "example.org:8123", "127.0.0.1", "127.0.0.1:8124", "localhost.example.org:8123", ""):
-        answer = client.get("/", headers={"Host": host})
+        answer = client.get("/api/form", headers={"Host": host})
         assert (answer.status_code, answer.text) == (403, "unknown host"), host
-    assert client.get("/", headers={"Host": "localhost:8123", "Cookie": cookie(client)}).status_code == 200
+    assert client.get("/api/form", headers={"Host": "localhost:8123"}).status_code == 200
 
 
-def cookie(client) -> str:
-    return "; ".join(f"{one.name}={one.value}" for one in client.cookies.jar)
+@pytest.mark.parametrize(
+    ("site", "code"), [("none", 200), ("same-origin", 200), ("same-site", 403), ("cross-site", 403)]
+)
+def test_what_a_browser_asks_for_another_page_is_refused(site, code, client):
+    assert client.get("/api/form", headers={"Sec-Fetch-Site": site}).status_code == code
+    assert client.get("/api/form", headers={"Origin": "http://127.0.0.1:8124"}).status_code == 403
 
 
 @pytest.mark.parametrize(

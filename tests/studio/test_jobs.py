@@ -85,10 +85,12 @@ def test_progress_then_content_and_files(tmp_path):
             assert plain(job.record)["files"] == []
             await ended(job)
             assert jobs.records == [job.record]
-            return plain(job.record)
+            return job.ticket, plain(job.record)
 
-    assert asyncio.run(run()) == {
+    ticket, record = asyncio.run(run())
+    assert record == {
         "job": 1,
+        "ticket": ticket,
         "kind": "build",
         "state": "done",
         "progress": {"done": 1, "total": 2, "what": "second half"},

@@ -15,7 +15,7 @@ from pneutouch.results.record import plain
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.studio.design_jobs import open_file
-from pneutouch.studio.form import Question
+from pneutouch.studio.form import Question, version_of
 from pneutouch.studio.guard import faults_of
 from pneutouch.studio.server import bases_of
 from tests.conftest import ROOT
@@ -68,7 +68,11 @@ def test_every_design_comes_as_it_is_under_its_name_and_another(name, tmp_path, 
         assert shown(content, library) == wanted
         assert (content["name"], content["notes"]) == (called, [])
         # It is one of the bases, whatever its name.
-        assert content["question"] == {"base": name, "values": {}}
+        assert content["question"] == {
+            "base": name,
+            "values": {},
+            "version": version_of(DesignSource.of(name, library)),
+        }
 
 
 @pytest.mark.parametrize("title", ["1, 2", "none", "a, b", "true", '"quoted"', "x = [1]", "a=b; c", "ä漢", "7", "inf"])
@@ -112,7 +116,9 @@ def test_a_3mf_becomes_the_design_it_was_built_from(built, tmp_path, library):
     path = tmp_path / "sensor.3mf"
     shutil.copy(built("paper-dome") / "paper-dome.3mf", path)
     found = opened(path)
-    assert found == {"name": "paper-dome", "question": {"base": "paper-dome", "values": {}}, "notes": []}
+    version = version_of(DesignSource.of("paper-dome", library))
+    question = {"base": "paper-dome", "values": {}, "version": version}
+    assert found == {"name": "paper-dome", "question": question, "notes": []}
 
 
 def test_what_a_3mf_has_of_its_own_is_said(built, tmp_path):

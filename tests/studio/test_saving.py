@@ -4,6 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from pneutouch.catalogue import DesignSource, Library
+from pneutouch.studio.design_jobs import build_design, nearest_state
+from pneutouch.studio.form import PageLibrary
+from pneutouch.studio.guard import CHANGED, ChangedFileError
+from pneutouch.studio.solver import answered
 from tests.conftest import ROOT
 from tests.refusals import refused
 from tests.studio.test_guard import ASK
@@ -70,6 +75,75 @@ def test_a_file_that_is_there_is_replaced_only_where_that_is_asked(home, client)
     assert saved(client, "mine", {"membrane.wall_thickness_mm": "1.2"}, "mine", replace=True).status_code == 200
     assert asked(client, "mine", {})["values"]["membrane"]["wall_thickness_mm"] == 1.2
     assert files(home) == {"designs/mine.toml"}
+
+
+def asked_at(client, version, path="quick", **values):
+    question = {"base": "mine", "values": values, "version": version}
+    return client.post(f"/api/{path}", json=question, headers={"Origin": ASK["Origin"]})
+
+
+@pytest.fixture
+def outdated(home, client):
+    """The version of a design that one page read, and that another has saved in a new one since."""
+    assert saved(client, "mine", {}).status_code == 200
+    version = asked_at(client, None).json()["version"]
+    assert saved(client, "mine", WALL, "mine", replace=True).status_code == 200
+    return version
+
+
+def test_a_page_does_not_compute_with_the_values_that_another_one_saved(outdated, client):
+    for path in ("quick", "intervals", "view"):
+        answer = asked_at(client, outdated, path)
+        assert answer.status_code == CHANGED, path
+        assert "mine" in answer.json()["problems"][0]["message"]
+    # The page that takes the file as it is gets its version, and goes on with that.
+    now = asked_at(client, None).json()
+    assert now["values"]["membrane"]["wall_thickness_mm"] == 1.4
+    for path in ("quick", "intervals", "view"):
+        assert asked_at(client, now["version"], path).status_code == 200
+    assert asked_at(client, 7).status_code == 422
+
+
+def test_an_answer_that_is_kept_is_that_of_the_file_as_it_is(home, client):
+    assert saved(client, "mine", {}).status_code == 200
+    before = asked_at(client, None, "intervals").json()
+    assert saved(client, "mine", WALL, "mine", replace=True).status_code == 200
+    assert asked_at(client, None, "intervals").json() != before
+
+
+def test_the_process_and_the_jobs_refuse_an_old_version(outdated, home):
+    bases = {"mine": str(home / "designs/mine.toml")}
+    question = {"base": "mine", "values": {}, "version": outdated}
+    library = PageLibrary(Library.default().folders)
+    assert answered({"question": question, "bases": bases}, library).status == CHANGED
+    with pytest.raises(ChangedFileError):
+        build_design({"question": question, "bases": bases}, home, lambda *words: None)
+    assert files(home) == {"designs/mine.toml"}
+
+
+def test_changes_to_an_old_version_are_not_saved(outdated, home, client):
+    before = (home / "designs/mine.toml").read_bytes()
+    question = {"base": "mine", "values": {"contact.friction": "0.3"}, "version": outdated}
+    for name in ("mine", "other"):
+        request = {"question": question, "name": name, "replace": True}
+        assert client.post("/api/designs", json=request, headers={"Origin": ASK["Origin"]}).status_code == CHANGED
+    assert (home / "designs/mine.toml").read_bytes() == before
+    assert files(home) == {"designs/mine.toml"}
+
+
+def test_comments_and_the_order_of_keys_are_no_other_version(home, client):
+    assert saved(client, "mine").status_code == 200
+    version = asked_at(client, None).json()["version"]
+    file = home / "designs/mine.toml"
+    file.write_text(f"# a comment\n{file.read_text()}")
+    assert asked_at(client, version).status_code == 200
+
+
+def test_the_state_of_a_design_that_was_found_is_of_a_version(home, client):
+    assert saved(client, "mine").status_code == 200
+    bases, library = {"mine": str(home / "designs/mine.toml")}, Library.default()
+    source = DesignSource.of(bases["mine"], library)
+    assert nearest_state(source, bases, library).version == asked_at(client, None).json()["version"]
 
 
 NAMES = [

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import html
 import http.client
 import signal
 import socket
+import stat
 import sys
 import threading
 from contextlib import closing
-from urllib.parse import urlsplit
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
 
 import pytest
 
@@ -24,7 +27,7 @@ def test_a_stop_signal_ends_it_with_one_line(number, code, line):
         parts = urlsplit(address)
         with closing(http.client.HTTPConnection(parts.hostname, parts.port)) as asked:
             asked.request("GET", f"/?{parts.query}")
-            assert asked.getresponse().status == 303
+            assert asked.getresponse().status == 200
         running.send_signal(number)
         _, said = running.communicate(timeout=60)
         assert running.returncode == code
@@ -54,18 +57,30 @@ def test_without_its_packages_it_names_what_to_install(command, monkeypatch):
     assert "pip install 'pneutouch[studio]'" in done.stderr
 
 
-@pytest.mark.slow
-def test_the_address_is_opened_in_a_browser(command, monkeypatch):
-    opened = []
-    monkeypatch.setattr("webbrowser.open", opened.append)
-    monkeypatch.setattr(
-        "pneutouch.studio.server.serve", lambda design, port, ready: ready("http://127.0.0.1:1/?token=x")
-    )
-    assert command("studio").stdout == "http://127.0.0.1:1/?token=x\n"
-    for thread in threading.enumerate():
-        if thread is not threading.current_thread() and thread.daemon:
-            thread.join(5)
-    assert opened == ["http://127.0.0.1:1/?token=x"]
+def test_a_browser_is_started_with_a_page_of_the_users_own_and_not_with_the_token(command, monkeypatch):
+    """What a process is started with can be read by every user of the machine."""
+    address, opened, begun = "http://127.0.0.1:1/?token=x&a=1", [], threading.Event()
+
+    def browser(given):
+        page = Path(unquote(urlsplit(given).path))
+        modes = [stat.S_IMODE(each.stat().st_mode) for each in (page, page.parent)]
+        opened.append((given, page, page.read_text(), modes))
+        begun.set()
+
+    def serve(design, port, ready):
+        ready(address)
+        assert begun.wait(60)
+
+    monkeypatch.setattr("webbrowser.open", browser)
+    monkeypatch.setattr("pneutouch.studio.server.serve", serve)
+    assert command("studio").stdout == f"{address}\n"
+    [(given, page, text, modes)] = opened
+    assert given.startswith("file:///")
+    assert "token" not in given
+    assert f"url={html.escape(address)}" in text
+    assert modes == [0o600, 0o700]
+    # It goes with the studio.
+    assert not page.parent.exists()
     command("studio", "--no-browser")
     assert len(opened) == 1
 

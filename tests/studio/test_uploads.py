@@ -6,6 +6,7 @@ import asyncio
 
 import pytest
 
+from pneutouch.errors import InputError
 from pneutouch.studio import guard as kept
 from pneutouch.studio.guard import Uploads
 from tests.refusals import refused
@@ -56,6 +57,40 @@ def test_the_oldest_go_first_where_they_are_too_much(tmp_path, monkeypatch):
         uploads[numbers[0]]
 
 
+def test_files_that_are_still_coming_count(tmp_path, monkeypatch):
+    monkeypatch.setattr(kept, "_LARGEST_SUM", 10)
+    uploads = Uploads(tmp_path)
+    opened = add(uploads, "old.csv", b"1234")
+
+    async def give() -> list[int | BaseException]:
+        async def content(size: int):
+            for _ in range(size):
+                yield b"x"
+                # The others come as far.
+                await asyncio.sleep(0)
+
+        files = (uploads.add("a.csv", content(size)) for size in (4, 4, 4))
+        return await asyncio.gather(*files, return_exceptions=True)
+
+    given = asyncio.run(give())
+    # The one from before made room, and of the three that came together two had it.
+    with pytest.raises(KeyError):
+        uploads[opened]
+    taken = [each for each in given if isinstance(each, int)]
+    assert [each.key for each in given if isinstance(each, InputError)] == ["a.csv"]
+    assert [uploads[number].bytes for number in taken] == [4, 4]
+    assert len(list(tmp_path.iterdir())) == 2
+    # What was given up counts no longer, and neither does what was dropped.
+    assert uploads[add(uploads, "b.csv", b"x" * 10)].bytes == 10
+
+
+def test_as_many_files_as_are_kept_may_come(tmp_path, monkeypatch):
+    monkeypatch.setattr(kept, "_MOST_FILES", 2)
+    uploads = Uploads(tmp_path)
+    numbers = [add(uploads, "a.csv") for _ in range(3)]
+    assert sorted(tmp_path.iterdir()) == sorted(uploads[number].path.parent for number in numbers[1:])
+
+
 def test_the_studio_takes_bytes_there_and_json_elsewhere(client):
     assert client.post("/api/uploads?name=a.csv", content=b"1", headers=SENT).json()["name"] == "a.csv"
     assert client.post("/api/uploads?name=../a", content=b"1", headers=SENT).status_code == 422
@@ -69,5 +104,5 @@ def test_a_job_of_files_that_are_not_there_is_refused(client):
     assert answer.status_code == 422
     assert "unknown kind of job" in answer.text
     assert client.get("/api/jobs/7").status_code == 404
-    assert client.get("/api/jobs/7/files/..%2f..%2fetc%2fpasswd").status_code == 404
+    assert client.get("/files/7/..%2f..%2fetc%2fpasswd").status_code == 404
     assert client.post("/api/jobs/7/cancel", json={}, headers=origin).status_code == 404

@@ -1,7 +1,10 @@
 """``pneutouch studio``: a page in the browser."""
 
+import html
+import tempfile
 import threading
 import webbrowser
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -38,11 +41,29 @@ def studio(
             raise InputError("the studio needs the packages starlette and uvicorn", remedy=remedy) from None
         from pneutouch.studio.server import serve
 
-        def opened(address: str) -> None:
-            echo(address)
-            notify("note: the address opens the page once, on this machine; Ctrl-C ends the studio")
-            if not no_browser:
-                # A browser in a terminal would return when it is left.
-                threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+        with tempfile.TemporaryDirectory(prefix="pneutouch-studio-", ignore_cleanup_errors=True) as folder:
 
-        serve(design, port, opened)
+            def opened(address: str) -> None:
+                echo(address)
+                notify("note: the address opens the page once, on this machine; Ctrl-C ends the studio")
+                if not no_browser:
+                    page = forwarding(address, Path(folder))
+                    # A browser in a terminal would return when it is left.
+                    threading.Thread(target=webbrowser.open, args=(page.as_uri(),), daemon=True).start()
+
+            serve(design, port, opened)
+
+
+def forwarding(address: str, folder: Path) -> Path:
+    """A page in ``folder`` that only the user can read and that goes on to the address.
+
+    Every user of the machine can read the words that a browser is started with: the address, with its token, is none.
+    """
+    page = folder / "open.html"
+    page.touch(0o600)
+    page.write_text(
+        f'<!doctype html><meta charset="utf-8"><meta http-equiv="refresh" content="0; url={html.escape(address)}">'
+        f'<title>pneutouch studio</title><a href="{html.escape(address)}">pneutouch studio</a>\n',
+        encoding="utf-8",
+    )
+    return page

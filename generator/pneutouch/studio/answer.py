@@ -85,8 +85,9 @@ class NamedDesign(PredictedDesign):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class QuickAnswer(NamedDesign):
-    """The answer of the atlas; ``outside`` is the reason where it has none."""
+    """The answer of the atlas; ``outside`` is the reason where it has none, ``version`` that of the base's file."""
 
+    version: str
     drawing: DrawnDesign
     outside: str | None
 
@@ -113,15 +114,16 @@ class Answers:
 
         Raises InputError naming the field.
         """
-        source = question.source(self._bases, self._library)
+        source, version = question.read(self._bases, self._library)
         scene = load_scene(source, {}, self._library)
         assembly = assemble(scene)
         drawing, why = _drawn_design(assembly), outside("atlas", sensor_of(assembly))
+        answer = partial(QuickAnswer, **_head(source), version=version, drawing=drawing)
         if why is not None:
-            return QuickAnswer(**_head(source), drawing=drawing, outside=why, prediction=None, curves=None)
+            return answer(outside=why, prediction=None, curves=None)
         resins = partial(elastomers, self._library, scene.printer.is_casting)
         evaluation = evaluate_scene(scene, resins, PredictionOptions("atlas"))
-        self._last = question, evaluation
+        self._last = replace(question, version=version), evaluation
         pressures = [state.driving_pressure for state in evaluation.prediction.states]
         rating = rating_record(evaluation.rating, pressures)
         prediction = plain(replace(by_model(evaluation.prediction), rating=rating))
@@ -130,15 +132,17 @@ class Answers:
         if drawn is not None:
             design = PageLine(_drawn(drawn.driving_pressure_kPa), _drawn(drawn.sensitivity), model="atlas")
         curves = PageCurves(design)
-        return QuickAnswer(**_head(source), drawing=drawing, outside=None, prediction=prediction, curves=curves)
+        return answer(outside=None, prediction=prediction, curves=curves)
 
     def intervals(self, question: Question) -> PredictedDesign:
         """The prediction with the intervals of its figures, the design's curve with its band, and the other resins'.
 
         Raises InputError naming the field.
         """
+        source, version = question.read(self._bases, self._library)
+        question = replace(question, version=version)
         if self._last is None or self._last[0] != question:
-            scene = load_scene(question.source(self._bases, self._library), {}, self._library)
+            scene = load_scene(source, {}, self._library)
             resins = partial(elastomers, self._library, scene.printer.is_casting)
             self._last = question, evaluate_scene(scene, resins, PredictionOptions("atlas"))
         evaluation = self._last[1]

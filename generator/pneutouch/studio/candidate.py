@@ -20,7 +20,7 @@ from pneutouch.rounding import tenths_below
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import Table
 from pneutouch.spec.read import assignments, validate
-from pneutouch.studio.form import PAGE, Question
+from pneutouch.studio.form import PAGE, Question, version_of
 from pneutouch.units import KPA
 from pneutouch.workflows.select.checks import assigned
 
@@ -141,13 +141,14 @@ def state_of(design: DesignFile, base: str, bases: Mapping[str, str], library: L
     """
     if base not in bases:
         raise InputError("unknown design", key="base", value=base)
-    before, after = _flat(DesignSource.of(bases[base], library).changed({})), _flat(design)
+    file = DesignSource.of(bases[base], library)
+    before, after = _flat(file.changed({})), _flat(design)
     values: dict[str, str | None] = {}
     for name in sorted(before | after):
         value = after.get(name)
         if value != before.get(name):
             values[name] = None if value is None else assignments({name: value})[0].partition("=")[2]
-    return Question(base, values)
+    return Question(base, values, version_of(file))
 
 
 def _flat(design: DesignFile) -> dict[str, Any]:

@@ -7,6 +7,7 @@ import types
 import typing
 from collections.abc import Mapping
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -28,6 +29,7 @@ from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import assignments, override, parse_changes, read_toml
 from pneutouch.spec.target import Target
 from pneutouch.spec.values import plain_name
+from pneutouch.studio.guard import ChangedFileError
 
 _TWICE = ("contact.plate_diameter_mm",)
 """Fields that stand in two tables, and in the form once."""
@@ -224,19 +226,21 @@ _LONGEST_TEXT = 4000
 class Question:
     """A design of the catalogue, or the one the studio was started with, by ``base``; and changed fields.
 
-    ``values`` holds by ``table.key`` the text of a change ``table.key=text``, or None if the key is left out.
+    ``values`` holds by ``table.key`` the text of a change ``table.key=text``, or None if the key is left out. They are
+    changes of the base's file in one ``version`` (`version_of`); None: as it is now.
     """
 
     base: str
     values: Mapping[str, str | None]
+    version: str | None = None
 
     @classmethod
     def of(cls, content: Any) -> "Question":
         """The question in a JSON document of the page. Raises InputError if there is none."""
-        if not isinstance(content, dict) or set(content) != {"base", "values"}:
+        if not isinstance(content, dict) or {*content, "version"} != {"base", "values", "version"}:
             raise InputError("a question is an object with the keys base and values")
-        base, values = content["base"], content["values"]
-        if not isinstance(base, str) or not isinstance(values, dict):
+        base, values, version = content["base"], content["values"], content.get("version")
+        if not isinstance(base, str) or not isinstance(values, dict) or not isinstance(version, str | None):
             raise InputError("base is a text and values is an object")
         if len(values) > _MOST_FIELDS:
             raise InputError(f"values has {len(values)} fields; at most {_MOST_FIELDS} are taken")
@@ -245,21 +249,34 @@ class Question:
                 raise InputError("each value is a text, or null where the key is left out", key=key)
             if value is not None and len(value) > _LONGEST_TEXT:
                 raise InputError(f"the text is longer than {_LONGEST_TEXT} characters", key=key)
-        return cls(base, values)
+        return cls(base, values, version)
 
     def source(self, bases: Mapping[str, str], library: Library) -> DesignSource:
         """The design as a source; ``bases`` are designs by name or path, by the name that the page has for them.
 
-        Raises InputError naming key and value.
+        Raises InputError naming key and value, and ChangedFileError.
         """
+        return self.read(bases, library)[0]
+
+    def read(self, bases: Mapping[str, str], library: Library) -> tuple[DesignSource, str]:
+        """The design as `source` gives it, and the version of its base's file that was read."""
         if self.base not in bases:
             raise InputError("unknown design", key="base", value=self.base)
         base = DesignSource.of(bases[self.base], library)
+        version = version_of(base)
+        if self.version not in (None, version):
+            remedy = "Reset takes the values that it has now"
+            raise ChangedFileError(f"the file of {self.base} was changed since this page read it", remedy=remedy)
         content = {key: dict(value) if isinstance(value, dict) else value for key, value in base.content.items()}
         for name in (name for name, text in self.values.items() if text is None):
             _leave_out(content, name)
         given = [f"{name}={text}" for name, text in self.values.items() if text is not None]
-        return DesignSource(base.name, override(content, parse_changes(given), DesignFile), PAGE)
+        return DesignSource(base.name, override(content, parse_changes(given), DesignFile), PAGE), version
+
+
+def version_of(base: DesignSource) -> str:
+    """The version of a design's file: a digest of its values, whatever their order and the comments beside them."""
+    return sha256(json.dumps(base.content, sort_keys=True, default=str).encode()).hexdigest()
 
 
 def _leave_out(content: dict[str, Any], name: str) -> None:
@@ -312,7 +329,7 @@ def save_design(request: Mapping[str, Any], bases: dict[str, str]) -> dict[str, 
     """Write the design of ``question`` as ``name`` into the folder of the user's designs, and add it to ``bases``.
 
     Over a file with ``replace`` alone. A design without changes is copied with its comments. Returns its name and
-    file. Raises NameTakenError if there is such a file, and InputError that names the key.
+    file. Raises NameTakenError if there is such a file, ChangedFileError, and InputError that names the key.
     """
     name, overwrite = _checked(request)
     question, library = Question.of(request.get("question")), Library.default()

@@ -6,14 +6,12 @@ names of our own, limited in size and number.
 
 import re
 import secrets
-from collections.abc import AsyncIterator, Awaitable, Callable, MutableMapping
+from collections.abc import AsyncIterator, Awaitable, Callable, Container, MutableMapping
 from dataclasses import dataclass
-from http.cookies import CookieError, SimpleCookie
 from pathlib import Path
 from typing import Any, NamedTuple
-from urllib.parse import parse_qs
 
-from starlette.responses import JSONResponse, PlainTextResponse, RedirectResponse, Response
+from starlette.responses import JSONResponse, PlainTextResponse, Response
 
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.spec.design import DesignFile
@@ -23,7 +21,7 @@ LARGEST_FILE = 64 << 20
 """Bytes of one file."""
 
 _LARGEST_SUM = 256 << 20
-"""Bytes of all files; the oldest goes first."""
+"""Bytes of all files, also of those that are still coming; the oldest that is whole goes first."""
 
 _MOST_FILES = 500
 _LONGEST_NAME = 120
@@ -44,43 +42,55 @@ class Uploads:
 
     def __init__(self, folder: Path) -> None:
         self._folder, self._files, self._number = folder, dict[int, Upload](), 0
+        self._coming = dict[int, int]()
 
     def __getitem__(self, number: int) -> Upload:
         """A file by its number. Raises KeyError if unknown, or no longer."""
         return self._files[number]
 
     async def add(self, name: str, stream: AsyncIterator[bytes]) -> int:
-        """Keep a file; returns its number. Raises InputError if the name is no file name or the file is too large."""
+        """Keep a file; returns its number.
+
+        Raises InputError if the name is no file name, the file is too large, or too many come at once.
+        """
         if not _NAME.fullmatch(name) or len(name) > _LONGEST_NAME:
             remedy = "use letters, digits and . _ - + = @ ( ) , alone, and begin with a letter or a digit"
             raise InputError("not a name for a file", key="name", value=name[:_LONGEST_NAME], remedy=remedy)
         self._number += 1
-        number, size = self._number, 0
+        number = self._number
         path = self._folder / f"upload-{number}" / name
         path.parent.mkdir(parents=True)
+        self._coming[number] = 0
         try:
+            self._make_room(name, 0)
             with path.open("xb") as file:
                 async for part in stream:
-                    size += len(part)
-                    if size > LARGEST_FILE:
-                        remedy = f"give files of at most {LARGEST_FILE >> 20} MB, or use the commands"
-                        raise InputError("the file is too large", key=name, remedy=remedy)
+                    self._coming[number] += len(part)
+                    self._make_room(name, self._coming[number])
                     file.write(part)
+            self._files[number] = Upload(name, path, self._coming[number])
         except BaseException:
             path.unlink(missing_ok=True)
             path.parent.rmdir()
             raise
-        self._files[number] = Upload(name, path, size)
-        self._drop_oldest(number)
+        finally:
+            del self._coming[number]
         return number
 
-    def _drop_oldest(self, newest: int) -> None:
-        for number in [number for number in self._files if number != newest]:
-            if sum(each.bytes for each in self._files.values()) <= _LARGEST_SUM and len(self._files) <= _MOST_FILES:
-                return
-            old = self._files.pop(number)
+    def _make_room(self, name: str, size: int) -> None:
+        """Drop the oldest files for one that has come to ``size``. Raises InputError if that does not suffice."""
+        if size > LARGEST_FILE:
+            remedy = f"give files of at most {LARGEST_FILE >> 20} MB, or use the commands"
+            raise InputError("the file is too large", key=name, remedy=remedy)
+        while self._bytes() > _LARGEST_SUM or len(self._files) + len(self._coming) > _MOST_FILES:
+            if not self._files:
+                raise InputError("too many files come at once", key=name, remedy="give one after the other")
+            old = self._files.pop(next(iter(self._files)))
             old.path.unlink(missing_ok=True)
             old.path.parent.rmdir()
+
+    def _bytes(self) -> int:
+        return sum(each.bytes for each in self._files.values()) + sum(self._coming.values())
 
 
 LARGEST_BODY = 64 * 1024
@@ -88,6 +98,15 @@ LARGEST_BODY = 64 * 1024
 
 UPLOADS = "/api/uploads"
 """Takes files, as bytes; everything else takes JSON."""
+
+FILES = "/files/"
+"""Addresses of what a job wrote begin so; the ticket of the job stands next, in place of the key."""
+
+KEY = "pneutouch-key"
+"""Header of the page's requests with the key, and of the one to `OPENING` with the one-time token."""
+
+OPENING = "/api/open"
+"""Gives the key for the token."""
 
 HEADERS = {
     "Content-Security-Policy": "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
@@ -119,15 +138,16 @@ class TooLargeError(Exception):
 
 
 class Guard:
-    """Stands before an application: Host, one-time token, cookie, Origin, kind and size of what is sent.
+    """Stands before an application: Host, Origin, key, kind and size of what is sent.
 
-    ``token`` opens the page once, at ``/?token=...``; what the browser is given then, a cookie that no script reads and
-    no other site sends, opens it from there on.
+    ``token`` is given once for the key, which the page keeps and sends in a header: a browser sends none by itself, and
+    gives none to a page or a server of another port, as it would a cookie. The files of the page, at ``public`` paths,
+    hold nothing of the user's and need no key.
     """
 
-    def __init__(self, application: Application, port: int, token: str) -> None:
-        self._application, self._token = application, token
-        self._cookie, self._key = f"pneutouch-studio-{port}", secrets.token_urlsafe(32)
+    def __init__(self, application: Application, port: int, token: str, public: Container[str] = ()) -> None:
+        self._application, self._token, self._public = application, token, public
+        self._key = secrets.token_urlsafe(32)
         self._hosts = {f"{name}:{port}" for name in _NAMES}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -157,42 +177,38 @@ class Guard:
         """The answer to a request that goes no further; None for one that may."""
         if headers.get("host") not in self._hosts:
             return PlainTextResponse("unknown host", 403)
-        known = self._has_cookie(headers)
-        given = parse_qs(scope["query_string"].decode("latin-1")).get("token") if scope["path"] == "/" else None
-        if given is not None and (known or self._opens(given[0])):
-            answer = RedirectResponse("/", 303)
-            if not known:
-                answer.set_cookie(self._cookie, self._key, httponly=True, samesite="strict")
-            return answer
-        if not known:
+        path, home = scope["path"], f"http://{headers['host']}"
+        if headers.get("origin", None if scope["method"] == "POST" else home) != home:
+            return PlainTextResponse("unknown origin", 403)
+        if path not in self._public and headers.get("sec-fetch-site", "none") not in ("none", "same-origin"):
+            return PlainTextResponse("unknown origin", 403)
+        if path == OPENING and self._opens(headers.get(KEY, "")):
+            return JSONResponse({"key": self._key})
+        if path not in self._public and not path.startswith(FILES) and not _is(headers.get(KEY, ""), self._key):
             return PlainTextResponse("Open the address that pneutouch studio printed; it opens the page once.", 403)
         if scope["method"] == "POST":
-            return self._refused_question(scope["path"], headers)
+            return _refused_question(path, headers)
         return None if scope["method"] in ("GET", "HEAD") else PlainTextResponse("not allowed", 405)
-
-    def _refused_question(self, path: str, headers: dict[str, str]) -> Response | None:
-        if headers.get("origin") != f"http://{headers['host']}":
-            return PlainTextResponse("unknown origin", 403)
-        kind = "application/octet-stream" if path == UPLOADS else "application/json"
-        if headers.get("content-type", "").partition(";")[0].strip().lower() != kind:
-            return PlainTextResponse(f"what is sent here is {kind}", 415)
-        length = headers.get("content-length", "0")
-        is_number = length.isdecimal() and len(length) < 20
-        return None if is_number and int(length) <= _largest(path) else too_large(path)
-
-    def _has_cookie(self, headers: dict[str, str]) -> bool:
-        try:
-            cookie = SimpleCookie(headers.get("cookie", "")).get(self._cookie)
-        except CookieError:
-            return False
-        return cookie is not None and secrets.compare_digest(cookie.value.encode(), self._key.encode())
 
     def _opens(self, given: str) -> bool:
         """True if this is the token, which is then used up."""
-        if not self._token or not secrets.compare_digest(given.encode(), self._token.encode()):
+        if not self._token or not _is(given, self._token):
             return False
         self._token = ""
         return True
+
+
+def _is(given: str, secret: str) -> bool:
+    return secrets.compare_digest(given.encode(), secret.encode())
+
+
+def _refused_question(path: str, headers: dict[str, str]) -> Response | None:
+    kind = "application/octet-stream" if path == UPLOADS else "application/json"
+    if headers.get("content-type", "").partition(";")[0].strip().lower() != kind:
+        return PlainTextResponse(f"what is sent here is {kind}", 415)
+    length = headers.get("content-length", "0")
+    is_number = length.isdecimal() and len(length) < 20
+    return None if is_number and int(length) <= _largest(path) else too_large(path)
 
 
 def too_large(path: str) -> Response:
@@ -224,8 +240,13 @@ def _limited(receive: Receive, largest: int) -> Receive:
     return counted
 
 
+CHANGED = 412
 BAD_INPUT = 422
 FAILED = 500
+
+
+class ChangedFileError(InputError):
+    """The file of a design was changed since the page read it, which shows other values beside its changes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -257,7 +278,9 @@ def faults_of(error: PneutouchError) -> PageFault:
 
 
 def fault_status(error: PneutouchError) -> int:
-    """The status of an answer: the input is wrong, or a computation could not be completed."""
+    """The status of an answer: a file was changed, the input is wrong, or a computation could not be completed."""
+    if isinstance(error, ChangedFileError):
+        return CHANGED
     return BAD_INPUT if isinstance(error, InputError) else FAILED
 
 

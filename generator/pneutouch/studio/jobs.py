@@ -4,6 +4,7 @@ import asyncio
 import contextlib
 import json
 import os
+import secrets
 import shutil
 import signal
 import sys
@@ -22,7 +23,7 @@ from starlette.routing import Route
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.results.record import plain
 from pneutouch.studio.form import NameTakenError, json_body, save_design
-from pneutouch.studio.guard import SHEET, UPLOADS, Uploads, fault_status, faults_of
+from pneutouch.studio.guard import FILES, SHEET, UPLOADS, Uploads, fault_status, faults_of
 from pneutouch.studio.job import BRIEF, KINDS
 
 KEPT = 8
@@ -48,9 +49,10 @@ class JobFile:
 
 @dataclass(frozen=True, slots=True)
 class JobRecord:
-    """The state of a job for the page; its files once it is done."""
+    """The state of a job for the page; its files once it is done, below the address of its ``ticket``."""
 
     job: int
+    ticket: str
     kind: str
     state: str
     progress: Content
@@ -62,12 +64,14 @@ class JobRecord:
 class Job:
     """A job as the page sees it: ``state`` (running, done, failed, cancelled), progress, status and content.
 
-    ``place`` is removed with the job; the job writes its files into ``folder`` below it.
+    ``place`` is removed with the job; the job writes its files into ``folder`` below it. Links and frames send no key:
+    who has the ``ticket``, which no other request takes, may read these files as long as they are kept.
     """
 
     def __init__(self, number: int, kind: str, place: Path) -> None:
         self.number, self.kind, self.place, self.folder = number, kind, place, place / "files"
         self.state, self.status = "running", 200
+        self.ticket = secrets.token_urlsafe(32)
         self.progress: Content = {}
         self.content: Content = {}
         self.process: asyncio.subprocess.Process | None = None
@@ -85,7 +89,7 @@ class Job:
         """
         files = [JobFile(name, path.stat().st_size) for name, path in self.files().items()]
         state = "running" if self.runs else self.state
-        return JobRecord(self.number, self.kind, state, self.progress, self.status, self.content, files)
+        return JobRecord(self.number, self.ticket, self.kind, state, self.progress, self.status, self.content, files)
 
     def files(self) -> dict[str, Path]:
         """Files of a job that is done, by their path below its folder; none before."""
@@ -109,6 +113,11 @@ class Jobs:
     def __getitem__(self, number: int) -> Job:
         """A job by its number. Raises KeyError if unknown, or no longer."""
         return self._jobs[number]
+
+    def of_ticket(self, ticket: str) -> Job | None:
+        """The job of a ticket; None if unknown, or no longer."""
+        known = (job for job in self._jobs.values() if secrets.compare_digest(job.ticket.encode(), ticket.encode()))
+        return next(known, None)
 
     @property
     def records(self) -> list[JobRecord]:
@@ -227,7 +236,7 @@ class Desk:
         self._place = tempfile.TemporaryDirectory(prefix="pneutouch-studio-", ignore_cleanup_errors=True)
         folder = Path(self._place.name)
         self.jobs, self.uploads = Jobs(folder), Uploads(folder)
-        self._one = asyncio.Lock()
+        self._one, self._saving = asyncio.Lock(), asyncio.Lock()
 
     def routes(self) -> list[Route]:
         """Its part of the application."""
@@ -238,8 +247,8 @@ class Desk:
             Route("/api/jobs/{kind:str}", self.start, methods=["POST"]),
             Route("/api/jobs/{number}", self.state, methods=["GET"]),
             Route("/api/jobs/{number}/cancel", self.cancel, methods=["POST"]),
-            Route("/api/jobs/{number}/files.zip", self.zipped, methods=["GET"]),
-            Route("/api/jobs/{number}/files/{name:path}", self.file, methods=["GET"]),
+            Route(f"{FILES}{{ticket}}.zip", self.zipped, methods=["GET"]),
+            Route(f"{FILES}{{ticket}}/{{name:path}}", self.file, methods=["GET"]),
         ]
 
     async def close(self) -> None:
@@ -258,7 +267,9 @@ class Desk:
     async def save(self, request: Request) -> Response:
         """Write a design into the user's folder; 409 where there is such a file and it is not to be replaced."""
         try:
-            document = await run_in_threadpool(save_design, await _object(request), self._bases)
+            content = await _object(request)
+            async with self._saving:
+                document = await run_in_threadpool(save_design, content, self._bases)
         except NameTakenError as error:
             return _fault(error, _CLASH)
         except PneutouchError as error:
@@ -306,7 +317,7 @@ class Desk:
 
     async def file(self, request: Request) -> Response:
         """One file of a job, by its name in the job's list."""
-        job = self._job(request)
+        job = self.jobs.of_ticket(request.path_params["ticket"])
         path = None if job is None else job.files().get(request.path_params["name"])
         if path is None:
             return _unknown()
@@ -316,7 +327,7 @@ class Desk:
 
     async def zipped(self, request: Request) -> Response:
         """All files of a job in one archive."""
-        job = self._job(request)
+        job = self.jobs.of_ticket(request.path_params["ticket"])
         if job is None or not job.files():
             return _unknown()
         async with self._one:

@@ -3,13 +3,14 @@
 import asyncio
 import contextlib
 import gzip
+import resource
 import secrets
 import socket
 from collections.abc import AsyncIterator, Callable
 from functools import partial
 from importlib.resources import files
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import uvicorn
 from starlette.applications import Starlette
@@ -17,6 +18,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
+from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from pneutouch import __version__
 from pneutouch.catalogue import DesignSource, Library
@@ -165,7 +167,7 @@ def application(bases: dict[str, str], first: str, port: int, token: str) -> App
         Route("/{path:path}", page),
     ]
     handlers = {TooLargeError: _refused, Exception: _failed}
-    return Guard(Starlette(routes=routes, lifespan=studio.running, exception_handlers=handlers), port, token)
+    return Guard(Starlette(routes=routes, lifespan=studio.running, exception_handlers=handlers), port, token, known)
 
 
 async def _question(request: Request) -> Question:
@@ -193,6 +195,90 @@ _LAST_ANSWERS = 2
 """Seconds that unfinished answers have when the studio is stopped."""
 
 
+_HEAD_SECONDS, _REST_SECONDS = 10, 120
+"""Seconds that a connection has to send the head of a request; to send its body, and to take on with an answer."""
+
+_MOST_CONNECTIONS, _AT_ONCE = 128, 4
+"""Connections that are open or wait to be; those that are taken before the ones too many are closed."""
+
+
+def most_connections(files: int) -> int:
+    """Connections that are open at once where a process may have so many ``files``; -1 is no limit."""
+    return min(_MOST_CONNECTIONS, files // 4) if files > 0 else _MOST_CONNECTIONS
+
+
+class Connection(H11Protocol):
+    """A connection that is closed where the other side lets the studio wait for too long.
+
+    One more than `most` closes the one that has waited longest, or is closed itself where none waits: connections on
+    which nothing comes keep nobody out, and take no file that a job needs.
+    """
+
+    most = most_connections(resource.getrlimit(resource.RLIMIT_NOFILE)[0])
+    _owed: tuple[int, object] | None = None
+    _timer: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        """Take the connection, where there is room or room is made."""
+        super().connection_made(transport)
+        if len(self.connections) > self.most:
+            waiting = [each for each in self.connections if isinstance(each, Connection) and each._timer]
+            oldest = min(waiting, key=lambda each: each._since, default=self)
+            oldest._wait(None)
+            oldest.transport.abort()
+        self._watch()
+
+    def data_received(self, data: bytes) -> None:
+        """Take what was sent."""
+        super().data_received(data)
+        self._watch()
+
+    def on_response_complete(self) -> None:
+        """Go on with the next request."""
+        super().on_response_complete()
+        self._watch()
+
+    def pause_writing(self) -> None:
+        """Wait until the other side takes on."""
+        super().pause_writing()
+        self._watch()
+
+    def resume_writing(self) -> None:
+        """Write on."""
+        super().resume_writing()
+        self._watch()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """End."""
+        super().connection_lost(exc)
+        self._wait(None)
+
+    def _watch(self) -> None:
+        """Limit the time of what the other side has to do next; an answer is computed for as long as it takes."""
+        if self.transport.is_closing() or self.flow.write_paused:
+            self._wait((_REST_SECONDS, self.cycle))
+        elif not self.headers or self.cycle.response_complete:
+            self._wait((_HEAD_SECONDS, self.cycle))
+        else:
+            self._wait((_REST_SECONDS, self.scope) if self.cycle.more_body else None)
+
+    def _wait(self, owed: tuple[int, object] | None) -> None:
+        """Begin to wait for what is ``owed``: the seconds, and of which request. Waiting for the same goes on."""
+        if owed == self._owed:
+            return
+        if self._timer:
+            self._timer.cancel()
+        self._owed, self._since = owed, self.loop.time()
+        self._timer = self.loop.call_later(owed[0], self.transport.abort) if owed else None
+
+
+def without_traceback(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """Leave faults of connections, as a lack of files to take one by, off the terminal: the loop tries again, and does
+    so, in vain, at a listener that was closed meanwhile."""
+    if not isinstance(context.get("exception"), OSError) and "_start_serving" not in context["message"]:
+        loop.default_exception_handler(context)
+
+
 class _Server(uvicorn.Server):
     """A server that reports when it takes requests. A stop signal ends it, and is raised again when it has ended."""
 
@@ -202,7 +288,11 @@ class _Server(uvicorn.Server):
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Start to listen."""
+        asyncio.get_running_loop().set_exception_handler(without_traceback)
         await super().startup(sockets)
+        for each in sockets or []:
+            # As many may queue; asyncio takes as many at once as it was told that may.
+            each.listen(_MOST_CONNECTIONS)
         if self.started:
             self._opened()
 
@@ -249,7 +339,9 @@ def serve(design: str | None, port: int, opened: Callable[[str], None]) -> None:
             access_log=False,
             server_header=False,
             date_header=False,
+            http=Connection,
             ws="none",
+            backlog=_AT_ONCE,
             timeout_graceful_shutdown=_LAST_ANSWERS,
         )
         server = _Server(config, lambda: opened(f"http://{HOST}:{bound}/?token={token}"))

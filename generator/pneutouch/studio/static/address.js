@@ -8,6 +8,8 @@ export function written(state) {
   return `#${parts.join("&")}`;
 }
 
+export const same = (one, other) => written(one) === written(other);
+
 let due = null;
 let timer = null;
 

@@ -1,6 +1,6 @@
 // The area Files: build with progress, the files and the datasheet; open, save and export.
 import { options, quoted, written } from "./address.js";
-import { element } from "./dom.js";
+import { copied, element } from "./dom.js";
 import { Built } from "./built.js";
 import { Job } from "./jobs.js";
 import { ENDINGS, notify, openFile } from "./opening.js";
@@ -40,12 +40,8 @@ class Command {
   }
 
   async taken() {
-    try {
-      await navigator.clipboard.writeText(this.code.textContent);
-      this.copy.textContent = "Copied";
-    } catch {
-      getSelection().selectAllChildren(this.code);
-    }
+    if (await copied(this.code.textContent)) this.copy.textContent = "Copied";
+    else getSelection().selectAllChildren(this.code);
   }
 }
 

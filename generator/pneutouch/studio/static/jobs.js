@@ -35,6 +35,7 @@ export class Job {
     const { status, content } = await begun;
     if (status !== 202) throw new Failed(content.problems, status === 409);
     this.path = `/api/jobs/${content.job}`;
+    this.files = `/files/${content.ticket}`;
     if (this.unwanted) await this.cancel();
     let job = content;
     while (job.state === "running") {
@@ -54,11 +55,11 @@ export class Job {
 
   /** Addresses of a job's files: one by its name (`show` to look at it in place), and all in one archive. */
   file(name, show = false) {
-    return `${this.path}/files/${name.split("/").map(encodeURIComponent).join("/")}${show ? "?show=1" : ""}`;
+    return `${this.files}/${name.split("/").map(encodeURIComponent).join("/")}${show ? "?show=1" : ""}`;
   }
 
   get archive() {
-    return `${this.path}/files.zip`;
+    return `${this.files}.zip`;
   }
 }
 

@@ -167,8 +167,8 @@ class Measure {
     const files = [...this.files.values()];
     const stated = Object.fromEntries([...this.reading.querySelectorAll("[name]")].map((input) => [input.name, input.value]));
     const { columns, ...format } = stated;
-    const { base, values } = this.page.state();
-    const design = this.compared.value === "campaign" ? null : { base, values };
+    const { base, values, version } = this.page.state();
+    const design = this.compared.value === "campaign" ? null : { base, values, version };
     return { uploads: files.map((one) => one.upload), paths: files.map((one) => one.path), design, columns, format, runs: this.table.runs(), ...more };
   }
 

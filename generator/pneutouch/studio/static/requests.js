@@ -6,17 +6,29 @@ const STOPPED =
   `pneutouch studio does not answer: it was stopped. Start it again with --port ${location.port} and open the address that it prints: ` +
   "then this page answers again. Its design is in its address.";
 
-/** Like fetch, but with words for a studio that was stopped. The page tries again with the user's next move. */
-export async function send(path, options, silent = STOPPED) {
+const KEY = "pneutouch-key";
+const REPLACED = "This page belongs to a studio that was stopped. Open the address that the new one printed, and this page answers again.";
+
+/** Give the token of the address, which opens once, for the key. The browser keeps it for the pages of this very port. */
+export async function unlock() {
+  const token = new URLSearchParams(location.search).get("token");
+  if (token === null) return;
+  history.replaceState(null, "", location.pathname + location.hash);
+  const headers = { "Content-Type": "application/json", [KEY]: token };
+  const answer = await fetch("/api/open", { method: "POST", headers });
+  if (answer.ok) localStorage.setItem(KEY, (await answer.json()).key);
+}
+
+/** Like fetch, but with the key, and with words for a studio that was stopped. The page tries again with the user's next move. */
+export async function send(path, options = {}, silent = STOPPED) {
+  const key = localStorage.getItem(KEY) ?? "";
   let answer;
   try {
-    answer = await fetch(path, options);
+    answer = await fetch(path, { ...options, headers: { ...options.headers, [KEY]: key } });
   } catch {
     throw new Stopped(silent);
   }
-  if (answer.status === 403) {
-    throw new Stopped("This page belongs to a studio that was stopped. Open the address that the new one printed, and this page answers again.");
-  }
+  if (answer.status === 403) throw new Stopped(key ? REPLACED : await answer.text());
   return answer;
 }
 

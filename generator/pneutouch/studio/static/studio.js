@@ -1,9 +1,9 @@
 // The page: a state, its history and its address; questions to the studio, and what shows the answers.
 import * as address from "./address.js";
 import { Areas } from "./areas.js";
-import { Line, Stopped } from "./requests.js";
+import { Line, send, Stopped, unlock } from "./requests.js";
 import * as charts from "./charts.js";
-import { byId, element } from "./dom.js";
+import { byId, copied, element } from "./dom.js";
 import { Following } from "./following.js";
 import { Form } from "./form.js";
 import { listenForFiles } from "./opening.js";
@@ -11,22 +11,24 @@ import { Pressed } from "./pressed.js";
 import { Owed } from "./owed.js";
 import { drawSection } from "./section.js";
 import * as tables from "./tables.js";
+import { CHANGED, Versions } from "./versions.js";
 import { View } from "./view.js";
 
 /** Milliseconds after the last move at which the atlas completes its answer, and at which the solid begins. */
 const PAUSED = 80;
 const SETTLED = 250;
 const KEPT = 500;
-const page = { state: null, past: [], future: [], quick: null, solved: null, pinned: null, from: null, plain: {} };
+const page = { state: null, past: [], future: [], quick: null, solved: null, pinned: null, from: null, outdated: false };
 const parts = {};
 const owed = new Owed();
+const files = new Versions();
 
 /** By the id of an area, the module that fills it when it is first shown. */
 const MODULES = { target: "./target.js", files: "./files.js", measure: "./measure.js" };
 
 /** What the areas are given: the design as it is now, a function that opens another one, and the line of messages. */
 const desk = {
-  state: () => page.state,
+  state: () => files.of(page.state),
   answer: () => current(),
   go: (state) => go(state),
   report: (words, busy = false) => report(words, busy),
@@ -36,8 +38,6 @@ const desk = {
   saved: (name) => saved(name),
 };
 
-const same = (one, other) => address.written(one) === address.written(other);
-
 function report(words, busy = false) {
   byId("status").textContent = words;
   byId("status").classList.toggle("busy", busy);
@@ -46,14 +46,14 @@ function report(words, busy = false) {
 function buttons() {
   byId("undo").disabled = !page.past.length;
   byId("redo").disabled = !page.future.length;
-  byId("reset").disabled = !Object.keys(page.state.values).length;
+  byId("reset").disabled = !Object.keys(page.state.values).length && !page.outdated;
   byId("pin").textContent = page.pinned ? "Unpin" : "Pin";
   byId("pin").disabled = !page.pinned && !page.quick;
 }
 
 /** The form as the state has it. */
 function show() {
-  parts.form.show(page.state, page.plain[page.state.base] ?? page.quick);
+  parts.form.show(page.state, files.plain[page.state.base] ?? page.quick);
 }
 
 /** Request the answers to the state as it is now: what is quick, and after its answer to the last move the solid. */
@@ -66,15 +66,16 @@ function update(settled = true) {
   document.dispatchEvent(new Event("design"));
   clearTimeout(parts.soon);
   clearTimeout(parts.later);
-  parts.quick.send(page.state);
+  parts.quick.send(files.of(page.state));
 }
 
 /** Go to another state; `settled` states can be come back to. */
 function go(state, settled = true) {
   page.from ??= page.state;
+  if (state.version || state.base !== page.state.base) files.read(state.base, state.version);
   page.state = state;
   if (settled) {
-    if (!same(page.from, state)) {
+    if (!address.same(page.from, state)) {
       page.past = [...page.past.slice(1 - KEPT), page.from];
       page.future = [];
     }
@@ -87,8 +88,13 @@ function go(state, settled = true) {
 function saved(name) {
   if (!parts.words.has(name)) byId("base").append(element("option", { value: name }, name));
   parts.words.set(name, name);
-  delete page.plain[name];
-  go({ base: name, values: {} });
+  fresh(name);
+}
+
+/** Open a design as its file is now. */
+function fresh(base) {
+  files.read(base);
+  go({ base, values: {} });
 }
 
 function step(from, to) {
@@ -141,20 +147,22 @@ function draw() {
 
 function quickly(question, status, content) {
   owed.send = null;
+  page.outdated = status === CHANGED;
   if (status !== 200) {
-    if (!same(question, page.state)) return;
+    if (!address.same(question, page.state)) return;
     problems(content.problems);
+    buttons();
     report(`${content.problems[0].message}. Shown below is the last design that can work.`);
     return;
   }
   problems([]);
+  question = files.answered(question, content);
   parts.pressed.show(null);
   // Curves of the resins stay those of the design before until the next ones are there.
   if (content.curves) content.curves.resins = page.quick?.curves?.resins ?? [];
   page.quick = { ...content, pending: true };
   page.solved = null;
   parts.form.usual(content);
-  if (!Object.keys(question.values).length) page.plain[question.base] = content;
   show();
   byId("results").classList.toggle("stale", !content.prediction);
   draw();
@@ -165,7 +173,7 @@ function quickly(question, status, content) {
   report(`${why}The solid is computing.`, true);
   buttons();
   if (parts.view.renderer && !parts.view.drawnBySoftware) parts.shapes.send(question);
-  if (same(question, page.state)) {
+  if (address.same(question, page.state)) {
     parts.soon = setTimeout(() => complete(question, content), PAUSED);
     parts.later = setTimeout(() => parts.solved.send(question), SETTLED);
   }
@@ -180,16 +188,16 @@ function complete(question, content) {
 
 /** What the atlas adds to its quick answer: intervals, and the other resins. */
 function completed(question, status, content) {
-  if (status !== 200 || !same(question, page.state) || page.solved) return;
+  if (status !== 200 || !address.same(question, page.state) || page.solved) return;
   page.quick = { ...page.quick, ...content, pending: false };
   redraw();
 }
 
 function solved(question, status, content) {
-  if (!same(question, page.state)) return;
+  if (!address.same(question, page.state)) return;
   if (status !== 200) {
     problems(content.problems);
-    report("The solid has no answer to this design.");
+    report(status === CHANGED ? content.problems[0].message : "The solid has no answer to this design.");
     return;
   }
   if (!page.quick) return;
@@ -207,8 +215,8 @@ function solved(question, status, content) {
 
 /** Another page of this studio took the solid: the page that has the focus requests it again. */
 function replaced(question) {
-  if (!same(question, page.state)) return;
-  owed.send = () => parts.solved.send(page.state);
+  if (!address.same(question, page.state)) return;
+  owed.send = () => parts.solved.send(files.of(page.state));
   if (document.hasFocus()) parts.later = setTimeout(() => owed.settle(), 4 * SETTLED);
   else report("Another page of this studio took the solid; it answers again when you come back to this page.");
 }
@@ -228,21 +236,16 @@ function pin() {
 
 async function copy() {
   const words = address.options(page.state, desk.words(page.state.base));
-  try {
-    await navigator.clipboard.writeText(words);
-    report(`Copied: ${words}`);
-  } catch {
-    report(words);
-  }
+  report((await copied(words)) ? `Copied: ${words}` : words);
 }
 
 function listen() {
   byId("undo").onclick = () => step("past", "future");
   byId("redo").onclick = () => step("future", "past");
-  byId("reset").onclick = () => go({ base: page.state.base, values: {} });
+  byId("reset").onclick = () => fresh(page.state.base);
   byId("pin").onclick = pin;
   byId("copy").onclick = copy;
-  byId("base").onchange = (event) => go({ base: event.target.value, values: {} });
+  byId("base").onchange = (event) => fresh(event.target.value);
   byId("cut").onchange = (event) => parts.view.set({ open: event.target.checked });
   byId("explode").oninput = (event) => parts.view.set({ apart: event.target.value / 100 });
   document.addEventListener("keydown", (event) => {
@@ -256,7 +259,7 @@ function listen() {
   window.addEventListener("hashchange", () => {
     address.forget();
     const state = address.read(location.hash);
-    if (state && !same(state, page.state)) go(state);
+    if (state && !address.same(state, page.state)) go(state);
   });
   new ResizeObserver(() => {
     charts.resized();
@@ -269,7 +272,8 @@ function listen() {
 }
 
 async function start() {
-  const declared = await (await fetch("/api/form")).json();
+  await unlock();
+  const declared = await (await send("/api/form")).json();
   byId("base").replaceChildren(...declared.designs.map((one) => element("option", { value: one.name, title: one.title }, one.name)));
   parts.words = new Map(declared.designs.map((one) => [one.name, one.words]));
   parts.version = declared.version;

@@ -3,7 +3,7 @@ import { Candidates } from "./candidates.js";
 import { element } from "./dom.js";
 import { Fields, untyped } from "./fields.js";
 import { Failed, Job } from "./jobs.js";
-import { Stopped } from "./requests.js";
+import { send, Stopped } from "./requests.js";
 
 const MAIN = [
   "target.sensitivity_kPa_per_N",
@@ -156,7 +156,7 @@ class Target {
 }
 
 export async function open(root, page) {
-  const declared = await (await fetch("/api/form/target")).json();
+  const declared = await (await send("/api/form/target")).json();
   const target = new Target(root, page, declared);
   root.dataset.ready = "1";
   return target;

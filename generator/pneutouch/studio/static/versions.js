@@ -1,0 +1,28 @@
+// Designs as the page read them: the version of each file, which the page's states are changes to, and the answer to it.
+
+/** Status of an answer: the file was changed since the page read it, by another page or an editor. */
+export const CHANGED = 412;
+
+export class Versions {
+  constructor() {
+    Object.assign(this, { known: {}, plain: {} });
+  }
+
+  /** A state with the version of the file that its changes are made to; null: as the file is. */
+  of(state) {
+    return { ...state, version: this.known[state.base] ?? null };
+  }
+
+  /** From here on the states of a design are changes to this version of its file; null: to the file as it is then. */
+  read(base, version = null) {
+    if (this.known[base] !== version) delete this.plain[base];
+    this.known[base] = version;
+  }
+
+  /** Note an answer; the question with the version that it was answered for. */
+  answered(question, content) {
+    this.read(question.base, content.version);
+    if (!Object.keys(question.values).length) this.plain[question.base] = content;
+    return this.of(question);
+  }
+}
