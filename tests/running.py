@@ -13,7 +13,6 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from types import SimpleNamespace
 from unittest import mock
 
 import pytest
@@ -53,7 +52,7 @@ def captured_together(kind: type[io.TextIOWrapper] = io.TextIOWrapper) -> Iterat
 
 def on_a_terminal(words: Sequence[str], folder: Path, columns: int) -> tuple[int, str]:
     """Exit code of ``pneutouch WORDS`` in this process, and what a terminal keeps: lines fitted to it, and no bar."""
-    from pneutouch.cli import command_line, progress
+    from pneutouch.cli import command_line, terminal
     from pneutouch.cli.stop import stop_signals
 
     with (
@@ -61,8 +60,8 @@ def on_a_terminal(words: Sequence[str], folder: Path, columns: int) -> tuple[int
         mock.patch.object(sys, "argv", ["pneutouch", *words]),
         mock.patch.dict(os.environ, {"COLUMNS": str(columns), "NO_COLOR": "1"}),
         # A bar is gone from a terminal when its stage is done.
-        mock.patch.object(progress, "sys", SimpleNamespace(stderr=io.StringIO())),
-        mock.patch.object(progress, "_lines", lambda what: lambda done, total, what=None: None),
+        mock.patch.object(terminal, "_moves", lambda: False),
+        mock.patch.object(terminal, "_lines", lambda what: lambda done, total, what=None: None),
         captured_together(_Terminal) as out,
         stop_signals() as stop,
     ):

@@ -208,7 +208,7 @@ def bar(what: str, *, unit: str = "") -> Iterator[ProgressCallback]:
     """A stage, such as "reading runs", or "" where the callback names its stages; a bar that moves by the callback.
 
     ``unit`` is that of the counts at the bar, where they are not of things."""
-    if not sys.stderr.isatty():
+    if not _moves():
         yield _lines(what)
         return
     from rich.console import Console
@@ -223,6 +223,11 @@ def bar(what: str, *, unit: str = "") -> Iterator[ProgressCallback]:
             shown.update(task, description=what if what is None else one_line(what), completed=done, total=total)
 
         yield report
+
+
+def _moves() -> bool:
+    """True if a bar can move on stderr."""
+    return sys.stderr.isatty()
 
 
 def _lines(what: str) -> ProgressCallback:
