@@ -265,9 +265,9 @@ def loops(groups: Groups) -> Plot | None:
 
 
 def _loop_of(groups: ResinGroups, pressure_kPa: float) -> MeasuredCurve | None:
-    """The first loop run at a driving pressure."""
+    """The first loop run at a driving pressure, or press by hand."""
     members = (one.group for one in groups.comparisons if one.group.key.driving_pressure_kPa == pressure_kPa)
-    return next((curve for group in members for curve in group.of_kind("loop") if curve.loop), None)
+    return next((curve for group in members for curve in group.curves if curve.loop), None)
 
 
 def _branch(force: Array, rise: Array, look: PlotLine) -> curves.Press:
