@@ -144,6 +144,16 @@ def test_what_a_person_put_out_of_the_way_stays(folder: Path) -> None:
     assert written == {**NEW, **own}
 
 
+def test_the_modes_of_folders_stay(folder: Path) -> None:
+    (folder / "mine").mkdir()
+    (folder / "mine" / "notes.md").write_bytes(b"notes")
+    modes = {folder: 0o750, folder / "runs": 0o700, folder / "mine": 0o711}
+    for path, mode in modes.items():
+        path.chmod(mode)
+    write_folder(folder, NEW)
+    assert {path: path.stat().st_mode & 0o777 for path in modes} == modes
+
+
 def test_a_recording_in_the_folder_goes_on(folder: Path) -> None:
     with (folder / "runs/mine.csv").open("w") as recording:
         recording.write("1\n")

@@ -325,6 +325,10 @@ def _keep_foreign(folder: Path, fresh: Path, *, again: bool = False) -> None:
             os.link(path, target, follow_symlinks=False)
         except OSError:
             shutil.copy2(path, target, follow_symlinks=False)
+    for path in (folder, *(path for path in folder.rglob("*") if path.is_dir() and not path.is_symlink())):
+        target = fresh / path.relative_to(folder)
+        if target.is_dir():
+            shutil.copymode(path, target)
 
 
 LIBRARIES = ("numpy", "manifold3d", "trimesh", "lib3mf", "cadquery", "cadquery-ocp", "matplotlib", "jinja2", "typst")
