@@ -50,9 +50,9 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     if run.kind in ("leak", "injection"):
         raise InputError(f"a {run.kind} run has no plate and no curve", file=blocks.file)
     travels = _travel(blocks, rig)
+    blocks = _without_spikes(blocks)
     if run.kind == "hand":
         blocks = _by_force(blocks)
-    blocks = _without_spikes(blocks)
     indentations = find_indents(blocks, by_hand=run.kind == "hand")
     shows: RunKind = "hand" if run.kind == "hand" else indentations.kind(blocks)
     told = "kind" not in run.model_fields_set

@@ -307,7 +307,7 @@ def _group(key: GroupKey, curves: list[MeasuredCurve]) -> RunGroup:
         if by_sensor:
             estimate = _POOL[figure.pooled]([np.array(by_sensor[name]) for name in sorted(by_sensor)])
             if estimate.low is None and figure.key in _ALONE:
-                estimate = _ALONE[figure.key](curves, estimate)
+                estimate = _ALONE[figure.key](lined if figure.key in _OF_LINE else curves, estimate)
             if np.isfinite(estimate.value):
                 pooled[figure.key] = widened(estimate, figure.reading)
     return RunGroup(key, tuple(curves), pooled, each)

@@ -12,7 +12,7 @@ from pneutouch.spec.campaign import Campaign, CampaignRun
 from pneutouch.workflows.characterize.campaign import characterize
 from pneutouch.workflows.characterize.load import load_curves
 from tests.bench.reads import refuse
-from tests.bench.recordings import CLEAR, DEEP, READ, Recording, by_hand, plain, presses, true_figures, truth
+from tests.bench.recordings import CLEAR, DEEP, READ, Recording, by_hand, plain, presses, spiked, true_figures, truth
 
 NAMES = {"position": "position_mm", "force": "force_N", "pressure": "pressure_kPa"}
 
@@ -89,6 +89,13 @@ def test_a_hand_that_trembles_or_lets_go_in_part_presses_once_or_as_often_as_it_
         assert group.driving_pressure_kPa == 0.0
         assert group.figures["force_range_N"].value == pytest.approx(24.5, rel=0.03)
         assert group.figures["sensitivity_kPa_per_N"].value == pytest.approx(2.34, rel=0.02)
+
+
+def test_a_spike_in_a_press_by_hand_is_no_press(tmp_path):
+    measured = read(tmp_path, Recording(write=by_hand, spoil=lambda s: spiked(s, 60.0)))
+    (run,) = measured.runs
+    assert figures(measured)["force_range_N"].value == pytest.approx(24.5, rel=0.03)
+    assert [warning.kind for warning in run.warnings] == ["spike"]
 
 
 def test_a_press_by_hand_with_another_unit_or_swapped_is_refused_without_naming_one(tmp_path):
