@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import json
+import shlex
 from dataclasses import replace
 
 import pytest
+from typer.testing import CliRunner
 
+from pneutouch.cli.app import app
+from pneutouch.cli.select import typed as as_option
 from pneutouch.cli.select_text import selection_text
 from pneutouch.errors import InputError
 from pneutouch.selection.choose import missed_percent
-from tests.selection.targets import FINGERTIP, answer, document
+from pneutouch.workflows.select.base import base_scene
+from pneutouch.workflows.select.processes import offers
+from tests.selection.targets import FINGERTIP, answer, document, target
 
+RUNNER = CliRunner()
 KEYS = {"sensitivity": "sensitivity_kPa_per_N", "force range": "force_range_N", "outer diameter": "max_diameter_mm"}
 
 
@@ -108,3 +116,42 @@ def test_what_exceeds_a_greatest_value_is_in_percent_of_that_value(margin):
 def test_what_there_is_not_is_named(tables, said):
     with pytest.raises(InputError, match=said):
         answer(FINGERTIP, **tables)
+
+
+@pytest.mark.parametrize(
+    ("typed", "field"),
+    [
+        ("--sensitivity 3 --material FLX9995", "given.materials"),
+        pytest.param("--sensitivity 8", "setting.tube_length_mm", marks=pytest.mark.slow),
+        pytest.param("--sensitivity 4.9 --max-diameter 9", "setting.assignments", marks=pytest.mark.slow),
+        pytest.param("--sensitivity 3 --wall 2.5", "given.wall_thickness_mm", marks=pytest.mark.slow),
+        pytest.param("--sensitivity 3 --inner-radius 3", "given.inner_radius_mm", marks=pytest.mark.slow),
+    ],
+)
+def test_each_change_said_to_be_enough_is_enough_as_it_is_typed(typed, field):
+    words = shlex.split(typed)
+    result = RUNNER.invoke(app, ["select", *words, "--json"])
+    assert result.exit_code == 1, result.output
+    said = json.loads(result.stdout)
+    assert said["nearest"]["sensitivity_kPa_per_N"] is not None
+    named = [*said["single_changes"], *said["dropped_requirements"]]
+    assert field in [one["field"] for one in named]
+    for one in named:
+        if one["field"] is not None:
+            changed = replaced(words, shlex.split(as_option(one["field"], one["value"])))
+            assert RUNNER.invoke(app, ["select", *changed]).exit_code == 0, changed
+
+
+def replaced(words: list[str], option: list[str]) -> list[str]:
+    """The words of a command with an option in place of that of its name."""
+    if option[0] != "--set" and option[0] in words:
+        at = words.index(option[0])
+        words = words[:at] + words[at + 2 :]
+    return [*words, *option]
+
+
+def test_other_printers_and_processes_are_those_that_make_the_resins(library):
+    base = base_scene(target({"sensitivity_kPa_per_N": 2.0}), "test", library)
+    assert offers(base, None, library) == ["j735"]
+    assert offers(base, None, library, others=True) == ["casting"]
+    assert offers(base, ["FLX9995"], library, others=True) == []

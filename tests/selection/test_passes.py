@@ -48,7 +48,7 @@ def test_rejected_designs_leave_the_answer_and_are_named(fingertip, monkeypatch,
         )
 
     monkeypatch.setattr(workflow, "judge", reject)
-    found = workflow._passing(fingertip, written, LIBRARY)
+    found = workflow.passing(fingertip, written, LIBRARY)
     assert looked == [True, True, True]
     assert found.answer.designs == fingertip.answer.designs[2:]
     assert [one.choice for one in found.rejected] == fingertip.answer.designs[:2]
@@ -68,7 +68,7 @@ def test_the_first_design_and_the_one_to_be_saved_are_judged_as_check_does(finge
     monkeypatch.setattr(workflow, "judge", looked)
     for written, expected in ((None, [True]), (2, [True, True]), (3, [True, False, True])):
         asked.clear()
-        said = document(workflow._passing(fingertip, written, LIBRARY))["designs"]
+        said = document(workflow.passing(fingertip, written, LIBRARY))["designs"]
         assert asked == expected
         assert [one["passes_check"] for one in said] == [
             *(True if each else None for each in expected),
@@ -81,7 +81,7 @@ def test_a_plate_that_digs_in_rejects_the_first_design_before_it_is_saved(finger
     """The print rules see no plate: only the solid's prediction does."""
     changed = replace(fingertip, changes={**fingertip.changes, "indentation.plate_diameter_mm": 4})
     first = fingertip.answer.designs[:1]
-    found = workflow._passing(replace(changed, answer=replace(fingertip.answer, designs=first)), None, LIBRARY)
+    found = workflow.passing(replace(changed, answer=replace(fingertip.answer, designs=first)), None, LIBRARY)
     assert found.answer.designs == [] and "reaches the plate's edge" in found.rejected[0].reason
     assert judge(source_of(changed.base, changed.assignments(first[0])), LIBRARY, predicted=False).reason is None
 

@@ -20,7 +20,7 @@ from pneutouch.catalogue import DesignSource, Library
 from pneutouch.catalogue.library import read_given
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.output.new import new_changed
-from pneutouch.results.selection import FoundDesign, GradedRecord, ProcessesRecord, SelectionRecord
+from pneutouch.results.selection import FoundDesign, GradedRecord, ProcessesRecord, SelectionRecord, SingleChange
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, validate
 from pneutouch.spec.target import Target
@@ -61,6 +61,7 @@ def unmet_lines(record: SelectedRecord) -> list[str]:
         dropped = record.dropped_requirements
         lines += [f"drop the requirement on {each.requirement}: {each.attainable}" for each in dropped]
         lines += [] if dropped else ["no design fits with any single requirement dropped"]
+        lines += [f"enough by itself: {_keyword(each)}: {_size(each.design)}" for each in record.single_changes]
     return lines
 
 
@@ -71,6 +72,12 @@ def _of_grade(record: GradedRecord) -> list[str]:
     best = record.design
     used = ", ".join(f"{name} by {100 * (share - 1):.3g} %" for name, share in best.share_used.items() if share > 1)
     return [f"nearest grade: {best.reason or f'beyond what is allowed: {used}'}"]
+
+
+def _keyword(change: SingleChange) -> str:
+    """A change as the keyword of `select`."""
+    key = change.field.partition(".")[2]
+    return f"{key}={[change.value] if key == 'assignments' else change.value!r}"
 
 
 def _size(design: FoundDesign) -> str:

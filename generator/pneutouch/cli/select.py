@@ -91,6 +91,15 @@ def target_words(target: Target) -> list[str]:
     return [*words, *(word for text in target.setting.assignments for word in ("--set", text))]
 
 
+def typed(field: str, value: Any) -> str:
+    """A field of a target, ``table.key``, and its value as an option."""
+    if field == "setting.assignments":
+        return f"--set {shlex.quote(value)}"
+    table, _, key = field.partition(".")
+    name, option = next((n, one) for n, one in SELECT_FIELDS.items() if (one.table, one.key) == (table, key))
+    return f"--{name.replace('_', '-')} {shlex.quote(_text(value, '%' if option.metavar == _PERCENT else ''))}"
+
+
 def saving_command(target: Target, rank: int, name: str) -> str:
     """The command that saves the design of a rank under a name, as it is typed in a shell."""
     picked = [] if rank == 1 else ["--pick", str(rank)]
@@ -174,7 +183,7 @@ def _report(answer: TargetAnswer, path: Path | None, *, json: bool) -> None:
     else:
         from pneutouch.cli.select_text import answer_text
 
-        echo(answer_text(answer))
+        echo(answer_text(answer, typed))
         if path is not None:
             report_written(path)
         elif answer.choices and not isinstance(answer.record, GradedRecord):

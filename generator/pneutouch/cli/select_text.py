@@ -5,6 +5,7 @@ With ``--process`` the best design of each process, with ``--graded`` a grade wi
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +14,17 @@ from pneutouch.cli.terminal import table_text
 from pneutouch.rounding import tenths_below
 from pneutouch.selection import Candidate
 from pneutouch.units import KPA
-from pneutouch.workflows.select.document import dropped_lines, headline, missed_text, remarks, search_notes
+from pneutouch.workflows.select.document import (
+    Typed,
+    WorkingChange,
+    change_lines,
+    dropped_lines,
+    headline,
+    in_file,
+    missed_text,
+    remarks,
+    search_notes,
+)
 from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.processes import ProcessSelection
 from pneutouch.workflows.select.select import SelectionRun
@@ -28,15 +39,17 @@ HEAD += ["S 0 kPa..rated", "rated kPa", "binds", "solid S"]
 """Columns of the table of designs."""
 
 
-def answer_text(answer: TargetAnswer) -> str:
-    """The answer to a target of any kind."""
+def answer_text(answer: TargetAnswer, typed: Typed) -> str:
+    """The answer to a target of any kind; ``typed`` gives fields to change as options."""
     if isinstance(answer.run, ProcessSelection):
         return processes_text(answer.run)
-    return graded_text(answer.run) if isinstance(answer.run, GradedSelectionRun) else selection_text(answer.run)
+    if isinstance(answer.run, GradedSelectionRun):
+        return graded_text(answer.run)
+    return selection_text(answer.run, answer.changes, typed)
 
 
-def selection_text(selection: SelectionRun) -> str:
-    """Ranked designs, or why there are none."""
+def selection_text(selection: SelectionRun, changes: Sequence[WorkingChange] = (), typed: Typed = in_file) -> str:
+    """Ranked designs, or why there are none and what would make one possible."""
     answer, notes, left = selection.answer, search_notes(selection), remarks(selection)
     head = [*HEAD[:8], *(["place (k=1)"] if selection.problem.anywhere else []), *HEAD[8:]]
     head = head if selection.by_solid is None else [*head[:-1], "plate S"]
@@ -58,7 +71,8 @@ def selection_text(selection: SelectionRun) -> str:
             table_text(head[:-1], [["", *row_of(selection, answer.nearest)]]),
             f"it misses: {missed_text(selection, answer.nearest)}",
         ]
-    return "\n".join([*lines, "", *dropped_lines(selection), *left]).rstrip()
+    enough = [*dropped_lines(selection, typed), *change_lines(changes, typed)]
+    return "\n".join([*lines, "", *enough, "", *left]).rstrip()
 
 
 def _other(selection: SelectionRun, choice: Candidate, rank: int) -> str:

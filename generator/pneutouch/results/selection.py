@@ -121,8 +121,26 @@ class DroppedChoice:
     """The requirement."""
     attainable: str
     """Value that could be reached instead, in words."""
+    field: str | None
+    """Field of the target to change for it, TABLE.KEY; null for the rated pressure."""
+    value: float | None
+    """Its value; null for the rated pressure."""
     design: FoundDesign
     """The best design."""
+
+
+@dataclass(frozen=True, slots=True)
+class SingleChange:
+    """A change of one field of the target with which a design meets it."""
+
+    field: str
+    """Field of the target, TABLE.KEY."""
+    value: Any
+    """Its value; for setting.assignments one TABLE.KEY=VALUE, besides those that are there."""
+    instead_of: Any
+    """The value that it replaces; null: none was given."""
+    design: FoundDesign
+    """The best design found with it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,6 +181,8 @@ class SelectionRecord:
     """The design that misses least if none meets the target; else null."""
     dropped_requirements: tuple[DroppedChoice, ...]
     """Requirements without which there would be a design."""
+    single_changes: tuple[SingleChange, ...]
+    """Changes outside the requirements, each of which alone makes a design possible."""
     rejected: tuple[RejectedChoice, ...]
     """Designs that a print rule refuses."""
     left_out: Mapping[str, str]

@@ -8,11 +8,12 @@ A target as the page sends it: fields with texts, as in a question about a desig
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.library import CachedLibrary
+from pneutouch.cli.select import typed
 from pneutouch.cli.select_text import graded_lines, graded_table, processes_lines, processes_table
 from pneutouch.errors import InputError, PneutouchError, shown
 from pneutouch.results.record import extended, plain
@@ -23,7 +24,14 @@ from pneutouch.spec.target import Target
 from pneutouch.studio.candidate import CandidateCard, CandidateStates, candidate_figures, grade_figures
 from pneutouch.studio.form import PAGE, Question
 from pneutouch.workflows.select.charts import tradeoff
-from pneutouch.workflows.select.document import dropped_lines, headline, missed_text, remarks, search_notes
+from pneutouch.workflows.select.document import (
+    change_lines,
+    dropped_lines,
+    headline,
+    missed_text,
+    remarks,
+    search_notes,
+)
 from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.processes import ProcessSelection
 from pneutouch.workflows.select.search import search as answer
@@ -177,7 +185,8 @@ def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> PageSe
         if isinstance(run, GradedSelectionRun):
             return _graded(run, document, page)
         report(len(STEPS), steps, _CHART)
-        return _selected(run, document, page, library)
+        selected = _selected(run, document, page, library)
+        return replace(selected, remarks=[*change_lines(found.changes, typed), *selected.remarks])
 
 
 def _selected(run: SelectionRun, document: Mapping[str, Any], page: CandidateStates, library: Library) -> PageSelection:
@@ -217,7 +226,7 @@ def _cards(run: SelectionRun, page: CandidateStates) -> list[CandidateCard]:
     if answer.nearest is not None:
         misses = f"it misses: {missed_text(run, answer.nearest)}"
         cards.append(card(answer.nearest, "nearest", "nearest", note=misses))
-    for dropped, line in zip(answer.dropped, dropped_lines(run), strict=False):
+    for dropped, line in zip(answer.dropped, dropped_lines(run, typed), strict=False):
         cards.append(card(dropped.best, "dropped", f"without {dropped.requirement}", note=line))
     return cards
 
@@ -225,7 +234,7 @@ def _cards(run: SelectionRun, page: CandidateStates) -> list[CandidateCard]:
 def _nothing_to_drop(run: SelectionRun) -> list[str]:
     """Lines for a target that no design meets, if none fits without one of its requirements either."""
     answer = run.answer
-    return [] if answer.designs or run.rejected or answer.dropped else dropped_lines(run)
+    return [] if answer.designs or run.rejected or answer.dropped else dropped_lines(run, typed)
 
 
 def _chart(run: SelectionRun, library: Library) -> FrontChart:

@@ -1,14 +1,15 @@
 """A selection, or a search for a grade, as a record, and in words for the terminal and the studio."""
 
-from collections.abc import Mapping
-from typing import Any
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.parts import assemble
-from pneutouch.results.record import extended
+from pneutouch.results.record import SENSITIVITY_KEY, extended
 from pneutouch.results.selection import (
     ConstantMembrane,
     DroppedChoice,
@@ -21,6 +22,7 @@ from pneutouch.results.selection import (
     RejectedChoice,
     SearchCost,
     SelectionRecord,
+    SingleChange,
     SolidCheck,
 )
 from pneutouch.rounding import tenths_below
@@ -28,14 +30,32 @@ from pneutouch.selection import Candidate, DroppedRequirement
 from pneutouch.selection.choose import missed_percent
 from pneutouch.selection.graded import GradeTrial, shares
 from pneutouch.spec.target import Target
+from pneutouch.spec.toml_text import value_text
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.select.checks import RejectedDesign, contact_notes, contact_text
 from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.select import Confirmation, SelectionRun
 
 
-def selected(selection: SelectionRun) -> SelectionRecord:
-    """The selection as ``select`` prints it."""
+class WorkingChange(NamedTuple):
+    """A change of one field of the target, ``table.key``, with which a design meets it: the value, the one that it
+    replaces, and the selection with it."""
+
+    field: str
+    value: Any
+    instead_of: Any
+    run: SelectionRun
+
+    @property
+    def best(self) -> str:
+        """The best design, in words."""
+        choice = self.run.answer.designs[0]
+        radius, wall, figures = float(choice.pool.radius[0]), float(choice.pool.wall[0]), choice.pool.figures
+        return f"{choice.resin.name}, R0 {radius:.2f} mm, t0 {wall:.2f} mm, {figures.sensitivity:.3f} kPa/N"
+
+
+def selected(selection: SelectionRun, changes: Sequence[WorkingChange] = ()) -> SelectionRecord:
+    """The selection as ``select`` prints it, with the single changes that make a design possible."""
     answer = selection.answer
     confirmed = [*selection.confirmed, *[None] * (len(answer.designs) - len(selection.confirmed))]
     return SelectionRecord(
@@ -63,8 +83,14 @@ def selected(selection: SelectionRun) -> SelectionRecord:
             misses_percent=missed_percent(selection.problem, answer.nearest),
         ),
         dropped_requirements=tuple(
-            DroppedChoice(each.requirement, would_need(selection, each), _choice(selection, each.best))
+            DroppedChoice(
+                each.requirement, would_need(selection, each), *relaxed(selection, each), _choice(selection, each.best)
+            )
             for each in answer.dropped
+        ),
+        single_changes=tuple(
+            SingleChange(each.field, each.value, each.instead_of, _choice(each.run, each.run.answer.designs[0]))
+            for each in changes
         ),
         rejected=tuple(
             RejectedChoice(each.rule, each.reason, _choice(selection, each.choice)) for each in selection.rejected
@@ -146,6 +172,31 @@ def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:
     return f"{2 * float(pool.radius[0] + pool.wall[0]):.4g} mm instead of {selection.problem.max_diameter:g}"
 
 
+def relaxed(selection: SelectionRun, dropped: DroppedRequirement) -> tuple[str | None, float | None]:
+    """Field of the target, ``table.key``, and the value with which the best design without a requirement meets it,
+    rounded to the safe side; None for the rated pressure: driven at another, the sensor has another sensitivity."""
+    pool, figures = dropped.best.pool, dropped.best.pool.figures
+    least = selection.problem.stiffness[0]
+    if dropped.requirement == "sensitivity":
+        return f"target.{SENSITIVITY_KEY}", float(f"{figures.sensitivity:.4g}")
+    if dropped.requirement == "force range":
+        return "target.force_range_N", _rounded(figures.reach, math.floor)
+    if dropped.requirement == "stiffness" and least is not None and figures.stiffness < least:
+        return "target.stiffness_least_N_per_mm", _rounded(figures.stiffness, math.floor)
+    if dropped.requirement == "stiffness":
+        return "target.stiffness_most_N_per_mm", _rounded(figures.stiffness, math.ceil)
+    if dropped.requirement == "footprint":
+        return "target.max_footprint_mm", _rounded(selection.footprint(dropped.best), math.ceil)
+    if dropped.requirement == "outer diameter":
+        return "target.max_diameter_mm", _rounded(2 * float(pool.radius[0] + pool.wall[0]), math.ceil)
+    return None, None
+
+
+def _rounded(value: float, to: Callable[[float], int]) -> float:
+    """A value to a hundredth, down or up."""
+    return to(100 * value) / 100
+
+
 _FEW = 9.95
 """Percents below this are shown with a decimal."""
 
@@ -175,14 +226,31 @@ def missed_text(selection: SelectionRun, nearest: Candidate) -> str:
     return ", ".join(parts) or "nothing once rounded"
 
 
-def dropped_lines(selection: SelectionRun) -> list[str]:
+Typed = Callable[[str, Any], str]
+"""A field of a target, ``table.key``, and its value as a person types them."""
+
+
+def in_file(field: str, value: Any) -> str:
+    """A field of a target and its value as a target file has them."""
+    return f"{field} = {value_text(value)}"
+
+
+def dropped_lines(selection: SelectionRun, typed: Typed = in_file) -> list[str]:
     """Each single requirement whose removal admits a design, with the value that can be reached; or that there is
     none."""
-    return [
-        f"without the requirement on {dropped.requirement} alone a design fits: {would_need(selection, dropped)} "
-        f"({dropped.best.resin.name})"
-        for dropped in selection.answer.dropped
-    ] or ["no design fits with any single requirement dropped"]
+    lines = []
+    for dropped in selection.answer.dropped:
+        field, value = relaxed(selection, dropped)
+        needs = f"{would_need(selection, dropped)} ({dropped.best.resin.name})"
+        option = "" if field is None else f": {typed(field, value)}"
+        lines.append(f"without the requirement on {dropped.requirement} alone a design fits: {needs}{option}")
+    return lines or ["no design fits with any single requirement dropped"]
+
+
+def change_lines(changes: Sequence[WorkingChange], typed: Typed) -> list[str]:
+    """Each single change outside the requirements with which a design meets the target."""
+    lines = [f"{typed(change.field, change.value)}: {change.best}" for change in changes]
+    return ["with the same requirements, one of these alone is enough:", *lines] if lines else []
 
 
 def remarks(selection: SelectionRun) -> list[str]:

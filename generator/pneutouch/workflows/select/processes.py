@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, get_args
 
-from pneutouch.catalogue import Library
+from pneutouch.catalogue import Library, ResolvedDesign
 from pneutouch.catalogue.library import CachedLibrary
 from pneutouch.catalogue.printers import casting_missing, uncast
 from pneutouch.errors import InputError
@@ -216,6 +216,30 @@ def _profile(process: str, usual: str, resins: list[str] | None, library: Librar
         if printers[name].process == process and makes:
             return name, makes if resins else None
     return None
+
+
+def offers(base: ResolvedDesign, resins: list[str] | None, library: Library, *, others: bool = False) -> list[str]:
+    """Other printers of a base's process that make one of the resins named, or an elastomer; with ``others`` the other
+    processes of which a printer does."""
+    here = base.printer.process
+    if others:
+        processes = (process for process in get_args(Process) if process != here)
+        return [process for process in processes if _profile(process, "", resins, library) is not None]
+    printers = library.readable("printers", Printer)
+    materials = library.all("materials", Material)
+    names = [name for name in resins or materials if materials[name].kind == "elastomer"]
+    return [
+        name
+        for name, printer in printers.items()
+        if printer.process == here and name != base.design.print.profile
+        if any(printer.mode_for(materials[one]) is not None for one in names)
+    ]
+
+
+def on_process(target: Target, process: str, library: Library) -> Target:
+    """The target on the printer that makes its resins by a process; as it is if none does."""
+    offered = _profile(process, "", target.given.materials, library)
+    return target if offered is None else _of(target, process, *offered)
 
 
 def _unmade(process: str, resins: list[str] | None, library: Library) -> str:

@@ -1,21 +1,29 @@
 """The answer to a target of any kind: designs by rank, with a gauge chosen where none is named, a grade, or the best of
-each process."""
+each process.
+
+For a target that no design meets: changes of one thing outside its requirements, each of which alone is enough.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from pneutouch.catalogue import Library, ResolvedDesign
-from pneutouch.errors import InputError
+from pneutouch.catalogue.library import CachedLibrary
+from pneutouch.errors import InputError, PneutouchError
+from pneutouch.mechanics.gauge_reading import gauge_reading
 from pneutouch.results.selection import GradedRecord, ProcessesRecord, SelectionRecord
+from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.target import Target
-from pneutouch.workflows.select.checks import write_assigned
-from pneutouch.workflows.select.document import graded, selected
+from pneutouch.workflows.select.base import base_scene
+from pneutouch.workflows.select.checks import base_sensor, connector_fit, dead_volume, write_assigned
+from pneutouch.workflows.select.document import WorkingChange, graded, selected
 from pneutouch.workflows.select.graded import GradedSelectionRun, select_graded
-from pneutouch.workflows.select.processes import ProcessSelection, select, select_processes
-from pneutouch.workflows.select.select import STEPS, SelectionRun
+from pneutouch.workflows.select.processes import ProcessSelection, offers, on_process, select, select_processes
+from pneutouch.workflows.select.select import STEPS, SelectionRun, found, passing
 
 SelectedRecord = SelectionRecord | GradedRecord | ProcessesRecord
 """Output of ``select``, by the kind of its target."""
@@ -37,12 +45,13 @@ class FoundChoice:
 @dataclass(frozen=True)
 class TargetAnswer:
     """An answer: its record, the designs that meet the target, best first, and why ``check`` rejects a grade that
-    would."""
+    would; without designs the single changes with which there are some."""
 
     run: SelectionRun | GradedSelectionRun | ProcessSelection
     record: SelectedRecord
     choices: tuple[FoundChoice, ...]
     rejected: str | None = None
+    changes: tuple[WorkingChange, ...] = ()
 
     def pick(self, rank: int) -> FoundChoice:
         """The design of a rank, or of a row over processes, from 1. Raises InputError if there is none."""
@@ -77,4 +86,144 @@ def search(
     run = select(target, where, library, written=written, progress=lambda s: progress(STEPS.index(s), steps, s))
     ranked = enumerate(run.answer.designs, start=1)
     choices = tuple(FoundChoice(str(rank), run.base, run.assignments(choice)) for rank, choice in ranked)
-    return TargetAnswer(run, selected(run), choices)
+    changes = () if choices else tuple(working_changes(run, where, library, lambda what: progress(2, steps, what)))
+    return TargetAnswer(run, selected(run, changes), choices, changes=changes)
+
+
+class Change(NamedTuple):
+    """A change of a field of the target, ``table.key``; for ``setting.assignments`` one more of them."""
+
+    field: str
+    value: Any
+
+    def of(self, target: Target, library: Library) -> Target:
+        """The target with it; a process by the printer that makes its resins."""
+        table, _, key = self.field.partition(".")
+        if key == "processes":
+            return on_process(target, self.value[0], library)
+        section = getattr(target, table)
+        value = [*section.assignments, self.value] if key == "assignments" else self.value
+        update = {key: value, **({"dead_volume_mL": None} if key == "tube_length_mm" else {})}
+        return target.model_copy(update={table: section.model_copy(update=update)})
+
+    def before(self, target: Target) -> Any:
+        """The target's own value of the field; None if it has none."""
+        table, _, key = self.field.partition(".")
+        return None if key == "assignments" else getattr(getattr(target, table), key)
+
+
+def working_changes(
+    run: SelectionRun, where: str, library: Library | None, trying: Callable[[str], None] = lambda what: None
+) -> Iterator[WorkingChange]:
+    """Changes of tube, port, gauge, settled sizes, resins and process, each of which alone makes a design possible.
+
+    Each was searched, and the design passes ``check``; of tubes and dead volumes the one nearest to the target's own is
+    given. Nothing where the solid searches, in minutes a change, and where ``check`` rejects what was found.
+    """
+    if run.by_solid is not None or run.rejected or run.answer.nearest is None:
+        return
+    library = CachedLibrary((library or Library.default()).folders)
+    for what, changes in _trials(run, where, library):
+        trying(f"another {what}")
+        for change in changes:
+            tried = _tried(run, change, where, library)
+            if tried is None:
+                continue
+            best = tried.answer.designs[0].pool
+            settled = {"given.wall_thickness_mm": best.wall, "given.inner_radius_mm": best.radius}
+            value = float(settled[change.field][0]) if change.field in settled else change.value
+            if change.field == "given.materials":
+                value = [tried.answer.designs[0].resin.name]
+            yield WorkingChange(change.field, value, change.before(run.target), tried)
+            break
+
+
+_BEHIND_THE_CAVITY = ("setting.tube_length_mm", "setting.dead_volume_mL", "setting.assignments", "setting.gauge")
+
+
+def _tried(run: SelectionRun, change: Change, where: str, library: Library) -> SelectionRun | None:
+    """The selection with a change; None if no design on the scan meets the target and passes ``check``.
+
+    What stands behind the cavity is tried with the resins that come nearest, in a fraction of the time of all.
+    """
+    target, near = change.of(run.target, library), [run.answer.nearest, *(each.best for each in run.answer.dropped)]
+    names = sorted({choice.resin.name for choice in near if choice is not None and choice.resin.grade is None})
+    if change.field in _BEHIND_THE_CAVITY and names:
+        target = target.model_copy(update={"given": target.given.model_copy(update={"materials": names})})
+    try:
+        tried = passing(found(target, where, library, thorough=False), 1, library)
+    except PneutouchError:
+        return None  # The base cannot be drawn so.
+    return tried if tried.answer.designs else None
+
+
+def _trials(run: SelectionRun, where: str, library: Library) -> Iterator[tuple[str, list[Change]]]:
+    """Things to change, each with its values in the order to be tried."""
+    given = run.target.given
+    for what, changes in _volumes(run):
+        # Where the last, which changes most, is not enough, none before it is.
+        yield what, changes if changes and _tried(run, changes[-1], where, library) else []
+    yield "port", [Change("setting.assignments", f"connector.port={name}") for name in _ports(run, library)]
+    yield "gauge", [Change("setting.gauge", name) for name in _wider(run, library)]
+    for key in ("wall_thickness_mm", "inner_radius_mm", "materials"):
+        if getattr(given, key) is not None:
+            yield key.partition("_")[0], [Change(f"given.{key}", None)]
+    yield "printer", [Change("setting.profile", name) for name in offers(run.base, given.materials, library)]
+    for process in offers(run.base, given.materials, library, others=True):
+        yield "process", [Change("setting.processes", [process])]
+
+
+_SHORTEST_MM = 20.0
+"""A gauge right behind the connector."""
+_SHARES = (0.5, 0.25, 0.1)
+_MULTIPLES = (2.0, 4.0, 8.0)
+
+
+def _volumes(run: SelectionRun) -> Iterator[tuple[str, list[Change]]]:
+    """Less gas behind the cavity for a sensitivity that is not reached, more for one that is exceeded."""
+    assert run.answer.nearest is not None
+    wanted, pneumatics = run.problem.sensitivity, run.base.design.pneumatics
+    more = wanted is not None and run.answer.nearest.pool.figures.sensitivity > wanted
+    if pneumatics.dead_volume_mL is not None:
+        field, now, least = "setting.dead_volume_mL", pneumatics.dead_volume_mL, 0.0
+    else:
+        field, now, least = "setting.tube_length_mm", pneumatics.tube_length_mm, _SHORTEST_MM
+    shares = _MULTIPLES if more else _SHARES
+    values = dict.fromkeys(float(f"{now * share:.2g}") for share in shares)
+    if not more:
+        values[least] = None
+    kept = [value for value in values if (value > now if more else least <= value < now)]
+    yield ("dead volume" if "dead" in field else "tube"), [Change(field, value) for value in kept]
+
+
+def _wider(run: SelectionRun, library: Library) -> list[str]:
+    """The gauge that reads furthest, if that is further than the base's."""
+    ambient = run.sensor.gas.ambient_pressure
+    limits = {name: gauge_reading(one, ambient).limit for name, one in library.all("gauges", Gauge).items()}
+    widest = max(limits, key=limits.__getitem__)
+    return [widest] if limits[widest] > run.problem.gauge_limit else []
+
+
+_PORTS = 3
+"""Ports that are tried, those first that are nearest to the target in what it misses."""
+
+
+def _ports(run: SelectionRun, library: Library) -> list[str]:
+    """Other ports, those with the least gas first, or with the least footprint where that is exceeded."""
+    nearest = run.answer.nearest
+    assert nearest is not None
+    radius, wall = nearest.pool.radius, nearest.pool.wall
+    by_size = nearest.margins.get("footprint", 0.0) < 0.0 or nearest.margins.get("connector", 0.0) < 0.0
+    keys: dict[str, float] = {}
+    for name in library.paths("ports"):
+        if name == run.base.design.connector.port:
+            continue
+        change = Change("setting.assignments", f"connector.port={name}").of(run.target, library)
+        try:
+            scene = base_scene(change, run.base.where, library)
+            volume = dead_volume(scene, base_sensor(scene))(radius)
+            size = connector_fit(scene)(radius, wall).diameter
+        except PneutouchError:
+            continue
+        keys[name] = float((size if by_size else volume)[0])
+    return sorted(keys, key=keys.__getitem__)[:_PORTS]

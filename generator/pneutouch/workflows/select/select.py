@@ -149,6 +149,28 @@ def select(
     the print rules. Designs that do not are taken out of the answer.
     """
     library = CachedLibrary((library or Library.default()).folders)
+    run = found(target, where, library, progress=progress)
+    progress("print rules")
+    run = passing(run, written, library)
+    if run.by_solid is not None:
+        return run
+    progress("solid")
+    best = enumerate(run.answer.designs[:_CONFIRMED], start=1)
+    return replace(run, confirmed=tuple(_confirm(run, choice, run.judged.get(rank)) for rank, choice in best))
+
+
+def found(
+    target: Target,
+    where: str,
+    library: Library,
+    *,
+    thorough: bool = True,
+    progress: Callable[[str], None] = lambda step: None,
+) -> SelectionRun:
+    """The search alone: designs by rank that neither the print rules nor the solid have seen.
+
+    Without ``thorough`` the scan alone is searched: a design between its points may be missed.
+    """
     progress("base")
     scene = base_scene(target, where, library)
     sensor = base_sensor(scene)
@@ -160,17 +182,10 @@ def select(
     problem = problem_of(target, scene, sensor, resins)
     progress("search")
     run = SelectionRun(target, scene, setting_changes(target, library), sensor, problem, _NOTHING, left_out)
-    run = _answered(run, None if pair is None else _refined(pair), library)
-    progress("print rules")
-    run = _passing(run, written, library)
-    if run.by_solid is not None:
-        return run
-    progress("solid")
-    best = enumerate(run.answer.designs[:_CONFIRMED], start=1)
-    return replace(run, confirmed=tuple(_confirm(run, choice, run.judged.get(rank)) for rank, choice in best))
+    return _answered(run, None if pair is None else _refined(pair), library, thorough=thorough)
 
 
-def _answered(run: SelectionRun, refine: Refine | None, library: Library) -> SelectionRun:
+def _answered(run: SelectionRun, refine: Refine | None, library: Library, *, thorough: bool) -> SelectionRun:
     """The run with its answer: by the atlas, or by the solid where that alone covers the base's contact."""
     target, problem = run.target, run.problem
     weights = target.weights.robustness, target.weights.tunability
@@ -187,14 +202,14 @@ def _answered(run: SelectionRun, refine: Refine | None, library: Library) -> Sel
             remedy="leave out contact_anywhere, or the contact",
         )
     if other is None:
-        return replace(run, answer=choose(problem, weights, uncertainty, refine))
+        return replace(run, answer=choose(problem, weights, uncertainty, refine, thorough=thorough))
     run = replace(run, problem=without_plate(problem, run.sensor))
     solver = CandidateSolver(run.base, run.assignments, library)
     selection = choose_by_solid(run.problem, weights, solver.expanded, solver, refine)
     return replace(run, answer=selection.result, by_solid=selection, left_out=run.left_out | selection.unsettled)
 
 
-def _passing(run: SelectionRun, written: int | None, library: Library) -> SelectionRun:
+def passing(run: SelectionRun, written: int | None, library: Library) -> SelectionRun:
     """The answer without the designs that do not pass; looked at by rank until enough do."""
     passed: list[Candidate] = []
     rejected: list[RejectedDesign] = []
