@@ -302,7 +302,7 @@ def _by_curves(
 def _modulus(law: ResolvedMixingCurve, fraction: Array, weight: Array) -> Quantity:
     """Mean modulus over the wall; with the band of an assumed curve, else the spread of a measured one.
 
-    All the wall is at one end of the band together: the curve is one, and where it is wrong it is wrong everywhere.
+    The whole wall is at the same end of the band: all of it has the error of the one curve.
     """
     low = high = spread = None
     if law.curve.is_assumed:

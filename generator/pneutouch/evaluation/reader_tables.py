@@ -83,7 +83,7 @@ def why_unknown(evaluation: Evaluation, grid: ReaderGrid) -> str | None:
 
 
 def _slopes(batch: SensorBatch) -> Array:
-    """Slopes of ln force at a fixed pressure rise by the inputs in their unit of uncertainty, (inputs, n, columns)."""
+    """Derivatives of ln force at a fixed rise by ln of each input, by mm3 of dead volume, (inputs, n, columns)."""
     from pneutouch.mechanics.atlas.figures import INPUTS, moved, neighbourhood, unit_step
     from pneutouch.mechanics.atlas.respond import respond
 

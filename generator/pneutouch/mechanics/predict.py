@@ -47,7 +47,7 @@ def predict(
     """Predict a sensor at ascending driving pressures (MPa) with one model; ``closure`` is the membrane's.
 
     ``auto`` takes the cheapest model whose stated error meets the tolerance (a fraction) and gives the reason.
-    ``answers`` are those that models gave already, in a batch of many sensors, by the model's name. Raises
+    ``answers`` holds results already computed in a batch of many sensors, by the model's name. Raises
     InputError for an unknown model or closure and for a sensor that the model does not cover, BeyondLimitError beyond
     the limit point, ComputationError if no equilibrium is found.
     """

@@ -207,7 +207,7 @@ def check_free(name: str, folder: Path, *, overwrite: bool = False) -> Path:
 
 
 def write_design(name: str, folder: Path, text: str, kind: str = "designs", *, overwrite: bool = False) -> Path:
-    """Write the text of a design as ``folder/name.toml``; over a file with ``overwrite`` alone."""
+    """Write the text of a design as ``folder/name.toml``; replace a file only if ``overwrite``."""
     path = check_name(name, folder, kind)
     (replace_file if overwrite else create_file)(path, text.encode())
     return path

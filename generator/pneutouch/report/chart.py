@@ -43,11 +43,11 @@ AxisEnds = tuple[float | None, float | None]
 
 @dataclass(frozen=True)
 class PlotLine:
-    """A curve or a set of points (n,) each; one without points is an entry of the legend alone.
+    """A curve or a set of points, ``x`` and ``y`` (n,); one without points is an entry of the legend alone.
 
-    ``label`` stands in the legend, ``end`` right of the axes at the last point, or in the corner for the first. A line
+    ``label`` stands in the legend, ``end`` right of the axes at the last point, or in the panel's corner. A line
     without ``dashes`` is points alone, every ``every``-th marked; a ``picked`` one is what the chart is about. ``low``
-    and ``high`` are the ends of its band, plain or of the ``hatch`` of a number; ``over`` is its order among others.
+    and ``high`` bound its band, plain or with hatch number ``hatch``; ``over`` is its drawing order.
     """
 
     x: Values = ()

@@ -34,7 +34,7 @@ class BarsRecord:
 
 @dataclass(frozen=True, slots=True)
 class SoughtPattern:
-    """A row of bars looked for in a signal; the model's amplitudes are of simulated ones."""
+    """A row of bars looked for in a signal; model amplitudes only if it is simulated."""
 
     name: str
     """Name."""

@@ -95,7 +95,7 @@ class RankedDesign(FoundDesign):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NearestDesign(FoundDesign):
-    """The design that misses least."""
+    """Design nearest to the target."""
 
     misses_percent: Mapping[str, float | None]
     """Distance from each requirement that is missed; null: not known."""

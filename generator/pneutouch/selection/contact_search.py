@@ -307,7 +307,7 @@ class _Run:
         return self._known[key]
 
     def unsettled(self) -> dict[str, str]:
-        """Resins without a design that the rounds did not settle, and the solid's figure of the last candidate."""
+        """Resins without a design, with the reason: the last candidate not solved, or the rounds not settled."""
         return {name: why for name, group in self.groups.items() if (why := self._why(group)) is not None}
 
     def _why(self, group: _Group) -> str | None:

@@ -127,7 +127,7 @@ Volume = Annotated[float, Field(ge=0, le=1e4)]
 """A volume of room air, mL."""
 
 
-_KIND = f"Kind of run: {', '.join(get_args(RunKind))}; left out: told from the record, but for an injection."
+_KIND = f"Kind of run: {', '.join(get_args(RunKind))}; left out: recognised, but for injection and saturation."
 
 
 class CampaignRun(Table):

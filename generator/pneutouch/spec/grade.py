@@ -211,7 +211,7 @@ class MixingCurve(Table):
         return self
 
     def _check_ends(self) -> None:
-        """Each end of the ranges must be a curve itself: it begins with the soft resin and its fractions rise."""
+        """Raise ValueError unless the low fractions, and the high ones, begin with 0 and rise as a curve's do."""
         for side in ("low", "high"):
             ends = [getattr(point, side) for point in self.points]
             if ends[0] != 0 or any(b <= a for a, b in pairwise(ends)):

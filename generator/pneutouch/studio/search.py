@@ -251,7 +251,7 @@ def _chart(run: SelectionRun, library: Library) -> FrontChart:
 
 
 def _graded(run: GradedSelectionRun, document: Mapping[str, Any], page: CandidateStates) -> PageSelection:
-    """The search for a grade, with the constant membranes of its size as a table in place of the chart."""
+    """Page of a search for a graded wall: a table of membranes of constant mix replaces the chart."""
     head, rows = graded_table(run)
     rejected = [] if run.rejected is None else [f"the grade is rejected by the check: {run.rejected}"]
     card = extended(

@@ -147,7 +147,7 @@ _NAME = "NAME"
 CONTENTS: tuple[tuple[tuple[str, ...], str], ...] = (
     (
         ("datasheet.html", "datasheet.pdf"),
-        "the datasheet; the page has a 3D view that can be rotated, reads on a phone and prints",
+        "the datasheet; the page has a 3D view that can be rotated, and can be read on a phone and printed",
     ),
     (("NAME.3mf",), "both bodies as one assembly, with material names and colours"),
     (("stl/*.stl",), "one file a body, all in one frame, for tray software that reads STL"),
@@ -158,8 +158,8 @@ CONTENTS: tuple[tuple[tuple[str, ...], str], ...] = (
     ),
     (
         ("mould/*",),
-        "of a cast design: its mould, each part as it is printed, all on build plates, closed for CAD, apart for "
-        "viewers, in section",
+        "of a cast design: its mould, each part as it is printed, all on build plates, the closed mould for "
+        "CAD, its parts apart for viewers, and a section",
     ),
     (("prediction.json",), "every figure and curve, with units in the names"),
     (("print-sheet.md",), "which body takes which resin, orientation, cleaning, fits"),

@@ -32,8 +32,8 @@ from pneutouch.spec.toml_text import toml_text
 from pneutouch.spec.values import Quantity, file_name, plain_name
 
 HARDNESS_SHARE = (0.4, 0.65)
-"""Young's modulus over that of Gent's relation where nothing is odd: TangoPlus by the paper's modulus has 0.50, eight
-of the nine shipped silicones 0.44 to 0.52 (docs/reference/materials.md)."""
+"""Young's modulus over that of Gent's relation where nothing is odd: TangoPlus by the paper's modulus has 0.49, five
+of the six silicones on the Shore A scale 0.44 to 0.52 (docs/reference/materials.md)."""
 
 _MOST_BYTES = 100_000_000
 _GRID = 200

@@ -68,9 +68,8 @@ class WeightedRows(NamedTuple):
 
 
 class RunScatter(NamedTuple):
-    """Scatter between runs: ``score`` the covariance of the slopes (k, k); ``held`` the directions that one run alone
-    holds, a projection in coordinates of unit information (k, k); ``alone`` that run by parameter, -1 without one
-    (k,)."""
+    """Scatter between runs: ``score`` the covariance of the gradient (k, k); ``held`` the projection on what a single
+    run determines, in coordinates of unit information (k, k); ``alone`` that run for each parameter, else -1 (k,)."""
 
     score: Array
     held: Array

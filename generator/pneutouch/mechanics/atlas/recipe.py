@@ -231,7 +231,7 @@ def flattened(name: str, values: Array) -> Array:
 
 
 def unflattened(name: str, values: Array) -> Array:
-    """A field from its table; immense values are cut at eighteen."""
+    """Inverse of `flattened`; immense values are cut at 18."""
     if name not in _SATURATING:
         return values
     share = np.clip(values, 0.0, _MOST)

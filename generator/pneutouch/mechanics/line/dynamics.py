@@ -34,7 +34,7 @@ class GasLine:
 
     @property
     def volume(self) -> float:
-        """Gas in it, mm3."""
+        """Gas volume, mm3."""
         return sum(element.volume for element in self.elements)
 
     @property

@@ -203,8 +203,7 @@ class Duct:
 
 
 def profiles(ducts: Sequence[Duct], s: Complex, air: AirState) -> Complex:
-    """Ratios I2/I0 of momentum and of heat of ducts (k,) at s (n,), (k, 2, n), at once because a call costs the
-    most."""
+    """Bessel ratios I2/I0 for momentum and heat in ducts (k,) at s (n,), (k, 2, n); one call for all, for speed."""
     across = np.array([duct.radius for duct in ducts])[:, None, None]
     diffusivity = np.array([air.kinematic_viscosity, air.thermal_diffusivity])[:, None]
     return second_over_zeroth(across * np.sqrt(np.asarray(s, dtype=complex) / diffusivity))

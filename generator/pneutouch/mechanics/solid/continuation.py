@@ -181,7 +181,7 @@ class PathFollower:
         return minimise(scene, x)
 
     def _extrapolate(self, height: float) -> Array:
-        """Positions ahead along the tangent of the path; at first contact, a point, there is none."""
+        """Positions ahead along the tangent; the present ones at first contact, without tangent."""
         if len(self.path) < 2 and self.down > 0.0:
             return self.here.state.x
         return np.asarray(self.here.state.x + (height - self.here.height) * self.here.by_height)

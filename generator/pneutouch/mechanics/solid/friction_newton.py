@@ -281,8 +281,8 @@ class FrictionSolver:
         return here.state.local.energy + here.scale * self.solid.wall
 
     def direction(self, here: HeldState, kept: Array | None = None) -> Array:
-        """Newton step (size,): which points touch, stick and slide is settled inside the linear model; with the largest
-        tractions held where the consistent one is not definite or does not settle."""
+        """Newton step (size,): which points touch, stick and slide is settled inside the linear model; where that fails
+        with the consistent tangent, the friction limits are held fixed."""
         band = tangent(self.scene, here.state)
         for model in (replace(self._linear(here, False), kept=kept), self._linear(here, True)):
             step = StepSettling(self.sides, here.state, band, model).step()

@@ -101,7 +101,7 @@ class StrainProbe:
         return float(same_invariant(((stretch**2).sum(axis=0) * (j * h) ** (-2.0 / 3.0)).max()))
 
     def principal(self, x: Array) -> tuple[Array, Array]:
-        """Principal stretches and deviator-carrying stresses lambda dW/dlambda / J (MPa), (3, n_points) each."""
+        """Principal stretches and deviatoric Cauchy stresses lambda dW/dlambda / J (MPa), (3, n_points) each."""
         a, j, h, stretch = self._strains(x)
         jet = self.solid.material.energy(Strain(a, j, h)).data
         common = jet[BY_J] * j

@@ -105,7 +105,7 @@ def _located(harmonic: HarmonicSolid, n: int, path: list[PlateState]) -> float:
 
 
 def free_loss(solid: SolidModel, run: Inflation, most: int = MOST_WAVES) -> FreeLoss | None:
-    """First loss of stability of a dome that is filled or emptied, to 1 to ``most`` waves; None if there is none."""
+    """First instability, with 1 to ``most`` waves, of a dome filled or emptied without contact; None without one."""
     harmonic, waves = HarmonicSolid(solid), tuple(range(1, most + 1))
     for before, after in zip(run.states, run.states[1:], strict=False):
         lost = unstable_waves(harmonic, after.unit, waves)

@@ -32,7 +32,7 @@ def _wave(layer: Sinusoid | RandomPhase, context: PatternContext) -> Wave:
 
 
 def _samples(wave: Wave, start: float, end: float, tolerance: float) -> tuple[Array, Array]:
-    """Places along the path and heights of the sum there, mm; chords keep the tolerance by its greatest curvature."""
+    """Places along the path, so close that chords keep the tolerance, and heights of the sum of sines there, mm."""
     pitches, phases, amplitude = wave
     curvature = sum(amplitude * (2 * math.pi / pitch) ** 2 for pitch in pitches)
     count = max(2, math.ceil((end - start) / math.sqrt(8 * tolerance / curvature)))

@@ -261,7 +261,7 @@ def _left_min(casting: Casting) -> float:
 
 
 def _weight(part: PrintPart) -> float:
-    """Weight of a volume of the liquid, N/m3."""
+    """Specific weight of the liquid, N/m3."""
     return 1e3 * part.item.body.material.density_g_per_cm3.nominal * _GRAVITY
 
 

@@ -92,7 +92,7 @@ def _fronts(
 
 
 def tuning(selection: SelectionRun, library: Library, chosen: Candidate | None = None) -> TuningChart | None:
-    """A design's curve to its rated pressure (the best's, where none is chosen), and those of other resins as far."""
+    """Sensitivity over driving pressure, to the rated one, of the chosen (else best) design, and of other resins."""
     designs = _best(selection)
     if not designs:
         return None

@@ -172,7 +172,7 @@ def source_of(base: ResolvedDesign, assignments: list[str], name: str = "selecte
 def write_assigned(
     design: DesignFile, assignments: list[str], name: str, folder: Path, *, overwrite: bool = False
 ) -> Path:
-    """Save a base with assignments as ``folder/name.toml``, over a file with ``overwrite`` alone."""
+    """Save a base with assignments as ``folder/name.toml``; replace a file only if ``overwrite``."""
     chosen = validate(DesignFile, assigned(design, assignments, name), name)
     note = "Every key may be left out; it then takes its default."
     return write_design(

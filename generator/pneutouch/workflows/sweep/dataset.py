@@ -245,7 +245,7 @@ def table_rows(content: xarray.Dataset) -> list[dict[str, Any]]:
 
 
 def _plain(value: Any) -> Any:
-    """A number or text of Python; None for NaN."""
+    """A plain Python number or text; None for NaN."""
     value = value.item() if hasattr(value, "item") else value
     return None if isinstance(value, float) and np.isnan(value) else value
 
