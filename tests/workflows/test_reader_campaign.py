@@ -1,4 +1,4 @@
-"""A calibrated sensor's header, compiled, on the runs that the calibration did not use."""
+"""A calibrated sensor's header, compiled, on the runs that the calibration did not use: of a resin, of a silicone."""
 
 from __future__ import annotations
 
@@ -19,28 +19,29 @@ from pneutouch.workflows.simulate import simulate
 
 UNSEEN_KPA, REST = 9.0, 25
 DEAD = {"pneumatics.dead_volume_mL": 0.3}
+CAST = {"pneumatics.driving_pressures_kPa": [0.0, 6.0, 12.0]}
 FITTED = ["modulus", "wall", "dead-volume", "offset"]
 
 MAIN = """
 #include <stdio.h>
-#include "paper_dome_held_reader.h"
+#include "held_dome_reader.h"
 int main(void)
 {
     float rest[25], gauge;
     int k, count;
     while (scanf("%d", &count) == 1) {
-        paper_dome_held_reader reader;
-        paper_dome_held_begin(&reader);
+        held_dome_reader reader;
+        held_dome_begin(&reader);
         for (k = 0; k < 25; k++) {
             if (scanf("%f", &rest[k]) != 1) return 1;
-            paper_dome_held_add(&reader, rest[k]);
+            held_dome_add(&reader, rest[k]);
         }
-        paper_dome_held_tare(&reader, 20.0f, PAPER_DOME_HELD_AMBIENT_KPA);
+        held_dome_tare(&reader, 20.0f, HELD_DOME_AMBIENT_KPA);
         for (k = 0; k < count; k++) {
-            paper_dome_held_reading reading;
+            held_dome_reading reading;
             int status;
             if (scanf("%f", &gauge) != 1) return 1;
-            status = (int)paper_dome_held_read(&reader, gauge, 20.0f, PAPER_DOME_HELD_AMBIENT_KPA, &reading);
+            status = (int)held_dome_read(&reader, gauge, 20.0f, HELD_DOME_AMBIENT_KPA, &reading);
             printf("%d %.9g %.9g\\n", status, (double)reading.force_N, (double)reading.uncertainty_N);
         }
     }
@@ -67,7 +68,10 @@ def presses(path):
 
 @pytest.mark.slow
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="no C compiler (gcc) on this machine")
-def test_the_compiled_reader_holds_its_uncertainty_on_the_held_out_runs(tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    ("design", "changes", "model"), [("paper-dome", DEAD, "atlas"), ("cast-dome", CAST, "solid")], ids=["resin", "cast"]
+)
+def test_the_compiled_reader_holds_its_uncertainty_on_the_held_out_runs(design, changes, model, tmp_path, monkeypatch):
     """At least 95 % of the samples lie within k = 2. The rig's own zeros drift: both are tared before every press."""
     monkeypatch.setenv("PNEUTOUCH_HOME", str(tmp_path))
     options = SimulationOptions(
@@ -77,17 +81,21 @@ def test_the_compiled_reader_holds_its_uncertainty_on_the_held_out_runs(tmp_path
         kinds=["steps"],
         rate_Hz=20.0,
         seed=1,
-        model="atlas",
+        model=model,
     )
-    place = simulate("paper-dome", tmp_path / "campaign", DEAD, options)
+    place = simulate(design, tmp_path / "campaign", changes, options)
     content = tomllib.loads((place / "campaign.toml").read_text())
     unseen = [run["file"] for run in content["runs"] if run.get("driving_pressure_kPa", 0.0) == UNSEEN_KPA]
-    content["assignments"] = assignments(DEAD)
+    content["assignments"] = assignments(changes)
     content["runs"] = [run for run in content["runs"] if run["file"] not in unseen]
     (place / "campaign.toml").write_text(toml_text(content))
     run_calibration(place, None, CalibrationOptions(fit=FITTED, save="held"), tmp_path / "fit")
-    result = make_reader(evaluate("paper-dome@held", DEAD, model="auto"))
-    (tmp_path / "paper_dome_held_reader.h").write_bytes(result.files["paper_dome_held_reader.h"])
+    result = make_reader(evaluate(f"{design}@held", changes, model="auto"))
+    assert result.record.grid.force_uncertainty_age_days == 0.0
+    header = next(content for name, content in result.files.items() if name.endswith("_reader.h")).decode()
+    word = f"{design}-held".replace("-", "_")
+    renamed = header.replace(word, "held_dome").replace(word.upper(), "HELD_DOME")
+    (tmp_path / "held_dome_reader.h").write_text(renamed)
     (tmp_path / "main.c").write_text(MAIN)
     subprocess.run(["gcc", "-O2", "main.c", "-o", "main"], cwd=tmp_path, check=True)
     every = [press for file in unseen for press in presses(place / file)]

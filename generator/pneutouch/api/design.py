@@ -239,17 +239,23 @@ class Design(show.Shown):
             return build(self._evaluated, Path(out))
 
     def export_reader(
-        self, out: str | Path = "outputs", *, model: str | None = None, tolerance: float | str | None = None
+        self,
+        out: str | Path = "outputs",
+        *,
+        model: str | None = None,
+        tolerance: float | str | None = None,
+        age_years: float | None = None,
     ) -> Path:
         """Write the pressure-to-force model in C, Python and JSON into ``out/<name>-reader/``; returns that folder.
 
-        ``model`` as for `predict`, but None is "auto".
+        ``model`` as for `predict`, but None is "auto". ``age_years`` is the time since the calibration, or since the
+        print, that the uncertainty counts; None: none since a calibration, else a year.
         """
         from pneutouch.workflows.export_reader import make_reader, write_reader
 
         options = model_options(model or (None if tolerance else "auto"), tolerance)
         with named_by_keyword():
-            return write_reader(make_reader(evaluate(self.source, **options)), Path(out))
+            return write_reader(make_reader(evaluate(self.source, **options), age_years), Path(out))
 
     @cached_property
     def _evaluated(self) -> Evaluation:

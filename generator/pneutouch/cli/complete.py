@@ -91,6 +91,22 @@ def percent_of(text: str, parameter: str) -> float:
     return value
 
 
+_DAYS = {"d": 1.0, "w": 7.0, "m": 365.0 / 12.0, "y": 365.0}
+
+
+def years_of(text: str, parameter: str) -> float:
+    """The years of a time such as 90d, 8w, 6m or 1y. Raises InputError."""
+    number, unit = text.strip()[:-1], text.strip()[-1:]
+    try:
+        value = plain_number(number) * _DAYS[unit] / _DAYS["y"]
+    except (ValueError, KeyError):
+        value = float("nan")
+    if not 0.0 <= value <= 100.0:
+        problem = "it must be a time of at most 100 years with its unit, such as 90d, 8w, 6m or 1y"
+        raise InputError(problem, key=parameter, value=text)
+    return value
+
+
 def error_in_percent(context: typer.Context, parameter: typer.CallbackParam, text: str | None) -> str | None:
     """The numerical error of an option with its sign, as the library reads it. Raises InputError."""
     return None if text is None else f"{percent_of(text, parameter.name or ''):.12g}%"

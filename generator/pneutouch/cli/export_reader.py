@@ -25,7 +25,7 @@ from pneutouch.cli.app import (
     print_json,
     reporting,
 )
-from pneutouch.cli.complete import simulators
+from pneutouch.cli.complete import simulators, years_of
 from pneutouch.cli.terminal import echo, notify, table_text
 from pneutouch.results.reader import ReaderRecord, SimulatorRecord
 from pneutouch.results.record import plain
@@ -44,6 +44,14 @@ def export_reader(
             metavar="NAME", help="Write a model for a simulator instead: mujoco or urdf.", autocompletion=simulators
         ),
     ] = None,
+    age: Annotated[
+        str | None,
+        typer.Option(
+            metavar="TIME",
+            help="Time since the calibration, or the print, that the uncertainty counts, such as 90d or 1y; left out: "
+            "none since a calibration, else a year.",
+        ),
+    ] = None,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
 ) -> None:
@@ -55,11 +63,12 @@ def export_reader(
         from pneutouch.workflows.export_reader import make_reader, write_reader
 
         options = model_options(model or (None if tolerance else "auto"), tolerance)
+        aged = None if age is None else years_of(age, "age")
         if simulator is not None:
             _export_simulator(design, changes(set_, calibration), simulator, out, options, json=json)
             return
         with bar("tabulating the sensor"):
-            result = make_reader(evaluate(design, changes(set_, calibration), **options))
+            result = make_reader(evaluate(design, changes(set_, calibration), **options), aged)
             folder = write_reader(result, out)
         if result.note is not None:
             notify(result.note)
@@ -114,7 +123,12 @@ def reader_text(record: ReaderRecord) -> str:
         lines.append(f"  uncertainty        unknown: {record.grid.force_uncertainty_unknown}")
     else:
         least, most = (100 * pick(map(pick, relative)) for pick in (min, max))
-        lines.append(f"  uncertainty        {least:.2g} to {most:.2g} % of the force (standard), gauge noise not in it")
+        days, since = record.grid.force_uncertainty_age_days, "calibration" if calibration else "print"
+        when = (
+            f"up to {days:.4g} days after its {since}" if days else f"at the age of its {since}, --age 1y adds ageing"
+        )
+        lines.append(f"  uncertainty        {least:.2g} to {most:.2g} % of the force (standard), {when}")
+        lines.append("                     noise of the gauge not in it")
     return "\n".join(lines)
 
 

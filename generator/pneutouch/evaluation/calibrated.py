@@ -34,8 +34,7 @@ def calibrated_sensor(sensor: Sensor, scene: ResolvedDesign) -> Sensor:
     if friction is not None:
         sensor = sensor.replace(friction=friction)
     added = sensor.gas.dead_volume - calibration.design.dead_volume_mL * ML
-    return sensor.replace(
-        shear_modulus=calibration.value("shear_modulus_MPa"),
+    return sensor.of_modulus(calibration.value("shear_modulus_MPa")).replace(
         wall_thickness=calibration.value("wall_thickness_mm"),
         dead_volume=max(calibration.value("dead_volume_mL") * ML + added, 0.0),
         correction=ResponseCorrection() if response is None else correction_of(calibration, response),

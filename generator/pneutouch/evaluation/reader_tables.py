@@ -13,7 +13,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, ReaderGrid
-from pneutouch.evaluation.uncertainty import spread, unknown
+from pneutouch.evaluation.uncertainty import even_wall, spread, unknown
 from pneutouch.export.reader.reading import NOISES, UNSTEADY
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.predict import contact_words
@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     from pneutouch.evaluation.evaluate import Evaluation
 
 
+DAYS = 365.0
+"""Days of a year of ageing, as in `SensorCalibration.remaining_year`."""
+
 UNCERTAINTY_COLUMNS = 11
 """Shares of the indentation at which the uncertainty is tabulated."""
 
@@ -42,14 +45,14 @@ _STEP = 0.015
 _STEPS = 40
 
 
-def force_uncertainty(evaluation: Evaluation, grid: ReaderGrid) -> Array | None:
+def force_uncertainty(evaluation: Evaluation, grid: ReaderGrid, aged: float) -> Array | None:
     """Relative standard uncertainty of the force at the rows of a grid and `UNCERTAINTY_COLUMNS` shares of the
-    indentation, (n, 11); None if it is unknown, see `why_unknown`.
+    indentation, (n, 11); None if it is unknown, see `why_unknown`. ``aged`` are the years of `sources`.
 
     Sources that act on inputs of the model act through the curve of force over pressure rise; errors of the model are
     those of its sensitivity, the slope of that curve. The gauge's noise is not in it.
     """
-    sensor, scene = evaluation.sensor, evaluation.scene
+    sensor, scene = even_wall(evaluation.sensor), evaluation.scene
     if why_unknown(evaluation, grid) is not None:
         return None
     from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
@@ -64,6 +67,7 @@ def force_uncertainty(evaluation: Evaluation, grid: ReaderGrid) -> Array | None:
         grid.model,
         calibration=scene.calibration,
         anywhere=scene.design.contact.anywhere,
+        aged=aged,
     )
     slopes = _slopes(sensor_spread.batch)
     relative = np.empty((rows.size, UNCERTAINTY_COLUMNS))
@@ -79,7 +83,7 @@ def why_unknown(evaluation: Evaluation, grid: ReaderGrid) -> str | None:
     other = evaluation.sensor.protocol.other_contact
     if other is not None:
         return f"computed for a central plate without friction alone; here {other}"
-    return unknown(evaluation.sensor, grid.model)
+    return unknown(even_wall(evaluation.sensor), grid.model)
 
 
 def _slopes(batch: SensorBatch) -> Array:
@@ -123,10 +127,16 @@ FILTER_S = 1.0
 """Time constant of the mean by which a touch is distinguished from the zero: our choice."""
 
 
-def reader_tables(evaluation: Evaluation, grid: ReaderGrid) -> ReaderTables:
-    """The reader without its source and its largest difference from the full model. Numbers are float32 ones."""
+def reader_tables(evaluation: Evaluation, grid: ReaderGrid, aged: float | None = None) -> ReaderTables:
+    """The reader without its source and its largest difference from the full model. Numbers are float32 ones.
+
+    ``aged`` are the years since the calibration that the uncertainty counts, or since the print of a sensor without
+    one; None: 0 of a calibrated sensor, which is its own reference, else 1.
+    """
     scene, sensor, rating = evaluation.scene, evaluation.sensor, evaluation.rating
-    relative = force_uncertainty(evaluation, grid)
+    if aged is None:
+        aged = 1.0 if scene.calibration is None else 0.0
+    relative = force_uncertainty(evaluation, grid, aged)
     ambient_kPa = sensor.gas.ambient_pressure / KPA
     return ReaderTables(
         design=scene.name,
@@ -141,6 +151,7 @@ def reader_tables(evaluation: Evaluation, grid: ReaderGrid) -> ReaderTables:
             pressure_factor=_single(grid.pressure_factor),
             force_uncertainty_relative=None if relative is None else _rows(relative),
             force_uncertainty_unknown=why_unknown(evaluation, grid),
+            force_uncertainty_age_days=_one(DAYS * aged),
         ),
         gas=GasTable(_single(grid.gas_pressure / KPA), _single(grid.gas_volume / ML)),
         box=_box(grid, ambient_kPa),

@@ -153,12 +153,14 @@ def spread(
     states: Sequence[SensorState] = (),
     *,
     anywhere: bool = False,
+    aged: float = 1.0,
 ) -> SensorSpread:
     """The sources of a sensor at ascending driving pressures (MPa); the atlas covers it under a plate without friction.
 
     ``materials`` are all that there are: the model's error is taken from those that were measured. ``model`` gives the
     numerical error. ``states`` are the solid's of another contact, at the pressures where it has been solved already.
-    ``anywhere`` counts an unknown place of contact, where the design's own contact is the central plate.
+    ``anywhere`` counts an unknown place of contact, where the design's own contact is the central plate; ``aged`` are
+    the years of `sources`.
     """
     from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.corrected.figures import under_plate
@@ -184,6 +186,7 @@ def spread(
         calibration=calibration,
         contact=contact,
         anywhere=anywhere,
+        aged=aged,
     )
     return SensorSpread(batch, of_sensor, contact)
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean
+from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean, stiffened
 from pneutouch.mechanics.solid.indenter import RigidBase, RigidObject
 from pneutouch.shape.dome import DomeShape
 
@@ -165,3 +165,10 @@ class Sensor:
             new = {field: changes.pop(field) for field in part.__dataclass_fields__ if field in changes}
             parts[name] = dataclasses.replace(part, **new)
         return dataclasses.replace(self, **{**parts, **changes})
+
+    def of_modulus(self, shear_modulus: float) -> Sensor:
+        """The sensor of another shear modulus, MPa; a law gives stresses in the same proportion."""
+        law = self.wall.law
+        if law is not None:
+            law = stiffened(*law, shear_modulus / self.wall.shear_modulus)
+        return self.replace(shear_modulus=shear_modulus, law=law)

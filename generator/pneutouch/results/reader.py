@@ -24,6 +24,8 @@ class ForceTable:
     """Standard uncertainty (k = 1) of the force over the force, without the gauge's noise; null: unknown."""
     force_uncertainty_unknown: str | None
     """Reason why it is unknown."""
+    force_uncertainty_age_days: float
+    """Time since the calibration, or since the print of a sensor without one, up to which it holds."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -47,10 +47,13 @@ class ReaderResult:
     note: str | None
 
 
-def make_reader(evaluation: Evaluation) -> ReaderResult:
-    """The reader of an evaluated design. Raises InputError and ComputationError as `evaluation.reader.reader_grid`."""
+def make_reader(evaluation: Evaluation, aged: float | None = None) -> ReaderResult:
+    """The reader of an evaluated design; ``aged`` as in `reader_tables`.
+
+    Raises InputError and ComputationError as `evaluation.reader.reader_grid`.
+    """
     grid = reader_grid(evaluation)
-    tables = reader_tables(evaluation, grid)
+    tables = reader_tables(evaluation, grid, aged)
     known = reader_difference(evaluation, grid, versioned("reader", plain(tables)))
     full_N = tables.box.contact_force_N[1]
     record = ReaderRecord(
@@ -62,7 +65,7 @@ def make_reader(evaluation: Evaluation) -> ReaderResult:
             other_conditions_percent=100.0 * known.other_conditions_N / full_N,
             states=known.states,
         ),
-        source=ReaderSource(_source(evaluation), __version__),
+        source=ReaderSource(_source(evaluation, tables.grid.force_uncertainty_age_days), __version__),
     )
     document = versioned("reader", plain(record))
     calibration, gauge = evaluation.scene.design.calibration_name, evaluation.scene.gauge
@@ -75,9 +78,10 @@ def _calibrated(evaluation: Evaluation, calibration: str) -> str:
     return calibration if calibration.startswith(name) else f"{name}-{calibration}"
 
 
-def _source(evaluation: Evaluation) -> str:
-    """SHA-256 of all that a reader follows from: the design with all that it names, options, version."""
-    return digest(json_bytes({"inputs": BuildRecipe.of(evaluation).inputs(), "version": __version__}))
+def _source(evaluation: Evaluation, age_days: float) -> str:
+    """SHA-256 of all that a reader follows from: the design with all that it names, options, age, version."""
+    inputs = BuildRecipe.of(evaluation).inputs()
+    return digest(json_bytes({"inputs": inputs, "age_days": age_days, "version": __version__}))
 
 
 def write_reader(result: ReaderResult, out: Path) -> Path:

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import InputError
-from pneutouch.mechanics.laws import mooney_rivlin, neo_hookean, ogden, yeoh
+from pneutouch.mechanics.laws import hyperelastic, mooney_rivlin, neo_hookean, ogden, stiffened, yeoh
 from pneutouch.mechanics.laws.strain import Strain
 
 LAWS = {
@@ -47,6 +47,23 @@ def test_jets_are_the_derivatives_of_the_energy(name):
                 other = pair[1] if pair[0] == i else pair[0]
                 slope = (up[1 + other] - down[1 + other]) / (2 * step)
                 assert np.allclose(slope, jet[row, inside], rtol=2e-6, atol=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("name", "constants"),
+    [
+        ("neo-hookean", (0.17,)),
+        ("mooney-rivlin", (0.07, 0.015)),
+        ("yeoh", (0.085, -0.01, 0.002)),
+        ("ogden", (0.1, 1.3, 0.05, 5.0, 0.02, -2.0)),
+    ],
+)
+def test_a_stiffened_law_has_so_many_times_the_energy(name, constants):
+    at = Strain(*_points())
+    energies = [
+        hyperelastic(*law, 0.49).energy(at).data for law in ((name, constants), stiffened(name, constants, 1.7))
+    ]
+    assert energies[1] == pytest.approx(1.7 * energies[0], rel=1e-12, abs=1e-15)
 
 
 def test_one_term_ogden_with_alpha_two_is_neo_hookean():

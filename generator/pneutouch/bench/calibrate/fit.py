@@ -23,8 +23,8 @@ _ROUNDS = 2
 _CENTRED = 3
 """Most repetitions of the fit with the solid's ratio of the contact at the estimate: our choice."""
 
-_NEAR = 0.05
-"""Distance of the estimate below which that ratio is kept: it moves the force by less than 0.01."""
+_NEAR = 0.02
+"""Distance of the estimate below which that ratio is kept: it moves the force by less than 0.005."""
 
 _SMOOTH = 0.1
 """Smooth share of a reading that may be anything while the scatter of points is estimated: our choice, generous."""
@@ -94,41 +94,53 @@ def fit(
     discrepancy is as large as the residuals show, at least ``floor`` (see `discrepancy`). Under another contact than a
     plate without friction the fit is repeated with the solid's ratio at the estimate. Raises InputError for too few
     points, ComputationError where no fit is found."""
-    contact = FittedContact.of(sensor, parameters, parameters.start)
-    fitted = _fit(observations, sensor, parameters, floor, contact)
+    sensor = sensor.replace(ambient_pressure=observations.ambient)
+    points, count = points_of(observations), len(parameters.fitted)
+    if not parameters.priors and int(points.use.sum()) <= count:
+        raise InputError(
+            f"calibrate: {int(points.use.sum())} values for {count} parameters without priors; there must be more "
+            "values, or fewer parameters with `fit`"
+        )
+    contact, at = FittedContact.of(sensor, parameters, parameters.start), _start(sensor, points, parameters)
+    # The ratio is centred by rough fits first: where it is off, the residuals show its error and not the runs'.
     for _ in range(_CENTRED):
-        if contact is None:
-            break
-        nearer = FittedContact.of(fitted.sensor, parameters, fitted.full)
-        if nearer is None or contact.distance(nearer) < _NEAR:
+        at = _roughly(AtlasModel(sensor, points, contact), parameters, at, floor).at
+        if not _moved(contact, nearer := FittedContact.of(sensor, parameters, parameters.full(at))):
             break
         contact = nearer
-        fitted = _fit(observations, sensor, parameters, floor, contact)
+    fitted = _fit(observations, points, sensor, parameters, floor, contact, at)
+    for _ in range(_CENTRED):
+        if not _moved(contact, nearer := FittedContact.of(sensor, parameters, fitted.full)):
+            break
+        contact = nearer
+        fitted = _fit(observations, points, sensor, parameters, floor, contact, fitted.solution.at)
     return fitted
+
+
+def _moved(contact: FittedContact | None, nearer: FittedContact | None) -> bool:
+    """True if the ratio at an estimate is to be taken in place of the present one."""
+    return contact is not None and nearer is not None and contact.distance(nearer) >= _NEAR
+
+
+def _roughly(model: AtlasModel, parameters: CalibrationParameters, at: Array, floor: Array) -> LeastSquaresSolution:
+    """A fit that trusts neither the shape of the model nor single points: all errors alike, as shares of full scale."""
+    points = model.points
+    errors = np.hypot(points.errors, points.full_scale * floor[points.channels])
+    return solve(LeastSquaresProblem(model, parameters, errors, np.zeros((errors.size, 0))), at)
 
 
 def _fit(
     observations: Observations,
+    points: ObservationPoints,
     sensor: Sensor,
     parameters: CalibrationParameters,
     floor: Array,
     contact: FittedContact | None,
+    start: Array,
 ) -> CalibrationFit:
-    """`fit` with the solid's ratio of a contact."""
-    sensor = sensor.replace(ambient_pressure=observations.ambient)
-    points = points_of(observations)
-    fitted = len(parameters.fitted)
-    if not parameters.priors and int(points.use.sum()) <= fitted:
-        raise InputError(
-            f"calibrate: {int(points.use.sum())} values for {fitted} parameters without priors; there must be more "
-            "values, or fewer parameters with `fit`"
-        )
+    """`fit` with the solid's ratio of a contact, from ``start``."""
     model = AtlasModel(sensor, points, contact)
-    # A start that trusts neither the shape of the model nor single points: all errors alike, as shares of full scale.
-    rough = np.hypot(points.errors, points.full_scale * floor[points.channels])
-    solution = solve(
-        LeastSquaresProblem(model, parameters, rough, np.zeros((rough.size, 0))), _start(sensor, points, parameters)
-    )
+    solution = _roughly(model, parameters, start, floor)
     for _ in range(_ROUNDS):
         # A share of the readings would pull the fit below them (Peelle's puzzle); one of the fitted values does not.
         shared = shared_of(points.with_values(np.where(solution.use, solution.model, points.values)))
@@ -145,7 +157,7 @@ def _fit(
     spread = covariance(last, solution, runs, _others(last, solution) * parameters.prior_spread)
     read = LeastSquaresProblem(model, parameters, points.errors, shared.sized(sizes))
     stated = read.whitened((solution.residual * last.errors / points.errors)[:, None], solution.use)
-    squares, freedom = float((stated**2).sum()), max(int(solution.use.sum()) - fitted, 0)
+    squares, freedom = float((stated**2).sum()), max(int(solution.use.sum()) - len(parameters.fitted), 0)
     fitting = observations, points, parameters, sensor, last, solution, spread, half_widths(spread)
     return CalibrationFit(*fitting, squares, freedom, channels, sizes, run_factor=runs, contact=contact)
 

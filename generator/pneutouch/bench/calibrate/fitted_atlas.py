@@ -31,7 +31,7 @@ from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
 from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasSlices, shipped
 from pneutouch.mechanics.corrected.curves import contact_ratio
-from pneutouch.mechanics.corrected.figures import outside_corrected, under_plate
+from pneutouch.mechanics.corrected.figures import outside_fit, stand_in
 from pneutouch.mechanics.sensor import Sensor
 
 _NODES = 60
@@ -95,7 +95,7 @@ class FittedContact:
         if not chosen.frictions:
             return None
         modulus, wall = (float(np.exp(full[k])) for k in (MODULUS, WALL))
-        centre = sensor.replace(shear_modulus=modulus, wall_thickness=wall, dead_volume=float(full[DEAD]))
+        centre = sensor.of_modulus(modulus).replace(wall_thickness=wall, dead_volume=float(full[DEAD]))
         return cls(centre, chosen.frictions)
 
     def distance(self, other: "FittedContact") -> float:
@@ -121,10 +121,10 @@ class AtlasModel:
     """
 
     def __init__(self, sensor: Sensor, points: ObservationPoints, contact: "FittedContact | None" = None) -> None:
-        why = outside_corrected(sensor)
+        why = outside_fit(sensor)
         if why is not None:
             raise InputError(f"calibrate: the atlas does not cover this sensor: {why}; no fit without it")
-        self.sensor, self.points = under_plate(sensor), points
+        self.sensor, self.points = stand_in(sensor), points
         deep = float(points.travel.max(initial=0.0)) + OFFSET_BOUND
         self._ratio = None
         if contact is not None and points.travel.size:
@@ -173,6 +173,7 @@ class AtlasModel:
         force, rise = track.point.force * mu * size**2, (track.point.pressure - press.pressure[:, None]) * mu
         if self._ratio is not None:
             travel = np.take_along_axis(rows, order, axis=1)
+            ok &= travel < np.interp(batch.driving_pressure, self._ratio.pressures, self._ratio.ends)[:, None]
             factors = np.exp(self._ratio.at(sets[each, FRICTION], np.tile(self.points.driving, s), travel))
             force, rise = factors[0] * force, factors[1] * rise
         return at(force), at(rise), at(ok)

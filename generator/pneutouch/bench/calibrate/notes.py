@@ -196,7 +196,8 @@ def _left_out(fit: CalibrationFit) -> list[str]:
         if lost.any():
             notes.append(
                 f"{curve.run.label}: {_points(int(lost.sum()))} left out from {travel[lost].min():.2f} mm on: the "
-                "model's range ends before them (buckling, the plate's edge, or a depth beyond the atlas)"
+                "model's range ends before them (buckling, the plate's edge, the ring around the flange, or a depth "
+                "beyond the atlas)"
             )
     for injection, lost in zip(fit.observations.injections, fit.injections_left_out, strict=True):
         if lost.any():

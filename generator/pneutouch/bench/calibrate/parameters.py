@@ -7,10 +7,11 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.errors import InputError, nearest
+from pneutouch.mechanics.atlas.figures import neighbourhood
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
 from pneutouch.mechanics.corrected.curves import NODES
-from pneutouch.mechanics.corrected.figures import GRIPS
+from pneutouch.mechanics.corrected.figures import GRIPS, is_corrected
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.contact_model import SPREAD
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
@@ -122,13 +123,8 @@ def parameters(
     recipe, size, numbers = shipped().recipe, sensor.dome.inner_radius, parse_names(names)
     friction = min(sensor.protocol.friction, GRIPS)
     rest = REST_VOLUME * size**3
-    low = [
-        np.log(sensor.gas.ambient_pressure / recipe.stiffest),
-        np.log(recipe.thinnest * size),
-        0.0,
-        -OFFSET_BOUND,
-        0.0,
-    ]
+    softest = neighbourhood().recipe.stiffest if is_corrected(sensor) else recipe.stiffest
+    low = [np.log(sensor.gas.ambient_pressure / softest), np.log(recipe.thinnest * size), 0.0, -OFFSET_BOUND, 0.0]
     high = [np.log(_STIFFEST), np.log(recipe.thickest * size), _LARGEST, OFFSET_BOUND, GRIPS]
     start = [
         np.log(sensor.wall.shear_modulus),
@@ -149,7 +145,7 @@ def _frictions(sensor: Sensor, *, fitted: bool) -> tuple[float, ...]:
     if fitted:
         return NODES
     if sensor.protocol.other_contact is None:
-        return ()
+        return (0.0,) if is_corrected(sensor) else ()
     stated = min(sensor.protocol.friction, GRIPS)
     return tuple(sorted({stated / SPREAD, stated, min(stated * SPREAD, GRIPS)}))
 

@@ -13,6 +13,8 @@ from pneutouch.bench.calibrate.fitted_atlas import AtlasModel
 from pneutouch.bench.calibrate.parameters import CalibrationParameters
 from pneutouch.errors import ComputationError
 
+_POOR = 0.25
+"""Decrease over that expected below which a step counts as too long (Marquardt's rule)."""
 _ROUNDS = 60
 _DAMPING = 1e-3
 _MOST = 1e9
@@ -133,11 +135,11 @@ def _descend(problem: LeastSquaresProblem, at: Array) -> LeastSquaresSolution:
         trial = np.clip(at + step, problem.low, problem.high)
         new = problem.look(trial)
         kept = use & new[3]
-        better = not problem.lost(use, new[3]) and (
-            problem.cost(new[0], kept, trial) <= problem.cost(residual, kept, at)
-        )
-        if better:
-            at, use, damping = trial, kept, max(0.1 * damping, 1e-12)
+        gain = problem.cost(residual, kept, at) - problem.cost(new[0], kept, trial)
+        if gain >= 0.0 and not problem.lost(use, new[3]):
+            # A step that lowers the cost by much less than expected went past the least: the next one is shorter.
+            damping *= 0.1 if gain > _POOR * expected else 10.0
+            at, use, damping = trial, kept, max(damping, 1e-12)
             residual, jacobian, values = new[0], new[1], new[2]
         else:
             damping *= 10.0

@@ -14,8 +14,9 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
-from pneutouch.mechanics.corrected.figures import GRIPS, under_plate
+from pneutouch.mechanics.corrected.figures import GRIPS, stand_in
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.units import KPA
 
 NODES = (0.0, 0.1, 0.25, 0.45, 0.7, 1.0, 1.4, GRIPS)
@@ -35,12 +36,14 @@ class ContactRatio:
         pressures: Driving pressures, MPa, ascending, (p,).
         depths: Travels, mm, ascending, (m,).
         logs: Of force and rise, (2, q, p, m).
+        ends: Travels up to which the wall is free of the ring that clamps its flange, mm, (p,).
     """
 
     frictions: Array
     pressures: Array
     depths: Array
     logs: Array
+    ends: Array
 
     def at(self, friction: Array, driving: Array, travel: Array) -> Array:
         """Logarithms (2, n, m) at coefficients (n,), driving pressures (n,) and travels (n, m).
@@ -65,25 +68,45 @@ class ContactRatio:
         return np.asarray(PchipInterpolator(self.frictions, self.logs, axis=1)(friction))
 
 
+_RING = 0.01
+"""Share of the force by which a ring that the wall meets ends the ratio: our choice. Behind it the force rises within a
+few tenths of a millimetre to twice as much, and the place depends on every size."""
+
+
 def contact_ratio(
     sensor: Sensor, frictions: tuple[float, ...], driving_pressures: Array, deepest: float
 ) -> ContactRatio:
-    """The ratio of a sensor with its object at coefficients, near driving pressures (MPa) and to a travel (mm).
+    """The ratio of a sensor with its object at coefficients, near driving pressures (MPa) and to a travel (mm), the
+    ring around its flange left out.
 
     Raises ComputationError if the solid cannot press the sensor at any of the pressures.
     """
     grains = np.unique(np.round(driving_pressures / _GRAIN)) * _GRAIN
-    bare = sensor.replace(depth=deepest, steps=_STEPS, waves=0, gauge_limit=np.inf, break_stretch=None, friction=0.0)
+    whole = sensor.replace(depth=deepest, steps=_STEPS, waves=0, gauge_limit=np.inf, break_stretch=None, friction=0.0)
+    bare = whole if whole.dome.base is None else whole.replace(base=RigidBase())
     # A surface that grips in place of the largest coefficients: nothing slips there any more.
     held = [bare.replace(friction=np.inf if friction >= GRIPS else friction) for friction in frictions]
     depths, pressures = np.linspace(0.0, deepest, _STEPS + 1)[1:], tuple(grains.tolist())
-    under, over = _pressed(under_plate(bare), pressures), [_pressed(one, pressures) for one in held]
+    under, over = _pressed(stand_in(bare), pressures), [_pressed(one, pressures) for one in held]
     count = min(len(under), *(len(presses) for presses in over))
     if not count:
         listed = ", ".join(f"{pressure / KPA:g}" for pressure in pressures)
         raise ComputationError(f"calibrate: the solid cannot press the sensor with its contact at {listed} kPa")
     logs = [[_log_ratio(presses[k], under[k], depths) for k in range(count)] for presses in over]
-    return ContactRatio(np.array(frictions), grains[:count], depths, np.array(logs).transpose(2, 0, 1, 3))
+    ends = np.full(count, np.inf)
+    if whole != bare:
+        pairs = zip(_pressed(whole.replace(friction=held[0].protocol.friction), pressures), over[0], strict=False)
+        ends = np.array([_parting(ringed, free, depths) for ringed, free in pairs])[:count]
+        count = len(ends)
+    return ContactRatio(
+        np.array(frictions), grains[:count], depths, np.array(logs).transpose(2, 0, 1, 3)[:, :, :count], ends
+    )
+
+
+def _parting(ringed: Array, free: Array, depths: Array) -> float:
+    """Last of the travels before the force with the ring parts from that without it, mm; inf where it does not."""
+    apart = np.flatnonzero(np.abs(_log_ratio(ringed, free, depths)[0]) > _RING)
+    return float(depths[max(apart[0] - 1, 0)]) if apart.size else np.inf
 
 
 @lru_cache(maxsize=64)

@@ -12,11 +12,12 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
-from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, FIGURES, log_figures
+from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, FIGURES, log_figures, softer_walls
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.models.choice import outside
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
+from pneutouch.mechanics.solid.indenter import RigidBase
 
 GRIPS = 2.0
 """Coefficient from which on the contact is taken as one that grips: beyond it the sensitivity of the paper's sensor in
@@ -108,6 +109,16 @@ def under_plate(sensor: Sensor) -> Sensor:
     return sensor.replace(body=None, plate_rim=None, friction=0.0, plate_radius=plate)
 
 
+def stand_in(sensor: Sensor) -> Sensor:
+    """The sensor that a fit corrects: under a plate without friction, its wall neo-Hookean and of one modulus, its base
+    a plane without the ring that clamps the flange: presses that meet it end there."""
+    if sensor.dome.base is not None:
+        sensor = sensor.replace(base=RigidBase())
+    if sensor.wall.law is not None and sensor.wall.largest_stretch is not None:
+        sensor = sensor.replace(law=None, largest_stretch=None)
+    return under_plate(sensor.replace(grade=None))
+
+
 _DEPTH = 0.75
 """Depth in R0 that a fit takes at most: that of the sensitivity test (paper, section 3-B)."""
 
@@ -119,8 +130,23 @@ def outside_corrected(sensor: Sensor) -> str | None:
 
 def outside_fit(sensor: Sensor) -> str | None:
     """Reason why no fit to measured runs covers a sensor, or None if one does: every fit is made with the atlas, at
-    depths that it has."""
-    return outside_corrected(sensor.replace(depth=min(sensor.protocol.depth, _DEPTH * sensor.dome.inner_radius)))
+    depths that it has, and the ratio of the solid to it where the atlas does not cover law, grade, softness or contact.
+    """
+    from pneutouch.mechanics.models.atlas import outside_atlas
+
+    return outside_atlas(stand_in(_shallow(sensor)), softer_walls())
+
+
+def is_corrected(sensor: Sensor) -> bool:
+    """True if a fit takes the atlas times the ratio of the solid to it: the atlas itself does not cover the sensor, or
+    leaves out the ring that its wall meets."""
+    from pneutouch.mechanics.models.atlas import meets_ring
+
+    return outside("atlas", _shallow(sensor)) is not None or meets_ring(_shallow(sensor))
+
+
+def _shallow(sensor: Sensor) -> Sensor:
+    return sensor.replace(depth=min(sensor.protocol.depth, _DEPTH * sensor.dome.inner_radius))
 
 
 @dataclass(frozen=True)

@@ -28,4 +28,12 @@ def hyperelastic(name: str, constants: tuple[float, ...], poisson_ratio: float) 
         raise InputError(f"cannot take the constants {list(constants)}", key="law", value=name) from None
 
 
-__all__ = ["LAWS", "Hyperelastic", "hyperelastic", "mooney_rivlin", "neo_hookean", "ogden", "yeoh"]
+def stiffened(name: str, constants: tuple[float, ...], factor: float) -> tuple[str, tuple[float, ...]]:
+    """A law and its constants with all stresses times ``factor``: every constant but Ogden's exponents."""
+    exponents = slice(1, None, 2) if name == "ogden" else slice(0)
+    scaled = [factor * constant for constant in constants]
+    scaled[exponents] = constants[exponents]
+    return name, tuple(scaled)
+
+
+__all__ = ["LAWS", "Hyperelastic", "hyperelastic", "mooney_rivlin", "neo_hookean", "ogden", "stiffened", "yeoh"]

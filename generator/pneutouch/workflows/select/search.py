@@ -184,16 +184,12 @@ def _volumes(run: SelectionRun) -> Iterator[tuple[str, list[Change]]]:
     assert run.answer.nearest is not None
     wanted, pneumatics = run.problem.sensitivity, run.base.design.pneumatics
     more = wanted is not None and run.answer.nearest.pool.figures.sensitivity > wanted
-    if pneumatics.dead_volume_mL is not None:
-        field, now, least = "setting.dead_volume_mL", pneumatics.dead_volume_mL, 0.0
-    else:
-        field, now, least = "setting.tube_length_mm", pneumatics.tube_length_mm, _SHORTEST_MM
-    shares = _MULTIPLES if more else _SHARES
-    values = dict.fromkeys(float(f"{now * share:.2g}") for share in shares)
-    if not more:
-        values[least] = None
-    kept = [value for value in values if (value > now if more else least <= value < now)]
-    yield ("dead volume" if "dead" in field else "tube"), [Change(field, value) for value in kept]
+    shares = _MULTIPLES if more else (*_SHARES, 0.0)
+    what, key = ("tube", "tube_length_mm") if pneumatics.dead_volume_mL is None else ("dead volume", "dead_volume_mL")
+    base, least = getattr(pneumatics, key), _SHORTEST_MM if what == "tube" else 0.0
+    values = dict.fromkeys(max(float(f"{base * share:.2g}"), least) for share in shares)
+    kept = [value for value in values if (value > base) == more and value != base]
+    yield what, [Change(f"setting.{key}", value) for value in kept]
 
 
 def _wider(run: SelectionRun, library: Library) -> list[str]:

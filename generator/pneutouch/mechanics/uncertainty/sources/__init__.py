@@ -34,7 +34,7 @@ def sources(
     near_paper: Flags | bool,
     errors: ModelErrors,
     numerical: Mapping[str, float],
-    aged: bool = True,
+    aged: float = 1.0,
     calibration: SensorCalibration | None = None,
     contact: ContactModel | None = None,
     anywhere: bool = False,
@@ -48,7 +48,7 @@ def sources(
         near_paper: Those to which the model's error on the paper's sensor applies, one flag or (n,).
         errors: The model's relative errors against Table S1; see `model_errors`.
         numerical: Greatest relative errors of discretisation and interpolation by figure (`FIGURES`).
-        aged: True if the sensor may be up to a year old; else it is fresh, or of the age at which it was calibrated.
+        aged: Greatest age of the sensor, or the greatest time since it was calibrated, in years; a year counts at most.
         calibration: Of the sensor in hand; its parameters and its model error take the place of those of design and
             resin.
         contact: Contact at the n driving pressures, if that is no plate without friction.
@@ -70,8 +70,9 @@ def sources(
         remaining = calibration.remaining_year
         source_list = [*kept_of_design(batch, calibration, source_list), *calibrated_sources(batch, calibration)]
         model_error = kept_of_model(batch, calibration, model_error)
+    ahead = min(aged, remaining)
     source_list += [
-        *(ageing_sources(material, size, remaining) if aged else []),
+        *(ageing_sources(material, size, ahead) if ahead > 0.0 else []),
         *model_error,
         *numerical_sources(size, numerical),
         *(_of_place(batch) if anywhere else []),

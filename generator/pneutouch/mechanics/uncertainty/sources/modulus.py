@@ -154,7 +154,7 @@ AGEING = ("ageing", "ageing of the modulus")
 def ageing_sources(material: Material, size: int, remaining: float = 1.0) -> list[UncertaintySource]:
     """Effects of a year in light and air: on the modulus by the hardness, on the sensitivity as it was measured.
 
-    ``remaining`` is the share of the year that lies ahead; what has passed is in the values already.
+    ``remaining`` is the share of the year that counts: what has passed is in the values, what is later does not matter.
 
     The age at use is taken as anything from fresh to a year. A deviation even over 0 to c has the mean square c^2/3
     about the fresh value, that of a rectangle of half-width c: the drift is not corrected for but enters whole (JCGM
@@ -163,7 +163,7 @@ def ageing_sources(material: Material, size: int, remaining: float = 1.0) -> lis
     whole = _ageing_by_hardness(material, size), _ageing_of_sensitivity(material, size)
     if remaining == 1.0:
         return [*whole]
-    passed = f"; {remaining:.0%} of it lay ahead when the sensor was calibrated"
+    passed = f"; {remaining:.0%} of it counts"
     return [replace(one, standard=remaining * one.standard, origin=one.origin + passed) for one in whole]
 
 

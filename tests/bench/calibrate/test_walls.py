@@ -1,0 +1,66 @@
+"""Campaigns of walls that the atlas does not cover: a silicone's law, a soft wall, a grade, a ring around the flange."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pneutouch.bench.calibrate import Observations, fit, parameters
+from pneutouch.bench.calibrate.parameters import MODULUS, WALL
+from pneutouch.catalogue import load_scene
+from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.mechanics.atlas.press import batch_of
+from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.mechanics.corrected.figures import is_corrected, outside_fit, stand_in
+from pneutouch.mechanics.models.solid import solid_states
+from pneutouch.parts import assemble
+from pneutouch.units import KPA
+from tests.bench.calibrate.sensors import disturbed
+
+SOFTER, THICKER = 0.93, 1.04
+"""The specimen's modulus and wall over the designed ones."""
+DRAGON_SKIN_10 = {"membrane.material": "DragonSkin10", "pneumatics.driving_pressures_kPa": [0.0, 4.0]}
+RING = {"connector.seat": "clamped-flange-M2", "membrane.wall_thickness_mm": 2.2}
+
+
+@pytest.mark.parametrize(
+    ("design", "changes"),
+    [
+        ("cast-dome", {}),
+        pytest.param("cast-dome", DRAGON_SKIN_10, marks=pytest.mark.slow),
+        pytest.param("graded-dome", {}, marks=pytest.mark.slow),
+        pytest.param("cast-dome", RING, marks=pytest.mark.slow),
+    ],
+    ids=["law", "soft", "grade", "ring"],
+)
+def test_modulus_and_wall_of_the_specimen_are_found(library, design, changes):
+    scene = load_scene(design, changes, library)
+    sensor = sensor_of(assemble(scene)).replace(waves=0)
+    assert outside_fit(sensor) is None and is_corrected(sensor)
+    modulus, wall = SOFTER * sensor.wall.shear_modulus, THICKER * sensor.dome.wall_thickness
+    driven = np.array([0.0, 0.5 * max(scene.design.pneumatics.driving_pressures_kPa)])
+    specimen = sensor.of_modulus(modulus).replace(wall_thickness=wall, break_stretch=None, gauge_limit=np.inf)
+    rng = np.random.default_rng(5)
+    states = solid_states(specimen, driven * KPA)
+    runs = tuple(
+        disturbed(state.indentation, state.force, state.pressure_rise, p, n, rng, 0.004)
+        for p, state in zip(driven, states, strict=True)
+        for n in (1, 2, 3)
+    )
+    shallow = sensor.replace(depth=min(sensor.protocol.depth, 0.75 * sensor.dome.inner_radius))
+    chosen = parameters(shallow, scene.membrane_material, scene.printer, ("modulus", "wall"))
+    fitted = fit(Observations(runs), shallow, chosen)
+    off = np.abs(np.exp(fitted.full[[MODULUS, WALL]]) / [modulus, wall] - 1.0)
+    assert off.max() < 0.02
+    assert (np.abs(np.log([modulus, wall]) - fitted.full[[MODULUS, WALL]]) <= fitted.half_width).all()
+
+
+def test_the_stand_in_is_what_the_atlas_covers(library):
+    for design in ("cast-dome", "graded-dome"):
+        sensor = stand_in(sensor_of(assemble(load_scene(design, {}, library))))
+        assert np.isfinite(respond(batch_of(sensor, [0.0]), 8).lines.sensitivity).all()
+
+
+def test_a_wall_softer_than_the_tables_is_not_fitted(library):
+    sensor = sensor_of(assemble(load_scene("cast-dome", {"membrane.material": "Ecoflex0010"}, library)))
+    assert "too soft" in outside_fit(sensor)
