@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 UNCERTAINTY_COLUMNS = 11
-"""Shares of the indentation at which the uncertainty is tabulated."""
+"""Number of shares of the indentation at which the uncertainty is tabulated."""
 
 _STEP = 0.015
 """Half of the central difference, relative, as in `mechanics.uncertainty.derivatives`."""
@@ -124,7 +124,7 @@ FILTER_S = 1.0
 
 
 def reader_tables(evaluation: Evaluation, grid: ReaderGrid) -> ReaderTables:
-    """The reader without its source and its largest difference from the full model. Numbers are float32 ones."""
+    """The reader without its source and its largest difference from the full model. Numbers are rounded to float32."""
     scene, sensor, rating = evaluation.scene, evaluation.sensor, evaluation.rating
     relative = force_uncertainty(evaluation, grid)
     ambient_kPa = sensor.gas.ambient_pressure / KPA
@@ -224,7 +224,7 @@ def _margin(grid: ReaderGrid) -> float:
 
 
 def _one(value: float) -> float:
-    """The number as float32 has it, with the digits that distinguish it."""
+    """The number rounded to float32, with as many digits as distinguish it."""
     return float(f"{float(np.float32(value)):.9g}")
 
 
