@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 
 class Comparison(show.Documented):
-    """Columns side by side. ``inputs`` holds the fields that differ, a value a column; ``predictions`` are those of the
-    designs, ``designs`` what was given as an object."""
+    """Columns side by side. ``inputs`` holds the values of each field that differs, one for each column;
+    ``predictions`` are of the designs, ``designs`` the `Design` objects that were given."""
 
     def __init__(self, result: CompareResult, designs: tuple[Design, ...] = ()) -> None:
         self._result, self.designs = result, designs
@@ -35,12 +35,12 @@ class Comparison(show.Documented):
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Names of the columns, each another."""
+        """Names of the columns, all different."""
         return tuple(comparison_words.labels(self._result.record))
 
     def to_frame(self) -> DataFrame:
-        """A row a figure and driving pressure (None: of the whole sensor); columns ``value``, ``low`` and ``high`` of
-        each label, then ``percent``, its ends and ``exceeds`` of each difference from the first."""
+        """Table with a row for each figure and driving pressure (None: of the whole sensor); columns ``value``, ``low``
+        and ``high`` of each label, then ``percent``, its ends and ``exceeds`` of each difference from the first."""
         from pandas import DataFrame, MultiIndex
 
         rows = self._result.record.figures
@@ -94,7 +94,7 @@ def compare(
 ) -> Comparison:
     """Set designs (objects, names, files), folders of builds and folders of measured results side by side.
 
-    ``driving_pressures_kPa`` are those of all designs (None: their own); the rest is as for `Design.predict`. Raises
+    ``driving_pressures_kPa`` apply to all designs (None: their own); the rest is as for `Design.predict`. Raises
     InputError.
     """
     if not things:

@@ -143,15 +143,15 @@ class Design(show.Shown):
     __hash__ = None  # type: ignore[assignment]
 
     def replace(self, name: str | None = None, **fields: Any) -> Design:
-        """The design with fields changed, and under another name where one is given."""
+        """The design with fields changed, and under another name if one is given."""
         design = type(self).__new__(type(self))
         design._take(self.name if name is None or name == "" else name, self.source.content, fields)
         return design
 
     def save(self, name_or_path: str | Path | None = None, *, overwrite: bool = False) -> Path:
-        """Write the design file, over another with ``overwrite`` alone; a bare name goes to the user's ``designs/``.
+        """Write the design file and return its path; a bare name goes to the user's ``designs/``.
 
-        Returns its path.
+        An existing file is replaced only with ``overwrite``.
         """
         path = Path(name_or_path or self.name)
         folder = path.parent if path.suffix == ".toml" or len(path.parts) > 1 else user_folder() / "designs"
@@ -211,8 +211,8 @@ class Design(show.Shown):
     ) -> DrivingResult:
         """The driving pressures for tasks in order: a file, or mappings of a figure's key (and ``name``).
 
-        ``leak`` is a results file of coupons or what `characterize` wrote. Without ``model`` the cheapest that meets
-        ``tolerance`` answers. Raises InputError.
+        ``leak`` is a results file of coupons or what `characterize` wrote. Without ``model`` the cheapest model that
+        meets ``tolerance`` is used. Raises InputError.
         """
         from pneutouch.workflows.driving import driving_record, driving_schedule, read_leak
 
@@ -307,7 +307,7 @@ def load(name_or_path: str | Path) -> Design:
 
 
 def _printer(file: DesignFile) -> str:
-    """The default printer where it runs the resin, else the first that does."""
+    """Name of the default printer if it runs the resin, else of the first that does."""
     library, usual = Library.default(), file.print.profile
     material = library.all("materials", Material).get(str(file.membrane.material))
     printers = library.all("printers", Printer)
@@ -316,7 +316,7 @@ def _printer(file: DesignFile) -> str:
 
 
 def source_of(design: Design | str | Path) -> str | DesignSource:
-    """A design as the workflows take it."""
+    """A design in the form that workflows take: its source, or the name or path as text."""
     return design.source if isinstance(design, Design) else str(design)
 
 

@@ -28,13 +28,13 @@ def tasks_of(tasks: str | Path | Iterable[Mapping[str, Any]]) -> list[DrivingTas
 
 
 def _number(value: Any) -> Any:
-    """A number as a file of strict types takes it."""
+    """A value as strict models take it: a whole number becomes a float."""
     value = plain(value)
     return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
 class DrivingResult(show.Documented):
-    """The driving pressures for the tasks of a design, in their order; None for a task that no pressure does."""
+    """The driving pressures for the tasks of a design, in their order; None for a task that no pressure fulfils."""
 
     def __init__(self, answer: DrivingRecord) -> None:
         self._record = answer
@@ -48,12 +48,12 @@ class DrivingResult(show.Documented):
 
     @property
     def driving_pressure_kPa(self) -> float | None:
-        """Driving pressure of the first task, kPa; None if no pressure does it."""
+        """Driving pressure of the first task, kPa; None if no pressure fulfils it."""
         return self.driving_pressures_kPa[0]
 
     @property
     def band_kPa(self) -> tuple[float, float] | None:
-        """Pressures at which the sensor in hand may do the first task (k = 2), kPa; None if that is not known.
+        """Band of pressures at which the sensor in hand may fulfil the first task (k = 2), kPa; None if unknown.
 
         It ends at 0 and at the highest pressure computed; see ``open_low`` and ``open_high`` of `to_dict`.
         """

@@ -1,4 +1,4 @@
-"""Fields of a file as keyword arguments: their names alone where they are unique, else with their table's in front."""
+"""Fields of a file as keyword arguments, named by their key, or ``table_key`` if a table before has the same key."""
 
 import typing
 from collections.abc import Iterable, Iterator, Mapping
@@ -18,11 +18,11 @@ from pneutouch.spec.options import AnyOptions, options_of
 from pneutouch.spec.values import finite_numbers, is_finite
 
 WHERE = "the keyword arguments"
-"""Stands for the file where values are keyword arguments; `named_by_keyword` takes it out of an error."""
+"""Name in place of a file's for values from keyword arguments; `named_by_keyword` takes it out of an error."""
 
 
 _MOST = 100_000
-"""Entries of a list that are looked at: no field takes as many."""
+"""Greatest number of entries of a list that are read: no field takes as many."""
 
 
 @cache
@@ -58,7 +58,7 @@ def _of_keyword(name: str, value: Any) -> Any:
 def numbers_of(values: Any, name: str, *, alone: bool = False) -> tuple[float, ...]:
     """Finite numbers that were given as the keyword ``name``. Raises InputError.
 
-    With ``alone`` one number is a list of one.
+    With ``alone`` a single number counts as a list of one.
     """
     given = _of_keyword(name, values)
     if not isinstance(given, list):
@@ -90,7 +90,7 @@ def _entries(values: Any) -> Any:
 
 
 def path_of(value: Any, name: str, remedy: str) -> Path:
-    """A path that was given as the keyword ``name``. Raises InputError with the ``remedy`` for all else."""
+    """A path that was given as the keyword ``name``. Raises InputError with the ``remedy`` for anything else."""
     if not isinstance(value, str | PathLike):
         raise InputError("must be a path", key=name, value=value, remedy=remedy)
     return Path(value)

@@ -40,8 +40,8 @@ def scan(
 ) -> Result:
     """Slide a sensor over a texture specimen, given by name or path, and read which pattern each state detects.
 
-    ``speed_mm_per_s`` None: the specimen's. ``noise_kPa`` is rms of a sample, None: a step of the recorder. ``data``
-    are measured signals (CSV). Raises InputError if the scan cannot be.
+    ``speed_mm_per_s`` None: the specimen's. ``noise_kPa`` is the rms noise of a sample, None: one step of the recorder.
+    ``data`` are measured signals (CSV). Raises InputError if the scan is impossible.
     """
     from pneutouch.workflows.scan import run_scan
     from pneutouch.workflows.scanned import scanned, write_scan
@@ -108,13 +108,12 @@ def characterize(
 ) -> Result:
     """Figures of measured runs (a campaign's folder, its file or one run's) compared with the predicted ones.
 
-    ``columns`` and ``file_format`` are the tables [columns] and [format] of a campaign file, such as
-    ``{"force": {"name": "Load", "unit": "N"}}`` and ``{"decimal": ","}``; what they leave out is as the campaign gives
-    it, else found from each file.
-    ``target`` is a target file to compare with; ``evidence`` states of which runs `Result.save` plots the evidence:
-    "doubtful", "all" or "none".
-    ``model`` None: the solid, and harmonic for contact off the axis. ``kind`` of a single run, None: told from its
-    record. Files that cannot be read are listed under ``failures``.
+    ``columns`` and ``file_format`` are the tables [columns] and [format] of a campaign file, such as ``{"force":
+    {"name": "Load", "unit": "N"}}`` and ``{"decimal": ","}``; what they leave out is as the campaign gives it, else
+    found from each file. ``target`` is a target file to compare with; ``evidence`` selects the runs whose evidence
+    `Result.save` plots:
+    "doubtful", "all" or "none". ``model`` None: the solid, and harmonic for contact off the axis. ``kind`` of a single
+    run, None: told from its record. Files that cannot be read are listed under ``failures``.
     """
     from pneutouch.mechanics.models.choice import USUAL
     from pneutouch.workflows.characterize.campaign import characterize as run
@@ -132,9 +131,9 @@ def characterize(
 
 
 class FittedSensor(Result):
-    """A sensor that was calibrated; a design that names it by `name` is predicted as this sensor.
+    """A sensor that was calibrated; a design that names its calibration by `name` is predicted as this sensor.
 
-    It is None if the fit cannot be a calibration, such as with a modulus on its bound; its last note says why.
+    `name` is None if the fit cannot be a calibration, such as with a modulus on its bound; the last note says why.
     """
 
     def __init__(self, outcome: CalibrationOutcome) -> None:
@@ -145,7 +144,7 @@ class FittedSensor(Result):
     def save(self, name: str | Path | None = None, *, replace: bool = False) -> Path:
         """Write the calibration into the user's folder under a name (None: its own); returns its file.
 
-        Never over another calibration unless ``replace``. Raises InputError.
+        Another calibration is replaced only with ``replace``. Raises InputError.
         """
         from pneutouch.workflows.calibrate.calibrate import save_calibration
 
@@ -173,7 +172,7 @@ def calibrate(
     """Fit the model to the runs of one sensor of a campaign; write the fit into ``out``, the calibration for designs.
 
     ``hold_out_kPa`` are driving pressures to predict from the others. The calibration goes into the user's folder under
-    the name ``save`` (None: of design and sensor), never over another unless ``replace``. The design with it is
+    the name ``save`` (None: of design and sensor); it replaces another only with ``replace``. The design with it is
     ``design.replace(calibration=result.name)``. ``columns`` and ``file_format`` are as for `characterize`.
     """
     from pneutouch.workflows.calibrate.calibrate import run_calibration
@@ -205,9 +204,9 @@ def respond(
 ) -> Result:
     """Simulate a step of force or travel, or a sine from no load to a peak, through wall, gas, line and gauge.
 
-    Without a size it is half of the range, without ``sine_Hz`` a step. ``duration_s`` None: 1 s, or ten cycles;
-    ``seed`` is that of the gauge's noise. `Result.save` writes the signals. Raises InputError for
-    a load beyond the range.
+    Without a size the load is half of the range; without ``sine_Hz`` it is a step. ``duration_s`` None: 1 s, or ten
+    cycles; ``seed`` sets the gauge's noise. `Result.save` writes the signals. Raises InputError for a load beyond the
+    range.
     """
     from pneutouch.evaluation.evaluate import evaluate
     from pneutouch.mechanics.models.choice import model_options
@@ -248,7 +247,7 @@ def fit_material(
     """Fit a hyperelastic law to a tensile test (one file a specimen) or, with ``puck_mm``, to a puck test.
 
     ``puck_mm`` is its diameter and thickness. Nothing is written before `Result.save`, which writes the material file
-    into the user's folder and plot and figures into the folder given. Raises InputError for data that make no law.
+    into the user's folder and plot and figures into the folder given. Raises InputError for data that give no law.
     """
     from pneutouch.workflows.fit_material import fit_material as run
     from pneutouch.workflows.fit_material import fit_report, write_material

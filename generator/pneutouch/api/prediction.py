@@ -29,12 +29,12 @@ if TYPE_CHECKING:
 _UNIT = re.compile(r"(.+?)_((?:mm|N|kPa|mL)(?:_per_(?:mm|N))?)$")
 
 _CLOSE = 1e-6
-"""Driving pressures nearer than this are one, kPa."""
+"""Driving pressures that differ by less than this, kPa, are taken as the same."""
 
 
 @dataclass(frozen=True)
 class FigureValue:
-    """A figure in its ``unit``; ``interval`` is its expanded one (coverage factor 2), None if unknown."""
+    """A figure in its ``unit``; ``interval`` is its expanded uncertainty interval (k = 2), None if unknown."""
 
     name: str
     value: float
@@ -102,13 +102,13 @@ class PredictedState(show.Shown):
                 vars(self)[name] = self.figures[key]
 
     def to_frame(self) -> DataFrame:
-        """The curves as a table, a column each."""
+        """The curves as a table with one column each."""
         from pandas import DataFrame
 
         return DataFrame(self.curve)
 
     def _head(self) -> str:
-        return f"StateRecord at {self.driving_pressure_kPa:g} kPa"
+        return f"Prediction at {self.driving_pressure_kPa:g} kPa"
 
     def _rows(self) -> list[Any]:
         return [(figure.name, str(figure)) for figure in self.figures.values()]
@@ -138,7 +138,7 @@ class Prediction(show.Documented):
         return self.evaluation.rating
 
     def at(self, pressure_kPa: float) -> PredictedState:
-        """The state at a driving pressure. Raises InputError for one that was not predicted."""
+        """The state at a driving pressure. Raises InputError if it was not predicted."""
         (required_kPa,) = numbers_of([pressure_kPa], "pressure_kPa")
         for state in self.states:
             if abs(state.driving_pressure_kPa - required_kPa) < _CLOSE:
@@ -151,7 +151,7 @@ class Prediction(show.Documented):
         return predicted_in_full(self.evaluation)
 
     def to_frame(self) -> DataFrame:
-        """A row a driving pressure; a column a figure, with ``_low`` and ``_high`` where its interval is known."""
+        """Table with a row for each driving pressure and a column for each figure, ``_low`` and ``_high`` if known."""
         from pandas import DataFrame, Index
 
         rows = []
@@ -164,7 +164,7 @@ class Prediction(show.Documented):
         return DataFrame(rows, Index([s.driving_pressure_kPa for s in self.states], name="driving_pressure_kPa"))
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the pressure rise over the contact force, a line a state; returns the axes."""
+        """Draw the pressure rise over the contact force, one line for each state; returns the axes."""
         from pneutouch.report.chart import draw_panel
         from pneutouch.report.curves import Press, rises, state_look
 

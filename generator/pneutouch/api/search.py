@@ -1,8 +1,6 @@
 """Many designs: those that meet a target, and all those of a grid.
 
-Reasons why a selection found no design, in short lines.
-
-A design that is given as an object in place of its name.
+The module also states in short lines why a selection found no design, and takes a base design as an object.
 """
 
 from __future__ import annotations
@@ -39,8 +37,8 @@ _OnBase = TypeVar("_OnBase", bound=SelectionRecord | GradedRecord)
 
 
 def unmet_lines(record: SelectedRecord) -> list[str]:
-    """The nearest design and its misses, the requirements whose removal admits one, and the designs that a check
-    rejects."""
+    """Lines on the nearest design and its misses, the requirements whose removal admits a design, and the designs that
+    a check rejects."""
     if isinstance(record, ProcessesRecord):
         by_process = record.processes.items()
         return [
@@ -66,7 +64,7 @@ def unmet_lines(record: SelectedRecord) -> list[str]:
 
 
 def _of_grade(record: GradedRecord) -> list[str]:
-    """The nearest grade: each share of a tolerance or limit that is used by more than the whole."""
+    """Line on the nearest grade: why it is rejected, or by how much it exceeds each tolerance or limit, percent."""
     if record.rejected:
         return [f"rejected: {record.rejected}"]
     best = record.design
@@ -86,7 +84,7 @@ def _size(design: FoundDesign) -> str:
 
 
 def with_base_named(fields: Mapping[str, Any]) -> tuple[dict[str, Any], Design | None]:
-    """Keyword arguments of a target with a base that is a design named by its name, and that design."""
+    """Keyword arguments of a target, with the name of a base that is a `Design` in its place, and that design."""
     setting = fields.get("setting")
     inner = setting.get("base") if isinstance(setting, Mapping) else None
     if isinstance(inner, Design) and isinstance(setting, Mapping):
@@ -96,7 +94,7 @@ def with_base_named(fields: Mapping[str, Any]) -> tuple[dict[str, Any], Design |
 
 
 class GivenBase:
-    """A library that has a design by its name, and the words in place of the file that holds it meanwhile."""
+    """A library that holds a given design under its name, and the words that replace the path of its temporary file."""
 
     def __init__(self, design: Design | None, folder: Path) -> None:
         self._folder, self._design, self.library = folder, design, Library.default()
@@ -105,7 +103,7 @@ class GivenBase:
             self.library = Library((folder, *self.library.folders))
 
     def named(self, record: SelectedRecord) -> SelectedRecord:
-        """A selection whose ``base`` names the design."""
+        """The selection, with the design's name as its ``base`` in place of the temporary file."""
         if isinstance(record, ProcessesRecord):
             return replace(record, processes={key: self._renamed(one) for key, one in record.processes.items()})
         return self._renamed(record)
@@ -117,7 +115,7 @@ class GivenBase:
         return replace(record, base=self._design.name if where == WHERE else where)
 
     def blame(self, error: PneutouchError) -> None:
-        """Name the design's own file, or none, in an error."""
+        """Name the design's own file, or none, in an error, in place of the temporary file."""
         for each in (error, *error.others):
             if self._design is not None and each.file is not None and self._holds(each.file):
                 each.file = self._design.source.where
@@ -128,7 +126,7 @@ class GivenBase:
 
 @contextmanager
 def given_base(design: Design | None) -> Iterator[GivenBase]:
-    """The library of a selection on a design; None: as it is."""
+    """The library of a selection on ``design``; None: the default library."""
     with temporary_folder() as folder:
         base = GivenBase(design, folder)
         try:
@@ -195,8 +193,8 @@ def select(target: str | Path | None = None, **fields: Any) -> Selection:
 
 
 def _selected(goal: Target, choice: FoundChoice) -> Design:
-    """The design of a search result: a base with the changes that were found; named after a base that the target
-    names."""
+    """The design of a search result: its base with the changes that were found, named after the base if the target
+    names one."""
     name = f"{choice.base.name if goal.setting.base else 'selected'}-{choice.label}"
     return Design.of(DesignSource(name, assigned(choice.base.design, choice.assignments, name), WHERE))
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 LINES, WIDTH, ROWS = 10, 110, 40
-"""Most lines of a text, their most letters, and most rows of a table in a notebook."""
+"""Greatest number of lines of a text, of letters in a line, and of rows of a table in a notebook."""
 
 
 class Shown:
@@ -72,7 +72,7 @@ def short(value: Any) -> str:
 
 
 def text(head: str, rows: Iterable[Sequence[Any]]) -> str:
-    """A head and a line a row, its cells two spaces apart; at most `LINES` lines of `WIDTH` letters."""
+    """Text of a head and one line for each row, cells two spaces apart; at most `LINES` lines of `WIDTH` letters."""
     cells = [[short(cell) for cell in row] for row in rows]
     cut = cells if len(cells) < LINES else cells[: LINES - 2]
     widths = [
@@ -112,7 +112,7 @@ def field_rows(file: BaseModel) -> list[tuple[str, Any, str]]:
 
 
 def table_rows(file: BaseModel) -> list[tuple[str, str]]:
-    """A row a table of a file: its name and its fields."""
+    """A row for each table of a file: its name and its fields."""
     rows = field_rows(file)
     plain = [(key, short(value)) for key, value, _ in rows if "." not in key]
     return plain + [
@@ -158,7 +158,7 @@ def gauges() -> Listing:
 
 
 def _listed(kind: str) -> Listing:
-    """Titles by name; for a file that cannot be read its error in place of the title."""
+    """Titles by name; the error in place of the title of a file that cannot be read."""
     listed = Listing()
     for entry in listing(kind)[kind]:
         listed[entry["name"]] = f"cannot be read: {entry['error']}" if "error" in entry else entry["title"]

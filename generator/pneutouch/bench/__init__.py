@@ -1,1 +1,1 @@
-"""Measured data in, the same figures out."""
+"""Evaluation of measured data into the figures that predictions have."""

@@ -29,7 +29,7 @@ _FAR_SHORE = 25.0
 3 to 5 points, and the seven elastomers of the paper lie about 10 apart."""
 
 _MODULI = (0.01, STIFFEST_ELASTOMER_MPA)
-"""MPa: outside these a reading is wrong, our choice; the shipped elastomers have 0.17 to 5.33."""
+"""Range of moduli, MPa, outside which a reading is wrong: our choice; the shipped elastomers have 0.17 to 5.33."""
 
 _FAR_MODULUS = 5.0
 """Factor from the shipped shear modulus beyond which a note is given: our choice; published estimates of one resin
@@ -37,7 +37,7 @@ differ by a factor of 3 (TangoPlus.toml)."""
 
 
 def puck(name: str, material: Material, measured: Puck, source: ReadingSource, results: CouponFindings) -> None:
-    """Hardness and density. Raises InputError for a density that no resin has."""
+    """Add hardness and density of a resin. Raises InputError for a density that no resin has."""
     for key, scale in (("shore_a", "Shore A"), ("shore_d", "Shore D")):
         readings = getattr(measured, key)
         if readings:
@@ -131,7 +131,7 @@ def pulled(measured: Dumbbell, where: str) -> DumbbellModuli | None:
 
 
 def dumbbell(name: str, material: Material, measured: Dumbbell, source: ReadingSource, results: CouponFindings) -> None:
-    """Shear modulus by the neo-Hookean fit. Raises InputError for too few specimens or points or a rigid material."""
+    """Add the shear modulus of dumbbells. Raises InputError for too few specimens or points or a rigid material."""
     where = f"{source.where}: dumbbell.{name}"
     if material.kind != "elastomer" and any(specimen.force_N for specimen in measured.specimen):
         raise InputError(f"{material.label} is rigid", file=where, remedy="die C is for an elastomer")
@@ -172,7 +172,7 @@ def _compare_modulus(name: str, modulus: float, shipped: Quantity | None, result
 
 
 def _check_rising(specimen: DumbbellSpecimen, where: str) -> None:
-    """Forces in the order of their extensions; a coarse gauge may show one force at two points, but not at all."""
+    """Raise InputError unless forces rise with extension; a coarse gauge may show one force twice, not throughout."""
     points = sorted(zip(specimen.extension_mm, specimen.force_N, strict=True))
     pairs = [*pairwise(points), (points[0], points[-1])]
     for k, ((before, lower), (after, higher)) in enumerate(pairs, start=1):
@@ -239,7 +239,7 @@ def stiffness(
 ) -> list[MixModulus]:
     """Modulus of every fraction that was measured.
 
-    By its dumbbells, else by its hardness: Gent's relation (1958) is used for ratios alone, so the modulus is that of
+    By its dumbbells, else by its hardness: Gent's relation (1958) is used only for ratios, so the modulus is that of
     the soft resin, measured or from the catalogue, times the ratio to the modulus at fraction 0 of the same set. Raises
     InputError for readings that cannot be used, and where the modulus falls with the fraction."""
     where = f"{source.where}: mixing.{pair}"
@@ -263,7 +263,7 @@ def stiffness(
 
 @dataclass(frozen=True, slots=True)
 class _Base:
-    """The soft resin: its hardness in this set, its modulus, and the origin of that."""
+    """The soft resin: its hardness in this set, its modulus with spread, and the origin of the modulus."""
 
     shore: Mean
     modulus: float

@@ -85,11 +85,11 @@ _SLIP = 0.1
 """A length of the block that is off its nominal by more than this share counts as a writing error."""
 
 _FINE_SLIP, _FINE_SLIP_MM = 0.5, 0.3
-"""Differences, relative and in mm, above both of which a wall, pin, hole or slot fails as well: our choice, several
-times the tolerance that vendors state for small features."""
+"""Differences from nominal, relative and in mm, above both of which a wall, pin, hole or slot counts as a writing error
+too: our choice, several times the tolerance that vendors state for small features."""
 
 _ROUNDING = 1e-9
-"""Differences of lengths may miss a limit by this, mm."""
+"""Tolerance in comparisons of lengths, mm."""
 
 _SMALLEST = MappingProxyType(
     {
@@ -110,7 +110,7 @@ MeasuredGauges = Sequence[tuple[str, Material, FeatureGauge]]
 def gauges(
     name: str, printer: Printer, measured: MeasuredGauges, source: ReadingSource, results: CouponFindings
 ) -> None:
-    """Accuracy, holes and smallest features of a printer. Raises InputError for sizes that are not on the gauge."""
+    """Add accuracy, hole undersize and smallest features of a printer. Raises InputError for sizes not on the gauge."""
     for material_name, material, gauge in measured:
         _check_sizes(gauge, material, f"{source.where}: gauge.{name}.{material_name}")
     _accuracy(name, measured, source, results)
@@ -214,7 +214,7 @@ def _least(
     source: ReadingSource,
     results: CouponFindings,
 ) -> None:
-    """Smallest feature of a kind; the worst of several gauges counts."""
+    """Add the smallest feature of a kind; the worst of several gauges counts."""
     row, _ = _SMALLEST[key]
     leasts = [smallest_sound(sizes) for sizes in judged]
     if any(least is None for least in leasts):
@@ -230,11 +230,11 @@ def _least(
 
 
 _VOLUME_ROUNDING = 1e-9
-"""Differences of pressures may miss a limit by this, kPa."""
+"""Tolerance in comparisons of pressures, kPa."""
 
 
 def leak(name: str, cap: LeakCap, accuracy_kPa: float, source: ReadingSource, results: CouponFindings) -> None:
-    """Leak rate, kPa/min. Raises InputError if pressure rises by more than the gauge's ``accuracy_kPa``."""
+    """Add the leak rate, kPa/min. Raises InputError if pressure rises by more than the gauge's ``accuracy_kPa``."""
     for run, (start, end) in enumerate(zip(cap.start_kPa, cap.end_kPa, strict=True), start=1):
         rise = end - start
         if rise > accuracy_kPa + _VOLUME_ROUNDING:
@@ -261,7 +261,7 @@ def volume(
     source: ReadingSource,
     results: CouponFindings,
 ) -> None:
-    """Dead volume in mL by Boyle's law. Raises InputError if the cap's pressures are missing or contradict."""
+    """Add the dead volume in mL by Boyle's law. Raises InputError if the cap's pressures are missing or contradict."""
     cavity = cavity_measured(CouponContext(scene.connector_material, scene), plug)
     results.figure(name, "cavity of the plug, mL", cavity.value, cavity.error, cavity.count)
     if not plug.pressure_kPa:

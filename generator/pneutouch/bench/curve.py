@@ -1,4 +1,4 @@
-"""A run's blocks to its curve: points read at the ends of holds, or the loading of a run without holds."""
+"""Curve of a run from its blocks: points read at the ends of holds, or the loading of a run without holds."""
 
 import math
 from collections.abc import Sequence
@@ -39,9 +39,9 @@ _BEYOND_TRAVEL = 1.05
 def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     """The curve of a run with a plate; its first point is the origin.
 
-    A run without a stated kind is of that which its record shows. Steps and saturation: one point for each stay, sorted
-    by depth. Loop, relaxation and a press by hand: the loading, averaged over the cycles, at `LOADING_POINTS` even
-    depths, or forces by hand. A force or rise that falls as the sensor is pressed stays negative (see
+    A run without a stated kind has the kind that its record shows. Steps and saturation: one point for each stay,
+    sorted by depth. Loop, relaxation and a press by hand: the loading, averaged over the cycles, at `LOADING_POINTS`
+    even depths, or forces by hand. A force or rise that falls as the sensor is pressed stays negative (see
     `run_checks.check_plausible`). Noise is that of single samples without contact, from the spread within blocks and
     that between their means about a straight line; drift is the slope before the first contact.
 
@@ -97,7 +97,7 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
 
 
 def _without_spikes(blocks: Blocks) -> Blocks:
-    """The blocks but for those in which a channel read what no plate makes, for a moment."""
+    """Blocks without those in which a channel reads a spike, for a moment, that no plate makes."""
     clean = np.ones(blocks.time.size, bool)
     for spike in (one for one in blocks.warnings if one.kind == "spike" and not one.used):
         clean &= (blocks.time < spike.start) | (blocks.time > spike.end)
@@ -108,7 +108,7 @@ def _without_spikes(blocks: Blocks) -> Blocks:
 
 
 def _by_force(blocks: Blocks) -> Blocks:
-    """A press by hand with its force in place of the travel, which nobody knows: loadings are found by it."""
+    """Blocks of a press by hand with the force as position: the travel is unknown, and loadings are found by force."""
     if np.ptp(blocks.force) <= SURELY * float(np.median(blocks.force_spread)):
         raise InputError(
             f"the force never changes: from {blocks.force.min():.3g} to {blocks.force.max():.3g} N",
@@ -152,7 +152,7 @@ def _travel(blocks: Blocks, rig: Rig) -> list[SuspectInterval]:
 def _kept(
     blocks: Blocks, indentations: RunIndentations, touched: list[int], *, steps: bool
 ) -> tuple[list[int], Warnings]:
-    """The indentations that can be used, and why others cannot; of ``steps`` those at which the plate stays."""
+    """Indentations that can be used, and the reasons against the others; with ``steps`` only those with a stay."""
     kept, warnings = [], []
     for k in touched:
         indent, part = indentations.indents[k], indentations.parts[k]
@@ -197,7 +197,7 @@ def _deepest(blocks: Blocks, part: Excursion) -> int:
 
 
 def _deep(loadings: Loadings, kept: list[int], indents: Sequence[MeasuredIndentation]) -> tuple[list[int], Warnings]:
-    """Those of the loadings that go as deep as the deepest, whose average goes as far; the others are left out."""
+    """Loadings that reach `ALIKE_DEEP` of the deepest one, for averaging, and warnings about the others."""
     ends = [float(loading[0].max()) for loading in loadings]
     deep = [k for k, end in zip(kept, ends, strict=True) if end >= ALIKE_DEEP * max(ends)]
     why = f"left out of the average: it ends before {ALIKE_DEEP:.0%} of the deepest"

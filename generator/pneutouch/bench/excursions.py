@@ -1,6 +1,6 @@
 """The plate's excursions: clear of the sensor, going in, staying, coming out; and the kind of run that they make.
 
-Found from the position alone.
+They are found from the position only.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ NOISE = 5.0
 """Standard deviations of the position within which the plate is taken to stay: a false alarm in a million."""
 
 TURN = 0.05
-"""Share of the whole travel by which the plate must turn back to begin another indentation. The smallest of the paper's
-(0.5 mm of 6.9 mm, and the clearance) is three times as long."""
+"""Share of the whole travel by which the plate must turn back to begin another indentation. The paper's smallest
+indentation (0.5 mm of 6.9 mm, and the clearance) is three times as long."""
 
 NEAR, STAY = 0.02, 0.005
-"""Shares of an indentation's travel: the first for overshoot at its end, the second for the hold."""
+"""Shares of the travel: of the whole run's for overshoot at the deep end, and of an indentation's for the hold."""
 
 WIDE, FEW = 0.05, 8
 """Share of the travel, and number of blocks: with fewer than `FEW` blocks at the clear end, as in a loop without rest,
 those within `WIDE` of it count."""
 
 _LEAST_SHARE = 20.0
-"""The plate moves where its travel is more than so many standard deviations of its position."""
+"""Travel of a record, in standard deviations of the position, above which the plate counts as moving."""
 
 _ACTIVE = 5.0
 """Position is reversed where the force varies so many times more at its low end than at its high end."""
@@ -39,14 +39,14 @@ _MOVES = 0.2
 
 
 _SPREADS = 1.7
-"""Greatest ratio of the time within four times a distance of the deep end to the time within it, for a stay. A stay has
-about 1, a sine 2, an even turn 4."""
+"""Greatest ratio, for a stay, of the time within four times a small distance of the deep end to the time within that
+distance: about 1 for a stay, 2 for a sine, 4 for a turn at constant speed."""
 
 _LINGERS = 4.0
 """Least ratio of the time at a stay on the way in to the time at the other places of the way: our choice."""
 
 _SCATTERED = 1.5
-"""Greatest ratio of the blocks from a stay's first to its last to those at its depth: with more it came twice."""
+"""Greatest ratio of blocks from a stay's first to its last to blocks at its depth: above it the plate came twice."""
 
 LONG = 5.0
 """Seconds from which a stay at one depth is a relaxation run, if it is longer than the way in: our choice."""
@@ -56,8 +56,8 @@ class Excursion(NamedTuple):
     """One loading and unloading, or one step of a loading in steps; block numbers, ends exclusive.
 
     ``clear`` is the stretch before it with the plate at its clear end, ``hold`` the stay at its deep end, ``out`` where
-    the unloading ends (the next clear stretch, or the record). ``held``: the plate stays there, and does not just turn.
-    Steps of one loading share ``clear`` and ``out``.
+    the unloading ends (the next clear stretch, or the record). ``held``: the plate stays at the deep end, and does not
+    just turn. Steps of one loading share ``clear`` and ``out``.
     """
 
     clear: tuple[int, int]
@@ -67,15 +67,15 @@ class Excursion(NamedTuple):
 
 
 def excursions(blocks: Blocks, *, steps: bool = True, turn: float = TURN) -> tuple[list[Excursion], bool]:
-    """All loadings and unloadings, and whether the record begins with the plate in (that one is left out).
+    """All loadings and unloadings, and True if the record begins with the sensor pressed (that press is left out).
 
-    A loading in ``steps`` is as many excursions as it has stays. ``turn`` is the share of the whole travel by which the
-    plate must turn back to begin another.
+    With ``steps`` a loading gives one excursion for each of its stays. ``turn`` is the share of the whole travel by
+    which the plate must turn back to begin another.
 
     No speed and no length is presumed: all limits are shares of the travel or multiples of the position's noise, so
     that a run in a wrong unit is still segmented correctly, and its magnitude reveals the unit. Missed samples do not
-    matter, as no differences of neighbours are taken. Raises InputError if the plate does not move, or moves out of
-    the sensor when it presses."""
+    matter, as no differences of neighbours are taken. Raises InputError if the plate does not move, or moves out of the
+    sensor when it presses."""
     place = smoothed(blocks.position)
     noise, span = position_noise(blocks.position), float(np.ptp(place))
     if span <= _LEAST_SHARE * noise or place.size < FEW:
@@ -112,7 +112,7 @@ def excursions(blocks: Blocks, *, steps: bool = True, turn: float = TURN) -> tup
 
 
 def position_noise(position: Array) -> float:
-    """Standard deviation of a block's position, mm, from second differences, which an even move does not enter."""
+    """Standard deviation of a block's position, mm, from second differences, which are zero at constant speed."""
     if position.size < 3:
         return 0.0
     return float(1.4826 * np.median(np.abs(np.diff(position, 2))) / np.sqrt(6))
@@ -144,7 +144,7 @@ def _check_direction(blocks: Blocks, place: Array, span: float) -> None:
 
 
 def _turns(place: Array, least: float) -> list[tuple[int, bool]]:
-    """Turning points with at least ``least`` mm between neighbours: block and whether it is a high one, in order."""
+    """Turning points with at least ``least`` mm between neighbours, in order: block, and True for a high one."""
     turns: list[tuple[int, bool]] = []
     values = place.tolist()
     low = high = 0
@@ -178,7 +178,7 @@ def _stay(place: Array, span: float, noise: float) -> tuple[int, int]:
 
 
 def _clear(place: Array, low: float, top: float, noise: float) -> tuple[int, int]:
-    """Blocks for which the plate is at its clear end before it goes in, first and last."""
+    """Blocks for which the plate is at its clear end before it goes in: the first, and the one after the last."""
     at = np.flatnonzero(place <= low + max(STAY * (top - low), NOISE * noise))
     if at.size < FEW:
         at = np.flatnonzero(place <= low + WIDE * (top - low))
@@ -186,7 +186,7 @@ def _clear(place: Array, low: float, top: float, noise: float) -> tuple[int, int
 
 
 def _held(way: Array, level: float, noise: float) -> bool:
-    """True if the plate stays at the deep end ``level`` of a way in and out, by how the time near it grows."""
+    """True if the plate stays at the deep end ``level`` of a way in and out, judged by the time spent near it."""
     near = max(STAY * (level - float(way.min())), NOISE * noise)
     short, long = (int((np.abs(way - level) <= factor * near).sum()) for factor in (1, 4))
     return short >= FEW and long < _SPREADS * short

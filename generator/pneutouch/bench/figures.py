@@ -1,6 +1,6 @@
-"""Figures of a run: measured curves go through the same `mechanics.response` as predicted ones.
+"""Figures of a measured run, computed by the same `mechanics.response` as those of predicted curves.
 
-A campaign in figures: runs of a resin, an age and a driving pressure made one, each figure with its interval.
+Runs of one resin, age and driving pressure form a group: its figures are pooled and have intervals.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -22,9 +22,9 @@ Pooled = Literal["mean", "within", "between"]
 
 @dataclass(frozen=True, slots=True)
 class FigureDefinition:
-    """A figure of a sensor: its key, name, unit, and how many runs are made one value.
+    """Definition of a figure of a sensor: key, name, unit, and how the values of several runs become one (``pooled``).
 
-    ``reading`` is how far, relatively, the reading itself may be off in all runs alike; the interval holds it.
+    ``reading`` is the relative bias that the evaluation itself may have, alike in all runs; the interval includes it.
     """
 
     key: str
@@ -37,8 +37,8 @@ class FigureDefinition:
 
 
 _WIDTH_READING, _AREA_READING = 0.03, 0.04
-"""Biases found in the hysteresis of simulated loops of known sensors, recorded at 2 kHz with 0.2 to 0.4 % of it
-(docs/background/coverage.json: ``off`` of the loop's figures)."""
+"""Relative biases of a loop's width and area, found in simulated loops of known sensors with 0.2 to 0.4 % of
+hysteresis, recorded at 2 kHz (docs/background/coverage.json: ``off`` of the loop's figures)."""
 
 FIGURES = (
     FigureDefinition(SENSITIVITY_KEY, "Sensitivity, line with intercept", "kPa/N", digits=4),
@@ -72,18 +72,18 @@ FIRST = 1.0
 """Seconds after the hold began from which relaxation is counted: the plate's stop no longer oscillates."""
 
 RESOLVED = 3.0
-"""Noise standard deviations that count as resolved: the limit of detection of IUPAC (Gold Book, L03540)."""
+"""Resolution in standard deviations of the noise: the limit of detection of IUPAC (Gold Book, L03540)."""
 
 _CURVE, _GAP = 8, 4
-"""Coefficients of a loop's middle line and of the gap between its branches, over the root of the force, which is nearer
-to travel than force is: the least that follow the solid's loops."""
+"""Numbers of coefficients of a loop's middle line and of the gap between its branches, as polynomials in the root of
+the force (closer to travel than the force is): the fewest that follow the loops of the solid model."""
 
 _LEAST_SAMPLES = 40
 
 _SATURATION, _DRIFT = "saturation_force_N", "drift_pressure_kPa_per_min"
 
 COVERED = 1.96
-"""Standard errors of a slope over some hundred blocks on either side of it in an interval of 95 %."""
+"""Half-width of a 95 % interval in standard errors, for a slope over some hundred blocks."""
 
 _OF_LINE = frozenset(
     {
@@ -97,7 +97,7 @@ _OF_LINE = frozenset(
         "resolution_N",
     }
 )
-"""Figures of a loading curve, and what is made of them."""
+"""Keys of the figures of a loading curve, and of the resolution, which is derived from them."""
 
 _ENDS = 0.15
 """Decades at either end of a hold over which a line gives the value at the end: one block would give its noise."""
@@ -132,7 +132,7 @@ def _line(curve: MeasuredCurve, *, saturating: bool) -> dict[str, float]:
 
 
 def line_figures(got: Figures[float]) -> dict[str, float]:
-    """Figures of a loading curve by key of `FIGURES`; without saturation where it has none."""
+    """Figures of a loading curve by key of `FIGURES`; the saturation force only if it is finite."""
     return {
         SENSITIVITY_KEY: got.sensitivity,
         "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin,
@@ -145,7 +145,7 @@ def line_figures(got: Figures[float]) -> dict[str, float]:
 
 
 def _loop(curve: MeasuredCurve) -> dict[str, float]:
-    """Hysteresis of all cycles together; the greatest difference of two noisy branches would be that of their noise.
+    """Hysteresis of all cycles, percent, from fitted branches: the greatest difference of raw ones would be noise.
 
     Both branches are fitted at once: a middle line, and a gap that closes at the greatest force.
     """
@@ -164,7 +164,7 @@ def _loop(curve: MeasuredCurve) -> dict[str, float]:
 
 
 def _branches(share: Array, direction: Array) -> tuple[Array, Array]:
-    """Columns of the middle line and of half the gap at shares of the greatest force, loading (1) or unloading (-1)."""
+    """Design matrices of middle line and half gap at shares (n,) of the greatest force; direction 1 in, -1 out."""
     root = np.sqrt(np.clip(share, 0.0, None))
     half = 0.5 * direction * (1 - root)
     place = 2 * root - 1
@@ -172,7 +172,7 @@ def _branches(share: Array, direction: Array) -> tuple[Array, Array]:
 
 
 def _relaxation(time: Array, force: Array, rise: Array) -> dict[str, float]:
-    """Loss from `FIRST` to the end of the hold, and its slope over log10 of time, both over the value at `FIRST`."""
+    """Relaxation of force and pressure, percent of the value at `FIRST`: loss until the hold ends, and per decade."""
     later = time >= FIRST
     if later.sum() < 3:
         return {}
@@ -193,7 +193,7 @@ def _relaxation(time: Array, force: Array, rise: Array) -> dict[str, float]:
 
 
 def _binned(place: Array, values: Array, grid: Array) -> Array:
-    """Means of values around each grid point; straight between where a bin is empty."""
+    """Means of the values near each grid point, interpolated linearly where a bin is empty."""
     edges = np.concatenate([[-np.inf], 0.5 * (grid[1:] + grid[:-1]), [np.inf]])
     which = np.digitize(place, edges) - 1
     count = np.bincount(which, minlength=grid.size)
@@ -203,7 +203,7 @@ def _binned(place: Array, values: Array, grid: Array) -> Array:
 
 
 def _still(curve: MeasuredCurve, sensitivity: float | None) -> dict[str, float]:
-    """Scatter and drift of the channels without contact; the resolution too, if the run has a sensitivity."""
+    """Noise of force and pressure and drift without contact; the resolution too, if the run has a sensitivity."""
     if curve.run.kind in ("loop", "hand"):
         # Its rests are too short for noise and drift: the wall still recovers.
         return {}
@@ -216,13 +216,13 @@ def _still(curve: MeasuredCurve, sensitivity: float | None) -> dict[str, float]:
 
 
 _MONTH = 365.25 / 12
-"""Days."""
+"""Mean length of a month, days."""
 
 FRESH = 7.0
 """Days up to which a print is fresh: our choice; the paper measured within 72 hours."""
 
 _APART = 3.0, 0.05
-"""Ages further apart than so many days, or this share of the younger, are two: a campaign lasts some days."""
+"""Ages that differ by more than both this many days and this share of the younger form separate groups."""
 
 _POOL: dict[Pooled, Callable[[Sequence[Array]], Estimate]] = {
     "mean": mean_of,
@@ -249,7 +249,7 @@ class GroupKey:
 
 @dataclass(frozen=True, slots=True)
 class RunGroup:
-    """Runs of one resin, age and driving pressure; ``figures`` by key, ``each`` by curve in the order of ``curves``."""
+    """Runs of one resin, age and driving pressure: pooled ``figures`` by key, and those of ``each`` of ``curves``."""
 
     key: GroupKey
     curves: tuple[MeasuredCurve, ...]
@@ -267,13 +267,13 @@ class RunGroup:
 
     @property
     def lined(self) -> list[MeasuredCurve]:
-        """The curves whose loading gives sensitivity and stiffness: steps where there are any, else what turns."""
+        """Curves that give sensitivity and stiffness: kind steps; else all but saturation and hand; else kind hand."""
         turning = [curve for curve in self.curves if curve.run.kind not in ("saturation", "hand")]
         return self.of_kind("steps") or turning or self.of_kind("hand")
 
 
 def summarize(curves: Iterable[MeasuredCurve]) -> list[RunGroup]:
-    """Groups in the order of resin, age and pressure."""
+    """Sort curves into groups of one resin, age and driving pressure, in that order, and pool their figures."""
     every = list(curves)
     ages = _ages({curve.run.age_days for curve in every})
     sorted_in: dict[GroupKey, list[MeasuredCurve]] = {}
@@ -285,7 +285,7 @@ def summarize(curves: Iterable[MeasuredCurve]) -> list[RunGroup]:
 
 
 def _ages(days: set[float]) -> dict[float, float]:
-    """The age of its group for each age: ages near one another are one group, called by their mean."""
+    """Age of the group of each age, days: ages close together form a group with their mean as age, 0 if fresh."""
     groups: list[list[float]] = []
     for age in sorted(days):
         if groups and (age <= FRESH or age - groups[-1][-1] <= max(_APART[0], _APART[1] * groups[-1][-1]) < age):
@@ -314,14 +314,14 @@ def _group(key: GroupKey, curves: list[MeasuredCurve]) -> RunGroup:
 
 
 def _without_line(curve: MeasuredCurve, values: dict[str, float]) -> dict[str, float]:
-    """Figures of a run beside others whose straight line is taken: that over other points is another."""
+    """Figures of a run whose loading curve does not count in its group: without `_OF_LINE`, except for saturation."""
     if curve.run.kind == "saturation":
         return values
     return {key: value for key, value in values.items() if key not in _OF_LINE}
 
 
 def _drift_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Estimate:
-    """The drift of the only run with the interval of its own slope; a slope without one is no drift."""
+    """Drift of the only run, with the interval of its slope; NaN if the slope has no standard error."""
     error = next(curve.drift[1] for curve in curves if curve.run.kind not in ("loop", "hand"))
     half_kPa_per_min = COVERED * 60 * error / KPA
     if not np.isfinite(half_kPa_per_min):
@@ -332,7 +332,7 @@ def _drift_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Estima
 
 
 def _stiffness_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Estimate:
-    """The stiffness of the only run with the interval that its first contact leaves."""
+    """Stiffness of the only run, with the interval due to the standard error of its first contact."""
     pressed = (curve for curve in curves if len(curve.force) > 2 and np.isfinite(curve.indentation[-1]))
     curve = next(pressed, None)
     if curve is None or not np.isfinite(curve.onset_error):
@@ -342,4 +342,4 @@ def _stiffness_of_one(curves: Sequence[MeasuredCurve], estimate: Estimate) -> Es
 
 
 _ALONE = {_DRIFT: _drift_of_one, STIFFNESS_KEY: _stiffness_of_one}
-"""Figures of which a single run has an interval: that of its samples."""
+"""Functions, by key, that give a figure of a single run an interval."""

@@ -26,11 +26,11 @@ more. A dome's force grows a hundredfold over its range, and only its first hund
 
 BENDS = tuple(np.linspace(0.0, 1.0, 21).tolist())
 """F ~ (1 - w) x + w x^2 near contact, x the travel over that of the fitted stretch: w = 0 for a shell or an inflated
-membrane, which begin straight, w = 1 for a dome whose stiffness grows from none; between them lies a solid sphere
+membrane, which begin linearly, w = 1 for a dome whose stiffness grows from zero; a solid sphere lies between them
 (Hertz, x^1.5) to a few hundredths of the stretch. One w is fitted for all of a run."""
 
 UNSURE = 4.0
-"""Standard error of an onset over the median of the run above which a contact is too light for a fit: our choice."""
+"""Ratio of an onset's standard error to the run's median above which a contact is too light for a fit: our choice."""
 
 _LEAST_POINTS, _MOST_POINTS = 6, 200
 _BACK = 3
@@ -39,7 +39,7 @@ _BACK = 3
 _GRID = 81
 
 _UNKNOWN = 10.0
-"""Lengths of the fitted stretch from which on the error of an onset means that nothing is known."""
+"""Standard error of an onset, in lengths of the fitted stretch, from which on the onset is undetermined."""
 
 
 class Baseline(NamedTuple):
@@ -83,7 +83,7 @@ def baseline(blocks: Blocks, start: int, end: int) -> Baseline:
 
 
 def first_baseline(blocks: Blocks, one: Excursion) -> Baseline:
-    """The last `BEFORE` seconds at the clear end, at most the later half of them, so that a reset is over."""
+    """Baseline over the last `BEFORE` seconds at the clear end, at most its later half, so that a reset is over."""
     start, end = one.clear
     late = int(np.searchsorted(blocks.time[start:end], blocks.time[end - 1] - BEFORE)) + start
     begin = max(late, (start + end) // 2)
@@ -91,7 +91,7 @@ def first_baseline(blocks: Blocks, one: Excursion) -> Baseline:
 
 
 def threshold(blocks: Blocks, bases: list[Baseline], parts: list[Excursion]) -> tuple[float, int]:
-    """Force in N that is contact, and the sign of the pressed force (-1 where the sign of the column is wrong)."""
+    """Force in N above which there is contact, and the sign of the pressed force (-1 if the column's sign is wrong)."""
     noise = float(np.sqrt(np.mean([base.between[0] for base in bases])))
     off = [blocks.force[one.clear[1] : one.hold[1]] - base.mean[0] for one, base in zip(parts, bases, strict=True)]
     high, low = max(float(part.max()) for part in off), min(float(part.min()) for part in off)
@@ -179,7 +179,7 @@ def _error(loading: _Loading, onset: float, bend: float, length: float, *, bends
 
 
 def _crossing(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign: int) -> int | None:
-    """The block from which the force stays beyond its noise; None if it does not before the hold."""
+    """First block from which on the force exceeds ``least``; None if it does not before the hold."""
     start, end = one.clear[1] - 1, max(one.hold[0] + 1, one.clear[1] + 1)
     force = sign * (blocks.force[start:end] - base.mean[0])
     peak = int(force.argmax())
@@ -191,7 +191,7 @@ def _crossing(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign
 
 class _Loading(NamedTuple):
     """The first part of a loading: position, force less that without contact, bounds of the onset, travel; ``reaches``
-    where the force comes to that up to which loadings are fitted."""
+    is True if the force comes to the limit up to which loadings are fitted."""
 
     position: Array
     force: Array

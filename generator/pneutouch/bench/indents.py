@@ -29,7 +29,7 @@ CLEARANCE = 1.0
 """Distance between plate and dome before and after each indentation, mm: our choice."""
 
 DEEPEST = 0.90
-"""Depth of the saturation run as a share of R0: our choice, "until it saturates" in the paper; the seat is near."""
+"""Depth of the saturation run as a share of R0: our choice, near the seat; the paper says "until it saturates"."""
 
 CYCLES = 3
 """Cycles of the loading and unloading loop: our choice."""
@@ -41,11 +41,11 @@ class RunProtocol:
 
     Attributes:
         kind: The kind of run.
-        depths: Plate travels after first contact at which the plate stays, in order; of a loop its deepest point.
-        hold: Time that it stays at each; 0 in a loop.
-        rest: Time that it waits without contact before each indentation.
+        depths: Plate travels after first contact at which the plate stays, in order; in a loop, its deepest point.
+        hold: Time that the plate stays at each depth; 0 in a loop.
+        rest: Time that the plate waits without contact before each indentation.
         reset: True if the cavity is vented and set to its driving pressure again in every rest.
-        speed: Of the plate.
+        speed: Speed of the plate.
     """
 
     kind: RunKind
@@ -66,7 +66,7 @@ class RunProtocol:
         return replace(self, rest=rest, hold=self.hold if hold is None else hold)
 
     def knots(self) -> tuple[Array, Array]:
-        """Times (n,) s and plate travels (n,) mm between which the plate moves evenly; below zero it is clear."""
+        """Times (n,) s and plate travels (n,) mm of a piecewise linear motion; below zero there is no contact."""
         times, travels = [0.0], [-CLEARANCE]
         for depth in self.depths:
             for seconds, travel in (
@@ -81,7 +81,7 @@ class RunProtocol:
 
 
 def stairs(depth: float, step: float = STEP) -> tuple[float, ...]:
-    """Depths in steps to a depth, which is the last whether or not the steps meet it."""
+    """Depths at equal steps, mm, ending with ``depth``, even if the last step is shorter."""
     count = int(np.ceil(depth / step - 1e-6))
     return tuple(float(min(step * (k + 1), depth)) for k in range(count))
 
@@ -114,16 +114,16 @@ RELEASED = 0.01
 _STAYS = 3
 
 EARLY = 3
-"""Indentations whose first contacts, in the median, are the run's: the wall stays behind after deep ones, so that later
-contacts come deeper, while the model counts from the dome as it was. Enough that noise of one does not matter: our
-choice."""
+"""Number of first indentations whose median contact is the run's: our choice, enough that the noise of one does not
+matter. After deep indentations the wall has not recovered and contact comes deeper, while the model counts from the
+dome as it was."""
 
 
 TREMBLES = 0.5
 """Share of the greatest force by which a hand must let go to begin another press: our choice."""
 
 BIAS = 0.02
-"""Bias of a first contact, mm, that its interval counts as a standard error: half of the one tested for a dome."""
+"""Bias of a first contact, mm, included in its interval as a standard error: half of the bias tested for a dome."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,11 +131,11 @@ class RunIndentations:
     """The indentations of a run, with the stretches behind them, in order of time.
 
     Attributes:
-        parts: Block numbers.
-        bases: Force and pressure before contact.
+        parts: Block numbers of the indentations.
+        bases: Baselines of force and pressure before contact.
         contacts: First contacts, None if there is none.
         indents: Readings of the indentations.
-        pressed: True if the record begins with the plate in.
+        pressed: True if the record begins with the sensor pressed.
         sign: -1 where the force falls as the sensor is pressed.
         least: Least force that counts as contact, N.
         onset: Plate position at the run's first contact, mm; NaN if there is none.
@@ -152,7 +152,7 @@ class RunIndentations:
 
     @property
     def onset_error(self) -> float:
-        """Standard error of `onset`, infinite without one: that of one contact, as all share the fitted shape."""
+        """Standard error of `onset` as of one contact, because all share the fitted shape; infinite without one."""
         errors = [one.error for one in self.contacts if one is not None and one.fitted][:EARLY]
         return math.hypot(BIAS, float(np.median(errors))) if errors else math.inf
 
@@ -163,7 +163,7 @@ class RunIndentations:
 
 
 def find_indents(blocks: Blocks, *, by_hand: bool = False) -> RunIndentations:
-    """Cut a run into its indentations, one each of the steps of a loading, and read them; ``by_hand`` one each press,
+    """Cut a run into indentations, one for each step of a loading, and read them; ``by_hand`` one for each press,
     however the hand trembles. Raises InputError if the plate does not move."""
     parts, pressed = excursions(blocks, steps=False, turn=TREMBLES) if by_hand else excursions(blocks)
     if not parts:
@@ -192,7 +192,7 @@ def read_window(blocks: Blocks, hold: tuple[int, int]) -> tuple[int, int]:
 
 
 def _read_times(blocks: Blocks, hold: tuple[int, int]) -> tuple[float, float]:
-    """Begin and end of the window read in a hold, s: of its blocks, or before a gap that covers its begin."""
+    """Begin and end of the window read in a hold, s, from its blocks; the nominal begin if a gap covers it."""
     start, end = read_window(blocks, hold)
     length = min(READ * float(blocks.time[hold[1] - 1] - blocks.time[hold[0]]), READ_LONGEST)
     first, last = float(blocks.time[start]), float(blocks.time[end - 1])
@@ -201,7 +201,7 @@ def _read_times(blocks: Blocks, hold: tuple[int, int]) -> tuple[float, float]:
 
 
 def _just_before(blocks: Blocks, base: Baseline, contact: ContactOnset | None) -> Baseline:
-    """Baseline over the last `BEFORE` seconds before contact, a block short of it."""
+    """Baseline over the last `BEFORE` seconds before contact, ending a block before it; ``base`` if too short."""
     if contact is None:
         return base
     end = int(np.searchsorted(blocks.time, contact.time - 1.5 * blocks.size / blocks.rate))

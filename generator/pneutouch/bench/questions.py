@@ -13,7 +13,7 @@ from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 
 FAR = 3.0
 """Factor from the prediction beyond which a question is reported: our choice. The solid's predictions meet the paper's
-table with a median error of 8 % and are off by two for its stiffest resin."""
+table with a median error of 8 % and are off by a factor of two for its stiffest resin."""
 
 RESET_KPA, RESET_SHARE = 1.0, 0.1
 """Largest distance of the pressure before contact from the driving pressure: our choice, a regulator's scatter."""
@@ -22,17 +22,17 @@ ABSOLUTE = (0.6, 1.1)
 """Excess before contact, in standard atmospheres, that looks like an absolute pressure: up to 4 km above the sea."""
 
 _SURELY_ABSOLUTE = (0.85, 1.1)
-"""The same where a pressure may be off for other reasons: up to 1.3 km above the sea."""
+"""As `ABSOLUTE`, for a pressure that may be off for other reasons: up to 1.3 km above the sea."""
 
 LOADED = 0.1
-"""Share of the greatest force from which one before contact may be a preload, and of the greatest rise that goes on
-while the force stays: our choice."""
+"""Share of the greatest force above which a force before contact may be a preload, and of the greatest rise above which
+a rise at constant force raises a question: our choice."""
 
 _FLAT_POINTS, _NOISES, _LEVEL = 3, 6.0, 2e-3
-"""Points at the greatest force that may be a channel's end; noise, or share of the force, within which they count."""
+"""Number of points at the greatest force that may be a channel's end; their tolerance, in noise and as a share."""
 
 _PARTS, _SWINGS = 200, 0.3
-"""Parts of a leak run whose means show presses, and the share of their span that they go up and down: our choice."""
+"""Parts of a leak run whose means show presses, and their least rise and fall as a share of their span: our choice."""
 
 _START = 1.0
 """Seconds in which a leaking line loses little, long enough to average the noise of a gauge: our choice."""
@@ -97,9 +97,9 @@ def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
     """Questions about a leak run that may nevertheless be correct; its pressure is the median of the first `_START`
     seconds.
 
-    Raises InputError if the pressure is at the end of the gauge's range (`reading.CLIPPED`) or at a flat top for
-    more than half of the run, or begins at more than `FAR` times or less than 1 / `FAR` of the driving pressure in the
-    campaign; of a run without a stated driving pressure that is not looked at."""
+    Raises InputError if the pressure is at the end of the gauge's range (`reading.CLIPPED`) or at a flat top for more
+    than half of the run, or begins at more than `FAR` times or less than 1 / `FAR` of the driving pressure in the
+    campaign; without a stated driving pressure this begin is not checked."""
     questions: list[str] = []
     started = int(np.searchsorted(blocks.time, blocks.time[0] + _START))
     read_kPa, stated_kPa = float(np.median(blocks.pressure[: max(started, 1)])) / KPA, run.driving_pressure_kPa

@@ -1,4 +1,4 @@
-"""A measured file to blocks, in the program's units and signs, and the runs without a plate: air injected or left."""
+"""Reading of a measured file into blocks, in the program's units and signs; evaluation of injection and leak runs."""
 
 import itertools
 import math
@@ -23,14 +23,14 @@ CLIPPED = 0.98
 """Share of an instrument's range at which it is taken for clipped: our choice, makers specify up to the range."""
 
 BEYOND = 1.2
-"""No instrument reads beyond this share of its range: where a channel does for long, its unit or the stated range is
-wrong and nothing is clipped at that range; where it does for a moment, that is a fault of the line."""
+"""Share of its range beyond which no instrument reads: a channel that does for long has a wrong unit or stated range
+and is not clipped there; a channel that does for a moment shows a fault of the line."""
 
 SPIKE, FEW = 0.1, 3
-"""A moment is shorter than this, in s, or than this many blocks if that is longer: our choice, a plate stays longer."""
+"""Duration in s, or number of blocks if longer, below which a reading is a spike: our choice, a plate stays longer."""
 
 GREATEST = 1e100
-"""Greatest readings in internal units; no instrument reads more, and its square would overflow."""
+"""Greatest reading in internal units: no instrument reads more, and squares of much larger ones would overflow."""
 
 FLAT, ALIKE = 0.1, 0.05
 """A flat top lasts longer than this, in s, and less than this share of the other blocks repeats the one before: a
@@ -40,14 +40,14 @@ _PRESSED = 30.0
 """Noise standard deviations by which the force must change as evidence of movement: our choice."""
 
 PLATE, HAND, LEAK = ("time", "position", "force", "pressure"), ("time", "force", "pressure"), ("time", "pressure")
-"""Channels of a run with a plate, of one pressed by hand, whose travel nobody knows, and of one without a contact."""
+"""Channels of a run with a plate, of a run pressed by hand, whose travel is unknown, and of a run without contact."""
 
 _COPIED = 1e-6
-"""Share of its span by which a channel that is a copy of another may differ from it, by rounding: our choice. No two
-instruments agree so."""
+"""Difference, as a share of its span, up to which a channel is a copy of another (rounding): our choice. No two
+instruments agree so closely."""
 
 _EXACT = 1e-9
-"""Relative difference at which two blocks hold one and the same number, summing aside."""
+"""Relative difference up to which two blocks hold the same number: summing rounds."""
 
 
 def read_blocks(
@@ -59,10 +59,10 @@ def read_blocks(
     """Blocks of a measured file, in s, mm, N, MPa; ``progress`` is called with the share read, 0 to 1.
 
     About `record.BLOCK_RATE` blocks a second, or one sample each up to `record.SLOW` Hz. The file is read in one pass
-    and never is in memory as a whole. Gaps, clipped parts and a last row that may be cut are among the warnings.
+    and is never in memory as a whole. Gaps, clipped parts and a last row that may be cut are among the warnings.
 
-    Of a run without a plate (the source has the channels of `LEAK`) position and force are zero; of one pressed by hand
-    (`HAND`) the position is. Of absolute pressures ``ambient`` (MPa) is subtracted.
+    In a run without a plate (the source has the channels of `LEAK`) position and force are zero; in a run by hand
+    (`HAND`) the position is. ``ambient`` (MPa) is subtracted from absolute pressures.
 
     Raises InputError, naming file, column and row, as `tables.read.chunks`, for time that does not increase, more than
     half of the samples missing, and a channel that is dead; a run in which nothing moves, as a leak run, has no dead
@@ -103,7 +103,7 @@ def scaled(
 ) -> Array:
     """Values (k, n) of the columns ``keys`` in internal units, with their signs; ``rows`` (n,) are row numbers.
 
-    Of absolute pressures ``ambient`` (MPa) is subtracted.
+    ``ambient`` (MPa) is subtracted from absolute pressures.
 
     Raises InputError, naming column and row, for a number beyond `GREATEST`.
     """
@@ -126,7 +126,7 @@ def scaled(
 
 
 def _check_apart(blocks: Blocks, names: dict[str, str]) -> None:
-    """Refuse two channels of which one is the other times a number, as one column given twice or copied is."""
+    """Refuse two channels of which one is a linear function of the other, as when a column is copied or named twice."""
     known = [(key, getattr(blocks, key)) for key in PLATE[1:] if key in names]
     for (first, one), (second, other) in itertools.combinations(known, 2):
         spans = float(np.ptp(one)), float(np.ptp(other))
@@ -143,7 +143,7 @@ def _check_apart(blocks: Blocks, names: dict[str, str]) -> None:
 
 
 def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
-    """Check force and pressure while the plate moves, the position where the force shows that it must have moved."""
+    """Refuse a dead channel: force or pressure while the plate moves, or the position while the force changes."""
     problem = f"dead: reads one and the same number from row {blocks.first_row[0]:.0f} on"
     question = "; was the right column named, the sensor connected?"
     moved = np.abs(np.diff(blocks.position, prepend=blocks.position[0]))
@@ -170,7 +170,7 @@ def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
 def _clipped(
     blocks: Blocks, key: str, values: Array, extreme: Array, top: float, unit: float, name: str
 ) -> list[SuspectInterval]:
-    """Parts at the end of an instrument's range, or at a flat top below it."""
+    """Suspect intervals of a channel: at the end of the instrument's range, beyond it, or at a flat top below it."""
     beyond = extreme / unit > BEYOND * top
     spikes = _short(blocks, beyond)
     if (beyond & ~spikes).any():
@@ -194,7 +194,7 @@ def _clipped(
 
 
 def _short(blocks: Blocks, beyond: Flags) -> Flags:
-    """Those of the flagged blocks, (n,), that are in parts too short to come from the plate."""
+    """Flagged blocks, (n,), in stretches too short to come from the plate."""
     most = max(SPIKE * blocks.rate / blocks.size, FEW)
     short: Flags = np.zeros(beyond.size, bool)
     for start, end in _runs(beyond):
@@ -238,7 +238,7 @@ def _runs(mask: Flags) -> list[tuple[int, int]]:
 
 
 def _parts(blocks: Blocks, mask: Flags) -> list[tuple[float, float]]:
-    """Begin and end in s of the parts in which ``mask`` holds; those less than `FLAT` apart are one."""
+    """Begin and end in s of the parts in which ``mask`` holds; parts less than `FLAT` apart count as one."""
     parts: list[tuple[float, float]] = []
     width = blocks.size / blocks.rate
     for start, end in _runs(mask):
@@ -260,16 +260,16 @@ _BATCHES = 10
 """Parts of a leak run whose means give the slope's error: correlated noise would make it too small."""
 
 _ABSOLUTE = 0.7
-"""Share of the ambient pressure above which a table that begins there is taken for one of absolute pressures."""
+"""Share of the ambient pressure above which the lowest pressure of a table shows that it holds absolute pressures."""
 
 
 def read_injection(source: MeasuredFile, ambient: float = STANDARD_ATMOSPHERE) -> tuple[Array, Array]:
     """Injected volume (mm3, at ambient pressure) and gauge pressure (MPa), (n,) each, in the file's order.
 
-    Of absolute pressures ``ambient`` (MPa) is subtracted.
+    ``ambient`` (MPa) is subtracted from absolute pressures.
 
-    Raises InputError as `tables.read.chunks`, for fewer than three rows, a volume that does not vary, and a
-    pressure that does not rise with it.
+    Raises InputError as `tables.read.chunks`, for fewer than three rows, a volume that does not vary, and a pressure
+    that does not rise with it.
     """
     path, columns = source.path, source.columns
     rows, values = whole(path, [getattr(columns, key).name for key in INJECTION], source.layout)
@@ -326,9 +326,8 @@ def leak_of(time: Array, pressure: Array) -> Leak:
     """Leak of a closed line from times (s) and gauge pressures (MPa), (n,) each.
 
     The rate is the slope of the least-squares line, its error from the scatter of the means of ten equal parts about
-    that line (noise that is alike from sample to sample is so counted; eight degrees of freedom, Student's t in the
-    interval). The time constant is that of p = p0 exp(-t/T), by the line through log p. Raises InputError for fewer
-    than ten points.
+    that line (this takes correlated noise into account; eight degrees of freedom, Student's t in the interval). The
+    time constant T is that of p = p0 exp(-t/T), by the line through log p. Raises InputError for fewer than ten points.
     """
     if time.size < _LEAST_BLOCKS:
         raise InputError(f"a leak run of {time.size} points; at least {_LEAST_BLOCKS}")

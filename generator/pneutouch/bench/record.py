@@ -17,7 +17,7 @@ SuspectKind = Literal["gap", "clipped", "spike", "note", "asked", "other"]
 class SuspectInterval(NamedTuple):
     """A time interval (s) of a run that may be wrong, and the reason.
 
-    ``used``: whether it is used nevertheless.  ``kind``: a gap, a channel at the end of its range, a reading beyond
+    ``used``: True if it is used nevertheless.  ``kind``: a gap, a channel at the end of its range, a reading beyond
     that, a note of a usual defect, a doubt that is asked about, or another."""
 
     start: float
@@ -55,15 +55,15 @@ class MeasuredIndentation:
     """One indentation as read from a record. Times in s; mm, N, MPa.
 
     Attributes:
-        contact: Time of first contact; of an indentation without, NaN.
+        contact: Time of first contact; NaN if there is none.
         hold: Begin and end of the hold.
         read: Begin and end of the stretch that was averaged: the last part of the hold.
         release: Time at which contact is lost.
-        onset: Plate position at its own first contact.
-        fitted: True if that was fitted; else it is the median of those that were.
+        onset: Plate position at first contact of this indentation.
+        fitted: True if ``onset`` was fitted; else it is the median of the fitted ones.
         indentation: Plate travel to the hold from the run's first contact (`indents.EARLY`).
         force: Mean over ``read`` less the mean before contact.
-        rise: The same of the pressure.
+        rise: The same for the pressure.
         driving: Pressure before contact.
         zero_force: Force before contact.
     """
@@ -86,14 +86,14 @@ class MeasuredCurve:
     """The curve of a run: points in order of their depth, from first contact, (n,) mm, N, MPa; the first is the origin.
 
     Attributes:
-        run: Its entry in the campaign; of a run without a kind with the one that the record shows.
+        run: Entry of the run in the campaign; a kind that it leaves out is the one that the record shows.
         indentation, force, rise: Loading points.
         driving: Pressure before contact as it was read, MPa, mean over the indentations.
         indents: The indentations behind the points.
-        loop: Of a loop run: force and rise going in, force and rise coming out, of each cycle.
-        relaxation: Of a relaxation run: seconds since the hold began, force, rise.
-        noise: Standard deviations of a sample of force (N) and pressure (MPa) without contact, trend taken out; NaN
-            if nothing was without contact.
+        loop: For each cycle of a loop run: force and rise going in, force and rise coming out.
+        relaxation: For a relaxation run: seconds since the hold began, force, rise.
+        noise: Standard deviations of a sample of force (N) and pressure (MPa) without contact, trend taken out; NaN if
+            nothing was without contact.
         drift: Slope of the pressure before the first contact, MPa/s, and its standard error.
         onset_error: Standard error of the place of first contact, mm; infinite if it is not known.
         shows: Kind of run that the plate's travel shows, whatever the campaign states.
@@ -118,15 +118,15 @@ class MeasuredCurve:
 
 
 MOST = 3000
-"""Points of a trace: more than a page shows. Even, as two are kept of each stretch."""
+"""Greatest number of points of a trace: more than a page shows; even, as each stretch keeps two."""
 
 
 class Trace(NamedTuple):
-    """A run thinned, (n,): s, mm, N, MPa.
+    """Thinned run, (n,): time s, position mm, force N, pressure MPa.
 
-    Two points stand for each stretch of it: time and position are those of its first and its last block, force and
-    pressure its least and greatest, whichever came first before the other. So a spike or a short clip is seen, at most
-    a stretch off its time.
+    Two points stand for each stretch: times and positions of its first and last block, and its least and greatest force
+    and pressure, in the order in which they occur. A spike or a short clip stays visible, at most a stretch off its
+    time.
     """
 
     time: Array
@@ -136,7 +136,7 @@ class Trace(NamedTuple):
 
 
 def trace(blocks: Blocks) -> Trace:
-    """The blocks as they are where they are at most `MOST`, else thinned evenly to that."""
+    """Trace of a run: its blocks if they are at most `MOST`, else thinned evenly to that number."""
     size = blocks.time.size
     if size <= MOST:
         return Trace(blocks.time.copy(), blocks.position.copy(), blocks.force.copy(), blocks.pressure.copy())
@@ -146,7 +146,7 @@ def trace(blocks: Blocks) -> Trace:
 
 
 def _span(values: Array, edges: Indices) -> Array:
-    """Least and greatest of the stretches between ``edges`` (m + 1,), in the order in which they come, (2 m,)."""
+    """Least and greatest value of each stretch between ``edges`` (m + 1,), in the order in which they occur, (2 m,)."""
     starts = edges[:-1]
     within = np.repeat(np.arange(starts.size), np.diff(edges))
     place = np.arange(values.size)
@@ -173,12 +173,11 @@ LEAST_STEP = 1e-9
 _MOST_LOST = 2.0**53
 
 MISSED, GAP = 1.5, 0.1
-"""A step of more than so many sampling periods has lost samples; one longer than this, in s, is a gap of its own."""
+"""Time step, in sampling periods, above which samples are missing, and in s, above which it is a gap of its own."""
 
 ISOLATED, RARE = 2, 1e-3
-"""Missed samples of which never more than the first are missed together, and in all less than the second as a share of
-the run's, are a note: our choice. No block loses more than a few of its samples, and its mean moves within its
-noise."""
+"""Most samples missing in a row, and share of the run's samples missing in all, that are only noted: our choice. No
+block then loses more than a few of its samples, and its mean moves within its noise."""
 
 _NAMES = {"time": "time", "position": "position", "force": "force", "pressure": "pressure"}
 _EXTREMES = ("force_spread", "pressure_spread", "force_extreme", "pressure_extreme")
@@ -186,7 +185,7 @@ BLOCK_ARRAYS = ("first_row", "time", "position", "force", "pressure", *_EXTREMES
 """Fields of `Blocks` in the order of the averaged rows."""
 
 _ROUNDING = 1e-6
-"""Share of a block by which a time may miss the beginning of its block for rounding."""
+"""Share of a block by which rounding may move a time before the beginning of its block."""
 
 
 @dataclass

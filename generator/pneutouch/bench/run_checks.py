@@ -20,14 +20,14 @@ UNIT_NEAR = 1.8
 """Factor within which another unit must bring a reading to the prediction: our choice, below half of `FAR`."""
 
 BEYOND = 10.0
-"""Factor above the prediction of force or rise from which no sensor is the reason: our choice, three times `FAR`.
-Another unit then explains a reading that it brings within `FAR`. A rise that is too small may be a leak."""
+"""Factor above the predicted force or rise that no other sensor explains: our choice, three times `FAR`. Another unit
+then explains a reading that it brings within `FAR`. A rise that is too small may be a leak."""
 
 DRIVING_FAR = 3.0
-"""Times `RESET_KPA` or `RESET_SHARE` beyond which no gauge zero and no regulator is the reason: our choice."""
+"""Multiple of `RESET_KPA` or `RESET_SHARE` that neither the gauge's zero nor a regulator explains: our choice."""
 
 SWAP_MARGIN = math.log(2.0)
-"""Margin (log of a factor) by which the swapped reading must be nearer to the prediction at no driving pressure."""
+"""Margin (log of a factor) by which swapped readings must be nearer to the prediction, at zero driving pressure."""
 
 _RESTS = 0.05
 """Share of the greatest force or rise by which points may be negative: noise about the origin."""
@@ -36,7 +36,7 @@ _MINUS = {
     1: " (in `columns` a minus before the name turns the sign)",
     -1: " (in `columns` leave out the minus before the name)",
 }
-"""Replacements of a wrong sign that `workflows.characterize.parse_columns` takes, by the sign."""
+"""Hints how to turn a sign in the syntax of `workflows.characterize.parse_columns`, by the sign stated."""
 
 _HOLD_FAR = 50.0
 _WHY = "another resin (runs.resin) or design (design), a smaller plate, or a wrong calibration?"
@@ -173,8 +173,8 @@ def _check_signs(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> None:
 
 
 def _check_swap(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> None:
-    """Force and pressure exchanged: each has the magnitude of the other, and the pressure before contact is in the
-    force.
+    """Raise InputError if force and pressure are exchanged: each has the magnitude of the other, and the pressure
+    before contact is in the force.
 
     The numbers in the columns are compared. At a driving pressure the values before contact decide, otherwise the
     magnitudes, where they differ enough.
@@ -207,7 +207,7 @@ def _check_swap(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun,
 
 
 def _check_time(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None:
-    """The length of holds reveals a wrong unit of time; holds may be a few times as long as in the paper."""
+    """Question about the length of holds, which reveals a wrong unit of time; a few times the paper's is accepted."""
     if curve.run.kind == "loop" or not curve.indents:
         return None
     length = float(np.median([one.hold[1] - one.hold[0] for one in curve.indents]))

@@ -25,7 +25,7 @@ LEAK, ASKED = 0.02, 0.05
 choice, the first about the difference between three runs."""
 
 SAME_DEPTH = 0.03
-"""mm within which two indentations have one depth: some standard deviations of an onset (0.004 to 0.01 mm)."""
+"""Difference in mm up to which two depths are the same: some standard deviations of an onset (0.004 to 0.01 mm)."""
 
 MOST = 20
 """Gaps, clipped parts and spikes that are listed one by one, of each kind: our choice, for a readable list."""
@@ -33,10 +33,10 @@ MOST = 20
 _MANY = MappingProxyType({"gap": "gaps", "clipped": "clipped parts", "spike": "spikes"})
 
 MISSING, PRESSED = 0.1, 0.002
-"""Share of a loading that may be missing, and of its force that the force may change by before contact: our choice."""
+"""Share of a loading that may be missing, and of its force by which the force may change before contact: our choice."""
 
 SURELY = 8.0
-"""Standard errors of that change that are no chance, noise alike from sample to sample included: our choice."""
+"""Standard errors above which that change is no chance, even with correlated noise: our choice."""
 
 _SIGNIFICANT = 4.0
 """Standard errors that a change must exceed before it is reported: one false alarm in 10^4."""
@@ -146,7 +146,7 @@ def _of_depths(indents: list[MeasuredIndentation]) -> list[SuspectInterval]:
 
 
 def _leak(blocks: Blocks, indentations: RunIndentations) -> list[SuspectInterval]:
-    """A drift of the pressure without contact: during a hold by more than a share of the greatest rise."""
+    """Warning about a drift without contact that in a hold is more than a share of the greatest rise."""
     touched = [
         (base, one)
         for base, one in zip(indentations.bases, indentations.indents, strict=True)

@@ -1,6 +1,6 @@
-"""A measured file as it is read: which column is which channel in which unit, and how the file is written.
+"""Columns of a measured file: the channel and the unit of each, and how the file is written.
 
-The channel and the unit that a column's name gives.
+Recognition of channel and unit from a column's name.
 """
 
 import re
@@ -57,26 +57,25 @@ _OTHER_QUANTITIES = frozenset(
         "cycles",
     }
 )
-"""Words that show a column to be no channel at all, whatever its unit: no measured force, no gauge pressure."""
+"""Words of a header that make its column no channel, whatever its unit: no measured force, no gauge pressure."""
 
 _SPLIT = re.compile(r"[^\W_]+")
 _LONGEST = 200
-"""Letters of a name that may state its unit without brackets."""
+"""Greatest length of a header in which a unit without brackets is looked for."""
 
 _ABSOLUTE = re.compile(r"(.*?)[\s_]+(\w+?)_abs")
 _LAST = re.compile(r"(.*?)(?:[\s_,:;/.-]+|\bin\s+)([^\s_,:;/]+)")
 
 
 class MissingChannelError(InputError):
-    """A file without a column for some of its channels, which ``channels`` names."""
+    """Error for a file that has no column for the channels in ``channels``."""
 
     channels: tuple[str, ...] = ()
 
 
 class HeaderMeaning(NamedTuple):
-    """Meaning of a header: the channel that its words name, and the channel and the unit of its unit; "" if unknown.
-
-    ``odd``: it gives a unit, or another quantity, which no channel has."""
+    """Meaning of a header: ``word`` is the channel that its words name, ``kind`` and ``unit`` are the channel to which
+    its unit belongs and the unit; "" if unknown. ``odd``: its unit or its quantity belongs to no channel."""
 
     word: str
     kind: str
@@ -114,7 +113,7 @@ def _both(name: str) -> tuple[str, str]:
 
 
 def _parted(name: str) -> tuple[str, str]:
-    """Label and unit of a header: in brackets, else its last part where that is a unit."""
+    """Label and unit of a header; the unit is in brackets, or the last part if that is a unit."""
     brackets = list(BRACKETS.finditer(name))
     if brackets:
         last = brackets[-1]
@@ -130,7 +129,7 @@ def _parted(name: str) -> tuple[str, str]:
 
 
 def _channel(label: str, words: list[str]) -> str:
-    """The channel that a label's words name; single letters count alone, "" where they name none or several."""
+    """Channel that a label's words name, "" if none or several; a single letter counts only if it is the only word."""
     if label.strip().lower() == "x_value":
         return "time"
     named = set()
@@ -143,7 +142,7 @@ def _channel(label: str, words: list[str]) -> str:
 
 _ANY = FileFormat()
 _PLAIN = {"delimiter": ",", "decimal": ".", "encoding": "utf-8"}
-"""Layout of a text file for which a campaign file needs to say nothing."""
+"""Layout of a text file that a campaign file need not state."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +161,7 @@ class MeasuredFile:
     def content(self) -> ReadTables:
         """Layout and columns that were found or given, as the tables [format] and [columns] of a campaign file.
 
-        Where the header is need not be stated, because the columns' names state it."""
+        The header's place is left out, because the columns' names determine it."""
         used = {key: getattr(self.layout.format, key) for key in _PLAIN}
         kept = {key: value for key, value in used.items() if value not in (None, _PLAIN[key])}
         kept |= self.stated.model_dump(exclude_none=True)
@@ -185,9 +184,9 @@ def campaign_lines(content: ReadTables, within: str = "") -> str:
 def identify(path: Path, columns: ColumnMap, channels: Sequence[str], written: FileFormat = _ANY) -> MeasuredFile:
     """Find the columns of ``channels`` in a file.
 
-    A channel that ``columns`` states is that column. Another is the column of its default name; else the only one whose
-    name and unit state the channel; else the only one whose name or unit does. Raises InputError, with the lines of a
-    campaign file that would decide, where two columns may be a channel, none is, or its unit is not known."""
+    A channel stated in ``columns`` is that column. Any other is the column with its default name; else the only one
+    whose name and unit mean the channel; else the only one whose name or unit does. Raises InputError, with the lines
+    of a campaign file that would decide, where two columns may be a channel, none is, or its unit is not known."""
     stated = columns.model_fields_set
     known = [getattr(columns, key).name for key in channels]
     layout = layout_of(path, TableFormat(**written.model_dump()), known)
@@ -221,7 +220,7 @@ def _entry(column: Column) -> ReadColumn:
 
 
 def _rest(columns: ColumnMap, matched: dict[str, Column]) -> dict[str, ReadColumn]:
-    """The channels that the file does not need, under names that none of its columns has."""
+    """Entries of the channels that are not needed, unless a needed column has the same name."""
     names = {column.name for column in matched.values()}
     others = {key: getattr(columns, key) for key in UNITS if key not in matched}
     return {key: _entry(column) for key, column in others.items() if column.name not in names}
@@ -244,7 +243,7 @@ def _with_unit(path: Path, key: str, column: Column, layout: TableLayout) -> Col
 
 
 def _index(layout: TableLayout, name: str) -> int | None:
-    """Index in `TableLayout.all_names` of a column that is named there, or by its number; None if it is not."""
+    """Index in `TableLayout.all_names` of a column given by its name or number; None if there is none."""
     if name in layout.all_names:
         return layout.all_names.index(name)
     place = layout.place(name)

@@ -3,12 +3,12 @@
 Intervals of few measurements: of a mean over specimens by Student's t, of a standard deviation by chi-square.
 
 Three specimens with three runs each are what a lab has. The percentile bootstrap of three values covers far less than
-it states (tests/bench/test_interval.py measures about 75 % for 95 %). What Hesterberg (Am. Stat. 69, 371-386, 2015, DOI
-10.1080/00031305.2015.1089789, sections 4.5 and 5.3) makes of it for few values is its standard error, widened by
-sqrt(n/(n-1)), times t with n - 1 degrees of freedom. Of a mean the bootstrap's standard error is known without a draw,
-sqrt((n-1)/n) s/sqrt(n), so that this is s/sqrt(n) times t. Specimens are what is drawn, with all their runs: drawing
-runs as well would count their scatter twice (Davison & Hinkley, Bootstrap Methods, 1997, section 3.8). The bootstrap of
-a standard deviation of three is no better for being widened; chi-square is exact for normal values.
+it states (tests/bench/test_interval.py measures about 75 % for 95 %). For few values Hesterberg (Am. Stat. 69, 371-386,
+2015, DOI 10.1080/00031305.2015.1089789, sections 4.5 and 5.3) uses its standard error, widened by sqrt(n/(n-1)), times
+t with n - 1 degrees of freedom. For a mean the bootstrap's standard error is known without drawing, sqrt((n-1)/n)
+s/sqrt(n), so that the result is s/sqrt(n) times t. Specimens are drawn with all their runs: drawing runs as well would
+count their scatter twice (Davison & Hinkley, Bootstrap Methods, 1997, section 3.8). Widening does not improve the
+bootstrap of a standard deviation of three; chi-square is exact for normal values.
 """
 
 import math
@@ -22,7 +22,7 @@ from pneutouch.arrays import Array
 
 @dataclass(frozen=True, slots=True)
 class Mean:
-    """Mean of ``count`` values and their standard deviation (of one value, n - 1 below the sum)."""
+    """Mean of ``count`` values and the standard deviation of a single value (ddof 1)."""
 
     value: float
     spread: float
@@ -55,7 +55,7 @@ def neo_hookean(stretch: Array, stress: Array) -> tuple[float, float]:
 
 
 def secant_modulus(stretch: Array, stress: Array, strain: float) -> float | None:
-    """Stress over strain in MPa at a strain, between the points of a curve from the origin; None beyond its end."""
+    """Secant modulus in MPa at a strain, interpolated on the curve from the origin; None beyond its end."""
     strains = np.concatenate([[0.0], stretch - 1])
     if strains.max() < strain:
         return None
@@ -73,8 +73,8 @@ def dead_volume(cavity: Mean, over_cap_kPa: Mean, over_plug_kPa: Mean, gauge_kPa
 
     Boyle: p_a V_d = p_b (V_d + V_c), so V_d = V_c p_b / (p_a - p_b); syringe and ambient pressure cancel. Volumes in
     one unit, gauge pressures in one unit, ``gauge_kPa`` the gauge's own standard uncertainty. ``spread`` is the
-    standard uncertainty of the result, by the derivatives (JCGM 100, 5.1.2). Raises ValueError if the plug's is not
-    the lower."""
+    standard uncertainty of the result, by the derivatives (JCGM 100, 5.1.2). Raises ValueError if the plug's pressure
+    is not the lower."""
     a, b, volume = over_cap_kPa.value, over_plug_kPa.value, cavity.value
     if b >= a:
         raise ValueError("the pressure over the plug must be lower than over the cap")
@@ -115,7 +115,7 @@ class Estimate:
 
 
 def mean_of(groups: Sequence[Array]) -> Estimate:
-    """Mean over specimens of their means over runs; ``groups`` has an array of runs a specimen, none of them empty.
+    """Mean over specimens of their means over runs; ``groups`` has one array of runs, not empty, for each specimen.
 
     With one specimen the interval is over its runs and does not cover other specimens; with one value there is none.
     """
@@ -132,7 +132,7 @@ def mean_of(groups: Sequence[Array]) -> Estimate:
 
 
 def spread_between(groups: Sequence[Array]) -> Estimate:
-    """Standard deviation (ddof 1) of the specimens' means; it holds the runs' scatter over the root of their number."""
+    """Standard deviation (ddof 1) of the specimens' means; it includes runs' scatter over the root of their number."""
     means = np.array([float(np.mean(group)) for group in groups])
     return _spread(float(means.std(ddof=1)) if means.size > 1 else None, means.size - 1, groups, "specimens")
 
@@ -153,7 +153,7 @@ def _spread(value: float | None, freedom: int, groups: Sequence[Array], over: st
 
 
 def _chi_square(freedom: int) -> tuple[float, float]:
-    """Ends of the interval of a standard deviation over its estimate."""
+    """Factors on the estimate of a standard deviation that give the ends of its interval."""
     from scipy.special import gammaincinv
 
     tails = 0.5 * (1 + LEVEL), 0.5 * (1 - LEVEL)
@@ -162,7 +162,7 @@ def _chi_square(freedom: int) -> tuple[float, float]:
 
 
 def widened(estimate: Estimate, reading: float) -> Estimate:
-    """The estimate with a relative error of the reading that all runs share, added to its half width as squares."""
+    """Widen an interval by a relative reading error that all runs share: half widths are added as squares."""
     if estimate.low is None or estimate.high is None or reading == 0:
         return estimate
     half = float(np.hypot(0.5 * (estimate.high - estimate.low), reading * estimate.value))
@@ -171,7 +171,7 @@ def widened(estimate: Estimate, reading: float) -> Estimate:
 
 
 def _quantile(freedom: int) -> float:
-    """Student's t."""
+    """Student's t at the upper end of an interval of `LEVEL`."""
     from scipy.special import stdtrit
 
     return float(stdtrit(freedom, 0.5 * (1 + LEVEL)))

@@ -1,4 +1,4 @@
-"""Solids and their meshes: a closed mesh with a material and a role."""
+"""Solids and their meshes; a body is a closed mesh with a material and a role."""
 
 from pneutouch.body.shapes import Bore, Feature, Frame, Prism, Turned, crossing
 from pneutouch.body.solid import Body, Solid

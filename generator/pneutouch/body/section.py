@@ -1,8 +1,8 @@
 """Points inside a solid and its level sections, computed from its exact shapes without a mesh.
 
-Faces are half-open (`pneutouch.shape.meridian`): where two bodies meet, a point belongs to one of them.
+Faces are half-open (`pneutouch.shape.meridian`): where two bodies meet, a point belongs to exactly one of them.
 
-The section through the axis of a solid, in the plane y = 0.
+Also the section of a solid through its axis, in the plane y = 0.
 """
 
 import math
@@ -19,25 +19,25 @@ from pneutouch.shape.meridian import Meridian, RisingPiece, crossings, encloses,
 
 @dataclass(frozen=True)
 class Window:
-    """The rows and columns of a level section that are looked at: x (c,) and y (r,) of their centres, mm."""
+    """Rows and columns of a level section to evaluate, by the coordinates x (c,) and y (r,) of their centres, mm."""
 
     x: Array
     y: Array
 
     @cached_property
     def squares(self) -> Array:
-        """Squares (r, c) of the distances from the z axis, mm2."""
+        """Squared distances (r, c) of the centres from the z axis, mm2."""
         square: Array = self.y[:, None] ** 2 + self.x[None, :] ** 2
         return square
 
     def within(self, low: Array, high: Array) -> tuple[slice, slice]:
-        """Rows and columns inside a box of corners (at least 2,); x and y may rise or fall."""
+        """Rows and columns inside a box, given by its corners (at least 2,); x and y may ascend or descend."""
         return _span(self.y, low[1], high[1]), _span(self.x, low[0], high[0])
 
 
 @dataclass(frozen=True)
 class _Tool:
-    """A shape that is added or cut, with its bounding box."""
+    """A shape that is added or cut, with its bounding box and its outline."""
 
     shape: Shape
     low: Array
@@ -60,7 +60,7 @@ def _inside(tool: _Tool, points: Array) -> Flags:
 
 
 class SolidSection:
-    """The inside of a solid; everything that does not change from section to section is worked out once."""
+    """Point and section tests for the inside of a solid; what does not depend on the section is computed once."""
 
     def __init__(self, solid: Solid) -> None:
         base = solid.base
@@ -73,7 +73,7 @@ class SolidSection:
         self.high: Array = np.max([tool.high for tool in boxes], axis=0)
 
     def contains(self, points: Array) -> Flags:
-        """True for the points (n, 3) in mm inside the solid, (n,)."""
+        """Mask (n,) of the points (n, 3) in mm that lie inside the solid."""
         inside = _inside(self._base, points)
         for tool in self._adds:
             inside |= _inside(tool, points)
@@ -82,7 +82,7 @@ class SolidSection:
         return inside
 
     def section(self, window: Window, z: float) -> Flags:
-        """The section at height ``z`` mm, (r, c): which centres of the window lie inside."""
+        """Mask (r, c) of the centres of the window that lie inside the solid at height ``z`` mm."""
         inside = np.zeros((len(window.y), len(window.x)), bool)
         if self._turned is None:
             _mark(inside, window, z, self._base, True)
@@ -97,7 +97,7 @@ class SolidSection:
 
 
 def _mark(inside: Flags, window: Window, z: float, tool: _Tool, value: bool) -> None:
-    """Mark the points inside a tool, looking at its box alone."""
+    """Set ``inside`` to ``value`` at the points inside a tool; only its bounding box is examined."""
     if not tool.low[2] <= z <= tool.high[2]:
         return
     box = window.within(tool.low, tool.high)
@@ -134,14 +134,14 @@ def _span(centres: Array, low: float, high: float) -> slice:
 
 
 _ASIDE = 1e-4
-"""The plane that cuts a mesh is slightly off, mm: whole rows of vertices lie on y = 0 itself."""
+"""Offset of the plane that cuts a mesh, mm: whole rows of vertices lie on y = 0 itself."""
 
 
 def section_outline(solid: Solid, tolerance: float) -> list[Array]:
     """Loops (n, 2) of (x, z) in mm where the plane y = 0 cuts a solid, within ``tolerance`` mm.
 
-    Of a turned body they follow from its meridian and the bores that the plane meets, without a mesh: a tenth of the
-    time that meshing and cutting take. A body with shapes added or cut is cut as a mesh.
+    For a turned body they are computed from its meridian and the bores that the plane meets, without a mesh: a tenth of
+    the time of meshing and cutting. A body with added or cut shapes is cut as a mesh.
     """
     if not isinstance(solid.base, Meridian) or solid.adds or solid.cuts:
         return _cut(solid, tolerance)
@@ -150,7 +150,7 @@ def section_outline(solid: Solid, tolerance: float) -> list[Array]:
 
 
 def _turned(meridian: Meridian, tolerance: float) -> list[Array]:
-    """Both sides of a meridian: one loop where it ends on the axis, two where it closes away from it."""
+    """Loops of both sides of a meridian: one if it ends on the axis, two if it closes away from the axis."""
     right = np.array([(ring.radius, ring.height) for ring in sample(meridian, tolerance)])
     left = right[::-1] * np.array([-1.0, 1.0])
     if meridian.is_ring:
@@ -159,7 +159,7 @@ def _turned(meridian: Meridian, tolerance: float) -> list[Array]:
 
 
 def _opening(bore: Bore) -> Array:
-    """The rectangle that a bore leaves, past its open faces by a millimetre as the drill of a mesh is."""
+    """Rectangle that a bore removes; it extends a millimetre past open faces, like the drill in a mesh."""
     half = math.sqrt(bore.radius**2 - bore.y**2)
     low = bore.low if bore.closed == "low" else bore.low - 1.0
     high = bore.high if bore.closed == "high" else bore.high + 1.0

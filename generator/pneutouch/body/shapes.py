@@ -1,11 +1,11 @@
-"""Shapes that make up a solid: a body turned about any axis, a prism on any plane, a round hole along z.
+"""Shapes that make up a solid: a meridian revolved about any axis, a prism on any plane, a round hole along z.
 
-Revolve a sampled meridian into a closed triangle mesh, cheaper than a plain grid at the same error.
+A sampled meridian is revolved into a closed triangle mesh, with fewer triangles than a plain grid at the same error.
 
-Each ring gets only as many vertices as its own radius needs, and its polygon is widened until it
-encloses the area of its circle, which keeps the volume. Strips between rings of different counts are
-zipped. A ring's count depends on its radius, lean and error alone: two bodies that share a planar face
-with the same rings get the same triangles there.
+Each ring has only as many vertices as its own radius needs, and its polygon is widened until it encloses the area of
+its circle, which preserves the volume. Strips between rings of different counts are zipped. The count of a ring depends
+only on its radius, lean and error: two bodies that share a planar face with the same rings get the same triangles
+there.
 """
 
 import itertools
@@ -20,10 +20,10 @@ from pneutouch.shape.meridian import Arc, Meridian, MeridianVertex, Point, Segme
 
 
 def circle_count(radius: float, error: float, lean: float = 1.0) -> int:
-    """Array, a multiple of four, that keep a widened polygon within ``error`` mm of its circle."""
+    """Number of vertices, a multiple of four, that keeps a widened polygon within ``error`` mm of its circle."""
     if radius <= 0:
         return 1
-    # widen() moves a vertex out by r theta^2/12 to leading order, theta being the angle between vertices.
+    # widen() moves a vertex outwards by r theta^2/12 to leading order; theta is the angle between vertices.
     needed = 2 * math.pi * math.sqrt(radius * lean / (12 * error))
     count = max(8, 4 * math.ceil(needed / 4))
     while radius * lean * (widen(count) - 1) > error:
@@ -41,10 +41,10 @@ def widen(count: int) -> float:
 
 @dataclass(frozen=True)
 class RevolvedRings:
-    """A revolved meridian before its strips are put together.
+    """A revolved meridian before its strips are joined.
 
-    ``starts`` and ``counts`` locate the vertices of a ring; ``pairs`` are the two rings of each strip, in the order
-    of the meridian, and ``strips`` their triangles.
+    ``starts`` and ``counts`` locate the vertices of each ring; ``pairs`` are the two rings of each strip, in the order
+    of the meridian, and ``strips`` the triangles of each strip.
     """
 
     rings: list[MeridianVertex]
@@ -56,9 +56,9 @@ class RevolvedRings:
 
 
 def revolve_rings(meridian: Meridian, tolerance: float) -> RevolvedRings:
-    """Mesh a solid of revolution strip by strip.
+    """Mesh of a solid of revolution as separate strips.
 
-    Half of ``tolerance`` (mm) goes to the meridian's chords and half to the circles'.
+    Half of ``tolerance`` (mm) is used for the chords of the meridian and half for those of the circles.
     """
     error = 0.5 * tolerance
     rings = sample(meridian, error)
@@ -91,9 +91,9 @@ def _ring_points(ring: MeridianVertex, count: int) -> Array:
 
 
 def _zip(first: int, n: int, second: int, m: int) -> Indices:
-    """Indices between two rings that start at vertex ``first`` (``n`` of them) and ``second`` (``m``).
+    """Triangles between two rings, with ``n`` vertices from ``first`` and ``m`` vertices from ``second`` on.
 
-    Walks both rings at once, always stepping on the one whose next vertex comes first.
+    Walks along both rings at once; each step is on the ring whose next vertex has the smaller angle.
     """
     steps = np.concatenate([np.arange(1, n + 1) / n, np.arange(1, m + 1) / m])
     on_first = np.concatenate([np.ones(n, bool), np.zeros(m, bool)])
@@ -104,7 +104,7 @@ def _zip(first: int, n: int, second: int, m: int) -> Indices:
     a, b = first + i % n, second + j % m
     ahead = np.where(on_first, first + (i + 1) % n, second + (j + 1) % m)
     triangles = np.column_stack([a, ahead, b])
-    # A ring of one vertex lies on the axis; stepping along it would make triangles without area.
+    # A ring of one vertex lies on the axis; steps along it would give triangles of zero area.
     return triangles[~on_first if n == 1 else on_first if m == 1 else slice(None)]
 
 
@@ -114,7 +114,7 @@ X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """Position of a shape: its own z axis runs along ``axis`` and its x axis along ``across`` (unit, orthogonal)."""
+    """Position of a shape: its z axis is along ``axis`` and its x axis along ``across`` (unit, orthogonal)."""
 
     origin: Vector = (0.0, 0.0, 0.0)
     axis: Vector = Z
@@ -127,18 +127,18 @@ class Frame:
         return np.column_stack([x, np.cross(z, x), z])
 
     def out(self, points: Array) -> Array:
-        """Points (n, 3) of the frame in the design frame."""
+        """Points (n, 3), given in this frame, in the design frame."""
         moved: Array = points @ self.rotation.T + np.array(self.origin)
         return moved
 
     def into(self, points: Array) -> Array:
-        """Points (n, 3) of the design frame in this one."""
+        """Points (n, 3), given in the design frame, in this frame."""
         moved: Array = (points - np.array(self.origin)) @ self.rotation
         return moved
 
 
 class Shape(Protocol):
-    """Interface of the shapes that a solid is made of; lengths in mm."""
+    """Interface of the shapes that make up a solid; lengths in mm."""
 
     def volume(self) -> float:
         """Exact volume, mm3."""
@@ -173,7 +173,7 @@ class Turned:
 
 @dataclass(frozen=True, slots=True)
 class Prism:
-    """A closed outline in the plane of a frame, counter-clockwise, raised from ``low`` to ``high`` along its axis."""
+    """A closed outline in the plane of a frame, counter-clockwise, extruded from ``low`` to ``high`` along its axis."""
 
     outline: tuple[Segment, ...]
     low: float
@@ -210,7 +210,7 @@ class Prism:
 
 @dataclass(frozen=True, slots=True)
 class Bore:
-    """A round hole along z: centre (x, y), radius, the two faces it runs between, mm; ``closed`` names its bottom."""
+    """A round hole along z: centre (x, y), radius, lower and upper end, mm; ``closed`` names the end with a bottom."""
 
     x: float
     y: float
@@ -224,7 +224,7 @@ class Bore:
         return math.pi * self.radius**2 * (self.high - self.low)
 
     def mesh(self, tolerance: float) -> tuple[Array, Indices]:
-        """The drill: it reaches 1 mm past open faces, so that no two faces coincide."""
+        """Mesh of the drill, which extends 1 mm past open faces, so that no two faces coincide."""
         count = circle_count(self.radius, tolerance)
         angle = 2 * np.pi * np.arange(count) / count
         ring = self.radius * widen(count) * np.column_stack([np.cos(angle), np.sin(angle)]) + [self.x, self.y]
@@ -238,7 +238,7 @@ class Bore:
         return vertices, np.concatenate([*sides, fan[:, ::-1], fan + count])
 
     def distance(self, points: Array) -> Array:
-        """Distances, shape (n,), of (n, 3) points from the bore's wall and, if it has one, its bottom."""
+        """Distances (n,) of points (n, 3) from the bore's wall and from its bottom, if it has one."""
         radial = np.hypot(points[:, 0] - self.x, points[:, 1] - self.y) - self.radius
         axial = np.maximum(np.maximum(self.low - points[:, 2], points[:, 2] - self.high), 0.0)
         wall: Array = np.hypot(radial, axial)
@@ -251,17 +251,17 @@ class Bore:
 
 @dataclass(frozen=True, slots=True)
 class Feature:
-    """A shape added to a solid or cut from it, and ``net``, the exact volume in mm3 by which that changes the solid."""
+    """A shape added to or cut from a solid, and ``net``, the exact volume in mm3 that it adds or removes."""
 
     shape: Shape
     net: float
 
 
 def crossing(radius: float, bore: float) -> float:
-    """Volume in mm3 of a round bore from the axis of a cylinder to its wall, both centred, at right angles.
+    """Volume in mm3 of a round bore between axis and wall of a cylinder that it crosses centrally at right angles.
 
-    The integral of sqrt(R^2 - y^2) over the disc of radius ``bore`` <= R, by Gauss-Chebyshev quadrature of the
-    second kind; 64 nodes give it to 1e-12 up to bore = 0.95 R.
+    Integral of sqrt(R^2 - y^2) over the disc of radius ``bore`` <= R, by Gauss-Chebyshev quadrature of the second kind
+    with 64 nodes, accurate to 1e-12 up to bore = 0.95 R.
     """
     if bore > radius:
         raise ValueError("the bore must not be wider than the cylinder it crosses")
@@ -284,7 +284,7 @@ def _under(piece: Segment) -> float:
 
 
 def _inside(points: Array, outline: list[Point]) -> Flags:
-    """True for the points (n, 2) inside a polygon, by crossings of a ray."""
+    """Mask (n,) of the points (n, 2) inside a polygon, by crossings of a ray."""
     odd = np.zeros(len(points), bool)
     x, y = points.T
     for (x0, y0), (x1, y1) in zip(outline, [*outline[1:], outline[0]], strict=True):

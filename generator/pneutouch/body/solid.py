@@ -1,8 +1,8 @@
-"""A body as its exact solid, turned or a prism with tools added and cut, and as its print mesh with its measures.
+"""A body as an exact solid, a turned body or a prism with shapes added and cut, and as a print mesh with its measures.
 
-Vertices are (n, 3) in mm, triangles (m, 3) counter-clockwise seen from outside. A face that holes open in is
-triangulated in its plane with the holes left out, and each hole's wall is a strip between two circles: nothing is
-intersected, so no slivers arise and nothing depends on a tolerance.
+Vertices are (n, 3) in mm, triangles (m, 3) counter-clockwise seen from outside. A face with the openings of holes is
+triangulated in its plane without them, and the wall of each hole is a strip between two circles: no meshes are
+intersected, so there are no slivers and no dependence on a tolerance.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def is_closed(triangles: Indices, count: int) -> bool:
 
 
 def welded(vertices: Array, triangles: Indices) -> tuple[Array, Indices]:
-    """The mesh as a file reader sees it: vertices rounded to float32 and merged by position."""
+    """Mesh as read back from a file: vertices rounded to float32 and merged by position."""
     single = vertices.astype(np.float32).astype(np.float64)
     merged, index = np.unique(single, axis=0, return_inverse=True)
     return merged, index.reshape(-1)[triangles]
@@ -69,7 +69,7 @@ class Body:
 
     @property
     def bounds(self) -> Array:
-        """Smallest and largest corner, shape (2, 3), mm."""
+        """Corners of the bounding box, least then greatest, shape (2, 3), mm."""
         return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])
 
     def is_closed(self) -> bool:
@@ -77,12 +77,12 @@ class Body:
         return is_closed(self.triangles, len(self.vertices))
 
     def welded(self) -> Body:
-        """The body as a file reader sees it: vertices rounded to float32 and merged by position."""
+        """The body as read back from a file: vertices rounded to float32 and merged by position."""
         vertices, indices = welded(self.vertices, self.triangles)
         return replace(self, vertices=vertices, triangles=indices)
 
     def manifold(self) -> Any:
-        """The body as manifold3d takes it; empty if it is not closed."""
+        """The body as a manifold3d object; empty if it is not closed."""
         from manifold3d import Manifold, Mesh64
 
         return Manifold(Mesh64(np.ascontiguousarray(self.vertices), self.triangles.astype(np.uint64)))
@@ -92,11 +92,11 @@ class Body:
         return replace(self, vertices=self.vertices + offset)
 
     def turned_over(self) -> Body:
-        """The body turned by half a turn about the x axis."""
+        """The body rotated by 180 degrees about the x axis."""
         return replace(self, vertices=self.vertices * np.array([1.0, -1.0, -1.0]))
 
     def surface_points(self, parts: int = 4) -> Array:
-        """Points spread over every triangle, edges and corners included, for measuring deviation."""
+        """Points on every triangle, edges and corners included, for measurement of deviations."""
         grid = [(i, j) for i in range(parts + 1) for j in range(parts + 1 - i)]
         weights = np.array([(i, j, parts - i - j) for i, j in grid], float) / parts
         points: Array = np.einsum("wk,mkd->mwd", weights, self.corners).reshape(-1, 3)
@@ -104,15 +104,15 @@ class Body:
 
 
 _EDGE_COSINE = math.cos(math.radians(40))
-"""Cosine of the angle between two triangles from which on the line between them is drawn as an edge. Facets of an arc
-within the mesh tolerance meet at a few degrees, the edges of parts at 45 degrees and more."""
+"""Cosine of the angle between two triangles from which the line between them is drawn as an edge. Facets of an arc
+within the mesh tolerance meet at a few degrees, the edges of parts at 45 degrees or more."""
 
 
 def corner_normals(body: Body) -> Array:
     """Unit normals at the corners of every triangle, (m, 3, 3).
 
-    A corner's normal is the mean of the triangles that share its vertex and lie within the edge angle of the corner's
-    triangle, weighted by their angles there (Thürmer and Wüthrich 1998, DOI 10.1080/10867651.1998.10487487).
+    The normal at a corner is the mean over the triangles that share its vertex and are within the edge angle of its own
+    triangle, weighted by their angles at the vertex (Thürmer and Wüthrich 1998, DOI 10.1080/10867651.1998.10487487).
     """
     face, angle = _face_normals(body.corners)
     vertex, count = body.triangles.reshape(-1), 3 * len(body.triangles)
@@ -130,7 +130,7 @@ def corner_normals(body: Body) -> Array:
 
 
 def _face_normals(corners: Array) -> tuple[Array, Array]:
-    """Unit normals (m, 3) and the angles at the corners (m, 3) of triangles (m, 3, 3); zero for those without area."""
+    """Unit normals (m, 3) and corner angles (m, 3) of triangles (m, 3, 3); zero for triangles of zero area."""
     along = corners[:, [1, 2, 0]] - corners
     normal = np.cross(along[:, 0], -along[:, 2])
     area = np.linalg.norm(normal, axis=1)
@@ -141,22 +141,22 @@ def _face_normals(corners: Array) -> tuple[Array, Array]:
 
 
 def _pairs(start: Index, stop: Index) -> tuple[Index, Index]:
-    """Every index from start to stop, (n,) each, and whose it is."""
+    """Row number and index for every index from start to stop of every row, (n,) each."""
     count = stop - start
     owner = np.repeat(np.arange(count.size), count)
     return owner, np.arange(owner.size) - np.repeat(np.cumsum(count) - count - start, count)
 
 
 _SAME = 1e-9
-"""Heights computed from the same numbers may differ by rounding alone (mm)."""
+"""Greatest difference (mm) of equal heights: computed from the same numbers, they differ only by rounding."""
 
 _CLEAR = 0.05
-"""Rim in mm that must be left between a hole and the edge of its face, and between two holes."""
+"""Material in mm that must remain between a hole and the edge of its face, and between two holes."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Hole:
-    """A bore with its circles: first vertices of the lower and the upper one."""
+    """A bore with the numbers of the first vertices of its lower and its upper circle."""
 
     bore: Bore
     count: int
@@ -165,9 +165,9 @@ class _Hole:
 
 
 def drilled(rings: RevolvedRings, bores: tuple[Bore, ...], tolerance: float) -> tuple[Array, Indices] | None:
-    """The turned body with its bores, or None if a bore does not run between flat faces and must be cut.
+    """Mesh of the turned body with its bores, or None if a bore does not run between flat faces and must be cut.
 
-    Half of ``tolerance`` (mm) went into the rings; a bore takes all of it, for it is straight.
+    The rings use half of ``tolerance`` (mm); the circle of a bore may use all of it, because the bore is straight.
     """
     faces = _faces(rings, bores)
     if faces is None:
@@ -189,7 +189,7 @@ def drilled(rings: RevolvedRings, bores: tuple[Bore, ...], tolerance: float) -> 
 
 
 def _faces(rings: RevolvedRings, bores: tuple[Bore, ...]) -> dict[int, list[int]] | None:
-    """The flat strips that bores open in, with the indices of these bores."""
+    """Flat strips in which bores open, with the indices of these bores; None if a bore must be cut."""
     faces: dict[int, list[int]] = {}
     for index, bore in enumerate(bores):
         for height in ([bore.low] if bore.closed != "low" else []) + ([bore.high] if bore.closed != "high" else []):
@@ -206,7 +206,7 @@ def _faces(rings: RevolvedRings, bores: tuple[Bore, ...]) -> dict[int, list[int]
 
 
 def _holds(rings: RevolvedRings, k: int, bore: Bore, height: float) -> bool:
-    """True if strip ``k`` is flat, at ``height``, and wide enough around a bore."""
+    """True if strip ``k`` is flat, at ``height``, and leaves enough material around a bore."""
     one, other = (rings.rings[index] for index in rings.pairs[k])
     if abs(one.height - height) > _SAME or abs(other.height - height) > _SAME:
         return False
@@ -223,7 +223,7 @@ def _circle(bore: Bore, count: int, height: float) -> Array:
 
 
 def _perforated(points: Array, rings: RevolvedRings, k: int, holes: list[_Hole]) -> Indices:
-    """A flat strip with holes, facing as the strip did."""
+    """Triangles of a flat strip with holes, oriented like the strip."""
     from manifold3d import triangulate
 
     first, second = rings.pairs[k]
@@ -239,19 +239,19 @@ def _perforated(points: Array, rings: RevolvedRings, k: int, holes: list[_Hole])
     index = np.concatenate(loops)
     flat = triangulate([np.ascontiguousarray(points[loop, :2]) for loop in loops])
     triangles: Indices = index[np.asarray(flat)].astype(np.int64)
-    # A meridian runs counter-clockwise: it goes inwards over a face that looks up.
+    # A meridian runs counter-clockwise, so it goes inwards on a face that looks up.
     return triangles if inwards else triangles[:, ::-1]
 
 
 def _wall(hole: _Hole) -> list[Indices]:
-    """The wall of a hole, facing its axis, and its bottom if it has one."""
+    """Triangles of the wall of a hole, facing its axis, and of its bottom if it has one."""
     k = np.arange(hole.count)
     after = (k + 1) % hole.count
     low, high = hole.lower, hole.upper
     strips = [np.column_stack([low + k, high + k, low + after]), np.column_stack([low + after, high + k, high + after])]
     if hole.bore.closed:
         fan = np.column_stack([np.zeros(hole.count - 2, int), k[1:-1], k[2:]])
-        # The bottom looks towards the mouth: up where the hole is closed below.
+        # The bottom faces the mouth: upwards in a hole that is closed below.
         strips.append(low + fan if hole.bore.closed == "low" else high + fan[:, ::-1])
     return strips
 
@@ -260,8 +260,8 @@ def _wall(hole: _Hole) -> list[Indices]:
 class Solid:
     """One body as designed, exact. ``role`` is its function: membrane, connector, ring, plug, coupon ...
 
-    ``base`` is a meridian about the z axis or a prism. ``adds`` are joined to it first; ``bores`` and ``cuts`` are
-    taken away then. Bores lie wholly inside the solid and apart from one another.
+    ``base`` is a meridian about the z axis or a prism. First ``adds`` are joined to it; then ``bores`` and ``cuts`` are
+    removed. Bores lie wholly inside the solid and do not touch one another.
     """
 
     name: str
@@ -277,7 +277,7 @@ class Solid:
 
     @property
     def meridian(self) -> Meridian:
-        """The base of a turned body. Raises TypeError for a prism."""
+        """Meridian of a turned body. Raises TypeError for a prism."""
         if not isinstance(self.base, Meridian):
             raise TypeError(f"{self.name} is not a turned body")
         return self.base
@@ -310,7 +310,7 @@ class Solid:
         return Body(self.name, self.role, self.material, vertices, triangles)
 
     def _drilled(self, tolerance: float) -> tuple[tuple[Array, Indices], tuple[Bore, ...]]:
-        """The mesh of the base, and the bores that still have to be cut; most are built into flat faces."""
+        """Mesh of the base, and the bores still to be cut; most bores are meshed directly in flat faces."""
         if not isinstance(self.base, Meridian):
             return self.base.mesh(tolerance), self.bores
         rings = revolve_rings(self.base, tolerance)
@@ -323,7 +323,7 @@ class Solid:
 def _combined(
     base: tuple[Array, Indices], adds: list[tuple[Array, Indices]], cuts: list[tuple[Array, Indices]]
 ) -> tuple[Array, Indices]:
-    """Join and cut in one batch each."""
+    """Mesh of a base with one batch of meshes joined and one batch cut."""
     from manifold3d import Manifold, Mesh64, OpType
 
     def manifold(mesh: tuple[Array, Indices]) -> Any:

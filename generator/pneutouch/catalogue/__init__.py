@@ -1,6 +1,6 @@
-"""Finds designs, printers, materials and parts by name: the one registry.
+"""The registry, which finds designs, printers, materials and parts by name.
 
-The names are loaded when they are first used: to list names needs none of what resolves a design.
+Its names are loaded when they are first used: to list files needs nothing of what resolves a design.
 """
 
 from typing import TYPE_CHECKING

@@ -67,12 +67,12 @@ _KINDS = {"target": "target", "entry": "tray", "grid": "sweep", "point": "sweep"
 """Kind of file by a key that only files of this kind have."""
 
 COMMANDS = {"target": "select", "tray": "tray", "sweep": "sweep", "campaign": "characterize"}
-"""The command that takes a kind."""
+"""Name of the command that takes a kind of file."""
 
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """An example: its file, the kind of file it is, and its title, which is its first line."""
+    """An example: its file, the kind of the file, and its title, from the first line."""
 
     path: Path
     kind: str
@@ -146,7 +146,7 @@ def _calibration(content: dict[str, Any], where: str) -> BaseModel:
 
 
 def _by_family(models: Mapping[str, type[BaseModel]]) -> ValidateFile:
-    """Validation of a file by the keys of the family that it names."""
+    """Validator of files that have the keys of the family that they name."""
 
     def check(content: dict[str, Any], where: str) -> BaseModel:
         family = content.get("family")
@@ -210,7 +210,7 @@ class Library:
         return {name: cast(Model, self.load(kind, name)) for name in self.paths(kind)}
 
     def readable(self, kind: str, model: type[Model]) -> dict[str, Model]:
-        """All files as `all`, without invalid ones: a message must not propose one of those."""
+        """Load everything of one kind as `all`, without invalid files, which a message must not propose."""
         content: dict[str, Model] = {}
         for name in self.paths(kind):
             with suppress(InputError):
@@ -218,7 +218,7 @@ class Library:
         return content
 
     def design_file(self, name: str) -> Path:
-        """The file of a design given by name or by path."""
+        """The file of a design given by name or by path. Raises InputError if there is none."""
         path, paths = Path(name), self.paths("designs")
         if name in paths:
             return paths[name]
@@ -234,7 +234,7 @@ class Library:
         raise InputError("no such design or file", key="design", value=name, remedy=remedy)
 
     def specimen_file(self, name: str) -> Path | None:
-        """The file of a specimen given by name or path, or None if the name is a sensor's or of nothing."""
+        """The file of a specimen given by name or path; None if the name is a sensor's or unknown."""
         files = self.paths("specimens")
         if name in files:
             return files[name]
@@ -246,7 +246,7 @@ class Library:
 
 
 def is_specimen(content: dict[str, Any]) -> bool:
-    """True if the content of a design file is that of a specimen: it has a [block] table."""
+    """True if the content of a design file describes a specimen: it has a [block] table."""
     return "block" in content
 
 
@@ -278,7 +278,7 @@ Resins = dict[str, Material]
 def elastomers(library: Library, casting: bool = False) -> Resins:
     """Every printed elastomer of a library, by name; with ``casting`` those that are cast as well.
 
-    A cast design needs both: the paper measured printed ones alone, and the model's error is taken from them.
+    A cast design needs both: the paper measured only printed ones, and the model's error is taken from them.
     """
     materials = library.all("materials", Material)
     soft = {name: material for name, material in materials.items() if material.kind == "elastomer"}
@@ -286,7 +286,7 @@ def elastomers(library: Library, casting: bool = False) -> Resins:
 
 
 def alike(printer: Printer, resins: Resins) -> Resins:
-    """Resins made as the membrane of a printer is: all printed ones, or those of a casting profile."""
+    """Resins made in the same way as a printer's membrane: all printed ones, or those of a casting profile."""
     if not printer.is_casting:
         return {name: material for name, material in resins.items() if not material.is_cast}
     return {name: material for name, material in resins.items() if printer.mode_for(material) is not None}

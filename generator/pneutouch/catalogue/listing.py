@@ -28,13 +28,13 @@ _GROUPS = {
 
 
 _NAMED_BY_FILE = ("designs", "specimens", "calibrations")
-"""Kinds whose names obey `plain_name`: those of files that users write."""
+"""Kinds whose names obey `plain_name`: users write files of these kinds."""
 
 
 def listing(kind: str | None, library: Library | None = None) -> dict[str, list[dict[str, str]]]:
-    """Names and titles by kind, which is a group such as designs or materials, or None for all.
+    """Names and titles of files by group; ``kind`` is one group, such as designs or materials, or None for all.
 
-    A file that cannot be read has no title, and ``file`` and ``error``: its path and what is wrong with it.
+    The entry of a file that cannot be read has an empty title, and ``file`` and ``error``: its path and what is wrong.
     """
     if kind is not None and kind not in _GROUPS:
         group = next((group for group, kinds in _GROUPS.items() if kind in kinds), None)
@@ -58,7 +58,7 @@ def listing(kind: str | None, library: Library | None = None) -> dict[str, list[
 
 
 def _read(library: Library, kind: str, name: str) -> dict[str, str]:
-    """The title of a thing, or why it has none."""
+    """Entry of a file: its title; or, if it cannot be read, an empty title, its path and the error."""
     path = library.paths(kind)[name]
     try:
         if kind in _NAMED_BY_FILE:
@@ -87,7 +87,7 @@ def _title(thing: Any) -> str:
 def known_design(campaign: Campaign, folder: Path, library: Library) -> str | None:
     """The design that a campaign names, as a command takes it; None if it names none.
 
-    Raises InputError for one that is not there, with the campaign's file and key.
+    Raises InputError, with the campaign's file and key, if that design does not exist.
     """
     name = design_of(campaign, folder)
     if name is not None:

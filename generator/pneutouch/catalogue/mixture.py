@@ -30,7 +30,7 @@ from pneutouch.spec.values import Quantity
 class ArcProfile:
     """Values (n,) at knots (n,) that rise from 0 at the pole to 1 at the rim; n = 1 is a constant.
 
-    Between knots a cubic that has no extremum of its own: slopes by Fritsch and Butland (SIAM J. Sci. Stat. Comput. 5,
+    The cubic between two knots has no extremum there: slopes by Fritsch and Butland (SIAM J. Sci. Stat. Comput. 5,
     300-304, 1984, DOI 10.1137/0905021), one-sided at the ends.
     """
 
@@ -38,7 +38,7 @@ class ArcProfile:
     values: tuple[float, ...]
 
     def __call__(self, arc: Array) -> Array:
-        """The quantity at arc positions of any shape; beyond the ends that of the end."""
+        """The quantity at arc positions of any shape; constant beyond the first and the last knot."""
         if len(self.knots) == 1:
             return np.full(np.shape(arc), self.values[0])
         x, y = np.array(self.knots), np.array(self.values)
@@ -77,11 +77,11 @@ def _end(step: Array, rise: Array) -> float:
 
 
 _STATIONS = 65
-"""Places along the arc at which a grade's modulus is stored; straight between them it is within 1e-3 of the curve."""
+"""Number of arc positions at which a grade's modulus is stored; linear between them it is within 1e-3 of the curve."""
 
 _SLACK = 1e-12
 _FINE = 2001
-"""Fractions at which the end of the soft mixes is searched."""
+"""Number of fractions among which the stiffest mix that a wall may have is searched."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class ResolvedMixingCurve:
 
     @property
     def wall_top(self) -> float:
-        """The greatest fraction, to four decimals, at which `stiffest_at` is no more than a wall's may be."""
+        """The greatest fraction, to four decimals, at which `stiffest_at` does not exceed the limit for a wall."""
         at = np.linspace(0.0, float(self.fraction[-1]), _FINE)
         stiff = self.stiffest_at(at) > STIFFEST_ELASTOMER_MPA
         if not stiff.any():
@@ -110,14 +110,14 @@ class ResolvedMixingCurve:
         return float(np.floor(1e4 * at[max(int(np.argmax(stiff)) - 1, 0)]) / 1e4)
 
     def stiffest_at(self, fraction: Array) -> Array:
-        """Greatest modulus in MPa: of an assumed curve's band, else the curve's own."""
+        """Greatest modulus in MPa: of the band of an assumed curve, else of the curve itself."""
         return self.band_at(fraction)[1] if self.curve.is_assumed else self.modulus_at(fraction)
 
     def band_at(self, fraction: Array) -> tuple[Array, Array]:
-        """Least and greatest modulus in MPa: the points at their ``fraction_high`` and ``fraction_low``.
+        """Least and greatest modulus in MPa, by curves through the points at their ``high`` and ``low`` fractions.
 
-        Straight in the logarithm between them. Nothing is known beyond the curve's stiffest point, so no modulus of
-        the band is greater than its.
+        The curves are linear in the logarithm. Nothing is known beyond the stiffest point, so no modulus of the band
+        exceeds the modulus there.
         """
         middle, logs = self.modulus_at(fraction), np.log(self.modulus)
         far = [np.array([getattr(point, side) for point in self.curve.points]) for side in ("high", "low")]
@@ -125,11 +125,11 @@ class ResolvedMixingCurve:
         return np.minimum(low, middle), np.maximum(high, middle)
 
     def spread_at(self, fraction: Array) -> Array:
-        """Standard deviation in MPa, its share straight between the points; NaN if one was not measured."""
+        """Standard deviation in MPa, by linear interpolation of its share of the modulus; NaN if one is unknown."""
         return np.asarray(np.interp(fraction, self.fraction, self.spread / self.modulus) * self.modulus_at(fraction))
 
     def elongation_at(self, fraction: Array) -> Array:
-        """Elongation at break in percent, straight between the points where it is known; NaN if none is."""
+        """Elongation at break in percent, linear between the points where it is known; NaN if none is."""
         known = np.isfinite(self.elongation)
         if not known.any():
             return np.full(np.shape(fraction), np.nan)
@@ -145,9 +145,9 @@ def mixing(
     file: str | None = None,
     key: str | None = None,
 ) -> ResolvedMixingCurve:
-    """The curve of two base resins, the one in use where no ``curve`` is named.
+    """The mixing curve of two base resins: the one named ``curve``, else the one in use.
 
-    Raises InputError if there is none, where it is another pair's, and where its modulus falls with the fraction.
+    Raises InputError if there is none, if it is of another pair, and if its modulus falls with the fraction.
     """
     paths = library.paths("mixing")
     if f"{soft}+{stiff}" not in paths:
@@ -176,7 +176,7 @@ def mixing(
 
 
 def _key(content: MixingCurve, curve: str | None, file: str | None, key: str | None) -> str:
-    """The key of the points' fractions on the curve of this name."""
+    """Key of a point that holds its fraction on the curve of this name. Raises InputError for an unknown name."""
     known = {} if content.curves is None else content.curves.by_name
     if curve is not None and curve not in known:
         pair = f"{content.soft}+{content.stiff}"
@@ -225,8 +225,8 @@ def _resolved(point: MixingPoint, curve: MixingCurve, library: Library, where: s
 def mixed_material(
     grade: Grade, library: Library, *, file: str | None, key: str = "membrane.material", shape: DomeShape | None = None
 ) -> Material:
-    """The material of a grade; of one that varies the mean over the wall of a ``shape``, with its course ``along`` the
-    arc; left out, the shape is the usual one.
+    """The material of a grade. If its mix varies, the modulus is the mean over the wall of a ``shape`` (None: the usual
+    one), and ``along`` holds its course along the arc.
 
     Raises InputError for resins without a curve, for fractions beyond its last point, and for a mix that is stiffer or
     denser than a membrane may be.
@@ -281,7 +281,7 @@ def _check_soft(grade: Grade, law: ResolvedMixingCurve, fraction: Array, file: s
 def _by_curves(
     grade: Grade, library: Library, used: ResolvedMixingCurve, fraction: Array, weight: Array
 ) -> list[dict[str, Any]]:
-    """The mix by every curve of the pair, the softest first; beyond a curve's last point it has that one's modulus."""
+    """The mix by every curve of the pair, the softest first; beyond a curve's last point the modulus there."""
     names = {} if used.curve.curves is None else used.curve.curves.by_name
     laws = {name: mixing(grade.from_, grade.to, library, curve=name) for name in names}
     entries, last = [], float(used.fraction[-1])
@@ -333,7 +333,7 @@ def _content(grade: Grade, soft: Material, stiff: Material, share: float) -> dic
 
 
 def _elongation(law: ResolvedMixingCurve, fraction: Array) -> Quantity | None:
-    """The least along the arc: the wall tears where it is stiffest first."""
+    """Least elongation at break along the arc, where the wall tears first; None if unknown."""
     least = float(law.elongation_at(fraction).min())
     if not np.isfinite(least):
         return None

@@ -1,4 +1,4 @@
-"""Profiles that can make a material, and the refusal of a named one that cannot."""
+"""Printer profiles that can make a material, and the error for a named profile that cannot."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def casting_missing(printer: Printer, material: Material) -> bool:
 
 
 def uncast(printer: Printer, material: Material, file: str) -> InputError:
-    """The refusal of a material that is to be cast and whose ``file`` does not state how."""
+    """Error for a material that is to be cast although its ``file`` does not state how."""
     needed = [key for key, field in Casting.model_fields.items() if field.is_required()]
     remedy = (
         f"the profile {printer.title} casts {material.label}: add the table [casting] with {', '.join(needed)}, or fit "
@@ -34,10 +34,10 @@ def uncast(printer: Printer, material: Material, file: str) -> InputError:
 def cannot_run(
     printer: Printer, name: str | None, material: Material, library: Library | None, setting: str, **place: Any
 ) -> InputError:
-    """The refusal of a material that a profile does not make.
+    """Error for a material that a profile does not make.
 
-    ``name`` is the material's, None of a mix; ``setting`` is what takes another profile, such as ``print.profile``;
-    ``place`` holds file, key and value of what was given.
+    ``name`` is the material's name, None for a mix; ``setting`` is the setting that takes another profile, such as
+    ``print.profile``; ``place`` holds file, key and value of what was given.
     """
     if casting_missing(printer, material):
         known = {} if library is None else library.paths("materials")
@@ -48,7 +48,7 @@ def cannot_run(
 
 
 def made_by(material: Material, library: Library, setting: str) -> str:
-    """The profiles that make a material and their processes, as a remedy."""
+    """Remedy that names the profiles that make a material, with their processes."""
     profiles = [f"{name} (process {one.process})" for name, one in makers(material, library).items()]
     if not profiles:
         casts = next(

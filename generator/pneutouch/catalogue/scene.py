@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ResolvedDesign:
-    """All that a design names. ``where`` is the file as the user gave it, for messages.
+    """A design with everything that it names. ``where`` is the file as the user gave it, for messages.
 
-    ``mould_printer`` and ``mould_material`` are there where the membrane is cast, and None if it is printed.
+    ``mould_printer`` and ``mould_material`` are None if the membrane is printed, not cast.
     """
 
     name: str
@@ -59,7 +59,7 @@ class ResolvedDesign:
 
     @property
     def connector_mode(self) -> Mode:
-        """Print mode of the connector; that of the membrane where both grow in one print."""
+        """Print mode of the connector; the membrane's if both grow in one print."""
         return (
             self.membrane_mode
             if isinstance(self.seat, OnePiece)
@@ -86,8 +86,8 @@ class ResolvedDesign:
     def fit_clearance(self) -> float:
         """Clearance per side in mm between two bodies: the printers' stated accuracies added up.
 
-        The membrane goes into the seat, or the ring that it is cast around, which the connector's printer makes.
-        """
+        The first body is the membrane, or the ring it is cast around (from the connector's printer); the other the
+        seat."""
         held = self.connector_printer if isinstance(self.seat, CastRing) else self.printer
         return held.accuracy_mm.nominal + self.connector_printer.accuracy_mm.nominal
 
@@ -102,7 +102,7 @@ class DesignSource:
 
     @staticmethod
     def of(design: str | DesignSource, library: Library) -> DesignSource:
-        """A design given by name or path, or as ``DESIGN@CALIBRATION``; one that is a source already is returned."""
+        """A design given by name or path, or as ``DESIGN@CALIBRATION``; a source is returned as it is."""
         if isinstance(design, DesignSource):
             return design
         plain, calibration = split_calibration(design, library)
@@ -119,7 +119,7 @@ class DesignSource:
 
 
 def split_calibration(design: str, library: Library) -> tuple[str, str | None]:
-    """Design and calibration of ``DESIGN@CALIBRATION``; None if no calibration is named."""
+    """Design and calibration of ``DESIGN@CALIBRATION``; the calibration is None if none is named."""
     plain, at, calibration = design.rpartition("@")
     if not at or not plain or design in library.paths("designs") or Path(design).is_file():
         return design, None
@@ -128,7 +128,7 @@ def split_calibration(design: str, library: Library) -> tuple[str, str | None]:
 
 
 DEFAULT = DesignSource("default", {}, "the default design")
-"""The design of all defaults."""
+"""Source of the design in which every field has its default."""
 
 
 def load_scene(
@@ -190,7 +190,7 @@ def _calibration(design: DesignFile, where: str, library: Library) -> SensorCali
 def check_scene(scene: ResolvedDesign, library: Library | None = None) -> None:
     """Check the rules between the parts of a scene. Raises InputError that names ``scene.where`` and the key.
 
-    With the ``library`` that its names were found in, it says which profiles make a material as well.
+    With the ``library`` of its names, errors also state which profiles make a material.
     """
     _check_kind(scene, "membrane.material", scene.membrane_material, "elastomer")
     _check_kind(scene, "connector.material", scene.connector_material, "rigid")
@@ -228,7 +228,7 @@ def _check_runs(
 
 
 def _check_one_piece(scene: ResolvedDesign) -> None:
-    """A membrane grown onto its connector needs one machine that holds both."""
+    """Raise InputError unless one machine holds both materials of a membrane grown onto its connector."""
     if not isinstance(scene.seat, OnePiece):
         return
     chosen, problem = scene.design.print, None
@@ -248,7 +248,7 @@ def _check_one_piece(scene: ResolvedDesign) -> None:
 
 
 def _check_glue(scene: ResolvedDesign) -> None:
-    """A glue is named for a flange that is glued, or a ring."""
+    """Raise InputError if a glue is named for a seat that is neither a glued flange nor a cast ring."""
     named = scene.design.connector.glue
     if named is not None and not isinstance(scene.seat, GluedFlange | CastRing):
         problem = f"connector.seat = {shown(scene.design.connector.seat)} has no glue at the flange"
@@ -257,7 +257,7 @@ def _check_glue(scene: ResolvedDesign) -> None:
 
 
 def _check_mould(scene: ResolvedDesign, library: Library | None) -> None:
-    """A membrane is cast in a mould that is printed."""
+    """Raise InputError unless a printer, not a casting profile, makes the mould of a membrane that is cast."""
     if not scene.printer.is_casting:
         return
     if scene.mould_printer is None or scene.mould_material is None:
@@ -275,7 +275,7 @@ def _check_mould(scene: ResolvedDesign, library: Library | None) -> None:
 
 
 def _check_calibration(scene: ResolvedDesign) -> None:
-    """A calibration holds for the resin and the membrane that it was made with."""
+    """Raise InputError if the calibration named is missing, or is of another resin or membrane."""
     name, calibration, membrane = scene.design.calibration_name, scene.calibration, scene.design.membrane
     if (name is None) != (calibration is None):
         raise InputError("the calibration named is not there", file=scene.where, key=CALIBRATION, value=name)
@@ -293,7 +293,7 @@ def _check_calibration(scene: ResolvedDesign) -> None:
 
 
 def _tube_of(design: DesignFile, where: str, library: Library) -> Tube:
-    """The tube that the design names, else the usual one of its port. Raises InputError if it does not fit."""
+    """The tube that the design names, else the first of its port. Raises InputError if the port does not take it."""
     port = library.load("ports", design.connector.port, file=where, key="connector.port")
     name = design.pneumatics.tube
     if name is not None:
@@ -311,7 +311,7 @@ def _tube_of(design: DesignFile, where: str, library: Library) -> Tube:
 
 
 def _mount_of(design: DesignFile, where: str, library: Library) -> AnyMount:
-    """The mount that the design names; a sleeve for the finger that it gives."""
+    """The mount that the design names; a sleeve is made for the finger that the design gives."""
     chosen, finger = design.connector.mount, design.connector.finger_diameter_mm
     mount: AnyMount = library.load("mounts", chosen, file=where, key="connector.mount")
     if finger is None:
@@ -349,7 +349,7 @@ def _named_gauge(design: DesignFile, where: str, library: Library) -> Gauge | No
 def _check_cast_ring(design: DesignFile, where: str, seat: AnySeat, printer: Printer) -> None:
     """Raise InputError for a ring around which nothing is cast, or a ring stated for a seat without one.
 
-    ``printer`` is that of the membrane, ``where`` the design's file.
+    ``printer`` makes the membrane; ``where`` is the design's file.
     """
     chosen = design.connector.seat
     if not isinstance(seat, CastRing):

@@ -14,9 +14,9 @@ _OBJECTS_BEFORE_COLLECTION = 250_000
 garbage at Python's 700 is a sixth of the time that CadQuery and matplotlib take to load."""
 
 _KEPT_BYTES = 1 << 20
-"""The GNU C library returns freed memory to the system above a bound, which a freed block of this size raises.
+"""Size in bytes of a block whose release raises the bound above which the GNU C library returns memory to the system.
 
-Without it the arrays of each Newton step are returned and requested again: a tenth of the time of ``predict``.
+Without that the arrays of each Newton step are returned and requested again: a tenth of the time of ``predict``.
 """
 
 _UNWOUND = 2

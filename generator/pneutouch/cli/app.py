@@ -34,7 +34,7 @@ DesignArgument = Annotated[
 
 
 def _keep_keys(context: typer.Context, assignments: list[str] | None) -> list[str] | None:
-    """Keep which fields are given here, so that an error on one does not blame the file."""
+    """Keep the names of the fields that are given here, so that an error on one does not blame the file."""
     context.meta.setdefault(CHANGES, []).extend(text.partition("=")[0].strip() for text in assignments or [])
     return assignments
 
@@ -265,7 +265,7 @@ def design_folder(out: Path | None) -> Path:
 
 
 def changes(set_: list[str] | None, calibration: str | None = None, *, anywhere: bool = False) -> dict[str, Any]:
-    """The fields that --set changes, and their values; --calibration and --contact-anywhere are among them."""
+    """Values by field from --set, and from --calibration and --contact-anywhere."""
     from pneutouch.spec.read import parse_changes
 
     named = {} if calibration is None else {"calibration": calibration}
@@ -273,7 +273,7 @@ def changes(set_: list[str] | None, calibration: str | None = None, *, anywhere:
 
 
 def refuse_flags(context: typer.Context, flags: Mapping[str, str], what: str, file: str) -> None:
-    """Raise InputError where one of ``flags`` (by parameter) was given, which does not go with ``what``."""
+    """Raise InputError if one of ``flags`` (by parameter) was given, which do not go with ``what``."""
 
     given = [
         flag for key, flag in flags.items() if getattr(context.get_parameter_source(key), "name", "") == "COMMANDLINE"
@@ -290,14 +290,14 @@ def print_json(document: Any) -> None:
 
 
 _BREAKS = "=@:"
-"""Characters at which bash ends a word unless its user set COMP_WORDBREAKS, and which words of this program hold."""
+"""Characters in words of this program at which bash, with its default COMP_WORDBREAKS, ends a word."""
 
 
 def joined(pieces: Sequence[str], at: int) -> tuple[list[str], int, str]:
     """The words as typed, the place of the one to complete, and what of it stands before the piece that bash completes.
 
-    ``pieces`` are COMP_WORDS, in which a run of such characters is a piece of its own; ``at`` is COMP_CWORD. Bash
-    completes an @ with what follows it: it may begin the name of a host.
+    ``pieces`` are COMP_WORDS, in which a run of `_BREAKS` is a piece of its own; ``at`` is COMP_CWORD. Bash completes
+    an @ with what follows it: it may begin the name of a host.
     """
     words: list[str] = []
     place, before, open_ = None, "", False

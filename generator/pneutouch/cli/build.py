@@ -217,7 +217,7 @@ def _build_sensor(evaluation: Evaluation, out: Path) -> tuple[Path, list[Finding
 
 
 def _report(findings: Sequence[Finding], folder: Path) -> None:
-    """Report on stderr the findings, and which files a build left out, and why: STEP where CadQuery is missing."""
+    """Report on stderr the findings, and the files that a build left out and why, such as STEP without CadQuery."""
     from json import loads
 
     from pneutouch.cli.prediction_text import finding_line

@@ -139,14 +139,14 @@ def _report_next(
 
 
 _NAMED = 12
-"""Runs whose kind is listed one by one."""
+"""Greatest number of runs whose kind is listed one by one."""
 
 _SHALLOWER = 0.01
-"""Share by which the measured depth may differ from that of `predict` before it is said: figures move less then."""
+"""Share by which a measured depth may differ from `predict`'s without a word: figures change less than that."""
 
 
 def measured_text(measured: "MeasuredCampaign") -> str:
-    """A table a group: measured with its interval, and the prediction; then the warnings."""
+    """A table for each group, measured figures with intervals and the prediction; then target, ageing and warnings."""
     head = f"{measured.title}: measured on {measured.design}, predicted by {measured.model}"
     lines = [head + (f"  {SIMULATED}" if measured.simulated else "")]
     for group in measured.groups:
@@ -171,7 +171,7 @@ def measured_text(measured: "MeasuredCampaign") -> str:
 
 
 def _warnings(runs: "Sequence[MeasuredRun]") -> list[str]:
-    """Counts of the parts of the records that were left out, and of those that are noted but used."""
+    """Line with the counts of the parts of records that were left out, and that are noted but used."""
     every = [warning for run in runs for warning in run.warnings if warning.kind != "note"]
     left = sum(not warning.used for warning in every)
     if not every:

@@ -1,6 +1,6 @@
-"""The commands by groups, and how one is found, run and ended.
+"""The commands by groups, and how a command is found, run and ended.
 
-Options that are numbers take plain digits alone: ``1_0`` is a slip of the keyboard, not ten.
+Options that are numbers take only plain digits: ``1_0`` is a slip of the keyboard, not ten.
 """
 
 from collections.abc import Iterator, Sequence
@@ -31,7 +31,7 @@ def with_plain_numbers(command: Any) -> Any:
 
 
 def _processed(name: str, process: Any, context: Any, given: Any) -> Any:
-    """The value of a parameter. Raises InputError if a text that is no number was made one."""
+    """The value of a parameter. Raises InputError if a number was made of a text that is no plain number."""
     made = process(context, given)
     texts = given if isinstance(given, list | tuple) else [given]
     values = made if isinstance(made, list | tuple) else [made]
@@ -86,7 +86,7 @@ CHANGES = "pneutouch.changes"
 """Key in the context of a command under which it keeps the fields that --set changes."""
 
 _USAGE_ERROR: Any = typer.BadParameter.__bases__[0]
-"""Base of Typer's errors on words: it comes with Typer or from Click, by Typer's version."""
+"""Base class of Typer's errors on words: from Typer itself or from Click, depending on Typer's version."""
 
 
 def _entries() -> dict[str, CommandEntry]:
@@ -95,7 +95,7 @@ def _entries() -> dict[str, CommandEntry]:
 
 
 class Commands(TyperGroup):
-    """The commands. An error of the library ends one with a message in its own words, and the error's exit code."""
+    """The commands. An error of the library ends a command with a message that names its options, and an exit code."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Names in the order of the help."""
@@ -149,7 +149,7 @@ class Commands(TyperGroup):
 
 @contextmanager
 def _plain_words() -> Iterator[None]:
-    """Take control characters and words without end out of the messages of Typer on a command line."""
+    """Put the messages of Typer's errors on one line, with control characters escaped, and cut long ones."""
     try:
         yield
     except _USAGE_ERROR as error:

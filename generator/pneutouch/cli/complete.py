@@ -13,13 +13,13 @@ from pneutouch.spec.values import plain_number
 
 
 def names(*kinds: str, listed: bool = False) -> Callable[[str], list[str]]:
-    """Completes the names of these kinds, such as materials, and of designs ``DESIGN@CALIBRATION``.
+    """Completion of names of these kinds, such as materials, and of designs as ``DESIGN@CALIBRATION``.
 
-    ``listed``: the last of a list with commas between.
+    With ``listed`` it completes the last of names with commas between.
     """
 
     def complete(incomplete: str) -> list[str]:
-        """The names that begin so."""
+        """The names that begin with ``incomplete``."""
         from pneutouch.catalogue.library import Library
 
         library = Library.default()
@@ -73,7 +73,7 @@ def document_kinds(incomplete: str) -> list[str]:
 
 
 def percent_of(text: str, parameter: str) -> float:
-    """The per cent of a text; without a sign a number below 1 is a share, as in Python. Raises InputError."""
+    """Number in per cent that a text states; without the sign a number below 1 is a share. Raises InputError."""
     number = text.strip().removesuffix("%").strip()
     try:
         value = plain_number(number)
@@ -108,5 +108,5 @@ def years_of(text: str, parameter: str) -> float:
 
 
 def error_in_percent(context: typer.Context, parameter: typer.CallbackParam, text: str | None) -> str | None:
-    """The numerical error of an option with its sign, as the library reads it. Raises InputError."""
+    """Text of a numerical error in per cent with the sign, which the library reads as such. Raises InputError."""
     return None if text is None else f"{percent_of(text, parameter.name or ''):.12g}%"

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class FieldOption(NamedTuple):
-    """The field ``table.key`` behind an option; ``parse`` where the option is a text in its own form, ``metavar``.
+    """The field ``table.key`` behind an option; ``parse`` reads an option whose text has its own form, ``metavar``.
 
     ``table`` is empty for a field of the model itself; ``flag`` None: named as the parameter.
     """
@@ -39,7 +39,7 @@ class FieldOption(NamedTuple):
 
 
 def with_fields(model: type[BaseModel], options: Mapping[str, FieldOption]) -> Callable[[Callable[..., None]], Any]:
-    """Give a command an option for each field, after its arguments; it takes them as keywords, None if left out."""
+    """Decorator that gives a command an option for each field, passed as a keyword, None if left out."""
 
     def decorate(command: Callable[..., None]) -> Callable[..., None]:
         hints = typing.get_type_hints(command, include_extras=True)
@@ -74,8 +74,8 @@ def field_tables(options: Mapping[str, FieldOption], values: Mapping[str, Any]) 
 def named_by_flag(given: Mapping[str, str], where: str, *, alone: bool) -> Iterator[None]:
     """Name the option, and no file, in an error about a field of ``where`` that was given as one.
 
-    ``given``: the options' parameters by ``table.key``. Where they are ``alone``, ``where`` is no file, and is
-    not named.
+    ``given`` holds the options' parameters by ``table.key``. With ``alone`` there are only options: ``where`` is no
+    file, and is not named.
     """
     try:
         yield
@@ -91,12 +91,12 @@ def named_by_flag(given: Mapping[str, str], where: str, *, alone: bool) -> Itera
 
 
 def with_options(model: type[Options]) -> Callable[[Callable[..., None]], Any]:
-    """Give a command an option for each field of its options, which `given` turns into these."""
+    """Decorator that gives a command an option for each field of ``model``, which `given` makes of them."""
     return with_fields(model, _flags(model))
 
 
 def given(model: type[AnyOptions], values: Mapping[str, Any]) -> AnyOptions:
-    """The options of a command as they were given. Raises InputError that names the parameter, which is the field's."""
+    """The ``model`` of the options that were given. Raises InputError that names the parameter, as the field."""
     options = _flags(model)
     stated = {name: value for name, value in values.items() if name in options}
     with named_by_flag({key: key for key in options}, "", alone=False):
@@ -123,7 +123,7 @@ def _parser(model: type[Options], key: str, flag: str) -> Callable[[Any], Any] |
 
 
 def words(texts: Iterable[str], separator: str = ",") -> list[str]:
-    """Words with commas between, of an option that may be repeated."""
+    """Words of an option, which are separated by ``separator``; the option may be repeated."""
     return [word.strip() for text in texts for word in text.split(separator) if word.strip()]
 
 
@@ -153,7 +153,7 @@ def _parameter(model: type[BaseModel], name: str, option: FieldOption) -> inspec
 
 
 def _default(table: type[BaseModel], field: Declaration) -> Any:
-    """The default of an option as it would be typed; None where nothing would."""
+    """Default of an option as a user would type it; None if none is typed, `Parameter.empty` if it is required."""
     if table.model_fields[field.key].is_required():
         return inspect.Parameter.empty
     if field.default is None or isinstance(field.default, bool) or field.default == []:
@@ -164,7 +164,7 @@ def _default(table: type[BaseModel], field: Declaration) -> Any:
 
 
 def _kind(table: type[BaseModel], key: str) -> Any:
-    """The type of a field without None and without its bounds; words stand for str."""
+    """Type of a field without None and without its bounds; str if it is a choice of words."""
     annotation = table.model_fields[key].annotation
     if typing.get_origin(annotation) in (typing.Union, types.UnionType):
         (annotation,) = (kind for kind in typing.get_args(annotation) if kind is not types.NoneType)

@@ -37,7 +37,7 @@ def report_driving(
     json: bool,
     **options: Any,
 ) -> None:
-    """Solve the tasks given as texts and those of a file, print the answer, and end with code 1 where one is not met.
+    """Solve the tasks given as texts and those of a file, print the answer, and exit with code 1 if one is not met.
 
     ``words`` are the ``--set`` options and the calibration, for the next command.
     """
@@ -60,7 +60,7 @@ def report_driving(
 
 
 def _next(design: str, record: DrivingRecord, words: tuple[list[str] | None, str | None]) -> None:
-    """Predict at the pressures where all tasks are met; else look for another design for the first that is not."""
+    """Report the next command: predict at the pressures found, else select for the first task that is not met."""
     missed = next((task for task in record.tasks if not task.reached), None)
     if missed is None:
         answers_kPa = {round(task.solutions[0].driving_pressure_kPa, 2) for task in record.tasks}
@@ -159,7 +159,7 @@ def _time(gas: TaskGas) -> str:
 
 
 def _notes(task: ReachedTask, record: DrivingRecord) -> list[str]:
-    """Warnings and more solutions of a task."""
+    """Warnings on a task that is reached, and its further solutions."""
     required = _titled(task)
     first, *others = task.solutions
     lines = []

@@ -103,7 +103,7 @@ def _export_simulator(
 
 
 def reader_text(record: ReaderRecord) -> str:
-    """The box of a reader, and how far it is from the full model."""
+    """The box of values in which a reader is valid, and its difference from the full model."""
     box, known, rated_kPa = record.box, record.difference, record.rating.driving_pressure_kPa
     relative, calibration = record.grid.force_uncertainty_relative, record.calibration
     low, high = box.driving_pressure_kPa
@@ -133,7 +133,7 @@ def reader_text(record: ReaderRecord) -> str:
 
 
 def simulator_text(record: SimulatorRecord) -> str:
-    """Mass and inertia, and how far the press of every driving pressure goes."""
+    """Mass and inertia, and the values at the end of the press at every driving pressure."""
     diagonal = ", ".join(f"{record.inertia_about_centre_g_mm2[k][k]:.4g}" for k in range(3))
     head = ["driving kPa", "apex mm", "range mm", "force N", "pressure kPa", "stiffest N/mm"]
     rows = [[f"{getattr(state, field.name):.4g}" for field in fields(state)] for state in record.states]

@@ -54,7 +54,7 @@ def fit_material(
 
 
 def _report_next(name: str, profile: str | None) -> None:
-    """The prediction of a dome in the material, with the profile that makes it."""
+    """Report the next command: predict a dome of the material, with the profile that makes it."""
     copied = "pneutouch new PROFILE --from silicone-casting, or from another of pneutouch list printers"
     first = "" if profile else f"add {name} to the resins of a profile of your own ({copied})"
     made = ("--set", f"print.profile={profile or 'PROFILE'}")
@@ -62,7 +62,7 @@ def _report_next(name: str, profile: str | None) -> None:
 
 
 def fit_text(report: MaterialFit) -> str:
-    """The law, the modulus, and how far each law is off."""
+    """The law, the modulus, and the misfit of each law."""
     law = report.law
     rows = [
         [

@@ -101,7 +101,7 @@ def plan_text(plan: "PlannedCampaign") -> str:
 
 
 def _tests(plan: "PlannedCampaign") -> list[list[str]]:
-    """A row a kind of run, with how often it is run on all specimens, and their sum."""
+    """A row for each kind of run, with its number of runs on all specimens, and a row with their sum."""
     rows = []
     for kind in dict.fromkeys(run.kind for run in plan.runs):
         runs = [run for run in plan.runs if run.kind == kind]

@@ -194,7 +194,7 @@ def _viscous(viscous: Viscous) -> list[str]:
 
 
 def _span(percents: list[float | None]) -> str:
-    """The range of the known percents, or a word that none is known."""
+    """Range of the known percentages, or a note that none is known."""
     known = [value for value in percents if value is not None]
     if not known:
         return "not known"
@@ -203,7 +203,7 @@ def _span(percents: list[float | None]) -> str:
 
 
 def findings_text(findings: Iterable[Finding]) -> str:
-    """Findings with their sources, one a line, or a word that there are none."""
+    """Findings with their sources, one a line, or the words that there are none."""
     return "\n".join(f"{finding_line(finding)}  [{finding.source}]" for finding in findings) or "no findings"
 
 

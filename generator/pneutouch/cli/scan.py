@@ -101,7 +101,7 @@ def _separate(
 
 
 def scan_text(record: ScanRecord) -> str:
-    """States, then the readings of each pattern in each."""
+    """Tables of the states, and of the readings of each pattern in each state."""
     simulated = [state for state in record.states if isinstance(state, SimulatedSignal)]
     states = [
         [

@@ -1,4 +1,4 @@
-"""``pneutouch select``: the inverse.
+"""``pneutouch select``: the inverse problem, from a target to designs.
 
 The options of ``select``: a flag for each field of a target, and a target as the words that give it.
 """
@@ -92,7 +92,7 @@ def target_words(target: Target) -> list[str]:
 
 
 def typed(field: str, value: Any) -> str:
-    """A field of a target, ``table.key``, and its value as an option."""
+    """A field of a target, ``table.key``, and its value, as the option that is typed for it."""
     if field == "setting.assignments":
         return f"--set {shlex.quote(value)}"
     table, _, key = field.partition(".")
@@ -113,7 +113,7 @@ def _text(value: Any, unit: str) -> str:
 
 
 _FLAGS_ALONE = "select"
-"""Stands for the target's file if none is given."""
+"""Name in place of the target's file if none is given."""
 
 
 @app.command()
@@ -197,7 +197,7 @@ def _report(answer: TargetAnswer, path: Path | None, *, json: bool) -> None:
 
 
 def _target(path: Path | None, fields: dict[str, Any], set_: list[str]) -> Target:
-    """The target of a file, options in place of its fields; or of options alone."""
+    """The target of a file, with options in place of its fields; or of options only."""
     from pneutouch.catalogue.library import read_given
     from pneutouch.spec.files import design_inside
     from pneutouch.spec.read import validate

@@ -76,7 +76,7 @@ def selection_text(selection: SelectionRun, changes: Sequence[WorkingChange] = (
 
 
 def _other(selection: SelectionRun, choice: Candidate, rank: int) -> str:
-    """The sensitivity of the model that the row is not of: the solid's, or the atlas's under its plate."""
+    """Sensitivity by the model that the row does not show: the solid, or the atlas under its plate."""
     if choice.contact is not None:
         return f"{choice.contact.plate_kPa_per_N:.3f}"
     return f"{selection.confirmed[rank].sensitivity:.3f}" if rank < len(selection.confirmed) else "-"

@@ -43,7 +43,7 @@ def simulate(
 
 
 def _report(folder: Path, options: SimulationOptions, *, json: bool) -> None:
-    """The folder on stdout; on stderr where runs stop short of their depth."""
+    """Print the folder on stdout; on stderr the notes on runs, such as that some stop short of their depth."""
     from json import loads
 
     from pneutouch.workflows.simulate_inputs import KINDS

@@ -31,7 +31,7 @@ class StopSignals:
             raise KeyboardInterrupt
 
     def end(self) -> None:
-        """Raise nothing again: the command has unwound."""
+        """End the timer that raises the stop again: the command has unwound."""
         signal.setitimer(signal.ITIMER_REAL, 0)
 
     def unraisable(self, fault: Any) -> None:
@@ -41,12 +41,12 @@ class StopSignals:
 
     @property
     def exit_code(self) -> int:
-        """130 after Ctrl-C, 143 after SIGTERM."""
+        """Exit code of the command: 130 after Ctrl-C, 143 after SIGTERM."""
         return 128 + (self.received or 0)
 
     @property
     def line(self) -> str:
-        """Signal that stopped the command, and the addition of the library to it."""
+        """Text that names the signal that stopped the command, with the notes that the library added."""
         by = "stopped by Ctrl-C" if self.received == signal.SIGINT else "stopped by SIGTERM"
         return "; ".join([by, *self.notes])
 
@@ -62,10 +62,9 @@ def _loads_library(frame: FrameType | None) -> bool:
 
 @contextmanager
 def stop_signals(after: Any = None) -> Iterator[StopSignals]:
-    """Handle the stop signals until the block ends; one that is ignored, as under nohup, stays ignored. ``after``
-    handles them from then on.
+    """Handle the stop signals until the block ends; one that is ignored, as under nohup, stays ignored.
 
-    after: what handles them then, in place of what did before.
+    ``after`` handles them from then on; None: the handlers that were there before.
     """
     stop = StopSignals()
     numbers = [number for number in (*STOPS, signal.SIGALRM) if signal.getsignal(number) is not signal.SIG_IGN]
@@ -81,6 +80,6 @@ def stop_signals(after: Any = None) -> Iterator[StopSignals]:
 
 
 def stopped() -> StopSignals | None:
-    """The handler where a stop signal was received."""
+    """The handler of the stop signals if one was received, else None."""
     handler = signal.getsignal(signal.SIGTERM)
     return handler if isinstance(handler, StopSignals) and handler.received is not None else None

@@ -55,9 +55,9 @@ def studio(
 
 
 def forwarding(address: str, folder: Path) -> Path:
-    """A page in ``folder`` that only the user can read and that goes on to the address.
+    """Write a page that only the user can read into ``folder`` and that leads to the address; returns its path.
 
-    Every user of the machine can read the words that a browser is started with: the address, with its token, is none.
+    Every user of the machine can read the command that starts a browser: so the address, with its token, is not in it.
     """
     page = folder / "open.html"
     page.touch(0o600)

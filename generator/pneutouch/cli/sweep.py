@@ -103,7 +103,7 @@ def _plan(
 
 
 def _free_place(plan: SweepPlan, out: Path | None, charts: Path | None) -> Path:
-    """The file of the dataset. Raises InputError where something that is asked for cannot be drawn or written."""
+    """The file of the dataset. Raises InputError if anything required cannot be drawn or written."""
     from pneutouch.output.files import check_writable
     from pneutouch.workflows.sweep.dataset import check_companions
     from pneutouch.workflows.sweep.grid import check_dense
@@ -119,7 +119,7 @@ def _free_place(plan: SweepPlan, out: Path | None, charts: Path | None) -> Path:
 def _report(
     done: SweepResult, rows: list[dict[str, Any]], written: list[Path], maps: list[Path], *, json: bool
 ) -> None:
-    """The table, and last the dataset, on stdout; on stderr what became of the states and the other files."""
+    """Print the table, and last the dataset's path, on stdout; the states by outcome and other files on stderr."""
     if json:
         print_json(
             {
@@ -159,7 +159,7 @@ _FIGURES = {
 
 
 def sweep_text(rows: list[dict[str, Any]], table: Path) -> str:
-    """The swept fields, figures and status of the first rows; where there are more, where they stand."""
+    """Swept fields, figures and status of the first rows; if there are more, the file that holds them all."""
     if not rows:
         return "no state"
     names = list(rows[0])

@@ -1,12 +1,9 @@
 """Output to people: text wrapped to their terminal, severities in colour there, and streams that may be closed.
 
-In a pipe a line stays whole, so that ``grep`` finds it, and nothing is coloured unless FORCE_COLOR requires it.
-
-Tables fitted to the width of the terminal; whole lines if stdout is no terminal.
-
-The last line of a command between a target and a measured sensor: the command that comes next.
-
-Progress of a command: a bar on a terminal, one line a stage elsewhere, on stderr both.
+In a pipe a line stays whole, so that ``grep`` finds it, and nothing is coloured unless FORCE_COLOR requires it. Tables
+fit the width of the terminal; their lines stay whole if stdout is no terminal. A command between a target and a
+measured sensor ends with the command that comes next. Progress goes to stderr: a bar on a terminal, else one line for
+each stage.
 """
 
 import contextlib
@@ -53,7 +50,7 @@ def width(stream: TextIO) -> int | None:
 
 
 def open_closed_streams() -> None:
-    """Lead closed standard streams nowhere: the next file opened would get their number, and messages with it."""
+    """Open closed standard streams on the null device: else the next file would get their number and messages."""
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
             handle = os.open(os.devnull, os.O_RDWR)
@@ -64,7 +61,7 @@ def open_closed_streams() -> None:
 
 
 def _write(stream: TextIO, text: str) -> None:
-    """Write and flush; a reader that went away ends the output and not the command, and stderr never ends it."""
+    """Write and flush; a reader that goes away ends the output, not the command; no error of stderr ends it."""
     try:
         stream.write(text)
         stream.flush()
@@ -90,7 +87,7 @@ def _fitted(text: str, stream: TextIO) -> str:
 
 
 def _wrapped(line: str, columns: int) -> str:
-    """A line over as many as it takes, the further ones indented. Commands and TOML, which people copy, stay on one
+    """A line wrapped to ``columns``, its further lines indented. Commands and TOML, which people copy, stay on one
     line."""
     if len(line) <= columns or _COPIED.match(line):
         return line
@@ -109,7 +106,7 @@ def _wrapped(line: str, columns: int) -> str:
 
 
 def _is_coloured(stream: TextIO) -> bool:
-    """NO_COLOR forbids colour, FORCE_COLOR or CLICOLOR_FORCE require it, else a terminal that is able to has it."""
+    """True if text is coloured: never by NO_COLOR, always by FORCE_COLOR or CLICOLOR_FORCE, else by the terminal."""
     if os.environ.get("NO_COLOR"):
         return False
     if any(os.environ.get(name, "0") not in ("", "0") for name in ("FORCE_COLOR", "CLICOLOR_FORCE")):
@@ -118,7 +115,7 @@ def _is_coloured(stream: TextIO) -> bool:
 
 
 _NARROW = 16
-"""Letters of a figure or a name that is not broken; longer cells are text."""
+"""Greatest number of letters of a figure or a name, which are not broken; longer cells are text."""
 
 _APART = 2
 """Spaces between columns."""
@@ -127,7 +124,7 @@ _APART = 2
 def table_text(
     head: Sequence[str], rows: Sequence[Sequence[str]], columns: int | None = None, *, indent: str = ""
 ) -> str:
-    """Left-aligned columns two spaces apart, under a head where there is one; "" without rows and head.
+    """Left-aligned columns two spaces apart, under a head if there is one; "" without rows and head.
 
     Cells are wrapped so that no line has more than ``columns`` letters (None: the terminal's).
     """
@@ -142,7 +139,7 @@ def table_text(
 
 def _lines_of(head: Sequence[str], rows: Sequence[Sequence[str]], columns: int) -> list[str]:
     """The lines of the table. Figures and names stay whole, texts take as many lines as they need; columns that do not
-    fit follow below, behind the first one."""
+    fit follow below, after the first one again."""
     table = [head, *rows] if head else list(rows)
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     least = [min(each, _NARROW) for each in widths]
@@ -159,7 +156,7 @@ def _lines_of(head: Sequence[str], rows: Sequence[Sequence[str]], columns: int) 
 
 
 def _folded(head: Sequence[str], rows: Sequence[Sequence[str]], whole: Sequence[bool], columns: int) -> list[str]:
-    """The lines of a table whose cells are folded, but for the columns that stay whole."""
+    """The lines of a table whose cells are folded, except in the columns that are ``whole``."""
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
@@ -176,7 +173,7 @@ def _folded(head: Sequence[str], rows: Sequence[Sequence[str]], whole: Sequence[
 
 
 def report_next(*words: object, first: str = "") -> None:
-    """Print ``next: pneutouch WORDS`` on stderr, quoted so that it works as it stands; ``first`` is done by hand."""
+    """Print ``next: pneutouch WORDS`` on stderr, quoted so that it works as it stands; ``first`` is a step by hand."""
     command = shlex.join(["pneutouch", *map(str, words)])
     notify(f"{first}, then: {command}" if first else f"next: {command}")
 
@@ -188,7 +185,7 @@ def set_words(assignments: Iterable[str] | None, calibration: str | None = None)
 
 
 def report_written(path: Path) -> None:
-    """Report a design file that was written, and that it is to be checked: by its name where that is found."""
+    """Report a written design file, and as the next command its check, by name if the catalogue finds it so."""
     from pneutouch.catalogue import Library
 
     echo(f"\nwritten: {path}")
@@ -197,7 +194,7 @@ def report_written(path: Path) -> None:
 
 
 class ProgressCallback(Protocol):
-    """Receives how many of all are done and, where it changes, the current task."""
+    """Callback for progress: how many of a total are done and, if it changes, the current task."""
 
     def __call__(self, done: int, total: int, what: str | None = None) -> None:
         """Move the bar."""
@@ -205,9 +202,9 @@ class ProgressCallback(Protocol):
 
 @contextlib.contextmanager
 def bar(what: str, *, unit: str = "") -> Iterator[ProgressCallback]:
-    """A stage, such as "reading runs", or "" where the callback names its stages; a bar that moves by the callback.
+    """Bar for a stage, such as "reading runs", or "" if the callback names the stages; yields the callback.
 
-    ``unit`` is that of the counts at the bar, where they are not of things."""
+    ``unit`` is the unit of the counts at the bar; "" for counts of things."""
     if not _moves():
         yield _lines(what)
         return
@@ -231,7 +228,7 @@ def _moves() -> bool:
 
 
 def _lines(what: str) -> ProgressCallback:
-    """One line a stage, the first at once."""
+    """Callback that prints one line for each stage; the line of the first stage is printed at once."""
     last = what
     if what:
         notify(f"{one_line(what)} ...")

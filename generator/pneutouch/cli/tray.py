@@ -89,7 +89,7 @@ def _report(step: str) -> None:
 
 
 def _text(record: TrayRecord) -> str:
-    """A line a job: what to load, how full it is."""
+    """A line for each print job: its resins, and how full it is; above them the printer and the parts."""
     lines = [f"{record.printer}: {counted(record.parts, 'part')}, {record.resin_changes}"]
     lines += [
         f"{job.name}: {counted(job.parts, 'part')}, {' + '.join(job.resins)}, {job.mode}, "

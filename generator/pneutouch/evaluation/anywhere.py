@@ -1,4 +1,4 @@
-"""Reading of a design under contact off the centre: from the shipped table, for sheet and prediction."""
+"""Errors of a design's force reading under contact off the centre, from the shipped table."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ def _rows(domes: DomeConditions, levels: Array, size: float) -> tuple[ContactRow
 def _round_rows(
     kind: ContactKind, sizes: Sequence[tuple[float, float]], domes: DomeConditions, levels: Array, size: float
 ) -> list[ContactRow]:
-    """Rows of balls or edges of radii and offsets in R0."""
+    """Table rows of balls or edges with these radii and offsets, in R0."""
     radii, offsets = np.array(sizes).T
     places = (edge_places if kind == "edge" else ball_places)(domes.wall_ratio, radii, offsets)
     errors = _percent(domes, places, levels)

@@ -1,4 +1,4 @@
-"""Effect of a calibration on a design's sensor: its parameters, its correction, its error.
+"""Effect of a calibration on a design's sensor: parameters, correction and error.
 
 Check that parameters of a design's sensor can be fitted to measured runs.
 """
@@ -21,10 +21,10 @@ BEYOND = 1.05
 
 
 def calibrated_sensor(sensor: Sensor, scene: ResolvedDesign) -> Sensor:
-    """The sensor with the parameters of its calibration; without one as it is.
+    """The sensor with the parameters of its calibration; unchanged without one.
 
-    Gas volumes add up: a dead volume that the design has more or less than when it was calibrated, such as by a longer
-    tube, is more or less than the fitted one too.
+    Gas volumes add up: a change of the design's dead volume since the calibration, such as by a longer tube, is added
+    to the fitted dead volume.
     """
     calibration = scene.calibration
     if calibration is None:
@@ -126,7 +126,7 @@ def _span(factors: list[float]) -> str:
 
 
 def calibrated_error(calibration: SensorCalibration) -> SensitivityError | None:
-    """The part of ``error_estimate`` on sensitivity by the residuals; None if no curve was measured."""
+    """Error of the sensitivity, for ``error_estimate``, from the residuals; None if no curve was measured."""
     response = calibration.response
     if response is None:
         return None

@@ -1,6 +1,6 @@
 """Curves and trade-off of one design for its datasheet: effects of the air, of the resin and of the driving pressure.
 
-They are the atlas's where it covers the sensor, corrected by the solid under another contact.
+They come from the atlas where it covers the sensor, corrected by the solid under another contact.
 """
 
 from __future__ import annotations
@@ -41,18 +41,18 @@ if TYPE_CHECKING:
 
 
 POINTS = 41
-"""Driving pressures of a curve."""
+"""Number of driving pressures of a curve."""
 
 _BUDGETS = 7
-"""Driving pressures at which the interval is worked out; its logarithm is straight between them."""
+"""Number of driving pressures at which the interval is computed; its logarithm is linear between them."""
 
 
 def curve(sensor: Sensor, highest: float, label: str) -> SensitivityCurve | None:
-    """The curve from no driving pressure to ``highest`` (MPa), or to `RATED_SHARE` of the limit point if that comes
-    first.
+    """Sensitivity by the atlas from zero driving pressure to ``highest`` (MPa), or to `RATED_SHARE` of the limit point
+    if that comes first.
 
-    The sensor must lie in the atlas. Pressures at which it has no answer are left out; None if fewer than two are
-    left.
+    The sensor must lie in the atlas. Pressures at which the atlas has no answer are left out; None if fewer than two
+    are left.
     """
     found = _by_atlas({label: sensor}, highest, POINTS, RATED_SHARE, (OUTSIDE,)).get(label)
     if found is None:
@@ -64,10 +64,10 @@ def curve(sensor: Sensor, highest: float, label: str) -> SensitivityCurve | None
 def under_contact(
     sensor: Sensor, plate: SensitivityCurve, states: Sequence[SensorState], least: int = 3
 ) -> SensitivityCurve:
-    """A curve of the sensor under a plate without friction made that of the sensor under its own contact.
+    """Convert a sensor's curve under a plate without friction to the sensor's own contact.
 
-    ``states`` are the solid's, at a few driving pressures; the ratio is straight in its logarithm between them, and
-    ``least`` pressures. Those at which it cannot be solved are left out.
+    ``states`` are the solid's at a few driving pressures. The logarithm of the ratio is linear between them, and
+    between ``least`` pressures. Pressures at which the ratio cannot be solved are left out.
     """
     pressures = tuple((plate.driving_pressure_kPa * KPA).tolist())
     ratio = CorrectedAtlas(sensor, pressures, states, least).ratio[SENSITIVITY]
@@ -90,8 +90,8 @@ def interval(
 ) -> tuple[Array, Array]:
     """Lower and upper end of a curve's k = 2 interval, kPa/N, (n,) each.
 
-    ``materials`` are all that there are; ``model`` gives the numerical error. ``states`` are the solid's of another
-    contact than a plate without friction.
+    ``materials`` are all known resins; ``model`` gives the numerical error. ``states`` are the solid's under contact
+    other than a plate without friction.
     """
     at = np.linspace(drawn.driving_pressure_kPa[0], drawn.driving_pressure_kPa[-1], _BUDGETS)
     estimate = spread(
@@ -104,16 +104,16 @@ def interval(
 
 
 _POINTS = {"membrane": 12, "atlas": 25, "solid": 4}
-"""Driving pressures a curve is computed at: the solid costs a tenth of a second each."""
+"""Number of driving pressures of a curve by model: the solid needs a tenth of a second for each."""
 
 _MARGIN = 0.95
 """Curves stop at this share of a resin's own limit."""
 
 _AT_DEPTH = 1e-3
-"""A range ends at the depth where the logarithm of its end is nearer to it than this."""
+"""Difference of logarithms below which the end of a range counts as the depth."""
 
 _LIMIT_SHARE = {"membrane": 1.0, "solid": 0.8}
-"""A safe share of the membrane's limit pressure: thick compressible walls reach theirs earlier."""
+"""Safe share of the membrane's limit pressure, by model: thick compressible walls reach their own limit earlier."""
 
 
 def in_resin(sensor: Sensor, material: Material) -> Sensor:
@@ -132,10 +132,10 @@ def resin_curves(
 ) -> dict[str, SensitivityCurve]:
     """Sensitivity over driving pressure, from 0 to ``highest`` (MPa), by resin title.
 
-    Each curve stops short of its own resin's limit point. A sheet of the membrane's is drawn by the membrane, any other
-    by the atlas where the sensor is inside it, by the solid where not. Under friction or another object a few of the
-    solid's suffice with the atlas; ``states`` of the sensor are what has been solved already. There is none for contact
-    off the axis.
+    Each curve stops short of its own resin's limit point. For the model membrane all curves are the membrane's; else
+    they are the atlas's where it covers the sensor, and the solid's where not. Under friction or another object the
+    atlas is corrected by a few states of the solid; ``states`` of the sensor are already solved. Contact off the axis
+    has no curves.
     """
     if sensor.protocol.off_axis is not None:
         return {}
@@ -159,10 +159,10 @@ def resin_curves(
 def _by_atlas(
     variants: dict[str, Sensor], highest: float, points: int, share: float, left_out: tuple[int, ...]
 ) -> dict[str, SensitivityCurve]:
-    """Curves by title of the sensors that the atlas covers, all in one call, from no driving pressure to ``highest``
-    (MPa) or that share of their limit points.
+    """Curves by title of the sensors that the atlas covers, all in one call, from zero driving pressure to ``highest``
+    (MPa) or ``share`` of their limit points.
 
-    Pressures without an answer, and those whose range ends in one of the ways ``left_out``, are missing.
+    Pressures without an answer, and pressures whose range ends in one of the ways ``left_out``, are missing.
     """
     inside = {title: variant for title, variant in variants.items() if outside("atlas", variant) is None}
     if not inside:
@@ -183,11 +183,11 @@ def _by_atlas(
 
 
 def _under_contact(variant: Sensor, plate: SensitivityCurve, states: Sequence[SensorState]) -> SensitivityCurve | None:
-    """A resin's curve under its own contact, from few of the solid's; None if it cannot be solved at both ends.
+    """A resin's curve under its own contact, from few states of the solid; None if both ends cannot be solved.
 
-    Where the ranges at both ends go to the depth, the atlas's curve ``plate`` times the ratio of the solid to it, whose
-    logarithm is straight in between, or between the ``states`` where there are any. Where an event ends a range, the
-    plate's range ends elsewhere: there a parabola through the logarithms of the solid's at both ends and the middle.
+    If the ranges at both ends go to the depth, the curve is the atlas's ``plate`` times the ratio of the solid to it,
+    linear in its logarithm between the ends, or between the ``states`` if there are any. Where an event ends a range,
+    the plate's range ends elsewhere: then a parabola goes through the solid's logarithms at both ends and the middle.
     """
     at = plate.driving_pressure_kPa * KPA
     lowest, highest = float(at[0]), float(at[-1])
@@ -204,8 +204,8 @@ def _under_contact(variant: Sensor, plate: SensitivityCurve, states: Sequence[Se
 
 
 def _by_model(variant: Sensor, highest: float, model: str, closure: str | None) -> SensitivityCurve | None:
-    """One resin's curve by a model of its own; None if this geometry cannot be solved in it, which must not stop the
-    sheet."""
+    """One resin's curve computed with ``model`` itself; None if this geometry cannot be solved in the resin, which must
+    not stop the sheet."""
     top = min(highest, _MARGIN * _LIMIT_SHARE[model] * limit_point(variant).driving_pressure)
     pressures = np.linspace(0.0, top, _POINTS[model])
     try:
@@ -226,9 +226,9 @@ def air(evaluation: Evaluation) -> GasNotes:
 
 
 def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
-    """The design's sensitivity from no driving pressure to ``highest`` (MPa); None if the atlas has no curve.
+    """The design's sensitivity from zero driving pressure to ``highest`` (MPa); None if the atlas has no curve.
 
-    The sensitivities at its own driving pressures are those of the prediction's model.
+    At the design's own driving pressures the sensitivities are by the prediction's model.
     """
     scene, sensor, prediction = evaluation.scene, evaluation.sensor, evaluation.prediction
     drawn = curve(under_plate(sensor), highest, "this design")
@@ -256,7 +256,7 @@ def tradeoff(evaluation: Evaluation) -> TradeOff | None:
     """Fronts at the design's highest driving pressure in every resin that its printer runs and the atlas covers.
 
     Under another central contact than a plate without friction the atlas is corrected by the solid. None if the
-    prediction has no figures there, and for contact off the axis.
+    prediction has no figures at that pressure, and for contact off the axis.
     """
     sensor, state = evaluation.sensor, evaluation.prediction.states[-1]
     if state.figures is None or sensor.protocol.off_axis is not None:
@@ -278,7 +278,7 @@ def tradeoff(evaluation: Evaluation) -> TradeOff | None:
 
 
 def resized(sensor: Sensor, problem: SelectionProblem) -> SolveCandidate:
-    """The solid's answers of candidates: the sensor with their resins and sizes, in everything else as it is."""
+    """Solver of candidates by the solid: the sensor with a candidate's resin and sizes, otherwise unchanged."""
 
     def solve(resin: CandidateResin, pool: CandidatePool, pressures: list[float]) -> SolvedStates:
         """States of a candidate at driving pressures (MPa), or why there are none."""

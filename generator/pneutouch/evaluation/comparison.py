@@ -72,8 +72,8 @@ def effects_of(uncertainty: Mapping[str, Any], figure: str) -> tuple[SourceEffec
 def variance_of_ratio(first: Sequence[SourceEffect], second: Sequence[SourceEffect], *, same_resin: bool) -> float:
     """Variance of the logarithm of the ratio of two figures (JCGM 100, 5.2.2).
 
-    Of sensors in the same resin, the sources on the resin are taken as fully correlated, the model's error by
-    `MODEL_CORRELATION` where both have it from the same measurements. All else is taken as independent.
+    For sensors in the same resin, sources on the resin are taken as fully correlated, and the model's errors by
+    `MODEL_CORRELATION` if both come from the same measurements. All else is taken as independent.
     """
     total = sum(effect.size**2 for effect in (*first, *second))
     if not same_resin:
@@ -95,7 +95,7 @@ def _coefficient(one: SourceEffect, other: SourceEffect) -> float:
 
 
 CURVE_KEYS = tuple(field.name for field in fields(CurvePoints))
-"""Quantities of a curve that is drawn."""
+"""Keys of the quantities of a drawn curve."""
 
 COVERAGE = 2.0
 """k of every interval; a difference that exceeds k combined standard uncertainties is no chance at about 95 %."""
@@ -142,7 +142,7 @@ class ComparedFigure:
 
     @property
     def variance(self) -> float | None:
-        """Variance of the logarithm as the interval gives it, k = 2; None without an interval."""
+        """Variance of the logarithm, from the effects or else from the k = 2 interval; None without either."""
         if self.effects:
             return sum(effect.size**2 for effect in self.effects)
         if self.low is None or self.high is None or self.value == 0:
@@ -154,7 +154,7 @@ class ComparedFigure:
 
 @dataclass(frozen=True, slots=True)
 class ComparedState:
-    """A driving pressure: figures by key, and curves of arrays of one length: one predicted, or one a measured run."""
+    """Figures by key at a driving pressure, and curves: one predicted, or one for each measured run."""
 
     driving_pressure_kPa: float
     figures: Mapping[str, ComparedFigure]
@@ -165,8 +165,8 @@ class ComparedState:
 class ComparedSensor:
     """One column of a comparison.
 
-    ``inputs`` are by ``table.key``; ``resin`` is all that is known of the membrane's, None if it was measured;
-    ``assembly`` draws the parts; ``simulated``: a program made the runs that it rests on.
+    ``inputs`` are by ``table.key``; ``resin`` is all that is known of the membrane's resin, None for a measured sensor;
+    ``assembly`` draws the parts; ``simulated`` is True if its runs were simulated.
     """
 
     name: str
@@ -186,14 +186,14 @@ class ComparedSensor:
 
 
 def labelled(sensors: Sequence[ComparedSensor]) -> tuple[str, ...]:
-    """A name for each column: the sensor's, its source where two have the same, numbered where that does not help."""
+    """Label of each column: the sensor's name, its source if names are equal, numbered if labels still are."""
     names = [sensor.name for sensor in sensors]
     texts = [s.source if names.count(s.name) > 1 and s.source else s.name for s in sensors]
     return tuple(f"{text} ({k})" if texts.count(text) > 1 else text for k, text in enumerate(texts, start=1))
 
 
 def shared_pressures_kPa(sensors: Sequence[ComparedSensor]) -> list[float]:
-    """Driving pressures that all have. Raises InputError if there are none."""
+    """Driving pressures that all sensors share. Raises InputError if there are none."""
     first, *others = sensors
     shared_kPa = [
         s.driving_pressure_kPa for s in first.states if all(other.state(s.driving_pressure_kPa) for other in others)
@@ -213,7 +213,7 @@ def _listed(sensor: ComparedSensor) -> str:
 
 
 def different_inputs(sensors: Sequence[ComparedSensor]) -> dict[str, tuple[Any, ...]]:
-    """The inputs that differ, a value a sensor; None if unknown."""
+    """Inputs that differ, by key, with one value for each sensor; None if unknown."""
     keys = dict.fromkeys(key for sensor in sensors for key in sensor.inputs)
     # What a prediction does not name it has not, but the wall, which a calibration alone names; of a measurement no
     # input is known.
@@ -282,7 +282,7 @@ def _of(sensor: ComparedSensor, key: str, pressure_kPa: float | None) -> Compare
 def _difference(
     one: ComparedFigure | None, other: ComparedFigure | None, *, same_resin: bool
 ) -> DifferenceRecord | None:
-    """The second figure less the first, with the interval of the difference in percent, and whether it exceeds it."""
+    """The second figure less the first, with the interval in percent, and True if it exceeds its uncertainty."""
     if one is None or other is None:
         return None
     difference = other.value - one.value
@@ -334,7 +334,7 @@ _ROUNDING, _LEAST_POINTS = 1e-9, 3
 def figures_at(
     indentation: Array, force: Array, rise_kPa: Array, range_end: float, specimens: Sequence[Sequence[Array]]
 ) -> dict[str, float]:
-    """Figures of a curve (mm, N, kPa; one length) by key of `bench.figure.FIGURES`, as measured runs would give them.
+    """Figures of a curve (mm, N, kPa; one length) by key of `bench.figures.FIGURES`, as measured runs would give them.
 
     ``specimens`` holds the depths of each run of each specimen, mm. The curve is read at every run's own depths, as far
     as its range goes, and the figures are averaged as measured ones are: over the runs, then over the specimens.

@@ -40,16 +40,16 @@ if TYPE_CHECKING:
 
 
 _AT_ONCE = 1e-6
-"""Share of R0 within which the contact reaches an edge at first touch."""
+"""Indentation, as a share of R0, up to which contact that reaches an edge does so at first touch."""
 
 _STEEPEST = math.radians(60.0)
 """Greatest lean of the dome, off the axis, at which a round object may touch it first."""
 
 _POINTS = 2001
-"""Points of the unloaded dome that an object may touch first."""
+"""Number of points of the unloaded dome among which first touch is sought."""
 
 _DRAWN = 1.5
-"""Radius over that of the dome to which an object is drawn."""
+"""Radius to which an object is drawn, over that of the dome."""
 
 _MAKE = {
     "ball": lambda sizes: ball(sizes["ball_radius_mm"]),
@@ -114,7 +114,7 @@ def _check_cells(scene: ResolvedDesign, sensor: Sensor) -> None:
 
 
 def check_shape(scene: ResolvedDesign) -> None:
-    """Raise InputError for a dome of another shape than the atlas's, with which no search is made."""
+    """Raise InputError for a dome of another shape than the atlas's: searches use the atlas."""
     membrane = scene.design.membrane
     why = no_hemisphere(membrane.dome)
     if why is not None:
@@ -125,7 +125,7 @@ def check_shape(scene: ResolvedDesign) -> None:
 def check_object(scene: ResolvedDesign, sensor: Sensor) -> None:
     """Raise InputError for an object that the mesh cannot follow or that meets the unloaded dome with its edge.
 
-    Off the axis objects are round, and the greatest offset states where they do.
+    Off the axis objects are round, and the greatest offset (`_check_offset`) limits where they touch.
     """
     _check_offset(scene, sensor)
     body = sensor.protocol.body
@@ -140,7 +140,7 @@ def check_object(scene: ResolvedDesign, sensor: Sensor) -> None:
 
 
 def _check_offset(scene: ResolvedDesign, sensor: Sensor) -> None:
-    """Raise InputError for an object so far off the axis that it touches the dome lower than at 60 degrees, or not."""
+    """Raise InputError for an offset at which the object touches the dome lower than at 60 degrees, or not at all."""
     test, shape = sensor.protocol, sensor.dome.shape
     if not test.offset:
         return
@@ -202,7 +202,7 @@ def _edge_first(scene: ResolvedDesign) -> InputError:
 
 
 def _object_error(scene: ResolvedDesign, problem: str, remedy: str, which: int = -1) -> InputError:
-    """An error of the object, on one of the keys that shape it; the last is that of its least radius."""
+    """InputError about the object, on one of the keys of its sizes; the last key sets its least radius."""
     key, value = list[tuple[str, Any]](scene.design.contact.sizes().items())[which]
     return InputError(problem, file=scene.where, key=f"contact.{key}", value=value, remedy=remedy)
 

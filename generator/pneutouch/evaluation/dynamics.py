@@ -22,15 +22,15 @@ if TYPE_CHECKING:
     from pneutouch.parts import Assembly
 
 GAP = "gap"
-"""The piece of an air path that is a volume next to the cavity, not a duct."""
+"""Name of the piece of an air path that is a volume next to the cavity, not a duct."""
 
 GAUGE_RATE = "sampling of the gauge"
-"""Limit of the bandwidth by the gauge, next to those of `mechanics.line.band`."""
+"""Name of the gauge's limit of the bandwidth; the other limits are those of `mechanics.line.band`."""
 
 _DIGITS = 6
 
 _SAME = 1e-6
-"""Relative difference of dead volumes below which they are one."""
+"""Relative difference of dead volumes below which they count as equal."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,10 +58,10 @@ class SensorBandwidth:
 
     Attributes:
         pieces: The air's path as drawn.
-        end_volume: Gas behind it, mm3: of the gauge, or what the stated dead volume is greater by.
-        note: Note on a dead volume of the prediction that is not that of the path; else None.
+        end_volume: Gas behind the path, mm3: of the gauge, or the excess of the stated dead volume.
+        note: Note if the prediction's dead volume is not that of the path; else None.
         rate_Hz: Readings a second of the gauge; None if that is unknown.
-        states: One a driving pressure and series of relaxation data.
+        states: One for each driving pressure and series of relaxation data.
     """
 
     pieces: tuple[AirPiece, ...]
@@ -101,7 +101,7 @@ def line_of(assembly: Assembly, sensor: Sensor) -> tuple[tuple[AirPiece, ...], f
 def state_dynamics(
     assembly: Assembly, sensor: Sensor, state: SensorState, series: Prony | None, compliance: float
 ) -> SensorDynamics:
-    """A state for small changes, with a ``compliance`` of the wall in mm3/MPa."""
+    """Linear dynamics of a state for small changes, with a ``compliance`` of the wall in mm3/MPa."""
     pieces, end, _ = line_of(assembly, sensor)
     air = AirState(sensor.gas.ambient_pressure + state.driving_pressure)
     elements: list[Duct | GasVolume] = [
@@ -122,9 +122,9 @@ def state_dynamics(
 
 
 def free_compliance(prediction: SensorPrediction, state: SensorState) -> float:
-    """Volume that the inflated dome yields to a pressure inside, without contact, mm3/MPa.
+    """Volume compliance of the inflated dome without contact, mm3/MPa.
 
-    At first contact it is also that under a constant force: the plate rides on the dome.
+    At first contact it also holds under a constant force: the plate rides on the dome.
     """
     curve = prediction.inflation
     slope = float(np.interp(state.cavity_volume, curve.volume, np.gradient(curve.pressure, curve.volume)))

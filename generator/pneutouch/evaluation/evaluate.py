@@ -1,4 +1,4 @@
-"""A design evaluated: drawn, predicted, and refused where it cannot be."""
+"""Evaluation of a design: it is drawn and predicted, or refused where that is impossible."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ CLAMPS = ("base", "flange")
 
 @dataclass(frozen=True)
 class PredictionOptions:
-    """Options of a prediction: the model, the membrane's closure, the clamp and what ``auto`` must meet.
+    """Options of a prediction: the model, the membrane's closure, the clamp and the tolerance that ``auto`` must meet.
 
     ``aged`` requests the sensor after a year; a recipe does not carry it: what is printed is fresh.
     """
@@ -78,7 +78,7 @@ class Evaluation:
 
     @property
     def alike(self) -> Resins:
-        """Those of `resins` that are made as the membrane is: printed ones, or those of the casting profile."""
+        """Resins of `resins` that are made as the membrane is: printed, or those of the casting profile."""
         return alike(self.scene.printer, self.resins)
 
     @cached_property
@@ -188,7 +188,7 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
 
 
 class DrawnScene(NamedTuple):
-    """A scene with its bodies and sensor, the options with a model's name, and assumptions of its age."""
+    """A scene with its bodies and sensor, the options with the chosen model, and assumptions on ageing."""
 
     scene: ResolvedDesign
     assembly: Assembly
@@ -198,7 +198,7 @@ class DrawnScene(NamedTuple):
 
 
 def drawn(scene: ResolvedDesign, options: PredictionOptions) -> DrawnScene:
-    """Draw a scene, so that a model can be asked for its sensor. Raises InputError if it cannot work."""
+    """Draw a scene and make its sensor, without a prediction. Raises InputError if it cannot work."""
     if options.model == USUAL:
         options = replace(options, model="harmonic" if scene.design.contact.off_axis else "solid")
     check_options(scene, options.model, options.clamp)
@@ -214,8 +214,8 @@ def drawn(scene: ResolvedDesign, options: PredictionOptions) -> DrawnScene:
 def evaluate_drawn(
     drawn: DrawnScene, find_resins: Callable[[], Resins], answers: Mapping[str, Answered] = MappingProxyType({})
 ) -> Evaluation:
-    """Predict a scene that is drawn, with the ``answers`` that models gave already. Raises InputError if it cannot
-    work."""
+    """Predict a drawn scene; ``answers`` are results already computed, by the model's name. Raises InputError if it
+    cannot work."""
     scene, assembly, sensor, options, aged = drawn
     pressures = [p * KPA for p in scene.design.pneumatics.driving_pressures_kPa]
     try:
@@ -256,7 +256,7 @@ def _sensitivity_error(scene: ResolvedDesign, sensor: Sensor, model: str, closur
 
 
 def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
-    """The mechanics' view of an assembly: mm and MPa; of a calibrated design that of the calibrated sensor."""
+    """Sensor of an assembly for the mechanics, in mm and MPa, with the parameters of a calibration if there is one."""
     layout = assembly.layout
     design = assembly.scene.design
     sensor = _material_sensor(assembly.scene).replace(
@@ -281,7 +281,7 @@ def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
 
 
 def _material_sensor(scene: ResolvedDesign) -> Sensor:
-    """The paper's sensor in the scene's resin; a law that makes no solid is the material file's fault."""
+    """The paper's sensor in the scene's resin; an error of its law names the design's key of the material."""
     try:
         return material_sensor(scene.membrane_material)
     except InputError as error:
@@ -309,7 +309,7 @@ def _aged(scene: ResolvedDesign, sensor: Sensor) -> tuple[Sensor, str]:
 
 
 def _beyond_limit(scene: ResolvedDesign, error: BeyondLimitError) -> InputError:
-    """The limit point in terms of the design file."""
+    """The error of a pressure beyond the limit point, in terms of the design file."""
     pressures_kPa = scene.design.pneumatics.driving_pressures_kPa
     k = int(np.argmin([abs(p - error.pressure / KPA) for p in pressures_kPa]))
     return StatedPressureError(

@@ -23,7 +23,7 @@ CRITERION = f"{SIGMAS:g} standard deviations of the difference of two readings"
 
 
 def reading_of(scene: ResolvedDesign) -> GaugeReading:
-    """The gauge of a design at its ambient pressure; that of the paper's rig where it names none."""
+    """The gauge of a design at its ambient pressure; the gauge of the paper's rig if the design names none."""
     return gauge_reading(scene.gauge, scene.design.pneumatics.ambient_pressure_kPa * KPA)
 
 

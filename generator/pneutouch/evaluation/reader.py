@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 
 
 COLUMNS = 41
-"""Indentations of a row of the grid: the first is no contact, the last the end of the range."""
+"""Number of indentations in a row of the grid: the first is no contact, the last the end of the range."""
 
 ROWS = {"atlas": 17, "membrane": 17, "solid": 9, "harmonic": 5}
-"""Driving pressures of the grid by model: the cost of a press differs a thousandfold."""
+"""Number of driving pressures of the grid by model: the cost of a press differs a thousandfold."""
 
 GAS_ROWS = 65
-"""Driving pressures at which the gas volume without contact is tabulated."""
+"""Number of driving pressures at which the gas volume without contact is tabulated."""
 
 CHANGE_K = 5.0
 """Change of the gas temperature since the tare, up and down, that a reader corrects: our choice."""
@@ -38,7 +38,7 @@ CHANGE_KPA = 3.0
 """Ambient pressure, up and down from the design's, that a reader corrects: our choice, the weather of most days."""
 
 REFERENCE_K = 293.15
-"""Temperature at which a change by a kelvin is counted."""
+"""Temperature, K, from which changes of temperature are counted."""
 
 _LIMIT_SHARE = 0.97
 """Share of the limit point up to which the grid goes beyond the highest driving pressure of the design."""
@@ -67,7 +67,7 @@ class ReaderGrid:
         pressure_factor: Pressure rise of the sensor over that of the gas law, (n,): 1 without a calibration.
         gas_pressure: Equal steps over the same span, MPa (k,).
         gas_volume: Cavity and dead volume without contact at these, mm3 (k,).
-        low, high: The driving pressures that may be set, MPa.
+        low, high: Lowest and highest driving pressure that may be set, MPa.
         model: Name of the model.
     """
 
@@ -137,10 +137,10 @@ def fine(sensor: Sensor) -> Sensor:
 
 
 def _driving_pressures(evaluation: Evaluation, lowest: float, highest: float) -> tuple[Array, int, float, float]:
-    """Rows of the grid, the first that is not below zero, and the lowest and highest driving pressure of the box.
+    """Rows of the grid, number of the first that is not below zero, lowest and highest driving pressure of the box.
 
-    Beyond those of the design the box has what a change of the temperature by `CHANGE_K` makes of them, and the grid
-    what the ambient pressure adds. Below zero the models do not go.
+    The box goes beyond the design's driving pressures by the effect of a temperature change of `CHANGE_K`, and the grid
+    beyond the box by the effect of the ambient pressure. Below zero the models have no answer.
     """
     ambient = evaluation.sensor.gas.ambient_pressure
     limits = evaluation.prediction.limits
@@ -193,7 +193,7 @@ def _at(x: Array, y: Array, at: Array) -> Array:
 
 
 def _deepest(evaluation: Evaluation) -> float:
-    """Greatest indentation that the calibration has measured, mm."""
+    """Greatest indentation that the calibration covers, mm; infinite without a calibration."""
     calibration = evaluation.scene.calibration
     measured = None if calibration is None else calibration.source.depth_mm
     return np.inf if measured is None else BEYOND * measured
@@ -210,7 +210,7 @@ def _common_reach(ends: Array) -> Array:
 
 
 def _continued(rows: Array, below: int) -> Array:
-    """Rows with ``below`` more in front, by the parabola through the first three."""
+    """Rows with ``below`` rows added in front, by the parabola through the first three."""
     steps = -np.arange(below, 0, -1).reshape(-1, *[1] * (rows.ndim - 1))
     a, b, c = rows[0], rows[1], rows[2]
     added = a + steps * (b - a) + 0.5 * steps * (steps - 1) * (c - 2 * b + a)
@@ -233,13 +233,13 @@ STATES = 10_000
 
 _PRESSES = {"atlas": 100, "membrane": 100}
 _FEW = 4
-"""Presses compared where each costs seconds."""
+"""Number of presses compared if each costs seconds."""
 
 _READ = (Status.OK, Status.ABOVE_RATING)
 
 
 class ReaderDifference(NamedTuple):
-    """Largest difference of the force from the full model, N; ``states`` of those as tared have a force."""
+    """Largest differences of the force from the full model, N; ``states`` is the number of states compared as tared."""
 
     nominal_N: float
     other_conditions_N: float
@@ -289,7 +289,7 @@ def _curves(evaluation: Evaluation, sensor: Sensor, grid: ReaderGrid, pressures:
 def _tared(
     reader: ForceReader, sensor: Sensor, pressure: float, curve: ReaderCurve, grid: ReaderGrid
 ) -> Iterator[dict[str, float]]:
-    """Tare so that the gas, warmer or colder since, has the driving pressure of a curve (MPa); conditions then."""
+    """Tare so that gas warmed or cooled since has a curve's driving pressure (MPa); yields the conditions then."""
     ambient = sensor.gas.ambient_pressure
     for change in (-CHANGE_K, CHANGE_K):
         ratio = 1.0 + change / REFERENCE_K

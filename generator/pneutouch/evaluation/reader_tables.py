@@ -37,7 +37,7 @@ DAYS = 365.0
 """Days of a year of ageing, as in `SensorCalibration.remaining_year`."""
 
 UNCERTAINTY_COLUMNS = 11
-"""Shares of the indentation at which the uncertainty is tabulated."""
+"""Number of shares of the indentation at which the uncertainty is tabulated."""
 
 _STEP = 0.015
 """Half of the central difference, relative, as in `mechanics.uncertainty.derivatives`."""
@@ -235,7 +235,7 @@ def _margin(grid: ReaderGrid) -> float:
 
 
 def _one(value: float) -> float:
-    """The number as float32 has it, with the digits that distinguish it."""
+    """The number rounded to float32, with as many digits as distinguish it."""
     return float(f"{float(np.float32(value)):.9g}")
 
 

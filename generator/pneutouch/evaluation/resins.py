@@ -22,12 +22,12 @@ from pneutouch.units import KPA
 TRUTH = SimulationTruth()
 
 ALL = ("all",)
-"""Instead of names: the resins of the paper's Table S1."""
+"""Value of ``resins`` that stands for the resins of the paper's Table S1."""
 
 
 @dataclass(frozen=True)
 class SimulatedResin:
-    """A resin's scene and nominal sensor, and the simulator's truth with that printer and that resin's ageing."""
+    """A resin's scene and nominal sensor, and the simulator's truth for its printer and the resin's ageing."""
 
     name: str
     scene: ResolvedDesign
@@ -59,7 +59,7 @@ def resins_of(
     truth: SimulationTruth = TRUTH,
     library: Library | None = None,
 ) -> list[SimulatedResin]:
-    """The design in each resin; none given: its own, "all": those of the paper's Table S1. Raises InputError."""
+    """The design in each of ``resins``: its own if none is given, Table S1's for "all". Raises InputError."""
     library = library or Library.default()
     given = load_scene(design, changes, library)
     known = elastomers(library, given.printer.is_casting)

@@ -95,8 +95,8 @@ def predicted_in_full(evaluation: Evaluation, samples: int = 0) -> PredictionRec
 
 
 def by_model(prediction: SensorPrediction, *, curves: bool = True) -> PredictionRecord:
-    """A prediction by the model alone, without rating and uncertainty; ``curves`` False: without central contact's
-    curves either, which take the most time."""
+    """A prediction by the model, without rating and uncertainty; with ``curves`` False also without the curves of
+    central contact, which take the most time."""
     inflation = prediction.inflation if curves else InflationCurve(*[np.empty(0)] * 4)
     record = PredictionRecord(
         design=prediction.design,

@@ -69,7 +69,7 @@ def _normals(points: Array) -> Array:
 
 
 _LEAST_SPAN = 22 * KPA
-"""The sensitivity plot reaches at least the paper's highest driving pressure."""
+"""Least driving pressure that the sensitivity plot reaches, MPa: the paper's highest."""
 
 
 def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
@@ -114,7 +114,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
 
 
 def constant_membranes(sensor: Sensor, prediction: SensorPrediction) -> tuple[ComparedMembrane, ...]:
-    """For a graded wall the sensor with its least, mean and greatest modulus throughout; for others nothing."""
+    """Sensors with the least, mean and greatest modulus of a graded wall throughout; none for other walls."""
     if sensor.wall.grade is None:
         return ()
     pressures = np.array([state.driving_pressure for state in prediction.states])

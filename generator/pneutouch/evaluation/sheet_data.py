@@ -41,28 +41,28 @@ class SheetData:
 
     Attributes:
         scene: The design with its names resolved.
-        assembly: Its bodies.
-        prediction: Its figures.
+        assembly: Bodies of the sensor.
+        prediction: Prediction of the sensor.
         findings: Findings of the print rules.
         input_hash: Hash of all inputs of the sheet.
-        uncertainty: One document a state, as `Evaluation.uncertainty`.
+        uncertainty: One record for each state, as `Evaluation.uncertainty`.
         estimates: Resin, support and time of each print job.
         rating: The rated driving pressure and what it follows from.
         numerical_error: Stated relative error in sensitivity of the model.
         zero_drift_kPa_per_K: Drift of the sealed gas without contact, at the lowest driving pressure.
-        gauge: Range of its gauge, and the smallest force at each driving pressure.
+        gauge: Range of the gauge, and the smallest force at each driving pressure.
         resin_curves: The same sensor in every resin, by title.
         viscous: Relaxation and hysteresis, or why they are not predicted.
-        viscous_runs: The runs that they are read from; None where they are not predicted.
+        viscous_runs: Runs from which relaxation and hysteresis are read; None where they are not predicted.
         ageing: Change after a year, or why it is unknown.
         constants: Membranes of constant mix to compare a graded one with.
         published_kPa_per_N: Published sensitivities of this sensor by driving pressure, kPa.
         gas: Effect of the air, one entry a state; None outside the atlas.
         tradeoff: The trade-off that the design is part of; None outside the atlas.
-        tuning: Its sensitivity over the driving pressure; None outside the atlas.
+        tuning: Sensitivity of the design over the driving pressure; None outside the atlas.
         contact: Errors of the force read where contact is not central, or why they are not known.
         other_contact: True if something else than a plate without friction presses it.
-        object_section: Section (n, 2) in mm, r and z, of the object that presses it, at first contact with the unloaded
+        object_section: Section (n, 2) in mm, x and z, of the object that presses it, at first contact with the unloaded
             dome; None for a plate.
         pressed: The pressed dome in three dimensions; None by a model without its surface.
         speed: Speed of the sensor's reading; None if that was not computed.
@@ -117,7 +117,7 @@ class ComparedMembrane(NamedTuple):
 
 @dataclass(frozen=True)
 class TuningChart:
-    """One design's curve from no pressure to its rated one, or to the highest that it states.
+    """Sensitivity of one design from zero driving pressure to its rated one, or to the highest that it states.
 
     Attributes:
         chosen: The curve.
@@ -148,15 +148,15 @@ class ChartPoint(NamedTuple):
 
 @dataclass(frozen=True)
 class TradeOff:
-    """Fronts at one driving pressure.
+    """Trade-off fronts at one driving pressure.
 
     Attributes:
-        fronts: One a resin; empty ones are left out.
+        fronts: One for each resin; empty ones are left out.
         driving_pressure_kPa: Driving pressure, kPa.
         gauge_kPa: Pressure rise that the pressure sensor has left, kPa.
         window_kPa_per_N: Least and greatest required sensitivity (kPa/N), None if free.
         force: Least required force range, N; None if free.
-        spots: Designs, the first picked out.
+        spots: Designs to mark, the first one highlighted.
         caption: Note below the chart on what the fronts leave out; empty for no note.
         errors: Median and greatest relative difference of the fronts where the solid was solved to correct them.
     """
@@ -206,7 +206,7 @@ class ContactChart:
         by_radius: Central balls over their radius, mm; ``edges_by_radius``: edges of bars across the pole.
         by_offset: The ball of ``ball_radius`` over its offset, mm; ``edges_by_offset``: the edge of that radius.
         by_tilt: A leaning plate over its tilt, degrees.
-        ball_radius: mm.
+        ball_radius: Radius of that ball, mm.
         rows: The table.
         standard_uncertainties: Addition of an unknown place of contact to the logarithm of the sensitivity, by driving
             pressure.
@@ -233,7 +233,7 @@ class PressedView:
 
     Attributes:
         driving_pressure_kPa: Driving pressure, kPa.
-        indentation: Of the object, mm.
+        indentation: Indentation by the object, mm.
         travel: Distance that it then moved sideways, mm.
         force: Contact force, N.
         points: Outer surface, mm, (n, m, 3): rows from the base to the pole, columns once around.

@@ -37,7 +37,7 @@ def measured(material: Material) -> tuple[float, float] | None:
 
 
 def published_sensitivities(sensor: Sensor, material: Material) -> dict[float, float]:
-    """Table S1 for a sensor that is the paper's: driving pressure in kPa to kPa/N; empty for any other."""
+    """Sensitivities of Table S1, kPa/N, by driving pressure, kPa, if the sensor is the paper's; else empty."""
     values = measured(material)
     return dict(zip(PRESSURES, values, strict=True)) if values and is_paper_sensor(sensor) else {}
 
@@ -78,9 +78,9 @@ def is_near_paper(sensor: Sensor) -> bool:
 
 
 def sensitivity_error(material: Material, sensor: Sensor, model: str, closure: str) -> SensitivityError:
-    """The part of ``error_estimate`` on sensitivity: greatest and single relative errors, and their basis.
+    """Error of the sensitivity for ``error_estimate``: greatest and single relative errors, and their basis.
 
-    Unknown where nothing was measured, and where the sensor is not near the one that was.
+    Unknown where nothing was measured, and where the sensor is not near the measured one.
     """
     if measured(material) is None:
         return _unknown(f"no measurement of a sensor in {material.label} is known")

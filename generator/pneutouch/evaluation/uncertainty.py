@@ -1,12 +1,11 @@
 """Uncertainty of a prediction, state by state: the budget at its driving pressures, with the figures of its model.
 
-Uncertainty of a graded wall: the figures of the solid, the relative uncertainty of the even wall of its mean
-modulus.
+Uncertainty of a graded wall: the figures of the solid, the relative uncertainty of the even wall of its mean modulus.
 
-The atlas covers even walls alone. Differences of the solid would take two presses for each of six inputs, half a second
-each and state, and on meshes coarse enough to be quick they are noise: at 12 cells the derivative of the sensitivity by
-the wall of `designs/graded-dome.toml`, unpressurised, is +0.05, on the usual mesh -0.47. So the derivatives are those
-of the even wall of the same mean modulus, -0.47 too.
+The atlas covers only even walls (of one modulus). Differences of the solid would take two presses for each of six
+inputs, half a second each and state, and on meshes coarse enough to be quick they are noise: at 12 cells the derivative
+of the sensitivity by the wall of `designs/graded-dome.toml`, unpressurised, is +0.05, on the usual mesh -0.47. So the
+derivatives are those of the even wall of the same mean modulus, -0.47 too.
 """
 
 from __future__ import annotations
@@ -90,7 +89,7 @@ _TREND = (
 
 @dataclass(frozen=True)
 class SensorBudget:
-    """A sensor at n driving pressures as the atlas takes it, its budget, and its contact if the atlas has another."""
+    """Batch of a sensor at n driving pressures for the atlas, its budget, and its contact if that is another."""
 
     batch: SensorBatch
     budget: Budget
@@ -100,8 +99,8 @@ class SensorBudget:
 def unknown(sensor: Sensor, model: str) -> str | None:
     """Reason why the uncertainty of a model's prediction is unknown, or None if it is known.
 
-    The atlas must cover the sensor under a plate without friction; what another contact changes is the solid's.
-    """
+    The atlas must cover the sensor under a plate without friction; the effect of another contact is computed by the
+    solid."""
     if model == "membrane":
         return _TREND
     from pneutouch.mechanics.corrected.figures import outside_corrected
@@ -120,7 +119,7 @@ def _softer_unknown(sensor: Sensor) -> str | None:
 
 
 def _soft_note(sensor: Sensor) -> str:
-    """Note on the derivatives of a wall that is softer than those that the atlas answers for."""
+    """Note on the derivatives of a wall that is softer than the walls that the atlas covers."""
     gas = sensor.gas.ambient_pressure / sensor.wall.shear_modulus
     return (
         f"the ambient pressure is {gas:.3g} times the modulus, more than the atlas answers for: the figures are the "
@@ -129,7 +128,7 @@ def _soft_note(sensor: Sensor) -> str:
 
 
 class SensorSpread(NamedTuple):
-    """A sensor at n driving pressures as the atlas takes it, its sources, and its contact if the atlas has another."""
+    """Batch of a sensor at n driving pressures for the atlas, its sources, and its contact if that is another."""
 
     batch: SensorBatch
     sources: list[UncertaintySource]
@@ -157,10 +156,9 @@ def spread(
 ) -> SensorSpread:
     """The sources of a sensor at ascending driving pressures (MPa); the atlas covers it under a plate without friction.
 
-    ``materials`` are all that there are: the model's error is taken from those that were measured. ``model`` gives the
-    numerical error. ``states`` are the solid's of another contact, at the pressures where it has been solved already.
-    ``anywhere`` counts an unknown place of contact, where the design's own contact is the central plate; ``aged`` are
-    the years of `sources`.
+    ``materials`` are all known resins: the model's error is taken from the measured ones. ``model`` gives the numerical
+    error. ``states`` are those of the solid under another contact, at pressures already solved. ``anywhere`` counts an
+    unknown place of contact, where the design's own contact is the central plate; ``aged`` are the years of `sources`.
     """
     from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.corrected.figures import under_plate
@@ -192,7 +190,7 @@ def spread(
 
 
 def why_unknown(sensor: Sensor, model: str) -> str | None:
-    """`unknown`, or None for a wall too soft for the atlas whose derivatives its tables still have."""
+    """`unknown`, but None for a wall too soft for the atlas if the derivatives of its tables still hold."""
     why = unknown(sensor, model)
     if why is not None and model == "solid" and sensor.protocol.other_contact is None:
         return _softer_unknown(sensor)
@@ -206,7 +204,7 @@ def uncertainties(
     resins: Callable[[], Mapping[str, Material]],
     samples: int = 0,
 ) -> tuple[UncertaintyRecord, ...]:
-    """One document a state: see `mechanics.uncertainty.document`, with its ``summary``; or ``{"unknown": why}``.
+    """One record for each state, see `mechanics.uncertainty.document`, with its ``summary``; or why it is ``unknown``.
 
     ``resins`` gives the elastomers whose measurements the model's error is taken from. ``samples`` > 0 adds
     ``monte_carlo``: the same sources sampled that often, the 95.45 % interval of every figure.
@@ -261,7 +259,7 @@ def uncertainties(
 
 
 def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float]:
-    """The figures of the budget as the model has them; without those that it does not compute."""
+    """Values of the budget's figures by key, from the model, without the figures that it does not compute."""
     peak, figures, of_contact = prediction.limits.limit_point, state.figures, {}
     if figures is not None:
         of_contact = {

@@ -30,7 +30,7 @@ TILT_DEG = 26.0
 """Angle above the horizon from which a body is seen."""
 
 _MOST = 65535 // 3
-"""Triangles of one part: their vertices are counted in two bytes."""
+"""Greatest number of triangles of one part: their vertices are counted in two bytes."""
 
 
 class ShadedBody(NamedTuple):
@@ -50,7 +50,7 @@ class ShadedBody(NamedTuple):
 
 
 def shaded(body: Body, colours: Array | None = None) -> ShadedBody:
-    """A body with smooth normals; ``colours`` (n, 3) are of its vertices, left out: that of its material."""
+    """A body with smooth normals; ``colours`` (n, 3) are of its vertices, left out: its material's colour."""
     if colours is None:
         colours = np.tile(np.array(list(bytes.fromhex(body.material.colour[1:]))) / 255, (len(body.vertices), 1))
     return ShadedBody(body.name, body.corners, corner_normals(body), colours[body.triangles])
@@ -61,7 +61,7 @@ def view_data(bodies: Sequence[ShadedBody], tilt_deg: float = TILT_DEG) -> str:
 
     ``middle`` and ``reach`` in mm place the positions: position = middle + reach * value / 32767. Each of ``bodies``
     has, in base64 and little-endian, ``positions`` (int16), ``normals`` (int8, 127 is one), ``colours`` (uint8), three
-    a vertex, ``triangles`` (uint16) and ``relief``. A body of more than 65,535 vertices is split. A grid has its
+    per vertex, ``triangles`` (uint16) and ``relief``. A body of more than 65,535 vertices is split. A grid has its
     ``columns`` in place of triangles.
     """
     corners = np.concatenate([body.corners.reshape(-1, 3) for body in bodies])
@@ -122,15 +122,15 @@ def stl(body: Body) -> bytes:
 
 
 def glb(bodies: tuple[Body, ...]) -> bytes:
-    """GLB with one named, coloured mesh a body; vertex data in mm, placed by a node matrix in metres."""
+    """GLB with one named, coloured mesh per body; vertex data in mm, placed by a node matrix in metres."""
     return bytes(_scene(bodies).export(file_type="glb"))
 
 
 def shaded_glb(bodies: Sequence[ShadedBody]) -> bytes:
     """GLB of bodies with a normal and a colour at every vertex, placed as in `glb`.
 
-    glTF takes the colours of vertices as linear in light: those of a picture (sRGB) are converted (IEC 61966-2-1).
-    """
+    glTF takes the colours of vertices as linear in light: the colours of a picture (sRGB) are converted (IEC
+    61966-2-1)."""
     import trimesh
 
     scene = trimesh.Scene()

@@ -312,7 +312,7 @@ def step(name: str, solids: tuple[Solid, ...], offset: Array) -> bytes:
 
 
 def _assembly(name: str, solids: tuple[Solid, ...], offset: Array) -> TDocStd_Document:
-    """A document of the kernel: one part a solid, coloured as its material and named."""
+    """A document of the kernel: one part per solid, coloured as its material and named."""
     from OCP.BinXCAFDrivers import BinXCAFDrivers
     from OCP.BRep import BRep_Builder
     from OCP.Quantity import Quantity_Color, Quantity_ColorRGBA, Quantity_TypeOfColor

@@ -5,7 +5,7 @@ components object; a material's name gives the intent and its display colour is 
 whose mix is known is a composite of its base resins, any other material a base material. Bodies lie in one assembly
 because tray software rejects separate objects whose bounding boxes overlap.
 
-Materials of a 3MF: a base material a body, or a composite of base resins where the mix is known.
+Materials of a 3MF: a base material per body, or a composite of base resins where the mix is known.
 
 Metadata of a 3MF model or object: well-known names, and our own in a declared namespace.
 
@@ -41,7 +41,7 @@ class Materials:
     Args:
         wrapper: lib3mf.
         model: The model that takes the resources.
-        materials: Those of its bodies: a group is made only where a body needs it.
+        materials: Materials of its bodies: a group is made only where a body needs it.
     """
 
     def __init__(self, wrapper: Any, model: Any, materials: list[Material]) -> None:
@@ -90,7 +90,7 @@ WELL_KNOWN = frozenset({"Title", "Designer", "Description", "Copyright", "Licens
 """Names of metadata that the specification defines; they have no namespace."""
 
 _LONGEST = 60_000
-"""Bytes of one entry."""
+"""Greatest number of bytes of one entry."""
 
 _ENCODED = str.maketrans({letter: f"%{ord(letter):02X}" for letter in "%&<>\"'"})
 
@@ -133,8 +133,8 @@ def threemf(name: str, bodies: tuple[Body, ...], metadata: dict[str, str], thumb
     """Write bodies (in the print frame, mm) as one assembly called ``name``; ``thumbnail`` is a PNG of the package.
 
     ``metadata`` keys that the specification defines (Title, Application ...) are written as they are, all others in our
-    own namespace (see `threemf_metadata`). Raises ComputationError for a body that is
-    not closed, and where the file cannot be read back strictly.
+    own namespace (see `add_metadata`). Raises ComputationError for a body that is not closed, and where the file cannot
+    be read back strictly.
     """
     import lib3mf
 
@@ -276,7 +276,7 @@ def threemf_tray(name: str, items: Sequence[TrayItem], metadata: dict[str, str])
 
 
 def _object(wrapper: Any, model: Any, name: str, item: TrayItem, materials: Materials) -> Any:
-    """The mesh object of a part, or a components object over those of its bodies."""
+    """The mesh object of a part, or a components object over the mesh objects of its bodies."""
     meshes = [
         mesh_object(wrapper, model, materials, body, name_uuid(name, "tray object", body.name)) for body in item.bodies
     ]

@@ -104,7 +104,7 @@ def _check_end(content: bytes, path: Path) -> None:
 
 
 def _parts(archive: zipfile.ZipFile, path: Path) -> dict[str, bytes]:
-    """Content by name. Declared sizes are checked first; then no more than declared is inflated, and no less taken."""
+    """Content by name. Declared sizes are checked first; no more than declared is inflated, and less is refused."""
     if not all(entry.filename for entry in archive.infolist()):
         raise InputError("a part without a name, which no 3MF has", file=path)
     entries = [entry for entry in archive.infolist() if not entry.is_dir()]
@@ -166,7 +166,7 @@ class Components:
             self._count(first, counts)
 
     def _count(self, first: Name, counts: dict[Name, int]) -> None:
-        """Children before parents, without recursion: the chain may be as long as the file."""
+        """Count objects, children before parents; without recursion, as the chain may be as long as the file."""
         stack, ancestors = [(first, False)], set()
         while stack:
             name, done = stack.pop()
@@ -233,7 +233,7 @@ class StoredBody:
 
     Attributes:
         name: As stored; may be empty.
-        material: Its name, or that of its base material; None if it has none.
+        material: Name of the material, or of its base material; None if there is none.
         colour: Display colour ``#RRGGBB``, or None.
         mix: Base material to fraction, where the material is a composite.
         vertices: (n, 3), mm.
@@ -260,7 +260,7 @@ class StoredBody:
 
 @dataclass(frozen=True)
 class Package:
-    """Content of a 3MF. ``metadata`` has our own entries by their bare names; ``recipe`` is JSON text, ours alone."""
+    """Content of a 3MF. ``metadata`` has our own entries by their bare names; ``recipe`` is JSON text of our files."""
 
     path: Path
     bodies: tuple[StoredBody, ...]

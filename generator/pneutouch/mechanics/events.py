@@ -1,6 +1,6 @@
-"""Events under the plate: detected and located, never averaged over.
+"""Events under the plate, detected and located, so that no average runs across them.
 
-This file does not load the solver, and so not SciPy: the atlas detects the same events.
+This file loads neither the solver nor SciPy, because the atlas detects the same events.
 """
 
 from dataclasses import dataclass
@@ -12,18 +12,18 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.membrane import PressedStates
 from pneutouch.mechanics.sensor import Sensor
 
-#: A neo-Hookean surface creases where the stretch across it is 2.4 times the least stretch along it, strain 0.35 in
-#: plane strain (Hong, Zhao & Suo 2009, Appl. Phys. Lett. 95, 111901; quoted, not derived here).  The smooth solution
-#: lives on, unsafely.
+#: Ratio of the stretch across a neo-Hookean surface to the least stretch along it at which the surface creases: 2.4, or
+#: strain 0.35 in plane strain (Hong, Zhao & Suo 2009, Appl. Phys. Lett. 95, 111901; quoted, not derived here). The
+#: smooth solution continues beyond it, but is unsafe.
 CREASE = 2.4
-#: The wall has left the plate inside the contact when the gap there passes this share of the wall.
+#: The wall has left the plate inside the contact when the gap there exceeds this share of the wall thickness.
 SEPARATION = 1.0e-2
-#: The wall hangs over its clamp when it passes below the base plane by this share of itself.
+#: The wall hangs over its clamp when it passes below the base plane by this share of the wall thickness.
 OVERHANG = 2.0e-2
-#: The wall lies on its base when it passes this share of the plate's force on to it.
+#: The wall lies on its base when it transmits this share of the plate's force to the base.
 BASE_SHARE = 2.0e-2
 
-#: Kinds after which the path is another one: a straight-line fit ends before them.
+#: Kinds of events that break the path: a straight-line fit ends before them.
 BREAKS_CURVE = ("unstable", "snap", "clamp_fold", "separation", "lost", "floor")
 
 PLATE_RIM, OBJECT_EDGE = "plate_rim", "object_edge"
@@ -52,12 +52,12 @@ OBJECT_DETAIL = {**DETAIL, "separation": "the wall leaves the object inside the 
 class SolidEvent:
     """An event at an indentation (mm).
 
-    kind, of those that end the path: unstable (the inflated state itself), snap (a jump to another branch), clamp_fold
-    (the same, at the clamped edge), lost (no equilibrium found), floor (the inner wall reaches the base plane; a solid
-    with a base goes on). Of those that do not: base (the outer wall lies down next to its clamp), separation (the wall
-    leaves the plate inside the contact: buckling inward), crease, overhang (the wall hangs below its base plane where
-    the solid has no base), plate_rim and object_edge (the contact reaches where the object turns up), break,
-    gauge_range, sway and lobes (the axisymmetric path is unstable to one wave around the axis, or to more).
+    Kinds that end the path: unstable (the inflated state itself), snap (a jump to another branch), clamp_fold (a jump
+    at the clamped edge), lost (no equilibrium found), floor (the inner wall reaches the base plane; a solid with a base
+    continues). Kinds that do not: base (the outer wall lies down next to its clamp), separation (the wall leaves the
+    plate inside the contact: buckling inward), crease, overhang (the wall hangs below its base plane where the solid
+    has no base), plate_rim and object_edge (the contact reaches where the object turns up), break, gauge_range, sway
+    and lobes (the axisymmetric path is unstable to one wave around the axis, or to several).
     """
 
     kind: str
@@ -74,10 +74,10 @@ class PathPoint(NamedTuple):
 
 
 def crossing(a: PathPoint, b: PathPoint, level: float) -> float | None:
-    """Place at which y rises through a level between two points, on the Hermite cubic if slopes are known, else on a
-    line.
+    """Position x at which y rises through a level between two points: on the Hermite cubic if both slopes are known,
+    else on a straight line; None if y does not.
 
-    A point compared with itself: its x where the level is already passed, else None.
+    If both points are the same: its x if its y is at or above the level, else None.
     """
     if a == b:
         return a.x if a.y >= level else None
@@ -92,15 +92,15 @@ def crossing(a: PathPoint, b: PathPoint, level: float) -> float | None:
 
 
 SWAY, LOBES = "sway", "lobes"
-"""Kinds after which the path is that of a body of revolution only: the dome leaves its axis, or its round form."""
+"""Kinds after which the path holds only as a body of revolution: the dome leaves its axis, or its round form."""
 
 _NEAR_BASE = 0.98
-"""Share of R0 at which the contact counts as having reached the base; beyond it the free arc has no space."""
+"""Share of R0 at which the contact counts as having reached the base: beyond it no space is left for the free arc."""
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """An event at an indentation (mm); ``ends_range`` where figures must not be fitted beyond it."""
+    """An event at an indentation (mm); ``ends_range`` is True if no figure may be fitted beyond it."""
 
     kind: str
     indentation: float

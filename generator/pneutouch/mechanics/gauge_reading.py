@@ -8,15 +8,15 @@ from pneutouch.spec.values import Quantity
 from pneutouch.units import GAUGE_LIMIT, KPA
 
 RECORDER_STEP_V = 20.0 / 2**16
-"""Step of the recorder of an analog gauge, V: 16 bits over +-10 V (NI's USB-6341, paper, Supplement C; range as NI's
-manuals give it)."""
+"""Step of the recorder of an analog gauge, V: 16 bits over +-10 V (NI's USB-6341, paper, Supplement C; range from NI's
+manuals)."""
 
 RECORDER_RATE_HZ = 10_000.0
-"""Samples a second of that recorder (paper, Supplement C)."""
+"""Samples per second of the recorder of an analog gauge (paper, Supplement C)."""
 
 PAPER_STEP = RECORDER_STEP_V * 50.0 * KPA
-"""Step of the paper's recorder, MPa: `RECORDER_STEP_V` at 50 kPa/V (+-100 kPa on 1 to 5 V, SMC's usual output; assumed,
-the PSE543's sheet was not read)."""
+"""Step of the paper's recorder, MPa: `RECORDER_STEP_V` at 50 kPa/V (+-100 kPa on 1 to 5 V, SMC's usual output; an
+assumption, because the PSE543's data sheet was not read)."""
 
 PAPER_NOISE = 0.015 * KPA
 """White noise of a reading, MPa rms: one step of the recorder. An assumption; the paper gives none."""
@@ -24,8 +24,8 @@ PAPER_NOISE = 0.015 * KPA
 PAPER_GAUGE = "SMC PSE543-R06"
 
 SIGMAS = 3.0
-"""A force is detected where it moves the reading by this many standard deviations of the difference of two readings:
-our choice, the usual limit of detection (IUPAC, Pure Appl. Chem. 67, 1699, 1995)."""
+"""Limit of detection: number of standard deviations of the difference of two readings by which a force must move the
+reading. Our choice of the usual value (IUPAC, Pure Appl. Chem. 67, 1699, 1995)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,13 +33,13 @@ class GaugeReading:
     """A gauge on a sensor; pressures in MPa.
 
     Attributes:
-        title: Its name.
-        low, limit: Least and greatest gauge pressure that it reads.
+        title: Name of the gauge.
+        low, limit: Least and greatest gauge pressure of its range.
         noise: Standard deviation of one reading; None if unknown.
-        step: Smallest step of a reading, of an analog gauge the recorder's; None if unknown.
-        rate_Hz: Readings a second, of an analog gauge the recorder's; None if unknown.
-        absolute: True if it reads ambient plus gauge pressure.
-        error: Greatest error over its span; None if unknown.
+        step: Smallest step of a reading, for an analog gauge that of the recorder; None if unknown.
+        rate_Hz: Readings per second, for an analog gauge those of the recorder; None if unknown.
+        absolute: True if the gauge reads ambient plus gauge pressure.
+        error: Greatest error over the range; None if unknown.
     """
 
     title: str
@@ -53,12 +53,12 @@ class GaugeReading:
 
     @property
     def scatter(self) -> float | None:
-        """Standard deviation of a reading with its steps, which add step^2/12 (Sheppard); None without the noise."""
+        """Standard deviation of a reading with rounding to steps, which adds step^2/12 (Sheppard); None if noise is."""
         return None if self.noise is None else math.hypot(self.noise, (self.step or 0.0) / math.sqrt(12.0))
 
     @property
     def threshold(self) -> float | None:
-        """Smallest change of pressure that two readings distinguish, at least one step; None if unknown."""
+        """Smallest pressure difference that two readings can distinguish, at least one step; None if unknown."""
         scatter = self.scatter
         return None if scatter is None else max(SIGMAS * math.sqrt(2.0) * scatter, self.step or 0.0)
 
@@ -71,7 +71,7 @@ class GaugeReading:
 
 
 def gauge_reading(gauge: Gauge | None, ambient_pressure: float) -> GaugeReading:
-    """A gauge at an ambient pressure, MPa; without one that of the paper's rig."""
+    """Reading of a gauge at an ambient pressure, MPa; of the gauge in the paper's rig if none is given."""
     if gauge is None:
         return GaugeReading(
             PAPER_GAUGE, -GAUGE_LIMIT, GAUGE_LIMIT, PAPER_NOISE, PAPER_STEP, RECORDER_RATE_HZ, error=4.0 * KPA
@@ -84,7 +84,7 @@ def gauge_reading(gauge: Gauge | None, ambient_pressure: float) -> GaugeReading:
 
 
 def _pressure(stated_kPa: Quantity | None) -> float | None:
-    """A stated figure in MPa."""
+    """Nominal value of a stated quantity in MPa; None without one."""
     if stated_kPa is None:
         return None
     value_kPa = stated_kPa.nominal

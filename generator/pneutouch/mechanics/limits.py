@@ -8,11 +8,11 @@ from pneutouch.mechanics.membrane import LIMIT_HEIGHT, LIMIT_PRESSURE, pressure,
 from pneutouch.mechanics.sensor import Sensor
 
 RATED_SHARE = 0.9
-"""Share of the binding limit that a sensor is rated at, and warned above: the dome grows fast near the limit point."""
+"""Rated pressure over the binding limit; above it a warning is given: the dome grows fast near the limit point."""
 
 
 LAW_RANGE = "law range"
-"""Name of the limit, and of the event, beyond which the wall is stretched further than its law was fitted."""
+"""Name of the limit and event beyond which the wall is stretched further than the data its law was fitted to."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class LimitPoint:
 class Limits:
     """Driving pressures (MPa) at which each limit is met; None if it is not met before the limit point.
 
-    ``law_range``: where the inflated wall leaves the stretches that its law was fitted over, of a law that gives them.
+    ``law_range``: pressure at which the wall leaves the stretches that its law was fitted over, if the law states them.
     """
 
     limit_point: float | None
@@ -72,10 +72,10 @@ def limit_point(sensor: Sensor) -> LimitPoint:
 
 
 def limits(sensor: Sensor) -> Limits:
-    """Driving pressures at which inflation alone meets each limit.
+    """Driving pressures at which free inflation, without contact, reaches each limit.
 
-    The break strain is a uniaxial elongation at break; setting the equibiaxial stretch against it is an
-    assumption, stated with the figures.
+    The break strain is a uniaxial elongation at break; comparing it with the equibiaxial stretch is an assumption,
+    stated with the figures.
     """
     broken = None
     if sensor.wall.break_stretch is not None:

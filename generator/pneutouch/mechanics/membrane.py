@@ -6,12 +6,12 @@ neo-Hookean law with C1 = mu/2, p R0/(C1 t0) = 8 x/(1 + x^2) - 64 x/(1 + x^2)^4.
 State II (eq. 10 to 19) is ambiguous as printed, so there are two closures for the contact radius:
 
 ``variational``
-    One potential, the wall's energy at its total stretch plus the isothermal gas, least over the contact
-    radius at a given plate height; the force is its slope by the plate height. Energy and work agree.
+    The potential, energy of the wall at its total stretch plus isothermal gas, is minimal over the contact radius
+    at a given plate height; the force is minus its slope by the plate height. Energy and work agree.
 ``printed``
-    Equation 17 as printed: the stretch counts from state I, the force is p_II pi rho^2, and its slope by
-    the plate height at fixed contact radius is set to zero. It follows the paper's theory curves in trend
-    only (S far above any measured value): for reproducing them, not for design.
+    Equation 17 as printed: the stretch counts from state I, the force is p_II pi rho^2, and the slope of the
+    potential by the plate height at fixed contact radius is set to zero. It follows the paper's theory curves only
+    in trend (S far above any measured value): for reproducing the curves, not for design.
 
 The free part of the pressed dome is an arc tangent to the plate at radius rho and height h, through the base circle R0
 (eq. 11). With c = R0 - rho, a = (c^2 + h^2)/(2h) for the arc's radius and theta for the angle it spans,
@@ -35,14 +35,14 @@ from pneutouch.errors import BeyondLimitError, ComputationError
 from pneutouch.mechanics.sensor import Sensor
 
 _HALVINGS = 60
-"""2**-60 of the bracket: below the rounding of any root of its size."""
+"""Bisection steps: 2**-60 of the bracket is below the rounding error of a root of that size."""
 
 
 def _bisect(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
-    """Return where ``function`` turns from negative to positive between ``low`` and ``high``, elementwise.
+    """Argument at which ``function`` turns from negative to positive between ``low`` and ``high``, elementwise.
 
-    Where it is positive already at ``low`` the answer is ``low``; where it is still negative at ``high``,
-    ``high``. All arrays have the same shape.
+    The result is ``low`` where the function is positive there already, and ``high`` where it is still negative there.
+    All arrays have the same shape.
     """
     a, b = np.array(low, float), np.array(high, float)
     for _ in range(_HALVINGS):
@@ -58,13 +58,13 @@ _HIGHEST = 1e6
 
 
 def relative_pressure(x: Array) -> Array:
-    """P R0/(mu t0) at relative height x = h/R0."""
+    """Dimensionless pressure p R0/(mu t0) at relative height x = h/R0."""
     square = 1 + x**2
     return 4 * x / square - 32 * x / square**4
 
 
 def thickness_stretch(x: Array) -> Array:
-    """Wall now over wall before (eq. 5)."""
+    """Wall thickness over unloaded wall thickness (eq. 5)."""
     return 2 / (1 + x**2)
 
 
@@ -74,7 +74,7 @@ def membrane_stretch(x: Array) -> Array:
 
 
 def _limit_height() -> float:
-    """X of the limit point, where (1 - x^2)(1 + x^2)^3 = 8 (1 - 7 x^2)."""
+    """Relative height x of the limit point, where (1 - x^2)(1 + x^2)^3 = 8 (1 - 7 x^2)."""
 
     def slope(x: Array) -> Array:
         square = x**2
@@ -85,10 +85,10 @@ def _limit_height() -> float:
 
 
 LIMIT_HEIGHT = _limit_height()
-"""h/R0 at the limit point: 1.80524, for every stiffness, size and wall."""
+"""Relative height h/R0 at the limit point: 1.80524, for every stiffness, size and wall."""
 
 LIMIT_PRESSURE = float(relative_pressure(np.array(LIMIT_HEIGHT)))
-"""p R0/(mu t0) at the limit point: 1.51991."""
+"""Dimensionless pressure p R0/(mu t0) at the limit point: 1.51991."""
 
 
 def pressure(x: Array, inner_radius: float, wall: float, shear_modulus: float) -> Array:
@@ -99,7 +99,7 @@ def pressure(x: Array, inner_radius: float, wall: float, shear_modulus: float) -
 def relative_height(
     p: Array, inner_radius: float, wall: float, shear_modulus: float, *, falling: bool = False
 ) -> Array:
-    """h/R0 at driving pressures ``p`` (MPa, from 0 to the limit), on the rising or the falling branch."""
+    """Relative heights h/R0 at driving pressures ``p`` (MPa, from 0 to the limit), on the rising or falling branch."""
     target = np.asarray(p, float) * inner_radius / (shear_modulus * wall)
     if np.any(target > LIMIT_PRESSURE * (1 + 1e-12)):
         scale = shear_modulus * wall / inner_radius
@@ -121,12 +121,12 @@ _PRESSURE = (0.0, 0.487184, 0.816153, 1.204673, 1.398748, 1.497427, 1.546655, 1.
 _HEIGHT = (1.0, 1.066291, 1.134059, 1.255874, 1.360730, 1.452773, 1.535446, 1.611202, 1.69000)
 
 RISING_BRANCH = np.column_stack([_PRESSURE, _HEIGHT])
-"""p R0/(mu t0) and h/R0 of the exact neo-Hookean membrane from no pressure to the limit point, by shooting without
-assuming constant curvature; the tests solve it again with an independent program."""
+"""Pressure p R0/(mu t0) and height h/R0 of the exact neo-Hookean membrane from zero pressure to the limit point, by
+shooting without the assumption of constant curvature; the tests solve it again with an independent program."""
 
 
 def limit_point_errors() -> tuple[float, float]:
-    """Relative errors of the cap's limit pressure and of its apex height there."""
+    """Relative errors of the cap's limit pressure and of its apex height at the limit point."""
     pressure, height = RISING_BRANCH[-1]
     return float(LIMIT_PRESSURE / pressure - 1), float(LIMIT_HEIGHT / height - 1)
 
@@ -134,7 +134,7 @@ def limit_point_errors() -> tuple[float, float]:
 def height_errors(relative_pressures: Array) -> Array:
     """Relative errors of the cap's apex height at p R0/(mu t0) from 0 to the cap's limit.
 
-    Interpolated between the table's rows, where the errors change slowly.
+    Interpolated linearly in the table `RISING_BRANCH`, because the errors change slowly.
     """
     known = RISING_BRANCH[RISING_BRANCH[:, 0] <= LIMIT_PRESSURE]
     errors = relative_height(known[:, 0], 1.0, 1.0, 1.0) / known[:, 1] - 1
@@ -143,9 +143,9 @@ def height_errors(relative_pressures: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class PressedCap:
-    """Membrane ``area`` (mm2, middle surface = inner surface in this theory) and cavity ``volume`` (mm3).
+    """Membrane ``area`` (mm2; the middle surface equals the inner surface in this theory) and cavity ``volume`` (mm3).
 
-    Derivatives are by the contact radius (``_rho``) and the plate height (``_h``).
+    Derivatives are by the contact radius (``_rho``) and by the plate height (``_h``).
     """
 
     area: Array
@@ -157,7 +157,7 @@ class PressedCap:
 
 
 def pressed_cap(rho: Array, h: Array, inner_radius: float) -> PressedCap:
-    """Evaluate the shape at contact radii ``rho`` (0 to R0) and plate heights ``h``, broadcast together."""
+    """Area and volume at contact radii ``rho`` (0 to R0) and plate heights ``h``, broadcast together."""
     c = inner_radius - rho
     a = (c**2 + h**2) / (2 * h)
     theta = np.arctan2(c, a - h)
@@ -173,7 +173,7 @@ def pressed_cap(rho: Array, h: Array, inner_radius: float) -> PressedCap:
 
 
 def energy(shear_modulus: float, thickness_stretch: Array) -> Array:
-    """Energy density, MPa, of the undeformed wall."""
+    """Strain energy per undeformed volume of the wall, MPa."""
     return 0.5 * shear_modulus * (thickness_stretch**2 + 2 / thickness_stretch - 3)
 
 
@@ -184,7 +184,7 @@ def energy_slope(shear_modulus: float, thickness_stretch: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class TrappedGas:
-    """An amount of gas closed in at ``driving_pressure`` with the cavity at ``cavity_volume``."""
+    """A fixed amount of gas, enclosed at ``driving_pressure`` with the cavity at ``cavity_volume``."""
 
     driving_pressure: Array | float
     cavity_volume: Array | float
@@ -223,7 +223,7 @@ class PressedStates:
 
 
 def press(sensor: Sensor, gas: TrappedGas, apex: Array, indentation: Array, closure: str) -> PressedStates:
-    """Press the dome, inflated to apex height ``apex`` (mm), by ``indentation`` (mm) with a closure's name."""
+    """States of the dome, inflated to height ``apex`` (mm), at ``indentation`` (mm), by the closure of a given name."""
     height = apex - indentation
     model = _BY_NAME[closure](sensor, gas, apex, height)
     zero = np.zeros(np.broadcast_shapes(np.shape(gas.driving_pressure), np.shape(height)))
@@ -256,7 +256,7 @@ class _Closure:
 
 
 class VariationalClosure(_Closure):
-    """Least potential over the contact radius."""
+    """Closure by the minimum of the potential over the contact radius."""
 
     def residual(self, rho: Array) -> Array:
         """Slope of the potential by the contact radius, N."""
@@ -272,7 +272,7 @@ class VariationalClosure(_Closure):
 
 
 class PrintedClosure(_Closure):
-    """Equation 17 as printed."""
+    """Closure by equation 17 as printed."""
 
     def residual(self, rho: Array) -> Array:
         """Slope of E'_p by the plate height at fixed contact radius, N."""

@@ -1,4 +1,4 @@
-"""A sensor in a mix of two resins by every mixing curve of the pair, to show the effect of another curve."""
+"""A sensor in a mix of two resins, predicted by every mixing curve of the pair to show their effect."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from pneutouch.spec.printer import Printer
 def curve_outcomes(
     sensor: Sensor, material: Material, printer: Printer, prediction: SensorPrediction, rated: Rating
 ) -> tuple[CurveOutcome, ...]:
-    """The sensor by every mixing curve of its mix, the softest first; empty if its material has not several.
+    """Outcomes of the sensor for every mixing curve of its mix, the softest first; empty without several curves.
 
-    ``prediction`` and ``rated`` are by the curve in use. The others are predicted by the same model, without the
-    search for waves, which changes no figure; contact off the axis is left out for its cost.
+    ``prediction`` and ``rated`` belong to the curve in use. For the others the same model predicts, without the search
+    for waves, which changes no figure. Contact off the axis is not computed because of its cost.
     """
     if sensor.protocol.off_axis is not None:
         return ()
@@ -46,7 +46,7 @@ def _outcome(
 
 
 def _predicted(sensor: Sensor, pressures: list[float], like: SensorPrediction) -> SensorPrediction | None:
-    """The prediction at as many of the pressures as can be solved; None if none can."""
+    """Prediction at as many of the pressures as can be solved, from the lowest; None if none can."""
     for count in range(len(pressures), 0, -1):
         try:
             return predict("", sensor, pressures[:count], model=like.model, closure=like.closure or "variational")

@@ -1,4 +1,4 @@
-"""Records of contact that is not axisymmetric, and of an object that moves sideways after pressing, in a prediction."""
+"""Records, in a prediction, of contact without axial symmetry and of an object that moves sideways after pressing."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pneutouch.arrays import Array
 
 @dataclass(frozen=True, slots=True)
 class ShearCurve:
-    """A shear at constant height (arrays of one length, mm, N, N mm, MPa; see `harmonic.shear`); ``travel`` and
-    ``sideways`` are positive towards the offset."""
+    """A shear at constant height (arrays of one length, mm, N, N mm, MPa; see `harmonic.friction_path.ShearPath`);
+    ``travel`` and ``sideways`` are positive towards the offset."""
 
     travel: Array
     force: Array
@@ -48,9 +48,9 @@ class RangeCurve:
 
 @dataclass(frozen=True, slots=True)
 class OffAxisCurve:
-    """Additions of contact off the axis to a loading curve (N, N mm; see `harmonic.press.OffAxisState`), the order of
-    its harmonics, and the share by which the last raise of the order changed sensitivity, force or pressure rise.
-    ``to_end`` is the curve between its points, to the very end of its range."""
+    """Additions to a loading curve for contact off the axis: sideways force and moment (N, N mm; see
+    `harmonic.press.OffAxisState`), the order of the harmonics, and the share by which the last increase of the order
+    changed the figures. ``to_end`` is the curve between its points, up to the end of its range."""
 
     order: int
     last_change: float

@@ -1,10 +1,9 @@
-"""The paper's sensor in any resin: the one with measurements, and the wall that a material file gives.
+"""The paper's sensor, which has measurements, in any resin, and the wall that a material file describes.
 
-Shore A hardness to modulus: A. N. Gent, Rubber Chem. Technol. 31, 896-906 (1958), in its usual metric form.
-
-E = 0.0981 (56 + 7.62336 S) / (0.137505 (254 - 2.54 S)) MPa. Only its slope and its ratios are used: the relation's own
-level is not trusted for a relaxed modulus (it gives TangoPlus twice the modulus of the paper's Table 1). Above 80 the
-scale is compressed and the slope grows without bound towards 100.
+Shore A hardness to modulus: A. N. Gent, Rubber Chem. Technol. 31, 896-906 (1958), in its usual metric form, E = 0.0981
+(56 + 7.62336 S) / (0.137505 (254 - 2.54 S)) MPa. Only slopes and ratios of this relation are used: its level is not
+trusted for a relaxed modulus (it gives TangoPlus twice the modulus of the paper's Table 1). Above 80 the scale is
+compressed and the slope grows without bound towards 100.
 """
 
 import dataclasses
@@ -18,11 +17,11 @@ from pneutouch.spec.material import Material
 from pneutouch.units import GAUGE_LIMIT, STANDARD_ATMOSPHERE
 
 PAPER_RADIUS, PAPER_WALL, PAPER_PLATE, PAPER_DEPTH = 9.25, 1.5, 30.0, 0.75 * 9.25
-"""The paper's sensor in mm: section 2-B and Supplement B."""
+"""Radius, wall, plate and depth of the paper's sensor in mm: section 2-B and Supplement B."""
 
 
 _SAME = 1e-6
-"""Relative tolerance within which a length, a pressure or a volume is the paper's: below any that can be printed."""
+"""Relative tolerance for a value to equal the paper's: below any difference that can be printed."""
 
 
 def is_paper_sensor(sensor: Sensor) -> bool:
@@ -69,7 +68,7 @@ def material_sensor(material: Material) -> Sensor:
 
 
 def _law(material: Material) -> tuple[str, tuple[float, ...]] | None:
-    """The law of a material; None for the neo-Hookean one of its shear modulus, which the atlas covers."""
+    """The law of a material; None for a neo-Hookean law with its shear modulus, which the atlas covers."""
     law, modulus = material.law, material.shear_modulus_MPa
     if law is None or modulus is None or (law.name == "neo-hookean" and law.constants == [modulus.nominal]):
         return None
@@ -89,12 +88,12 @@ _FULL = 100.0
 
 
 def young_modulus(shore_a: float) -> float:
-    """E in MPa of a Shore A hardness below 100."""
+    """Young's modulus in MPa of a Shore A hardness below 100."""
     return _UNIT * (_OFFSET + _RISE * shore_a) / (_FULL - shore_a)
 
 
 def shore_a(modulus: float) -> float:
-    """The Shore A hardness of a Young's modulus in MPa: `young_modulus` solved."""
+    """Shore A hardness for a Young's modulus in MPa: the inverse of `young_modulus`."""
     return (_FULL * modulus - _UNIT * _OFFSET) / (modulus + _UNIT * _RISE)
 
 

@@ -107,7 +107,7 @@ _Ask = Callable[[SensorModel], ModelAnswer]
 
 
 def _named(name: str, sensor: Sensor, ask: _Ask) -> tuple[SensorModel, ModelAnswer, str | None]:
-    """A model asked for by name, its answer, and its limitation in words, or None."""
+    """Model of a given name, its answer, and its limitation in words, or None. Raises InputError without an answer."""
     model = model_named(name)
     why = model.covers(sensor)
     answer = None if why is not None else ask(model)
@@ -118,7 +118,7 @@ def _named(name: str, sensor: Sensor, ask: _Ask) -> tuple[SensorModel, ModelAnsw
 
 
 def _cheapest(sensor: Sensor, tolerance: float, ask: _Ask) -> tuple[SensorModel, ModelAnswer, str | None]:
-    """The cheapest model that meets a tolerance, its answer, and why it and no other."""
+    """The cheapest model that meets a tolerance, its answer, and the reason for the choice."""
     sequence = models_for(sensor, tolerance)
     passed = list(sequence.passed)
     for name in sequence.models:

@@ -1,6 +1,6 @@
-"""A prediction: the results of a model for a sensor, and their document in boundary units.
+"""A prediction: the results of one model for a sensor.
 
-A record: a sensor in a mix by one of the mixing curves of its pair.
+Also the outcome for a sensor in a mix by one of the mixing curves of its resins.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class DeformedShape:
-    """The deformed wall at an indentation (mm; None before contact): cells (n, m, 2) in (r, z), mm, and the
-    greatest principal stretch in each cell (n,); ``body`` is the section of an object that is no plate, (k, 2)."""
+    """The deformed wall at an indentation (mm; None before contact): cells (n, m, 2) in (r, z), mm, and the greatest
+    principal stretch in each cell (n,); ``body`` is the section (k, 2) of an object other than a plate."""
 
     indentation: float | None
     cells: Array
@@ -37,9 +37,9 @@ class DeformedShape:
 
 @dataclass(frozen=True, slots=True)
 class WallPath:
-    """The faces of the wall at the solved indentations (k,), mm: points (k, n, 2) in (r, z) from the base to the pole.
+    """Faces of the wall at the solved indentations (k,), mm: points (k, n, 2) in (r, z) from the base to the pole.
 
-    ``objects`` are the sections of an object that is no plate, (m, 2) each; empty for a plate.
+    ``objects`` are the sections (m, 2) of an object other than a plate; empty for a plate.
     """
 
     indentation: Array
@@ -52,8 +52,8 @@ class WallPath:
 class SensorState:
     """One driving pressure: the inflated dome and its loading curve (arrays of one length, mm, N, MPa).
 
-    ``figures`` hold from first contact to ``range_end`` (mm of indentation). ``face`` makes the pressed outer wall,
-    to draw.
+    ``figures`` hold from first contact to ``range_end`` (mm of indentation). ``face`` returns the pressed outer wall
+    for drawing.
     """
 
     driving_pressure: float
@@ -84,7 +84,7 @@ class SensorState:
         return tuple(event for event in self.events if event.kind in (SWAY, LOBES))
 
     def corrected(self, correction: ResponseCorrection) -> SensorState:
-        """The state with factors on force and pressure rise; its events and the end of its range stay."""
+        """The state with factors on force and pressure rise; events and the end of the range are unchanged."""
         by_force, by_rise = correction.at(self.driving_pressure)
         if by_force == by_rise == 1.0:
             return self
@@ -104,7 +104,7 @@ class SensorState:
 
 @dataclass(frozen=True, slots=True)
 class InflationCurve:
-    """Free inflation through the limit point and past it; arrays of one length in order of volume (mm, mm3, MPa)."""
+    """Free inflation through and beyond the limit point; arrays of one length in order of volume (mm, mm3, MPa)."""
 
     apex_inner: Array
     apex_outer: Array
@@ -143,10 +143,10 @@ class SensorPrediction:
 
 @dataclass(frozen=True)
 class CurveOutcome:
-    """The sensor by one mixing curve.
+    """A sensor predicted with one mixing curve.
 
-    states: as many of the design's driving pressures as it can be inflated to, from the lowest. rated: rated pressure,
-    MPa; None if nothing could be solved.
+    states: at as many of the design's driving pressures as it can be inflated to, from the lowest. rated: rated
+    pressure, MPa; None if nothing could be solved.
     """
 
     by_curve: MixByCurve

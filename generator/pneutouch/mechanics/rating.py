@@ -1,4 +1,4 @@
-"""The rated pressure: how far a sensor may be driven, the uncertainty of its limits included."""
+"""The rated pressure: how far a sensor may be driven, with the uncertainty of its limits included."""
 
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
@@ -19,10 +19,10 @@ from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
 
 LIMIT_ERROR = LIMIT_DISCRETISATION
-"""Greatest relative error of the limit pressure of solid and atlas as a numerical answer."""
+"""Greatest relative numerical error of the limit pressure by solid and atlas."""
 
 _WORTH = 1.05
-"""A measured modulus is advised where it raises the rated pressure by this factor at least: our choice."""
+"""Least factor on the rated pressure for which a measurement of the modulus is advised: our choice."""
 
 
 class UncertainLimit(NamedTuple):
@@ -40,8 +40,8 @@ class Rating:
 
     Attributes:
         pressure: The rated pressure, MPa.
-        limits: The limits that are met, the one with the least lower end first.
-        measured: Rated pressure with the modulus measured on coupons and confirmed, MPa.
+        limits: The limits that are met, ordered by the lower ends of their intervals.
+        measured: Rated pressure if the modulus is measured on coupons and confirmed, MPa.
         is_fitted: True if a calibration of a built sensor would cover it.
     """
 
@@ -52,17 +52,17 @@ class Rating:
 
     @property
     def limit(self) -> UncertainLimit:
-        """The limit that the rated pressure follows from."""
+        """Limit from which the rated pressure is derived."""
         return self.limits[0]
 
     @property
     def nominal(self) -> UncertainLimit:
-        """The limit that is met first as designed; a driving pressure above it is an error."""
+        """Limit with the lowest nominal value; a driving pressure above it is an error."""
         return min(self.limits, key=lambda limit: limit.nominal)
 
     @property
     def pressure_kPa(self) -> float:
-        """The rated pressure as it is shown: rounded down to a tenth, kPa."""
+        """Rated pressure as it is displayed: rounded down to a tenth, kPa."""
         return tenths_below(self.pressure / KPA)
 
     def severity(self, pressure: float) -> Literal["error", "warning"] | None:
@@ -73,7 +73,7 @@ class Rating:
         return "warning" if pressure > self.pressure else None
 
     def excess(self, pressure: float) -> str:
-        """A driving pressure (MPa) set against the rating, in words."""
+        """Comparison in words of a driving pressure (MPa) that exceeds the rating."""
         if self.severity(pressure) == "error":
             least = self.nominal
             return f"{pressure / KPA:g} kPa is above the {least.name}, {least.nominal / KPA:.1f} kPa as designed"
@@ -92,14 +92,14 @@ class Rating:
 
     @property
     def summary(self) -> str:
-        """The basis in few words."""
+        """Basis of the rated pressure, briefly."""
         limit = self.limit
         least = "" if limit.low == limit.nominal else f"the lower end (k = {COVERAGE:g}) of "
         return f"{RATED_SHARE:.0%} of {least}the {limit.name}, {limit.nominal / KPA:.1f} kPa nominal"
 
     @property
     def remedy(self) -> str | None:
-        """Advice that would raise the rated pressure, in words; None if it is not the modulus that lowers it."""
+        """Advice that would raise the rated pressure, in words; None if a measured modulus would not raise it."""
         if self.measured < _WORTH * self.pressure:
             return None
         measured_kPa = tenths_below(self.measured / KPA)
@@ -109,17 +109,17 @@ class Rating:
         )
 
     def remedy_for(self, pressure: float) -> str | None:
-        """The remedy if it lets the sensor be driven at a pressure (MPa); None if only less pressure does."""
+        """The remedy if it permits a pressure (MPa); None if only a lower pressure helps."""
         return self.remedy if self.measured >= pressure else None
 
 
 def rated_pressure(limit: Array, spread: Array, gauge: Array | float) -> Array:
-    """The rated pressure of n sensors, MPa: `RATED_SHARE` of the lower end of the least limit.
+    """Rated pressures of n sensors, MPa: `RATED_SHARE` of the lower end of the lowest limit.
 
     Args:
-        limit: The limit point, or the break strain where that is met before, MPa (n,).
-        spread: Relative standard uncertainty of it (n,), see `limit_spread`.
-        gauge: Range of the pressure gauge, MPa. The driving pressure is set by its reading: it is taken as exact.
+        limit: The limit point, or the break strain if that is met earlier, MPa (n,).
+        spread: Relative standard uncertainty of the limit (n,), see `limit_spread`.
+        gauge: Range of the pressure gauge, MPa; taken as exact, because the driving pressure is set by its reading.
     """
     return np.asarray(RATED_SHARE * np.fmin(limit * np.exp(-COVERAGE * spread), gauge))
 
@@ -132,12 +132,12 @@ def rating(
     calibration: SensorCalibration | None = None,
     numerical: float = LIMIT_ERROR,
 ) -> Rating:
-    """The rating of a sensor of a resin from a printer, by its limits as a model has them.
+    """Rating of a sensor in a resin from a printer, from the limits that a model gives.
 
-    Limit point and break strain are met at pressures in proportion to the modulus: both have the uncertainty of the
-    limit pressure. The scatter of the break strain is not in it: the least elongation at break stands for it.
-    ``calibration`` is that of the sensor in hand, where there is one. ``numerical`` is the model's greatest relative
-    error of the limit pressure.
+    Limit point and break strain are met at pressures proportional to the modulus, so both have the uncertainty of the
+    limit pressure. The scatter of the break strain is covered by using the least elongation at break instead.
+    ``calibration`` is that of the sensor in hand, if there is one. ``numerical`` is the model's greatest relative error
+    of the limit pressure.
     """
     spread = limit_spread(batch_of(sensor, [0.0]), material, printer, numerical, calibration)
     factor = float(np.exp(COVERAGE * spread.standard[0]))

@@ -1,8 +1,8 @@
-"""Figures from a curve: predicted and measured curves go through the same few functions.
+"""Figures from a curve, by the same few functions for predicted and measured curves.
 
-A curve is three arrays of one length: indentation (mm), contact force (N), pressure rise (kPa). Definitions
-follow the paper where it gives one (sensitivity, section 3-B; stiffness dF/d(delta), section 4-A), else
-the sensor makers' usual ones.
+A curve is three arrays of one length: indentation (mm), contact force (N), pressure rise (kPa). Definitions follow the
+paper where it gives one (sensitivity, section 3-B; stiffness dF/d(delta), section 4-A), else the usual ones of sensor
+makers.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pneutouch.arrays import Array
 
 _LEAST_POINTS = 3
 _SATURATED = 0.5
-"""Saturation: the local slope has fallen below this share of the fitted one."""
+"""Share of the fitted slope below which the local slope counts as saturated."""
 
 
 Of = TypeVar("Of", bound=Any)
@@ -24,7 +24,7 @@ Of = TypeVar("Of", bound=Any)
 
 class Figures(NamedTuple, Generic[Of]):
     """Key figures of one loading curve, or of many as arrays of one shape. Sensitivities in kPa/N, stiffness in N/mm,
-    forces in N, r_squared and nonlinearity as fractions; saturation_force is infinite where the curve has none."""
+    forces in N, r_squared and nonlinearity as fractions; saturation_force is infinite without saturation."""
 
     sensitivity: Of
     intercept_kPa: Of
@@ -43,12 +43,12 @@ class Figures(NamedTuple, Generic[Of]):
 
     @property
     def reach(self) -> Of:
-        """Force that the range reaches: at its end, or where the slope has halved before, N."""
+        """Upper force of the usable range, N: the force at its end, or at saturation if that is lower."""
         force: Of = np.minimum(self.force_high, self.saturation_force)
         return force
 
     def scaled(self, force: float, rise: float) -> Figures[Of]:
-        """Figures of the curve whose forces and pressure rises are these times two factors."""
+        """Figures of the same curve with forces and pressure rises multiplied by two factors."""
         return self._replace(
             sensitivity=self.sensitivity * rise / force,
             intercept_kPa=self.intercept_kPa * rise,
@@ -63,7 +63,7 @@ class Figures(NamedTuple, Generic[Of]):
 def lines(indentation: Array, force: Array, rise_kPa: Array) -> Figures[Array]:
     """Key figures of curves along the last axis, (..., n) each; definitions in `figures`.
 
-    A curve whose force does not vary has NaN for what it does not determine.
+    For a curve with constant force the undetermined figures are NaN.
     """
     mean_force, mean_rise_kPa = force.mean(axis=-1, keepdims=True), rise_kPa.mean(axis=-1, keepdims=True)
     df, dr = force - mean_force, rise_kPa - mean_rise_kPa
@@ -97,11 +97,11 @@ def figures(indentation: Array, force: Array, rise_kPa: Array) -> Figures[float]
 
 
 def saturation_force(force: Array, rise_kPa: Array, slope: Array | float) -> Array:
-    """Force at which the local slope of pressure over force falls below half the fitted one; infinite if it does
-    not, NaN without a fitted one.
+    """Force at which the local slope of pressure over force falls below half of the fitted slope; infinite if it does
+    not, NaN without a fitted slope.
 
-    A curve that begins flat has not saturated: the slope must have been above before. Curves along the last axis; the
-    local slope is the second-order difference, one-sided at the ends.
+    The local slope must have been above that before: a curve that begins flat is not saturated. Curves along the last
+    axis; the local slope is the second-order difference, one-sided at the ends.
     """
     step, climb = np.diff(force), np.diff(rise_kPa)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -123,10 +123,10 @@ def tangent_stiffness(indentation: Array, force: Array) -> Array:
 
 
 def hysteresis(force_up: Array, rise_up: Array, force_down: Array, rise_down: Array) -> tuple[float, float]:
-    """Hysteresis of a loading and an unloading branch in its two usual definitions, as fractions.
+    """Hysteresis between a loading and an unloading branch by its two usual definitions, as fractions.
 
-    First the greatest difference in pressure at equal force over the full-scale rise; then the area of the
-    loop over the area under the loading branch. The paper gives its figures without a formula.
+    First the greatest difference in pressure at equal force over the full-scale rise; then the area of the loop over
+    the area under the loading branch. The paper states hysteresis figures without a formula.
     """
     up, down = np.argsort(force_up), np.argsort(force_down)
     low = max(force_up.min(), force_down.min())

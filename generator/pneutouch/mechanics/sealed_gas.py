@@ -1,7 +1,7 @@
-"""The gas of an inflated, untouched sensor: the filling, and the effects of a leak and of the temperature.
+"""The gas of an inflated, untouched sensor: its amount, and the effects of a leak and of temperature.
 
-Ideal gas at one temperature behind a wall that yields: the cavity's volume follows the pressure along the free
-inflation of the dome. Lengths mm, pressures MPa.
+Ideal gas at one temperature behind a compliant wall: the cavity volume follows the pressure along the free inflation of
+the dome. Lengths mm, pressures MPa.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ class SealedGas:
 
     Attributes:
         pressure: Driving pressure, gauge, MPa (n,), rising.
-        volume: Cavity volume of the free dome there, mm3 (n,).
+        volume: Cavity volume of the free dome at each pressure, mm3 (n,).
         dead_volume: Volume behind the cavity, mm3.
         ambient: Ambient pressure, absolute, MPa.
         rest_volume: Cavity volume of the vented dome, mm3.
@@ -33,9 +33,9 @@ class SealedGas:
 
     @property
     def capacity(self) -> Array:
-        """d(p V)/dp with p absolute and V the whole gas volume, mm3 (n,): the gas that one MPa more takes.
+        """Increase d(p V)/dp of the gas amount with pressure, p absolute and V the whole gas volume, mm3 (n,).
 
-        V + V_d + p dV/dp; a rigid cavity has V + V_d. dV/dp is the second-order difference.
+        V + V_d + p dV/dp with the cavity volume V; a rigid cavity has V + V_d. dV/dp is the second-order difference.
         """
         give = np.gradient(self.volume, self.pressure, edge_order=2 if self.pressure.size > 2 else 1)
         return np.asarray(self.volume + self.dead_volume + (self.pressure + self.ambient) * give)
@@ -47,7 +47,7 @@ class SealedGas:
         return absolute * (self.volume + self.dead_volume) / self.ambient - self.rest_volume - self.dead_volume
 
     def by_temperature(self, temperature: float) -> Array:
-        """Change of the pressure of the sealed gas with temperature at ``temperature`` (K), MPa/K (n,).
+        """Derivative of the pressure of the sealed gas by temperature at ``temperature`` (K), MPa/K (n,).
 
         n R = p V/T and d(p V) = capacity dp: dp/dT = p V/(T capacity), which is p/T in a rigid cavity.
         """
@@ -55,7 +55,7 @@ class SealedGas:
         return np.asarray(held / temperature / self.capacity)
 
     def loss(self, conductance: float) -> Array:
-        """Fall of the pressure by a leak, MPa/s (n,).
+        """Rate at which a leak lowers the pressure, MPa/s (n,).
 
         ``conductance`` in mm3/s: gas is lost at conductance times gauge pressure (laminar flow through a fine gap).
         """
@@ -70,7 +70,7 @@ class SealedGas:
             return float("inf")
         grid = np.geomspace(end, start, _PANELS + 1)
         rate = np.interp(grid, self.pressure, self.capacity)
-        # In ln p the integrand is the capacity alone, which the trapezium rule takes well.
+        # In ln p the integrand is just the capacity, which the trapezium rule integrates well.
         return float(np.trapezoid(rate, np.log(grid)) / conductance)
 
 
@@ -78,6 +78,6 @@ _PANELS = 256
 
 
 def conductance_of_cap(rate: float, pressure: float, volume: float) -> float:
-    """Conductance of a leak, mm3/s, by the fall of pressure (MPa/s) at a mean gauge pressure (MPa) in a rigid volume
-    (mm3)."""
+    """Conductance of a leak, mm3/s, from the rate of pressure fall (MPa/s) at a mean gauge pressure (MPa) in a rigid
+    volume (mm3)."""
     return rate * volume / pressure

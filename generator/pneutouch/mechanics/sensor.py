@@ -1,4 +1,4 @@
-"""A sensor as the mechanics takes it: five records in mm, N and MPa, without files or printers."""
+"""A sensor as input of the mechanics: five records in mm, N and MPa, without files or printers."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _PLANE = RigidBase()
 class Dome:
     """The unloaded membrane. ``flange`` is the width and thickness of the flange if the solid is clamped as printed;
     without it the wall is clamped at the base plane, as in the paper. ``base`` is the body that the wall can lie down
-    on next to its clamp, and inside; without it the wall passes through."""
+    on next to its clamp and inside; without it the wall passes through the base plane."""
 
     shape: DomeShape
     flange: tuple[float, float] | None = None
@@ -41,10 +41,10 @@ class WallMaterial:
     """The elastic wall. ``break_stretch`` is the stretch at which the resin may break.
 
     ``law`` is the name of a hyperelastic law with its constants; without it the wall is neo-Hookean with
-    ``shear_modulus``. Next to a law ``shear_modulus`` is that of the neo-Hookean wall that stands for it in
-    the atlas. ``largest_stretch`` is the stretch of uniaxial tension up to which the law was fitted, where it is known.
-    ``grade`` are arc positions from the pole (0) to the rim (1) with the modulus there relative to ``shear_modulus``,
-    linear between them; without it the wall is homogeneous.
+    ``shear_modulus``. With a law, ``shear_modulus`` is the modulus of the neo-Hookean wall that replaces it in the
+    atlas. ``largest_stretch`` is the stretch in uniaxial tension up to which the law was fitted, if known. ``grade``
+    has arc positions from the pole (0) to the rim (1) and the moduli there over ``shear_modulus``, linear in between;
+    without it the wall is homogeneous.
     """
 
     shear_modulus: float
@@ -75,10 +75,10 @@ class GasCircuit:
 class IndentationProtocol:
     """The test: a plate or an object moved to ``depth`` after first contact in ``steps`` equal steps.
 
-    The solid checks the stability of the press for 1 to ``waves`` waves around the axis; 0: no check. ``body`` in place
-    of the flat plate; ``plate_rim`` of a plate whose rim is stated; ``friction`` is Coulomb's coefficient, inf for a
-    surface that grips. The axis of the object stands ``offset`` off the dome's, and a plate leans by ``tilt`` (rad),
-    upwards on that side. After the press the object moves sideways by ``shear``, towards that side.
+    The solid checks the stability of the press for 1 to ``waves`` waves around the axis; 0: no check. ``body`` replaces
+    the flat plate; ``plate_rim`` is the radius of the plate's rim, if stated; ``friction`` is Coulomb's coefficient,
+    inf for a surface that grips. The axis of the object is ``offset`` from the dome's, and a plate leans by ``tilt``
+    (rad), upwards on the side of the offset. After the press the object moves sideways by ``shear``, towards that side.
     """
 
     plate_radius: float
@@ -105,7 +105,7 @@ class IndentationProtocol:
 
     @property
     def other_contact(self) -> str | None:
-        """Contact other than the frictionless plate of membrane and atlas, in words; None for that plate."""
+        """Contact other than the frictionless plate of membrane and atlas, in words; None for this plate."""
         if self.off_axis is not None:
             return self.off_axis
         if self.body is not None:
@@ -117,11 +117,11 @@ class IndentationProtocol:
 
 @dataclass(frozen=True, slots=True)
 class ResponseCorrection:
-    """Factors on the contact force and the pressure rise of atlas and solid, as a calibration found them.
+    """Factors on the contact force and the pressure rise of atlas and solid, from a calibration.
 
     Attributes:
-        driving_pressures: Driving pressures at which they were found, MPa, ascending; empty: nothing is corrected.
-        force_factors, rise_factors: The factors there; their logarithms are straight between, constant beyond.
+        driving_pressures: Driving pressures of the factors, MPa, ascending; empty: nothing is corrected.
+        force_factors, rise_factors: The factors; their logarithms are linear in between and constant beyond.
     """
 
     driving_pressures: tuple[float, ...] = ()
@@ -137,14 +137,14 @@ class ResponseCorrection:
         return force, rise
 
     def sensitivity_factor(self, driving_pressure: float) -> float:
-        """Factor by which both change the slope of pressure over force at a driving pressure, MPa."""
+        """Factor of both corrections together on the slope of pressure over force at a driving pressure, MPa."""
         force, rise = self.at(driving_pressure)
         return rise / force
 
 
 @dataclass(frozen=True, slots=True)
 class Sensor:
-    """A dome of a material with its gas, and the indentation that it is tested with."""
+    """A dome of a material with its gas, and the indentation test."""
 
     dome: Dome
     wall: WallMaterial
@@ -153,9 +153,9 @@ class Sensor:
     correction: ResponseCorrection = ResponseCorrection()
 
     def replace(self, **changes: Any) -> Sensor:
-        """The sensor with other values of fields of its parts and shape, such as ``replace(depth=5.0, steps=10)``.
+        """The sensor with changed fields of its parts and shape, such as ``replace(depth=5.0, steps=10)``.
 
-        Raises TypeError for a name that no part has.
+        Raises TypeError for a name that is not a field of any part.
         """
         shape = changes.get("shape", self.dome.shape)
         sizes = {field: changes.pop(field) for field in shape.__dataclass_fields__ if field in changes}

@@ -27,13 +27,13 @@ from pneutouch.stopping import parent_folders, refuse_stopped, temporary_folder,
 MANIFEST = "manifest.json"
 
 _OLD = ".old"
-"""Ending of the third name by way of which two folders exchange theirs."""
+"""Ending of the temporary name that two folders need to exchange their names."""
 
 _HERE, _EXCHANGE = -100, 2
 """AT_FDCWD and RENAME_EXCHANGE of Linux (linux/fcntl.h, linux/fs.h)."""
 
 _MOST_MANIFEST = 100_000_000
-"""Bytes; a campaign of many runs has a long one."""
+"""Greatest size of a manifest in bytes; a campaign of many runs has a long one."""
 
 
 def digest(content: bytes) -> str:
@@ -42,7 +42,7 @@ def digest(content: bytes) -> str:
 
 
 def file_digest(path: Path) -> str | None:
-    """SHA-256 of a plain file, hexadecimal; None of all else, and of what cannot be read."""
+    """SHA-256 of a plain file, hexadecimal; None for anything else, and for a file that cannot be read."""
     try:
         check_plain(path, "file")
         with path.open("rb") as file:
@@ -57,13 +57,13 @@ def json_bytes(document: object) -> bytes:
 
 
 def replace_file(path: Path, content: bytes, *, key: str = "out") -> None:
-    """Write a file, in place of one that is there, which stays until the new one is whole. As `replace_files`."""
+    """Write a file; an existing one stays until its replacement is whole. Raises InputError as `replace_files`."""
     replace_files({path: content}, key=key)
 
 
 @uninterrupted()
 def replace_files(files: Mapping[Path, bytes], *, key: str = "out") -> None:
-    """Write files, in place of those that are there, which stay until all the new ones are whole and on the disk.
+    """Write files; existing ones stay until all their replacements are whole and on the disk.
 
     Raises InputError if one cannot be written; ``key`` is the parameter that gives the folder.
     """
@@ -84,7 +84,7 @@ def replace_files(files: Mapping[Path, bytes], *, key: str = "out") -> None:
 
 @uninterrupted()
 def create_file(path: Path, content: bytes, *, key: str = "out") -> None:
-    """Write a file that is not there yet. Raises InputError if it is there, or cannot be written, as above."""
+    """Create a file. Raises InputError if it exists, or if it cannot be written, as `replace_files`."""
     try:
         with _hidden(path, content) as fresh:
             _link(fresh, path)
@@ -120,7 +120,7 @@ def _hidden(path: Path, content: bytes) -> Iterator[Path]:
 
 
 def _link(fresh: Path, path: Path) -> None:
-    """Give a whole file its name, never over another. Raises OSError."""
+    """Give the whole file ``fresh`` the name ``path``, never over another file. Raises OSError."""
     try:
         os.link(fresh, path)
     except OSError as error:
@@ -139,9 +139,9 @@ def _refused(path: Path, error: OSError, key: str) -> InputError:
 
 
 def check_writable(folder: Path, key: str = "out") -> None:
-    """Raise InputError where an output folder cannot be made or written, or is of others; ``key`` names it.
+    """Raise InputError if an output folder cannot be made or written, or is not ours; ``key`` is its parameter.
 
-    So it is where a file of it is no longer as its manifest states: that is a person's now.
+    A folder is not ours either if one of its files is not as the manifest states: a person has changed that file.
     """
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is a file", key=key, remedy="it must be a folder")
@@ -174,9 +174,9 @@ def write_folder(folder: Path, files: dict[str, bytes]) -> None:
 def replacing(folder: Path) -> Iterator[Path]:
     """A hidden folder to write into, put in the place of ``folder`` when the block ends; what others put there is kept.
 
-    Raises InputError if it cannot be written, half way too, and rather than replace or remove a file that is not as
-    the folder's manifest states; the previous output then stays and nothing else does. Of two processes in one folder
-    the later one replaces the output of the other.
+    Raises InputError if it cannot be written, even half way, or if it would replace or remove a file that is not as the
+    folder's manifest states; then only the previous output remains. Of two processes in one folder the later one
+    replaces the output of the other.
     """
     _restore(folder)
     check_writable(folder)
@@ -192,7 +192,7 @@ def replacing(folder: Path) -> Iterator[Path]:
 
 
 def _swap(folder: Path, fresh: Path) -> None:
-    """Put ``fresh`` in the place of ``folder``; files that are not ours move over, our old ones go."""
+    """Put ``fresh`` in the place of ``folder``; files that are not ours are brought over, our previous ones removed."""
     fresh.chmod(0o755)
     if not folder.exists():
         fresh.rename(folder)
@@ -203,10 +203,10 @@ def _swap(folder: Path, fresh: Path) -> None:
 
 
 def exchange(folder: Path, fresh: Path, keep: Callable[[Path, Path], None] = lambda old, new: None) -> None:
-    """Put ``fresh`` in the place of ``folder``, which is there and is removed; ``keep`` takes both, the old one first,
-    and brings over what came meanwhile, or raises, so that the old one is put back.
+    """Put ``fresh`` in the place of an existing ``folder``, which is removed; ``keep`` takes the old and the replacing
+    folder, and brings over what came meanwhile, or raises, so that the old one is put back.
 
-    A process that is killed leaves one of the two whole in the place of ``folder``, or one that `_restore` finds.
+    If the process is killed, one of the two is whole in the place of ``folder``, or is left where `_restore` finds it.
     """
     aside = fresh.with_name(f"{fresh.name}{_OLD}")
     _exchange_names(folder, fresh, aside)
@@ -220,7 +220,7 @@ def exchange(folder: Path, fresh: Path, keep: Callable[[Path, Path], None] = lam
 
 
 def _exchange_names(one: Path, other: Path, aside: Path) -> None:
-    """Exchange the names of two folders, at once where the system can, else by way of a third name."""
+    """Exchange the names of two folders, at once if the system can, else by way of the name ``aside``."""
     if _at_once(one, other):
         return
     one.rename(aside)
@@ -247,7 +247,7 @@ def _at_once(one: Path, other: Path) -> bool:
 
 
 def _restore(folder: Path) -> None:
-    """Bring back the folder that a process left under its third name when it was killed while it exchanged names."""
+    """Bring back the folder that a process killed while it exchanged names left under the temporary name."""
     if os.path.lexists(folder) or not folder.parent.is_dir():
         return
     left = [path for path in folder.parent.iterdir() if path.name.startswith(f".{folder.name}.")]
@@ -259,7 +259,7 @@ def _restore(folder: Path) -> None:
 
 @contextlib.contextmanager
 def alone_in(parent: Path) -> Iterator[None]:
-    """Wait until no other process exchanges folders here; where folders cannot be locked, nobody is waited for."""
+    """Lock ``parent`` so that only one process exchanges folders in it; no effect where folders cannot be locked."""
     try:
         import fcntl
     except ImportError:
@@ -299,9 +299,9 @@ def _of_others(path: Path) -> InputError:
 
 
 def _keep_foreign(folder: Path, fresh: Path, *, again: bool = False) -> None:
-    """Bring over files, links and empty folders of others; raises InputError where one is in the way or is a pipe.
+    """Bring files, links and empty folders of others over; raises InputError if one is in the way or is a pipe.
 
-    ``again``: those that are there were brought before.
+    With ``again`` one that is there already was brought over before, and is left.
     """
     listed = _our_files(folder)
     for path in sorted(folder.rglob("*")):
@@ -372,7 +372,7 @@ def entry(content: bytes) -> Any:
 
 
 def with_manifest(files: Mapping[str, bytes], name: str, inputs: Mapping[str, Any], **more: Any) -> dict[str, bytes]:
-    """The files of a folder and their manifest. ``more`` are further fields; an ``input_hash`` among them is kept."""
+    """The files of a folder and their manifest. ``more`` are further fields; an ``input_hash`` among them is used."""
     listed = {path: file_entry(content) for path, content in sorted(files.items())}
     return {**files, MANIFEST: manifest(listed, name, inputs=inputs, **{"input_hash": input_hash(inputs), **more})}
 

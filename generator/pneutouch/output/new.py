@@ -28,7 +28,7 @@ from pneutouch.spec.values import plain_name
 from pneutouch.units import KPA
 
 PROFILES = ("printers", "gauges", "materials")
-"""Kinds of files of a laboratory's own next to its designs."""
+"""Kinds of files, besides designs, that a laboratory may have of its own."""
 
 _DRAWN = ("designs", "specimens")
 """Kinds of files that describe printed things."""
@@ -52,8 +52,8 @@ def new_design(
 ) -> tuple[Path, str | None]:
     """Write ``folder/name.toml`` with every key, its default, unit, bounds and help; never over a file.
 
-    With ``process`` or ``material`` the design starts with a profile that runs it, and which that is is stated next to
-    the path. Raises InputError if none does.
+    With ``process`` or ``material`` the design starts with a profile that runs it, and a note that names the profile is
+    returned with the path. Raises InputError if no profile does.
     """
     if process is None and material is None:
         return write_design(name, folder, design_template(name)), None
@@ -66,8 +66,8 @@ def new_design(
 
 
 def new_changed(source: DesignSource, name: str, folder: Path, *, overwrite: bool = False) -> Path:
-    """Write a design as it is now, every key with its value, as ``folder/name.toml``; over a file with ``overwrite``
-    alone. Raises InputError."""
+    """Write a design, every key with its value, as ``folder/name.toml``; a file is replaced only with ``overwrite``.
+    Raises InputError."""
     values = source.changed({}).model_dump(by_alias=True)
     text = design_template(name, values, "Every key may be left out.")
     return write_design(name, folder, text, overwrite=overwrite)
@@ -79,8 +79,8 @@ def new_from(source: str, name: str | None = None, out: Path | None = None, chan
     A design or a specimen may be given by its path.
 
     The copy goes to ``out``, else an example to the working folder and all others to the user's folder, where they are
-    found by their names; ``name`` left out is the example's own. ``changes`` are of a design alone, and printers,
-    gauges and materials go to the user's folder alone. Never over a file. Raises InputError.
+    found by their names; ``name`` left out is the example's own. Only a design takes ``changes``; printers, gauges and
+    materials go only to the user's folder. No file is replaced. Raises InputError.
     """
     library, shipped = Library.default(), examples()
     kind = _profile_kind(source, library)
@@ -187,10 +187,10 @@ def check_name(name: str, folder: Path, kind: str = "designs") -> Path:
 
 
 def check_free(name: str, folder: Path, *, overwrite: bool = False) -> Path:
-    """The file of a new design, before anything is computed for it.
+    """The file of a new design, checked before anything is computed for it.
 
-    Raises InputError as `check_name` does, for a file that is there already (but with ``overwrite``), and for a folder
-    that cannot be written.
+    Raises InputError as `check_name` does, for a file that exists (unless ``overwrite``), and for a folder that cannot
+    be written.
     """
     path = check_name(name, folder)
     if path.is_dir():
@@ -217,12 +217,12 @@ PROCESSES: tuple[str, ...] = get_args(Process)
 """Processes of the profiles."""
 
 _SHARE = 0.4
-"""Highest driving pressure of a new design over the closed-form limit pressure: below the rating of a resin whose
+"""Ratio of a new design's highest driving pressure to the closed-form limit pressure: below the rating of a resin whose
 modulus is known to a factor of two."""
 
 
 def process_values(process: str | None, material: str | None, library: Library) -> dict[str, dict[str, Any]]:
-    """Values that differ from the defaults, by table and key. Raises InputError if no profile fits."""
+    """Values by table and key that differ from the defaults. Raises InputError if no profile fits."""
     if process is not None and process not in PROCESSES:
         raise InputError(f"unknown.{nearest(process, PROCESSES)}", key="process", value=process)
     default = DesignFile()
@@ -271,7 +271,7 @@ def _soft(name: str, library: Library) -> Material:
 
 
 def _resin_of(printer: Printer, name: str | None, resin: Material | None, library: Library) -> str | None:
-    """The resin given where the printer runs it; none given: the design's default, else the first that it runs."""
+    """The resin given if the printer runs it; if none is given, the design's default, else the first that runs."""
     if resin is not None:
         return name if printer.mode_for(resin) is not None else None
     known = library.all("materials", Material)
@@ -298,7 +298,7 @@ def _no_profile(process: str | None, material: str | None, resin: Material | Non
 
 
 def _pressures_kPa(material: Material, design: DesignFile) -> list[float] | None:
-    """Driving pressures for a resin: four from none to a share of the limit, two digits each; None if the default ones
+    """Driving pressures for a resin: four, from 0 to a share of the limit, two digits each; None if the default ones
     suit it."""
     membrane, usual_kPa = design.membrane, design.pneumatics.driving_pressures_kPa
     sensor = material_sensor(material)

@@ -1,6 +1,6 @@
-"""A recipe: everything that a build follows from, as data that a 3MF carries and from which it can be redone.
+"""Recipe of a build: everything that the build follows from, as data that a 3MF carries, sufficient to redo it.
 
-Read a recipe that a 3MF carries: nothing in it is used before it is validated.
+Nothing of a recipe that is read from a 3MF is used before it is validated.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ SETTINGS = ("model", "closure", "clamp", "tolerance")
 class BuildRecipe:
     """A scene with every name resolved, the resins it is compared with, and the options of its prediction.
 
-    ``version`` is that of the pneutouch that made it.
+    ``version`` is the version of pneutouch that made the recipe.
     """
 
     scene: ResolvedDesign
@@ -59,7 +59,7 @@ class BuildRecipe:
         }
 
     def text(self) -> str:
-        """The recipe as JSON on one line, ASCII alone: no reader of XML can change it."""
+        """The recipe as JSON on one line, in ASCII only, which no reader of XML changes."""
         content = {"name": self.scene.name, "version": self.version, "inputs": self.inputs()}
         return json.dumps(versioned("recipe", content), sort_keys=True, allow_nan=False, separators=(",", ":"))
 
@@ -76,7 +76,7 @@ def evaluate_recipe(recipe: BuildRecipe) -> Evaluation:
 
 
 def scene_kinds() -> dict[str, str]:
-    """Fields of a scene with the catalogue's kind that each is of: ``membrane_material`` is one of the materials."""
+    """The catalogue's kind of each field of a scene: ``membrane_material`` is one of the materials."""
     names = [field.name for field in fields(ResolvedDesign) if field.name not in ("name", "where")]
     return {name: f"{name.rpartition('_')[2]}s" for name in names}
 
@@ -96,7 +96,7 @@ def _data(model: Table | None) -> Any:
 
 
 FINEST_STEP = 1e-3
-"""Finest step in mm that a recipe's printers may have: none prints finer, and meshes grow without bound."""
+"""Finest step in mm that a recipe's printers may have: none has a finer one, and meshes would grow without bound."""
 
 
 def read_recipe(package: Package) -> BuildRecipe:
@@ -166,7 +166,7 @@ def _check_keys(content: dict[str, Any], known: set[str], where: str) -> None:
 
 
 def _part(kind: str, content: Any, where: str) -> Any:
-    """One thing of a kind, validated as its file would be."""
+    """A part of a recipe, validated as the file of its kind would be."""
     if not isinstance(content, dict):
         raise InputError(f"{where} = {shown(content)}: must be a table")
     return KINDS[kind].validate(_dated(content) if kind == "designs" else content, where)
@@ -222,7 +222,7 @@ def _one_of(inputs: dict[str, Any], key: str, known: Collection[str], where: str
 
 
 def _check_steps(scene: ResolvedDesign, where: str) -> None:
-    """Steps that no printer makes would make meshes without bounds."""
+    """Raise InputError for steps finer than any printer's: meshes would grow without bound."""
     if scene.mesh_tolerance < FINEST_STEP:
         raise InputError(
             f"the printers step by {scene.mesh_tolerance:g} mm",
@@ -232,7 +232,7 @@ def _check_steps(scene: ResolvedDesign, where: str) -> None:
 
 
 def stored_versions(package: Package) -> Mapping[str, object]:
-    """The versions that a 3MF states, nothing where that is damaged: no build depends on it."""
+    """The versions that a 3MF states; empty if they are damaged, as no build depends on them."""
     try:
         stored = json.loads(package.metadata.get("versions", "{}"))
     except (ValueError, RecursionError):

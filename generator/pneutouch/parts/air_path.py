@@ -1,8 +1,8 @@
-"""The air's path from the base plane to the end of the tube, as round ducts in series and volumes open to it.
+"""The air's path from the base plane to the end of the tube, as round ducts in series with volumes connected to them.
 
-Its volume is that of `gas.internal_volume` and the tube: what the sensor's dead volume is computed from.
+Its volume is `internal_volume` plus the tube, from which the dead volume of the sensor is computed.
 
-The gas behind the cavity, exactly: channel, port and the gaps that are open to it, less what fills them.
+Also the exact gas volume behind the cavity: channel, port and the gaps open to it, minus inserted parts.
 """
 
 import math
@@ -21,7 +21,7 @@ def internal_volume(scene: ResolvedDesign, layout: Layout) -> float:
 
 
 def channel_volume(layout: Layout) -> float:
-    """Volume in mm3 of the channel and the hollow of the port, empty; a side port on an opening has no channel."""
+    """Volume in mm3 of the channel and the empty hollow of the port; a side port on an opening has no channel."""
     port, radius = layout.port, layout.channel_radius
     if layout.port_axis is None:
         meeting = layout.under - port.hollow[-1][1]
@@ -32,7 +32,7 @@ def channel_volume(layout: Layout) -> float:
 
 
 def gap_volume(scene: ResolvedDesign, layout: Layout) -> float:
-    """Volume in mm3 of the gap inside a clamped flange or around a plug; other gaps are full of glue."""
+    """Volume in mm3 of the gap inside a clamped flange or around a plug; other gaps are filled with glue."""
     seat = scene.seat
     if isinstance(seat, ClampedFlange):
         return _inside_flange(layout)
@@ -46,8 +46,8 @@ def gap_volume(scene: ResolvedDesign, layout: Layout) -> float:
 
 
 def glue_volume(scene: ResolvedDesign, layout: Layout) -> float:
-    """Volume in mm3 of the gaps that glue fills: around a glued flange or a cast one with its ring, or around a plug's
-    shoulder."""
+    """Volume in mm3 of the gaps filled with glue: around a glued flange, around a cast flange with its ring, or around
+    the shoulder of a plug."""
     seat = scene.seat
     if isinstance(seat, CastRing):
         return _inside_flange(layout) + _annulus(layout.held_radius, layout.groove_outer, layout.flange_thickness)
@@ -61,13 +61,13 @@ def glue_volume(scene: ResolvedDesign, layout: Layout) -> float:
 
 
 def _inside_flange(layout: Layout) -> float:
-    """The gap between spigot and flange, mm3."""
+    """Volume in mm3 of the gap between spigot and flange."""
     upright = _annulus(layout.groove_inner, layout.inner_radius, layout.flange_thickness)
     return upright + _draft(layout.inner_radius, layout.flange_draft, layout)
 
 
 def _draft(radius: float, draft: float, layout: Layout) -> float:
-    """Volume in mm3 between an upright side of the flange and one that leans by ``draft`` to the other radius."""
+    """Volume in mm3 between an upright side of the flange and one that leans by ``draft`` over its height."""
     return math.pi * layout.flange_thickness * abs(draft) * (radius + draft / 3)
 
 
@@ -76,12 +76,12 @@ def _annulus(inner: float, outer: float, height: float) -> float:
 
 
 _NOTHING = 1e-9
-"""mm and mm3: below this a piece is rounding."""
+"""Length or volume, mm or mm3, below which a piece is due to rounding."""
 
 
 @dataclass(frozen=True, slots=True)
 class AirPiece:
-    """A round piece of the path, mm: ``name`` is gap, channel, port or tube. A gap is open to the cavity."""
+    """A round piece of the path, mm: ``name`` is gap, channel, port or tube. A gap is a volume open to the cavity."""
 
     name: str
     length: float
@@ -94,10 +94,10 @@ class AirPiece:
 
 
 def air_path(scene: ResolvedDesign, layout: Layout) -> tuple[AirPiece, ...]:
-    """The pieces in order from the cavity; a cone is a cylinder of its length and volume.
+    """Pieces in order from the cavity; a cone is replaced by a cylinder of its length and volume.
 
-    A channel that a side port crosses is as long as its axis to the crossing, and as wide as its exact volume makes it,
-    its blind end included.
+    A channel crossed by a side port has the length of its axis to the crossing, and a radius that gives it its exact
+    volume with the blind end included.
     """
     port = [*_bore(layout), *_port_pieces(layout)]
     whole = channel_volume(layout) - layout.port.filled_volume()
@@ -109,7 +109,7 @@ def air_path(scene: ResolvedDesign, layout: Layout) -> tuple[AirPiece, ...]:
 
 
 def _gap(scene: ResolvedDesign, layout: Layout) -> list[AirPiece]:
-    """The gap of a seat as a cylinder of its volume as long as wide: only its volume is used."""
+    """Gap of a seat as a cylinder with its volume, as long as wide: only the volume is used."""
     volume = gap_volume(scene, layout)
     if volume < _NOTHING:
         return []
@@ -118,8 +118,8 @@ def _gap(scene: ResolvedDesign, layout: Layout) -> list[AirPiece]:
 
 
 def _channel_length(layout: Layout) -> float:
-    """Length of the channel from the base plane, or from the wall of a plug's opening, to where the port or its bore
-    begins."""
+    """Length of the channel from the base plane, or from the wall of a plug's opening, to the beginning of the port or
+    its bore."""
     if layout.port_axis is None:
         return layout.port.hollow[-1][1] - layout.under
     if layout.opening_radius:
@@ -136,7 +136,7 @@ def _bore(layout: Layout) -> list[AirPiece]:
 
 
 def _port_pieces(layout: Layout) -> list[AirPiece]:
-    """The port's hollow from its inner end to the mouth, as far as the fitting or tube leaves it free."""
+    """Pieces of the port's hollow from its inner end to the mouth, without the part taken by the fitting or tube."""
     port = layout.port
     end = port.length - port.engaged
     pieces = []

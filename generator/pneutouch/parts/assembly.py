@@ -1,4 +1,4 @@
-"""A sensor's bodies in one frame, and the gas that lies behind its cavity."""
+"""A sensor's bodies in one frame, and the gas volume behind its cavity."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ from pneutouch.units import ML
 if TYPE_CHECKING:
     from pneutouch.parts.mould import MouldAssembly
 
-# A mould loads where a membrane is cast: most are printed.
+# The mould is imported only for a cast membrane: most are printed.
 
 _MARGIN = 1.0
-"""Distance in mm of the print frame's bodies from its coordinate planes: all coordinates are positive."""
+"""Distance in mm of the bodies from the coordinate planes of the print frame, so that all coordinates are positive."""
 
 
 @dataclass(frozen=True)
@@ -55,23 +55,23 @@ class Assembly:
         return mould_of(self.scene, self.layout)
 
     def solid(self, name: str) -> Solid:
-        """The solid of a name: membrane, connector, ring or plug."""
+        """The solid of a given name: membrane, connector, ring or plug."""
         return next(solid for solid in self.solids if solid.name == name)
 
     def machine(self, name: str) -> tuple[Printer, Mode]:
-        """The printer of a body and its mode."""
+        """Printer of a body, and its mode."""
         scene = self.scene
         if name == "membrane":
             return scene.printer, scene.membrane_mode
         return scene.connector_printer, scene.connector_mode
 
     def job(self, name: str) -> str:
-        """The print job of a body: bodies of one job are printed together."""
+        """Name of a body's print job: bodies of one job are printed together."""
         grown = isinstance(self.scene.seat, OnePiece) and name in ("membrane", "connector")
         return "one piece" if grown else name
 
     def stands_up(self, name: str) -> bool:
-        """True if a body is printed as it stands in the design frame; else it is turned over."""
+        """True if a body is printed in its orientation in the design frame, False if turned over."""
         down = self.scene.design.print.orientation == "dome-down"
         return not (down and self.job(name) == self.job("membrane"))
 
@@ -88,7 +88,7 @@ class Assembly:
 
     @property
     def seat_area(self) -> float:
-        """Area in mm2 of the faces that membrane and connector share; 0 where the flange is clamped."""
+        """Area in mm2 of the faces shared by membrane and connector; 0 for a clamped flange."""
         if isinstance(self.scene.seat, ClampedFlange):
             return 0.0
         return sum(piece.area() for piece in self.solid("connector").meridian.tagged(SEAT))
@@ -111,19 +111,19 @@ class Assembly:
 
     @property
     def dead_volume(self) -> float:
-        """Gas behind the cavity in mm3: as the design gives it, else as drawn."""
+        """Gas volume behind the cavity in mm3: as stated in the design, else as drawn."""
         stated_mL = self.scene.design.pneumatics.dead_volume_mL
         return self.drawn_volume if stated_mL is None else stated_mL * ML
 
     @property
     def gauge_volume_mL(self) -> float:
-        """Gas inside the gauge, mL; 0 where the design names none or its volume is not known."""
+        """Gas volume inside the gauge, mL; 0 if the design names no gauge or its volume is not known."""
         gauge = self.scene.gauge
         return 0.0 if gauge is None or gauge.inner_volume_mL is None else gauge.inner_volume_mL.nominal
 
     @property
     def drawn_volume(self) -> float:
-        """Gas in connector, tube and gauge, mm3, whatever the design gives."""
+        """Gas volume in connector, tube and gauge as drawn, mm3, independent of a stated one."""
         return self.internal_volume + self.tube_volume + self.gauge_volume_mL * ML
 
     @property

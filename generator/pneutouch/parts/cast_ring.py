@@ -1,7 +1,7 @@
 """The ring that a flange is cast around: a perforated web in the middle of the flange, and a collar around it.
 
-The collar is as high as the flange and forms its edge: it stands between cap and core of the mould, which holds it
-without a part more, and it fills the connector's groove as a glued flange does, rigid on rigid.
+The collar is as high as the flange and forms its edge: it stands between cap and core of the mould, which hold it
+without a further part, and it fills the connector's groove as a glued flange does, rigid on rigid.
 
     z = 0      _______________________
               | silicone      |       |
@@ -25,15 +25,15 @@ RING = "ring"
 """Name and role of the ring among the bodies of a sensor."""
 
 FEWEST_HOLES = 3
-"""Holes that a ring has at least."""
+"""Least number of holes of a ring."""
 
 _COLLAR_GAP = 0.2
-"""Web in mm between a hole and the collar, which is wall enough on that side: own choice."""
+"""Material of the web in mm between a hole and the collar, which serves as wall on that side: own choice."""
 
 
 @dataclass(frozen=True, slots=True)
 class RingSize:
-    """All lengths in mm; heights are z coordinates. The web lies between ``web_low`` and ``web_high``."""
+    """Sizes of the ring, mm; heights are z coordinates. The web lies between ``web_low`` and ``web_high``."""
 
     web_inner: float
     flange_radius: float
@@ -46,38 +46,38 @@ class RingSize:
 
     @property
     def hole_circle(self) -> float:
-        """Radius of the circle that the holes stand on, next to the collar."""
+        """Radius of the circle on which the holes lie, next to the collar."""
         return self.flange_radius - _COLLAR_GAP - self.hole_radius
 
     @property
     def rim(self) -> float:
-        """Rigid material inside the holes."""
+        """Width of the rigid material inside the holes."""
         return self.hole_circle - self.hole_radius - self.web_inner
 
     @property
     def bridge(self) -> float:
-        """Rigid material between two holes."""
+        """Width of the rigid material between two holes."""
         return 2 * self.hole_circle * math.sin(math.pi / self.hole_count) - 2 * self.hole_radius
 
     def holes(self) -> tuple[Bore, ...]:
-        """The holes; the x axis lies between two, so that a section shows the web whole."""
+        """Holes of the web; the x axis lies between two of them, so that a section shows the whole web."""
         angles = [2 * math.pi * (k + 0.5) / self.hole_count for k in range(self.hole_count)]
         at = [(self.hole_circle * math.cos(angle), self.hole_circle * math.sin(angle)) for angle in angles]
         return tuple(Bore(x, y, self.hole_radius, self.web_low, self.web_high) for x, y in at)
 
     @property
     def embedded(self) -> float:
-        """Volume in mm3 of the web without its holes, which the flange's material lacks."""
+        """Volume in mm3 of the web without its holes, which is missing from the flange's material."""
         web = math.pi * (self.flange_radius**2 - self.web_inner**2) * (self.web_high - self.web_low)
         return web - sum(hole.volume() for hole in self.holes())
 
     @property
     def foot_area(self) -> float:
-        """Underside of the collar in mm2, which stands on the connector."""
+        """Area in mm2 of the collar's underside, which stands on the connector."""
         return math.pi * (self.collar_radius**2 - self.flange_radius**2)
 
     def solid(self, material: Material) -> Solid:
-        """The ring."""
+        """The ring as a solid."""
         web, edge, collar = self.web_inner, self.flange_radius, self.collar_radius
         outline = trace(
             (web, self.web_low),
@@ -95,9 +95,9 @@ class RingSize:
         return Solid(RING, RING, material, outline, self.holes())
 
     def enclosed(self, name: str, material: Material, outline: Meridian) -> Solid:
-        """The silicone within an outline whose flange ends at the collar: without the web, with what fills its holes.
+        """Silicone within an outline whose flange ends at the collar: without the web, but with its holes filled.
 
-        A hole is filled by the shape that drills it: both bodies then have the same facets.
+        A hole is filled by the same shape that drills it: both bodies then have the same facets.
         """
         pieces: list[Segment] = []
         for piece in outline.pieces:
@@ -107,19 +107,19 @@ class RingSize:
         return Solid(name, "membrane", material, Meridian(tuple(pieces)), adds=plugs)
 
     def _slot(self, start: tuple[float, float], end: tuple[float, float], tag: str) -> tuple[Segment, ...]:
-        """The flange's edge from below up, around the web."""
+        """Edge of the flange from below upwards, around the web."""
         edge, web = self.flange_radius, self.web_inner
         corners = [start, (edge, self.web_low), (web, self.web_low), (web, self.web_high), (edge, self.web_high), end]
         return tuple(Line(one, other, tag) for one, other in pairwise(corners))
 
 
 def ring_size(scene: ResolvedDesign, seat: CastRing, flange_radius: float, flange_thickness: float) -> RingSize:
-    """The ring of a scene whose flange has these lengths, mm; `space.check_space` judges it."""
+    """Size of the ring in a scene with these flange sizes, mm; `space.check_space` checks it."""
     stated = scene.design.cast_ring
     radius = 0.5 * (stated.hole_diameter_mm + scene.hole_undersize)
     wall = scene.connector_printer.smallest.wall("rigid").recommended
     circle = flange_radius - _COLLAR_GAP - radius
-    # Two holes are apart by their own width, or by what the printer makes well.
+    # The distance of two holes is their own width, or the wall that the printer makes well.
     pitch = 2 * radius + max(2 * radius, wall)
     count = stated.hole_count or max(FEWEST_HOLES, math.floor(2 * math.pi * circle / pitch))
     return RingSize(

@@ -1,4 +1,4 @@
-"""The rigid bodies: a connector with its seat, port and mount, and the ring or plug that some seats add."""
+"""The rigid bodies: a connector with its seat, port and mount, and the ring or plug of some seats."""
 
 import math
 from dataclasses import replace
@@ -13,11 +13,11 @@ from pneutouch.spec.part import AnySeat, BoltCircle, ClampedFlange, OnePiece, Ro
 PLUG_SHOULDER = "shoulder"
 
 _UNDER_PORT = 0.3
-"""Distance in mm below a side port's passage at which the plug gets thinner."""
+"""Distance in mm below the passage of a side port at which the plug becomes thinner."""
 
 
 def rigid_solids(scene: ResolvedDesign, layout: Layout) -> tuple[Solid, ...]:
-    """The connector first, then the clamping ring, the ring in the flange or the plug."""
+    """Rigid bodies: the connector first, then the clamping ring, the ring in the flange or the plug."""
     material, seat = scene.connector_material, scene.seat
     bores = (*_mounting_bores(scene, layout), *_clamping_bores(seat, layout, scene.hole_undersize))
     adds, cuts = [], list(_mount_cuts(scene, layout))
@@ -40,7 +40,7 @@ def rigid_solids(scene: ResolvedDesign, layout: Layout) -> tuple[Solid, ...]:
 
 
 def connector_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
-    """A connector whose channel leads to the port behind it, or ends blind where a side port's bore meets it."""
+    """Connector whose channel leads to the port behind it, or ends blind where the bore of a side port meets it."""
     faces: TracedPath = [
         *underside(scene, layout),
         *_seat_faces(scene.seat, layout),
@@ -72,7 +72,7 @@ def carrier_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
 
 
 def plug_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
-    """The plug that closes the opening; it carries a port that points backwards."""
+    """Plug that closes the opening; it also carries the port if that points backwards."""
     assert isinstance(scene.seat, OnePiece)
     seat, body = scene.seat, plug_radius(scene, layout)
     wide, high = body + seat.shoulder_width, layout.under + seat.shoulder_thickness
@@ -96,15 +96,15 @@ def plug_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
 
 
 def plug_radius(scene: ResolvedDesign, layout: Layout) -> float:
-    """Radius of the plug: the opening less the fit of two bodies of one machine."""
+    """Radius of the plug: the opening minus the fit clearance of two bodies from one machine."""
     return layout.opening_radius - scene.fit_clearance
 
 
 def plug_neck(scene: ResolvedDesign, layout: Layout) -> tuple[float, float]:
-    """Radius of a plug in front of a side port, and the height from which it is that thin.
+    """Radius of a plug's neck in front of a side port, and the height from which the plug is that thin.
 
-    The gap is as wide as the port's passage is in radius where the plug keeps a printable neck, so that a plug out of
-    the middle does not close it.
+    The gap is as wide as the radius of the port's passage if that leaves a printable neck, so that an eccentric plug
+    does not close it.
     """
     assert layout.port_axis is not None
     least = scene.connector_printer.smallest.wall("rigid").recommended
@@ -113,7 +113,7 @@ def plug_neck(scene: ResolvedDesign, layout: Layout) -> tuple[float, float]:
 
 
 def ring_meridian(seat: ClampedFlange, layout: Layout) -> Meridian:
-    """The clamping ring as it rests on the flange before the screws take up the squeeze.
+    """Clamping ring as it rests on the flange before the screws apply the squeeze.
 
     It opens upwards at 45 degrees, so that the dome is free to bulge.
     """
@@ -153,7 +153,7 @@ def underside(scene: ResolvedDesign, layout: Layout) -> TracedPath:
 
 
 def _mounting_bores(scene: ResolvedDesign, layout: Layout) -> tuple[Bore, ...]:
-    """Equally spaced holes, the first half a spacing off the x axis; a robot flange has a dowel hole on the y axis."""
+    """Equally spaced holes, the first half a spacing off the x axis; for a robot flange also a dowel hole on y."""
     mount, wider = scene.mount, scene.hole_undersize
     if not isinstance(mount, BoltCircle | RobotFlange):
         return ()
@@ -178,7 +178,7 @@ def _mounting_bores(scene: ResolvedDesign, layout: Layout) -> tuple[Bore, ...]:
 
 
 def _mount_cuts(scene: ResolvedDesign, layout: Layout) -> tuple[Feature, ...]:
-    """The set screws' holes in a sleeve, half way along it, turned away from a side port."""
+    """Holes for the set screws in a sleeve, half way along it, turned away from a side port."""
     mount = scene.mount
     if not isinstance(mount, Sleeve):
         return ()
@@ -195,11 +195,11 @@ def _mount_cuts(scene: ResolvedDesign, layout: Layout) -> tuple[Feature, ...]:
 
 
 SEAT = "seat"
-"""Faces that the flange rests on or is grown onto: the ones both bodies share."""
+"""Tag of the faces that the flange rests on or is grown onto, which both bodies share."""
 
 
 def _seat_faces(seat: AnySeat, layout: Layout) -> TracedPath:
-    """The path from the lower edge of the plate over its top to the inner edge of the seat at the base plane."""
+    """Path from the lower edge of the plate over its top to the inner edge of the seat at the base plane."""
     plate: TracedPath = [("plate edge", (layout.plate_radius, layout.plate_high))]
     inner, flange, high = layout.inner_radius, layout.flange_radius, layout.plate_high
     ring: TracedPath = [("plate top", (layout.ring_radius, high)), ("ring", (layout.ring_radius, 0.0))]
@@ -212,7 +212,7 @@ def _seat_faces(seat: AnySeat, layout: Layout) -> TracedPath:
             (SEAT, (inner, high)),
             (SEAT, (inner, 0.0)),
         ]
-    # A cast flange leans: at its underside, where it rests, it is that much wider inside too.
+    # A cast flange leans: at its underside, where it rests, it is wider inside by the draft.
     floor: TracedPath = [
         *([("groove floor", (layout.held_radius, high))] if layout.ring is not None else []),
         ("groove floor", (flange, high)),
@@ -253,11 +253,11 @@ def _circle(seat: ClampedFlange, layout: Layout) -> list[tuple[float, float]]:
 
 
 _PAST = 1.0
-"""Distance in mm by which a shape reaches past a face that it opens, so that no two faces coincide."""
+"""Distance in mm by which a shape extends past a face that it opens, so that no two faces coincide."""
 
 
 def _side_boss(layout: Layout) -> list[Feature]:
-    """The port's solid outside, from within the plate's edge, and its lugs."""
+    """Outer body of the port, which begins inside the plate's edge, and its lugs."""
     port, radius = layout.port, layout.plate_radius
     inside = math.sqrt(radius**2 - port.root**2) - _PAST - radius
     faces = [("", (port.root, inside)), *((tag, point) for point, tag in reversed(_faces(layout)))]
@@ -269,8 +269,8 @@ def _side_boss(layout: Layout) -> list[Feature]:
 
 
 def _side_bore(layout: Layout, across: float) -> Feature:
-    """The bore from a vertical hole of radius ``across`` to the mouth; ``net`` is the volume that it adds to that
-    hole."""
+    """Bore from a vertical hole of radius ``across`` to the mouth; ``net`` is the volume that it removes in addition to
+    that hole."""
     port = layout.port
     start = math.sqrt(across**2 - port.passage**2)
     low = 0.5 * start - layout.plate_radius
@@ -287,7 +287,7 @@ def side_volume(layout: Layout, across: float) -> float:
 
 
 def _faces(layout: Layout) -> list[tuple[tuple[float, float], str]]:
-    """End point and tag of the outside faces, each tag at the end that a walk from the root reaches."""
+    """Points of the outside from mouth to root, with the tag of the face that a walk from the root ends there."""
     port = layout.port
     points = [port.hollow[0], *(point for point, _ in port.outside)]
     return [(points[k], tag) for k, (_, tag) in enumerate(port.outside)] + [(points[-1], "")]
@@ -299,7 +299,7 @@ def _frame(layout: Layout) -> Frame:
 
 
 def outward(layout: Layout) -> tuple[Point, TracedPath]:
-    """The path from the inner edge of the port's mouth over its outside to the rear face."""
+    """Path from the inner edge of the port's mouth over its outside to the rear face."""
     port = layout.port
     return _at(layout, port.hollow[0]), [(tag, _at(layout, point)) for point, tag in port.outside]
 
@@ -313,7 +313,7 @@ def _inward(layout: Layout) -> TracedPath:
 
 
 def _rear_lugs(layout: Layout) -> list[Feature]:
-    """The lugs of a lock; none for most ports."""
+    """Lugs of a locking port that points backwards; empty for most ports."""
     frame = Frame((0.0, 0.0, layout.under), axis=(0.0, 0.0, -1.0))
     lugs = layout.port.lugs
     return [Feature(replace(lug, frame=frame), layout.port.lug_volume / len(lugs)) for lug in lugs]

@@ -1,4 +1,4 @@
-"""Glues by the pair of surfaces that they join; silicone takes silicone's own alone."""
+"""Glues by the pair of surfaces that they join; only silicone's own glue bonds to silicone."""
 
 from typing import Literal, NamedTuple
 
@@ -7,7 +7,7 @@ from pneutouch.spec.part import CastRing, GluedFlange
 from pneutouch.spec.printer import Printer
 
 GlueSurface = Literal["silicone", "photopolymer", "thermoplastic"]
-"""Surface that a glue wets, by the process that made it."""
+"""Kind of surface to be glued, by the process that made it."""
 
 _SURFACES: dict[str, GlueSurface] = {
     "casting": "silicone",
@@ -18,7 +18,7 @@ _SURFACES: dict[str, GlueSurface] = {
 
 
 class GlueBond(NamedTuple):
-    """A pair of surfaces that a glue joins; ``weak``: it peels under load."""
+    """A pair of surfaces that a glue joins; ``weak`` if the bond peels under load."""
 
     pair: frozenset[GlueSurface]
     weak: bool = False
@@ -32,7 +32,7 @@ class Glue(NamedTuple):
     source: str
 
     def bond(self, one: GlueSurface, other: GlueSurface) -> GlueBond | None:
-        """The bond between two surfaces, None if it makes none."""
+        """Bond between two surfaces, or None if the glue makes none."""
         return next((bond for bond in self.bonds if bond.pair == {one, other}), None)
 
 
@@ -73,14 +73,14 @@ GLUES: dict[str, Glue] = {
 
 
 def surface_of(printer: Printer) -> GlueSurface:
-    """The surface of a body made with a profile."""
+    """Surface of a body made with the profile of a printer."""
     return _SURFACES[printer.process]
 
 
 def glue_surfaces(scene: ResolvedDesign) -> tuple[GlueSurface, GlueSurface] | None:
-    """The surfaces that glue joins at the seat, the connector's last; None for a seat without glue there.
+    """Surfaces that glue joins at the seat, the connector's surface last; None for a seat without glue there.
 
-    The ring that a flange is cast around is made as the connector is: silicone holds it by its holes, not by glue.
+    A ring that a flange is cast around is made like the connector: its holes, not glue, hold the silicone.
     """
     if isinstance(scene.seat, CastRing):
         return surface_of(scene.connector_printer), surface_of(scene.connector_printer)
@@ -90,8 +90,8 @@ def glue_surfaces(scene: ResolvedDesign) -> tuple[GlueSurface, GlueSurface] | No
 
 
 def glue_of(scene: ResolvedDesign) -> str | None:
-    """Name of the glue at the seat: the design's, else silicone's own for a cast flange, and for a cast ring the one
-    that fills the gap of a fit; None if it is open."""
+    """Name of the glue at the seat: the glue named in the design, else silicone adhesive for a cast flange, and for a
+    cast ring the gap-filling glue; None if the choice is open."""
     surfaces, named = glue_surfaces(scene), scene.design.connector.glue
     if surfaces is None or named is not None:
         return named
@@ -101,6 +101,6 @@ def glue_of(scene: ResolvedDesign) -> str | None:
 
 
 def glues_for(one: GlueSurface, other: GlueSurface) -> list[str]:
-    """Names of the glues that join two surfaces, those of a lasting bond first."""
+    """Names of the glues that join two surfaces, those with a lasting bond first."""
     weak = {name: bond.weak for name, glue in GLUES.items() if (bond := glue.bond(one, other)) is not None}
     return sorted(weak, key=lambda name: weak[name])

@@ -1,7 +1,7 @@
 """Layout of the sensor: the radii and heights that the bodies and the drawing share, and the membrane in it.
 
-The base plane is z = 0 and the dome points up. The membrane's rim goes on below the base plane as a
-flange; the seat holds it there, so the dome is clamped at z = 0.
+The base plane is z = 0 and the dome points up. The membrane's rim continues below the base plane as a
+flange, which the seat holds, so the dome is clamped at z = 0.
 
     membrane          ___
                    .-'   '-.            outer wall  R0 + t0
@@ -32,12 +32,12 @@ CLAMPED_SHARE = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """All lengths in mm. Heights are z coordinates.
+    """Radii and heights of the sensor, in mm. Heights are z coordinates.
 
-    ``under`` is the rearmost face around the axis: ``plate_low``, or lower where the mount has a boss there.
-    ``opening_radius`` is the hole that a plug closes, 0 without one. ``port_axis`` is the height of a side port.
-    ``flange_draft`` is how much wider both sides of a cast flange are at its underside than at the base plane.
-    ``ring`` is what the flange is cast around, None without one.
+    ``under`` is the rearmost face around the axis: ``plate_low``, or lower if the mount has a boss there.
+    ``opening_radius`` is the radius of the hole that a plug closes, 0 without a plug. ``port_axis`` is the height of a
+    side port. ``flange_draft`` is the increase in radius of both sides of a cast flange from the base plane to its
+    underside. ``ring`` is the ring that the flange is cast around, None without one.
     """
 
     shape: DomeShape
@@ -64,7 +64,7 @@ class Layout:
 
     @property
     def wall(self) -> float:
-        """Wall of the dome."""
+        """Wall thickness of the dome."""
         return self.shape.wall_thickness
 
     @property
@@ -79,18 +79,18 @@ class Layout:
 
     @property
     def held_radius(self) -> float:
-        """Outer radius of the part that the seat holds: the flange, or the collar of the ring that it is cast
+        """Outer radius of the part that the seat holds: the flange, or the collar of the ring that the flange is cast
         around."""
         return self.flange_radius if self.ring is None else self.ring.collar_radius
 
     @property
     def groove_inner(self) -> float:
-        """Radius of the spigot that carries the rim from inside."""
+        """Radius of the spigot, which supports the rim from inside."""
         return self.inner_radius - self.clearance
 
     @property
     def groove_outer(self) -> float:
-        """Radius of the wall that carries the flange, or its collar, from outside."""
+        """Radius of the wall that supports the flange, or its collar, from outside."""
         return self.held_radius + self.clearance
 
     @property
@@ -100,12 +100,12 @@ class Layout:
 
     @property
     def screw_circle(self) -> float:
-        """Radius of the circle of a clamping ring's screws; meaningless without a ring."""
+        """Radius of the screw circle of a clamping ring; meaningless without such a ring."""
         return 0.5 * (self.groove_outer + self.ring_radius)
 
     @property
     def channel_low(self) -> float:
-        """Bottom of the channel that a side port's passage opens into."""
+        """Height of the bottom of the channel that the passage of a side port opens into."""
         assert self.port_axis is not None
         return self.port_axis - self.port.passage - 0.5
 
@@ -116,7 +116,7 @@ class Layout:
 
 
 def lay_out(scene: ResolvedDesign) -> Layout:
-    """Derive the layout of a scene from membrane, seat, mount, port and the printers' fits; `check_space` judges it."""
+    """Derive the layout of a scene from membrane, seat, mount, port and fits; `check_space` checks whether it fits."""
     return lay_out_dome(scene, port_shape(scene.port, scene.tube, scene.hole_undersize), scene.design.membrane.dome)
 
 
@@ -153,8 +153,8 @@ def lay_out_dome(scene: ResolvedDesign, port: PortShape, shape: DomeShape) -> La
 
 
 def _flange(scene: ResolvedDesign, wall: float) -> tuple[float, float]:
-    """Width and thickness of the flange: one length, or those that the web of a ring and the silicone around it
-    need."""
+    """Width and thickness of the flange: one length for both, or those needed by the web of a ring and the silicone
+    around it."""
     seat, web = scene.seat, scene.design.cast_ring
     least = max(seat.least_flange_mm, seat.flange_over_wall * wall)
     if not isinstance(seat, CastRing):
@@ -163,14 +163,14 @@ def _flange(scene: ResolvedDesign, wall: float) -> tuple[float, float]:
 
 
 def _flange_draft(scene: ResolvedDesign, thickness: float) -> float:
-    """Lean of the sides of a cast flange over its thickness; printed ones stand upright."""
+    """Increase in radius of the sides of a cast flange over its thickness; printed ones are upright."""
     if not scene.printer.is_casting:
         return 0.0
     return thickness * math.tan(math.radians(scene.design.mould.draft_deg))
 
 
 def _ring_radius(scene: ResolvedDesign, groove: float, flange: float) -> float:
-    """Outer radius of the rigid ring around the flange; a clamping ring carries its screw heads on flat context."""
+    """Outer radius of the rigid ring around the flange; a clamping ring has its screw heads on a flat face."""
     seat = scene.seat
     if isinstance(seat, ClampedFlange):
         least = scene.connector_printer.smallest.wall("rigid").recommended
@@ -182,7 +182,7 @@ def _ring_radius(scene: ResolvedDesign, groove: float, flange: float) -> float:
 
 
 def _bolt_circle(scene: ResolvedDesign, ring: float) -> float:
-    """Radius of the mounting holes' circle, 0 without one; a whole number of mm across so that it can be drilled."""
+    """Radius of the circle of mounting holes, 0 without one; a whole diameter in mm, so that it can be drilled."""
     mount = scene.mount
     if isinstance(mount, RobotFlange):
         return 0.5 * mount.pitch_diameter
@@ -209,7 +209,7 @@ def _plate_radius(scene: ResolvedDesign, ring: float, bolts: float) -> float:
 
 
 def finger_radius(scene: ResolvedDesign) -> float:
-    """Inner radius of a sleeve: the finger's, and the undersize of printed holes."""
+    """Inner radius of a sleeve: that of the finger plus allowances for printed holes."""
     assert isinstance(scene.mount, Sleeve)
     return 0.5 * (scene.mount.finger_diameter + scene.hole_undersize) + scene.connector_printer.accuracy_mm.nominal
 
@@ -233,7 +233,7 @@ def _plate_thickness(scene: ResolvedDesign, port: PortShape) -> float:
 
 
 def _port_height(scene: ResolvedDesign, port: PortShape) -> float:
-    """Height of a side port's axis over the plate's underside: its root stays within the plate's edge."""
+    """Height of a side port's axis above the plate's underside, so that its root stays within the plate's edge."""
     low = port.root + 0.5
     if isinstance(scene.seat, OnePiece):
         low = max(
@@ -244,20 +244,20 @@ def _port_height(scene: ResolvedDesign, port: PortShape) -> float:
 
 
 def _channel_radius(scene: ResolvedDesign, port: PortShape) -> float:
-    """The seat's channel; wider than a passage that crosses it, for two equal cylinders meet in a point."""
+    """Radius of the seat's channel; greater than a passage that crosses it: two equal cylinders meet in a point."""
     channel = 0.5 * scene.seat.channel_diameter_mm
     return max(channel, port.passage + 0.25) if scene.mount.port_side == "side" else max(channel, port.passage)
 
 
 HELD = "held"
-"""Faces of the flange that the connector holds: the mechanics clamps them."""
+"""Tag of the faces of the flange that the connector holds: the mechanics clamps them."""
 
 
 def membrane_meridian(layout: Layout) -> Meridian:
-    """Meridian from the pole inside, round the flange, back to the pole outside.
+    """Meridian from the inner pole, around the flange, to the outer pole.
 
-    A cast flange opens downwards inside and out by its draft, so that it leaves core and ring; one that is cast around
-    a ring keeps its collar, upright outside. The meridian is then the outline of the silicone with the web in it.
+    A cast flange widens downwards inside and outside by its draft, so that it comes off core and ring; one that is cast
+    around a ring keeps its collar, upright outside. The meridian then is the outline of silicone and web together.
     """
     inner, outer, flange = layout.inner_radius, layout.outer_radius, layout.flange_radius
     low, draft = -layout.flange_thickness, layout.flange_draft
@@ -275,7 +275,7 @@ def membrane_meridian(layout: Layout) -> Meridian:
 
 
 def membrane_solid(layout: Layout, material: Material) -> Solid:
-    """The membrane, without the volume that a ring takes of its flange."""
+    """The membrane, without the volume of its flange that a ring takes."""
     outline = membrane_meridian(layout)
     if layout.ring is not None:
         return layout.ring.enclosed("membrane", material, outline)

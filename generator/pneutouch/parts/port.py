@@ -1,7 +1,7 @@
-"""Ports: the shape of each family along its own axis, and the hollow that a fitting leaves free.
+"""Ports: the shape of each family along its own axis, and the hollow that remains with a fitting in place.
 
-A port is drawn in (radius, height over the plate's face): heights grow away from the plate, and below 0 the hollow
-goes on inside the plate.
+A port is drawn in (radius, height over the plate's face): heights increase away from the plate; below 0 the hollow
+continues inside the plate.
 """
 
 import math
@@ -14,27 +14,27 @@ from pneutouch.shape.meridian import Arc, Line, Point
 from pneutouch.spec.part import Barb, Luer, Port, PushIn, Thread, Tube
 
 CHANNEL = "channel"
-"""Faces that the air in the connector touches."""
+"""Tag of the faces that touch the air in the connector."""
 
 TIP_WALL = 0.3
-"""Wall in mm left at the tip of a barb: a blunt edge that prints and does not cut the tube."""
+"""Wall thickness in mm left at the tip of a barb: a blunt edge that prints and does not cut the tube."""
 
 _LUG_ROOT = 0.2
-"""Depth in mm that a lug reaches into the body, so that the two are one."""
+"""Depth in mm by which a lug extends into the body, so that the two are joined."""
 
 
 @dataclass(frozen=True, slots=True)
 class PortShape:
-    """A port, mm.
+    """Shape of a port, mm.
 
     Attributes:
-        outside: Faces from the inner edge of the mouth, over the outside, to the root at height 0: end point and tag.
-        hollow: Points from the inner edge of the mouth inwards; the last one is where the passage begins.
+        outside: End point and tag of each face, from the mouth's inner edge over the outside to the root at height 0.
+        hollow: Points from the inner edge of the mouth inwards; the passage begins at the last one.
         length: Height of the mouth.
         engaged: Depth to which a fitting or tube fills the hollow, measured from the mouth.
-        fitting_bore: Radius that it leaves free.
+        fitting_bore: Radius of the bore of that fitting or tube.
         lugs: Prisms joined to the outside, in the frame of the port.
-        lug_volume: Volume that they add, mm3.
+        lug_volume: Volume added by the lugs, mm3.
     """
 
     outside: tuple[tuple[Point, str], ...]
@@ -47,12 +47,12 @@ class PortShape:
 
     @property
     def root(self) -> float:
-        """Outer radius where the port leaves the plate."""
+        """Outer radius of the port at the plate."""
         return self.outside[-1][0][0]
 
     @property
     def reach(self) -> float:
-        """Greatest radius."""
+        """Greatest radius of the port, lugs included."""
         lugs = [piece.bounds()[1] for lug in self.lugs for piece in lug.outline]
         return max([point[0] for point, _ in self.outside] + lugs)
 
@@ -67,7 +67,7 @@ class PortShape:
         return sum(-Line(a, b, "").swept() for a, b in pairwise(points))
 
     def filled_volume(self) -> float:
-        """Volume in mm3 that a fitting or tube takes of the hollow, its own bore left free."""
+        """Volume in mm3 of the hollow that a fitting or tube fills, without its own bore."""
         if not self.engaged:
             return 0.0
         end = self.length - self.engaged
@@ -129,7 +129,7 @@ def _luer(port: Luer, tube: Tube, undersize: float) -> PortShape:
 
 
 def _lug(port: Luer, turn: float) -> Prism:
-    """A sector of a ring under the mouth, centred on the angle ``turn`` (rad)."""
+    """A sector of a ring below the mouth, centred on the angle ``turn`` (rad)."""
     outer, inner = 0.5 * port.lug_diameter, 0.5 * port.body_diameter - _LUG_ROOT
     half = math.radians(0.5 * port.lug_angle_deg)
     over, under = Arc((0, 0), outer, turn - half, turn + half, "lug"), Arc((0, 0), inner, turn + half, turn - half, "")
@@ -145,7 +145,7 @@ def _push_in(port: PushIn, tube: Tube, undersize: float) -> PortShape:
 
 
 def _to_plate(hollow: list[Point]) -> tuple[Point, ...]:
-    """The hollow, its passage drawn on to the plate's face where it ends above it."""
+    """Hollow with its passage extended to the plate's face if it ends above the face."""
     radius, height = hollow[-1]
     return (*hollow, (radius, 0.0)) if height > 0 else tuple(hollow)
 

@@ -1,4 +1,4 @@
-"""Check that a layout has space for its parts: refused before anything is drawn, with the lengths that do not fit."""
+"""Check that a layout has space for its parts, before anything is drawn; errors state the lengths that do not fit."""
 
 import math
 
@@ -9,7 +9,7 @@ from pneutouch.parts.layout import HEAD_GAP, Layout, finger_radius
 from pneutouch.spec.part import BoltCircle, OnePiece, RobotFlange, Sleeve
 
 Lengths = dict[str, tuple[float, float]]
-"""Name of a length, the radius that there is and the one that is needed, mm."""
+"""Present and required radius, mm, by the name of a length."""
 
 
 def check_space(scene: ResolvedDesign, layout: Layout) -> None:
@@ -30,7 +30,7 @@ def check_space(scene: ResolvedDesign, layout: Layout) -> None:
 
 
 def space_margin(scene: ResolvedDesign, layout: Layout) -> float:
-    """The least relative margin of the radii that `check_space` compares; negative where it refuses the layout."""
+    """Least relative margin of the radii that `check_space` compares; negative if it refuses the layout."""
     small = [has / least - 1.0 for has, least in _least(scene, layout).values() if least > 0]
     large = [most / has - 1.0 for has, most in _most(scene, layout).values()]
     ring, wall = layout.ring, _least_bridge(scene)
@@ -39,13 +39,13 @@ def space_margin(scene: ResolvedDesign, layout: Layout) -> float:
 
 
 def _least_bridge(scene: ResolvedDesign) -> float:
-    """Least rigid material in mm at a hole of a ring: a wall that the printer makes."""
+    """Least width of rigid material in mm at a hole of a ring: the wall that the printer can make."""
     wall = scene.connector_printer.smallest.wall("rigid")
     return wall.recommended if wall.least is None else wall.least
 
 
 def _check_ring(scene: ResolvedDesign, ring: RingSize | None) -> None:
-    """Raise InputError for a ring whose holes leave less than the printer can make between them or inside them."""
+    """Raise InputError for a ring whose holes leave less material between or inside them than the printer can make."""
     least, web = _least_bridge(scene), scene.design.cast_ring
     if ring is not None and ring.rim < least:
         raise InputError(
@@ -77,7 +77,7 @@ def _no_space(scene: ResolvedDesign, problem: str, remedy: str) -> InputError:
 
 
 def _least(scene: ResolvedDesign, layout: Layout) -> Lengths:
-    """Radii that must not be smaller."""
+    """Radii with a lower limit, and that limit."""
     seat, mount, port, needs = scene.seat, scene.mount, layout.port, {}
     wall = scene.connector_printer.smallest.wall("rigid").recommended
     inner = port.reach if layout.port_axis is None else 0.0
@@ -98,7 +98,7 @@ def _least(scene: ResolvedDesign, layout: Layout) -> Lengths:
 
 
 def _most(scene: ResolvedDesign, layout: Layout) -> Lengths:
-    """Radii that must not be larger."""
+    """Radii with an upper limit, and that limit."""
     seat, mount = scene.seat, scene.mount
     if isinstance(mount, RobotFlange):
         free = layout.bolt_circle_radius - 0.5 * mount.head_diameter - HEAD_GAP

@@ -17,14 +17,14 @@ _FINER = 10.0
 _SLIVER = 1.0
 """Least angle of a triangle in degrees below which slicers and solvers lose precision (own, unverified)."""
 _MANY = 0.1
-"""Share of slivers that is worth a word (own, unverified)."""
+"""Share of slivers that is worth a finding (own, unverified)."""
 
 
 class Meshable(Protocol):
     """An exact solid that meshes itself."""
 
     def mesh(self, tolerance: float) -> Body:
-        """The body within ``tolerance`` mm."""
+        """Mesh of the body within ``tolerance`` mm."""
 
 
 def inspect(body: Body, solid: Meshable | None = None, tolerance: float = 0.016) -> list[Finding]:

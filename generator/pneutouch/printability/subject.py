@@ -2,9 +2,9 @@
 
 A sensor's bodies become a subject like this::
 
-    Subject(
+    PrintSubject(
         items=tuple(
-            Item(
+            PrintItem(
                 body, printer, mode, solid, up=(0.0, 0.0, 1.0), job=solid.name,
                 hints={"walls": "raise membrane.wall_thickness_mm"},
             )
@@ -47,10 +47,10 @@ class ExactShape(Protocol):
 class PrintItem:
     """One body as it will be printed, in the design frame (mm).
 
-    ``solid`` is the exact shape where there is one. ``up`` is the build direction in the body's frame. Items with
-    the same ``job`` are printed together, standing to one another as in the design frame; "" is a job of its own.
-    ``sensing`` selects the (n, 3) surface points that must not be matte. ``hints`` states, by the name of a rule, what
-    in the design would fix what the rule finds. ``insert`` is a body that this one is cast around: it fills its
+    ``solid`` is the exact shape where there is one. ``up`` is the build direction in the body's frame. Items with the
+    same ``job`` are printed together, standing to one another as in the design frame; "" is a job of its own.
+    ``sensing`` selects the (n, 3) surface points that must not be matte. ``hints`` states, by the name of a rule, the
+    change of the design that would fix its finding. ``insert`` is a body that this one is cast around: it fills its
     openings.
     """
 

@@ -47,10 +47,10 @@ class GluedSeat(NamedTuple):
 class SensorContext:
     """Data for the rules on the sensor's working: its prediction, the mechanics' view of it, and its rating.
 
-    ``membrane`` is the name of the item whose wall the sensor presses; ``calibrated``: the sensor is a printed one.
+    ``membrane`` is the name of the item whose wall the sensor presses; ``calibrated`` if it is a printed sensor.
     ``gauge`` is the one that the design names; None stands for the paper's. ``wetted``: what a cast membrane cures
-    against. ``glued``: what joins membrane and connector, None if the seat or the design leaves it open.
-    ``curves``: the sensor by every mixing curve of its mix.
+    against. ``glued``: what joins membrane and connector, None if the seat or the design leaves it open. ``curves``:
+    the sensor by every mixing curve of its mix.
     """
 
     prediction: SensorPrediction
@@ -101,7 +101,7 @@ class PrintPart:
 
     @cached_property
     def surface(self) -> SurfaceMesh:
-        """The mesh of the manifold, whose faces rays name."""
+        """Mesh of the manifold, with the face numbers that its rays return."""
         mesh = self.manifold.to_mesh64()
         return SurfaceMesh(np.array(mesh.vert_properties[:, :3]), np.array(mesh.tri_verts).astype(np.int64))
 
@@ -243,7 +243,7 @@ class PrintView:
 
     @cached_property
     def parts(self) -> tuple[PrintPart, ...]:
-        """One a body."""
+        """Parts, one for each body."""
         return tuple(PrintPart(item) for item in self.subject.items)
 
     @cached_property

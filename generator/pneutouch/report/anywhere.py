@@ -20,11 +20,11 @@ _LOOKS = (PlotLine(tone=INK, dashes=LINES[0], width=1.6), PlotLine(tone=ACCENT, 
 """Line styles of the lowest and the highest driving pressure."""
 
 _MARKED = 5
-"""Points of a curve to one mark."""
+"""Number of points of a curve per mark."""
 
 
 def contact_section(chart: ContactChart | str | None) -> list[SheetBlock]:
-    """Charts, table and notes; the reason alone where the table does not cover the sensor."""
+    """Charts, table and notes; only the reason if the table does not cover the sensor."""
     title = "Contact that is not central"
     if chart is None or isinstance(chart, str):
         return section(title, Text(f"Not stated: {chart or ''}."))
@@ -73,7 +73,7 @@ def contact_panels(chart: ContactChart) -> list[Panel]:
 
 
 def _curves(curves: ErrorCurves, words: list[str] | None = None) -> list[PlotLine]:
-    """One curve a driving pressure; those of edges, without words, are thin and marked."""
+    """One curve per driving pressure; curves of edges, without words, are thin and marked."""
     lines = [replace(look, x=curves.along, y=y) for y, look in zip(curves.errors_percent, _LOOKS, strict=False)]
     if words is None:
         return [replace(line, width=0.9, marker=MARKERS[0], every=_MARKED) for line in lines]

@@ -11,7 +11,7 @@ from typing import TypeVar
 Row = Sequence["str | Cell"]
 
 _SHORT, _SENTENCE = 22, 40
-"""Letters of a cell that is never broken, and from which on it is a sentence."""
+"""Letters up to which a cell is never broken, and above which it is a sentence."""
 
 
 @dataclass(frozen=True)
@@ -93,9 +93,9 @@ class SheetTable:
 
     @property
     def weights(self) -> list[int]:
-        """Share of each column in the room that there is; 0 for one that is as wide as its cells.
+        """Share of each column in the free width; 0 for a column that is as wide as its cells.
 
-        Beside sentences short columns are narrow; without them all that are not numbers share the room.
+        Beside sentences short columns are narrow; without them all columns but those of numbers share it.
         """
         lengths = [0 if k in self.numeric else length for k, length in enumerate(self.lengths)]
         if self.head and 0 < max(lengths) <= _SENTENCE:
@@ -127,7 +127,7 @@ class Plot:
 
 @dataclass(frozen=True)
 class Plots:
-    """Figures in columns, of widths to one another, over one caption."""
+    """Figures in columns, of relative ``widths``, over one caption."""
 
     plots: Sequence[Plot]
     widths: Sequence[int] = (1, 1)
@@ -148,7 +148,7 @@ class View:
 
 @dataclass(frozen=True)
 class Tile:
-    """A figure that counts: name, value, unit, condition."""
+    """A key figure: name, value, unit, condition."""
 
     name: str
     value: str
@@ -158,7 +158,7 @@ class Tile:
 
 @dataclass(frozen=True)
 class Tiles:
-    """Figures that count, three in a row."""
+    """Key figures, three in a row."""
 
     tiles: Sequence[Tile]
 
@@ -187,16 +187,16 @@ class Sheet:
     """A sheet.
 
     Attributes:
-        title: Its title.
+        title: Title of the sheet.
         subtitle: Kind of sheet.
         name: Title of the document: of the page's tab and of the PDF.
         facts: Names and values next to the title.
         tool: Program that made it.
         foot: Text at the foot of every page.
         mark: Words on every page, such as that the data are simulated; empty for none.
-        mark_note: Words behind them on the first page.
-        blocks: What stands on it.
-        date: Of the PDF; None for none.
+        mark_note: Words after the mark on the first page.
+        blocks: Blocks of the sheet.
+        date: Date of the PDF; None for none.
     """
 
     title: str

@@ -36,7 +36,7 @@ _INPUTS = {
 
 
 def ends(prediction: SensorPrediction, documents: tuple[UncertaintyRecord, ...]) -> dict[str, UncertaintyRecord]:
-    """Uncertainties of the lowest and the highest driving pressure, by label; those of which something is known."""
+    """Uncertainties of the lowest and the highest driving pressure, by label, if something is known of them."""
     pairs = list(zip(prediction.states, documents, strict=True))
     chosen = pairs[:1] + pairs[1:][-1:]
     return {f"{s.driving_pressure / KPA:g} kPa": d for s, d in chosen if SENSITIVITY_KEY in d.known}
@@ -102,7 +102,7 @@ def _figures(covered: dict[str, UncertaintyRecord]) -> list[list[str]]:
 
 
 def _width(document: UncertaintyRecord, name: str) -> str:
-    """The interval; a figure under which no source has an effect is as it was stated."""
+    """The interval of a figure; "as stated" if no source has an effect on it."""
     figure = document.known[name]
     return interval(document, name) if figure.expanded_uncertainty > 0 else "as stated"
 
@@ -137,7 +137,7 @@ def _digits(value: float) -> str:
 
 
 _MOST = 5
-"""Sources drawn; the rest is added up in one bar."""
+"""Number of sources drawn; the rest is added up in one bar."""
 
 _WIDTH = 105.0
 """Width of the chart in mm: readable on a narrow screen."""

@@ -43,10 +43,10 @@ AxisEnds = tuple[float | None, float | None]
 
 @dataclass(frozen=True)
 class PlotLine:
-    """A curve or a set of points, ``x`` and ``y`` (n,); one without points is an entry of the legend alone.
+    """A curve or a set of points, ``x`` and ``y`` (n,); one without points is only an entry of the legend.
 
     ``label`` stands in the legend, ``end`` right of the axes at the last point, or in the panel's corner. A line
-    without ``dashes`` is points alone, every ``every``-th marked; a ``picked`` one is what the chart is about. ``low``
+    without ``dashes`` is only points, every ``every``-th marked; a ``picked`` one is what the chart is about. ``low``
     and ``high`` bound its band, plain or with hatch number ``hatch``; ``over`` is its drawing order.
     """
 
@@ -81,7 +81,7 @@ class Note:
 
 @dataclass(frozen=True)
 class Span:
-    """A shaded stretch of an axis over all of the other, or a hatched one."""
+    """A shaded or hatched stretch of an axis, across the whole of the other axis."""
 
     low: float
     high: float
@@ -95,7 +95,7 @@ class Span:
 class Panel:
     """One pair of axes with quantities and units.
 
-    ``log`` and ``zero`` name the axes that are logarithmic or have a line at nothing. ``rows`` (from above) and
+    ``log`` and ``zero`` name the axes that are logarithmic or have a line at zero. ``rows`` (from above) and
     ``columns`` are names that stand at 0, 1, 2, ... in place of numbers, ``ticks`` the only numbers of the horizontal
     axis. ``corner``: the texts of ends stand in the upper right corner; ``equal``: both axes have one scale.
     """
@@ -119,9 +119,9 @@ class Panel:
 
 @dataclass(frozen=True)
 class Chart:
-    """Panels in rows of ``across`` that share ``x`` and ``y`` as axes, and the ends of those in ``shared``.
+    """Panels in rows of ``across`` with the common axes ``x`` and ``y``; axes named in ``shared`` have common ends.
 
-    ``size`` is in mm, ``heights`` are those of the rows to one another; the legend has ``keys`` columns.
+    ``size`` is in mm, ``heights`` are the relative heights of the rows; the legend has ``keys`` columns.
     """
 
     panels: tuple[Panel, ...]
@@ -188,7 +188,7 @@ def draw_panel(ax: Axes, panel: Panel) -> None:
 
 
 def _draw(ax: Axes, one: PlotLine) -> None:
-    """One curve with its band."""
+    """Draw a curve with its band."""
     label = plain_text(one.label) or None
     if one.low is not None and one.high is not None:
         if one.hatch is not None:
@@ -264,7 +264,7 @@ def _ends(panel: Panel) -> list[Label]:
 
 
 def plain_text(text: str) -> str:
-    """Text that matplotlib takes for no formula."""
+    """Text escaped so that matplotlib sees no formula in it."""
     return text.replace("$", r"\$")
 
 

@@ -35,7 +35,7 @@ from pneutouch.results.comparison import ComparedCurve, ComparisonRecord, Differ
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 
 MOST = 6
-"""Sensors that are drawn: more cover one another."""
+"""Greatest number of sensors drawn: more cover one another."""
 
 _SHORT, _CUT = 16, 44
 """Letters of a name that fits into half the width of a legend, and into all of it."""
@@ -188,14 +188,14 @@ def _top(comparison: ComparisonRecord, key: str) -> float:
 
 
 def _spread(values: Sequence[float]) -> list[float]:
-    """All of them where they are few, else some spread evenly over all."""
+    """All values if they are few, else some spread evenly over all."""
     if len(values) <= _PANELS:
         return list(values)
     return [values[round(k * (len(values) - 1) / (_PANELS - 1))] for k in range(_PANELS)]
 
 
 def _ends(comparison: ComparisonRecord, key: str, k: int, pressure_kPa: float | None) -> BandEnds | None:
-    """Ends of a figure's interval over its value."""
+    """Ends of a figure's interval, divided by its value."""
     for row in comparison.figures:
         if row.figure == key and row.driving_pressure_kPa == pressure_kPa:
             one = row.values[k]
@@ -205,7 +205,7 @@ def _ends(comparison: ComparisonRecord, key: str, k: int, pressure_kPa: float | 
 
 
 def differences(comparison: ComparisonRecord) -> list[tuple[str, str]]:
-    """Differences from the first sensor in percent with their intervals; filled where they exceed them."""
+    """Differences from the first sensor in percent with intervals; filled where one exceeds its uncertainty."""
     rows = []
     for row in comparison.figures:
         at = "" if row.driving_pressure_kPa is None else f" {words.heading(row.driving_pressure_kPa)}"
@@ -232,8 +232,8 @@ def differences(comparison: ComparisonRecord) -> list[tuple[str, str]]:
 
 
 def _span(one: DifferenceRecord | None) -> tuple[float, float, float, bool] | None:
-    """Lower end, value and upper end in percent, and True where it exceeds them; None without an interval of some
-    width."""
+    """Lower end, value and upper end in percent, and True if the difference exceeds its uncertainty; None without an
+    interval of some width."""
     if one is None or one.low_percent is None or one.percent is None or one.high_percent is None:
         return None
     low, percent, high = one.low_percent, one.percent, one.high_percent

@@ -16,7 +16,7 @@ def labels(comparison: ComparisonRecord) -> list[str]:
 
 
 def input_rows(comparison: ComparisonRecord) -> list[list[str]]:
-    """The inputs that differ, a row each: its key, and a value a sensor."""
+    """The inputs that differ, one row each: the key, and one value per sensor."""
     return [[key, *(_value(value) for value in values)] for key, values in comparison.inputs.items()]
 
 
@@ -38,7 +38,7 @@ def figure_name(row: RowRecord) -> str:
 
 
 def figure_cells(row: RowRecord) -> list[tuple[str, str]]:
-    """Value and interval, a pair a sensor."""
+    """Value and interval, one pair per sensor."""
     return [
         (DASH, "") if one is None else (number(one.value, _DIGITS), _interval(one.value, one.low, one.high))
         for one in row.values
@@ -53,7 +53,7 @@ def _interval(value: float, low: float | None, high: float | None) -> str:
 
 
 def difference_cells(row: RowRecord) -> list[tuple[str, str, str]]:
-    """Difference in percent, its interval, and whether it exceeds its uncertainty: one each for all but the first."""
+    """Difference in percent, its interval, and the verdict on it, for each sensor but the first."""
     return [_difference(one) for one in row.differences]
 
 
@@ -83,7 +83,7 @@ def heading(pressure_kPa: float | None) -> str:
 
 
 def marks(comparison: ComparisonRecord) -> list[str]:
-    """One sentence a sensor whose figures rest on simulated runs."""
+    """One sentence for each sensor whose figures rest on simulated runs."""
     how = {"measured": "a program made these runs; no sensor was measured"}
     return [
         f"{SIMULATED}: {one.label}: {how.get(one.kind, 'calibrated on simulated runs; no unit has been tested')}."
@@ -93,7 +93,7 @@ def marks(comparison: ComparisonRecord) -> list[str]:
 
 
 def summary(comparison: ComparisonRecord) -> list[str]:
-    """One sentence a sensor after the first: in which figures the difference exceeds its uncertainty."""
+    """One sentence for each sensor after the first: in which figures the difference exceeds its uncertainty."""
     first, *others = labels(comparison)
     sentences = []
     for k, label in enumerate(others):

@@ -19,7 +19,7 @@ DASH = "–"
 
 
 def environment(sheet: SheetData) -> list[list[str]]:
-    """Rows of quantity, value and basis."""
+    """Rows on the environment: quantity, value and basis."""
     rows = _air(sheet) if sheet.gas is not None else _drift_alone(sheet)
     material = sheet.scene.membrane_material
     if material.shore_a and material.shore_a_one_year:
@@ -182,7 +182,7 @@ def off_axis(states: tuple[SensorState, ...]) -> list[SheetBlock]:
 
 
 def _off_axis_rows(states: tuple[SensorState, ...]) -> list[list[str]]:
-    """One row a driving pressure that was pressed off the axis."""
+    """One row per driving pressure that was pressed off the axis."""
     rows = []
     for state in states:
         beyond = state.beyond_axis
@@ -197,7 +197,7 @@ def _off_axis_rows(states: tuple[SensorState, ...]) -> list[list[str]]:
 
 
 def shear_rows(states: tuple[SensorState, ...]) -> list[list[str]]:
-    """One row a driving pressure at which the object moved sideways; a dash for a figure that was not reached."""
+    """One row per driving pressure at which the object moved sideways; a dash for a figure that was not reached."""
     rows = []
     for state in states:
         sheared = None if state.beyond_axis is None else state.beyond_axis.shear
@@ -229,7 +229,7 @@ _BEYOND = (
 
 
 def mixing_section(sheet: SheetData) -> list[SheetBlock]:
-    """The table by every mixing curve: a row a figure, a column a curve, the softest first."""
+    """The table by every mixing curve: one row per figure, one column per curve, the softest first."""
     curves = sheet.curves
     head = ["Figure", *(f"{one.by_curve.curve}: {one.by_curve.place}" for one in curves), "Unit"]
     rows = [["Mean shear modulus", *(f"{one.by_curve.shear_modulus_MPa.nominal:.2f}" for one in curves), "MPa"]]

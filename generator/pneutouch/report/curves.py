@@ -30,15 +30,15 @@ BandEnds = tuple[float, float]
 
 @dataclass(frozen=True)
 class Press:
-    """A press, predicted or measured: curves over one another's points, (n,) each, and their look.
+    """A press, predicted or measured: curves of common points, (n,) each, and their look.
 
     Attributes:
-        indentation: mm.
+        indentation: Indentation, mm.
         force: Contact force, N.
-        rise_kPa: Pressure rise.
+        rise_kPa: Pressure rise, kPa.
         look: PlotLine that is drawn in the same way.
         rise_band: Ends of the rise's band over its value; None without one.
-        force_band: Those of the force's.
+        force_band: The same for the force.
     """
 
     indentation: Array
@@ -130,7 +130,7 @@ def _compared(k: int, label: str, picked: bool, x: Array, y: Array) -> PlotLine:
 
 
 _OFF = 0.03
-"""Share that a resin's curve may be off the design's states, for its model's error, and still be that of the design."""
+"""Greatest share by which a resin's curve may miss the design's states (model error) and still count as its curve."""
 
 
 def _holds(curve: SensitivityCurve, pressures_kPa: Array, sensitivities_kPa_per_N: Array) -> bool:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _CELLS = 90
-"""Cells along the arc of the shaded section; one more would not be seen."""
+"""Number of cells along the arc of the shaded section; more would not be seen."""
 
 
 def grade_section(sheet: SheetData) -> Plot | None:

@@ -34,7 +34,7 @@ _HATCHES = {
     RING: "xxxxxx",
 }
 _SILICONE = "0.78"
-"""Gray of the silicone: every part is hatched, it is not."""
+"""Gray of the silicone, which is not hatched as the parts are."""
 
 
 def mould_section(mould: MouldAssembly) -> str:
@@ -49,7 +49,7 @@ def mould_section(mould: MouldAssembly) -> str:
 
 
 def draw_mould(ax: Axes, mould: MouldAssembly, labels: bool = True) -> None:
-    """The section of one cavity into axes, turned over: heights are those of pouring, lengths in mm."""
+    """Draw the section of one cavity into axes, turned over, with heights as it is poured; lengths in mm."""
     size = lay_out_mould(mould.membrane, replace(mould.size.shape, cavities=1), mould.size.insert)
     insert = () if mould.insert is None else (mould.insert,)
     for solid in (*mould_solids(size, mould.material), *insert, silicone(size, mould.material)):

@@ -12,12 +12,12 @@ Bounds = tuple[float, float | None, float | None]
 
 
 def decimals(value: float, digits: int) -> int:
-    """Decimals that give a value that many significant digits."""
+    """Decimals that give a value ``digits`` significant digits."""
     return max(digits - 1 - math.floor(math.log10(abs(value))), 0) if value else digits - 1
 
 
 def number(value: float | None, digits: int = 3, like: float | None = None) -> str:
-    """A value with that many significant digits, or with as many decimals as ``like`` would have."""
+    """A value with ``digits`` significant digits, or with as many decimals as ``like`` would have."""
     if value is None or not math.isfinite(value):
         return DASH
     scale = value if like is None else like
@@ -36,7 +36,7 @@ def between(bounds: Bounds, digits: int = 3) -> str:
 
 
 def signed(value: float | None, digits: int = 1) -> str:
-    """A difference with its sign and that many decimals."""
+    """A difference with its sign and ``digits`` decimals."""
     if value is None or not math.isfinite(value):
         return DASH
     text = f"{value:+.{digits}f}"
@@ -44,7 +44,7 @@ def signed(value: float | None, digits: int = 1) -> str:
 
 
 def difference(measured: float, predicted: float) -> float | None:
-    """Measured less predicted in percent of the predicted; None if that is nothing."""
+    """Measured less predicted in percent of the predicted; None if the predicted is zero."""
     return 100 * (measured - predicted) / abs(predicted) if predicted else None
 
 

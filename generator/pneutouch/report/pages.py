@@ -1,5 +1,5 @@
 """A sheet as a page, as a PDF and as Markdown: Jinja writes the page, the source of the PDF, which Typst sets, and the
-Markdown of those who print and measure."""
+Markdown for people who print and measure."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def html(sheet: Sheet) -> str:
         return base64.b64encode(data).decode()
 
     def figure(text: str) -> Markup:
-        """Our own SVG, without what a figure before it has defined."""
+        """SVG of a figure, without definitions that an earlier figure has."""
         return Markup(without_repeats(text, seen))
 
     fonts = {name: encoded((FONTS / f"Inter-{name}.otf").read_bytes()) for name in ("Regular", "SemiBold")}
@@ -49,7 +49,7 @@ def html(sheet: Sheet) -> str:
 
 
 def without_repeats(text: str, seen: set[str]) -> str:
-    """A figure without the definitions in ``seen``, letters above all, which then holds its own too."""
+    """A figure without the definitions in ``seen``, mostly letters; its own are then added to ``seen``."""
 
     def once(match: re.Match[str]) -> str:
         if match[0] in seen:
@@ -62,7 +62,7 @@ def without_repeats(text: str, seen: set[str]) -> str:
 
 _DEFINITION = re.compile(r'<(path|clipPath|pattern) id="[^"]+"(?:[^>]*/>|.*?</\1>)', re.DOTALL)
 _GROUP = re.compile(r'<g id="[^"]+">')
-"""Groups are named alike in every figure, and nothing refers to them."""
+"""Start of a group with its name: groups are named alike in every figure, and nothing refers to them."""
 
 
 def source(sheet: Sheet) -> dict[str, bytes]:
@@ -135,7 +135,7 @@ def filled(template: str, **values: Any) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Text that Markdown takes for no table, HTML or escape."""
+    """Text escaped so that Markdown sees no table, HTML or escape in it."""
     return text.replace("\\", "\\\\").replace("|", "\\|").replace("<", "&lt;")
 
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 _LIGHT = np.array([-0.35, -0.55, 0.76])
 _OVERSAMPLING = 2
 _PIXELS_AT_ONCE = 50_000
-"""Pixels of triangles that are worked on together: what fits the processor's cache."""
+"""Number of pixels of triangles that are processed together: as many as fit the processor's cache."""
 _LEVEL_EDGE = 1e-6
 """Height in pixels below which an edge lies along a line of pixels."""
 
@@ -44,7 +44,7 @@ def picture(bodies: Sequence[ShadedBody], width: int = 900, height: int = 640) -
 
 
 def png(image: Array, colours: int | None = None) -> bytes:
-    """PNG of an image (height, width, 3) from 0 to 1, the uppermost line first; a small one in so many colours."""
+    """PNG of an image (height, width, 3) from 0 to 1, the uppermost line first; with ``colours``, of so many."""
     from matplotlib.image import imsave
     from PIL import Image
 
@@ -112,7 +112,7 @@ def _paint(image: Array, depth: Array, corners: Array, colours: Array) -> None:
 
 
 def _counted(low: Index, high: Index) -> tuple[Index, Index]:
-    """All whole numbers from low to high, (n,) each, and which pair each belongs to."""
+    """Number of the pair, and whole number, for all whole numbers from low to high of each pair, (n,) each."""
     count = np.maximum(high - low + 1, 0)
     which = np.repeat(np.arange(low.size), count)
     return which, np.arange(which.size) - np.repeat(np.cumsum(count) - count - low, count)
@@ -304,7 +304,7 @@ def shown(assembly: Assembly, pixels: int) -> tuple[ShadedBody, ...]:
 
 
 def greatest_share(grading: ArcGrading) -> float:
-    """Share of the stiff resin at the dark end of the colours; at least one percent, so that none of it is light."""
+    """Share of the stiff resin at the dark end of the colours; at least one percent, so that a share of 0 is light."""
     return max(*grading.stiff_fraction, 0.01)
 
 

@@ -58,7 +58,7 @@ def _fixed(drawn: Figure) -> list[Any]:
 
 
 def _box(text: Any) -> LabelBox:
-    """The box of the letters alone: that of an annotation would hold its line as well."""
+    """Box of the letters only: the box of an annotation would include its line."""
     from matplotlib.text import Text
 
     box = Text.get_window_extent(text)
@@ -147,7 +147,7 @@ def _dense(xy: Array) -> Array:
 
 
 def _near(ax: Axes, label: Annotation, curves: Array, taken: list[LabelBox]) -> tuple[LabelBox, Array]:
-    """Move a label to the first free place around its point; if there is none, to the one with least over it.
+    """Move a label to the first free place around its point; if there is none, to the one with the least under it.
 
     Returns its box, and points (n, 2) on the line that leads to it.
     """

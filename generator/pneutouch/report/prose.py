@@ -127,7 +127,7 @@ def method(scene: ResolvedDesign) -> tuple[str, ...]:
 
 
 def status(scene: ResolvedDesign) -> str:
-    """Status of the figures: from the design alone, or from the runs of one specimen, measured or simulated."""
+    """Status of the figures: from only the design, or from the runs of one specimen, measured or simulated."""
     calibration = scene.calibration
     if calibration is None:
         return "Predicted. No unit has been built or tested."

@@ -23,7 +23,7 @@ SIZE = (180.0, 96.0)
 """Width and height in mm: the text width of A4."""
 
 _COLUMNS = 500
-"""Moments drawn at most: 6 of them a mm, and a bound to the file's size."""
+"""Greatest number of moments drawn: 6 per mm, which bounds the file's size."""
 
 _DPI = 250
 

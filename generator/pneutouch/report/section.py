@@ -149,7 +149,7 @@ def _shape(loops: Sequence[Array]) -> Path:
 
 
 def _graded(ax: Axes, wall: PathPatch, grading: ArcGrading, shape: DomeShape) -> None:
-    """Wedges from face to face in the colours of the grade, cut to the wall; below the base that of the rim."""
+    """Wedges from face to face in the colours of the grade, cut to the wall; below the base in the rim's colour."""
     from matplotlib.collections import PolyCollection
 
     arc = np.linspace(0.0, 1.0, _WEDGES + 1)
@@ -167,7 +167,7 @@ def _graded(ax: Axes, wall: PathPatch, grading: ArcGrading, shape: DomeShape) ->
 
 
 def section_picture(assembly: Assembly) -> str:
-    """The section alone, without dimensions, as SVG."""
+    """The section without dimensions, as SVG."""
     with figure(76, 50) as drawn:
         ax = drawn.subplots()
         draw_section(ax, assembly)

@@ -24,7 +24,7 @@ _PERFORMANCE = (
 
 
 def key_figures(sheet: SheetData) -> list[Tile]:
-    """Figures of the first page."""
+    """Tiles with the key figures of the first page."""
     first, last = sheet.prediction.states[0], sheet.prediction.states[-1]
     mass = sum(solid.mass for solid in sheet.assembly.solids)
     wide, dead_volume_mL = 2 * sheet.assembly.layout.plate_radius, sheet.prediction.dead_volume / ML
@@ -94,7 +94,7 @@ def operating(sheet: SheetData) -> list[list[str]]:
 
 
 def performance(sheet: SheetData) -> SheetTable:
-    """One row a driving pressure."""
+    """Table of performance, with one row per driving pressure."""
     pairs = zip(sheet.prediction.states, sheet.uncertainty, strict=True)
     rows = [_state(sheet, state, interval(document) or DASH) for state, document in pairs]
     return SheetTable(rows, _PERFORMANCE, numeric=range(10), turned=True)

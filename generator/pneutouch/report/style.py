@@ -169,7 +169,7 @@ def halo() -> list[AbstractPathEffect]:
 
 
 def plain_ticks(axis: Axis) -> None:
-    """Ticks of a logarithmic axis as plain numbers at 1, 2 and 5 of each decade; at 1 alone where they are many."""
+    """Ticks of a logarithmic axis as plain numbers at 1, 2 and 5 of each decade; only at 1 where they are many."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     low, high = axis.get_view_interval()

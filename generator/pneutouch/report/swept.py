@@ -57,7 +57,7 @@ class SweptAxis:
         return f"{value:g}" if self.unit in ("", "1") else f"{value:g} {self.unit}"
 
     def named(self, place: int) -> str:
-        """A value with its words; a name of a catalogue stands alone."""
+        """A value with its words; a name of a catalogue without words."""
         value = self.values[place]
         alone = isinstance(value, str) and value not in ("true", "false")
         return self.text(place) if alone else f"{self.words} {self.text(place)}"
@@ -65,7 +65,7 @@ class SweptAxis:
 
 @dataclass(frozen=True)
 class SweptFigure:
-    """A figure over the axes: ``value``, ``low`` and ``high`` have a dimension an axis; NaN for a missing one."""
+    """A figure over the axes: ``value``, ``low`` and ``high`` have one dimension per axis; NaN for a missing one."""
 
     label: str
     axes: tuple[SweptAxis, ...]
@@ -74,7 +74,7 @@ class SweptFigure:
     high: Array
 
     def at(self, order: Sequence[int]) -> SweptFigure:
-        """The axes in another order."""
+        """The figure with its axes in another order."""
         axes = tuple(self.axes[k] for k in order)
         return SweptFigure(self.label, axes, *(np.transpose(a, order) for a in self.arrays))
 
@@ -87,8 +87,8 @@ class SweptFigure:
 def pictures(swept: SweptFigure) -> dict[str, tuple[str, bytes]]:
     """SVG and PNG by name: ``over-KEY`` for each axis that varies, ``map`` where two numbers do.
 
-    Other axes become lines (names first), then panels; what is left stays at its middle value, which the title states.
-    """
+    Other axes become lines (names first), then panels; further axes stay at their middle values, which the title
+    states."""
     varied = [k for k, axis in enumerate(swept.axes) if len(axis.values) > 1]
     drawn = {f"over-{swept.axes[k].key}": _over(_ordered(swept, [k])) for k in varied}
     numbers = [k for k in varied if swept.axes[k].numeric and swept.axes[k].key != "driving_pressure_kPa"]
@@ -108,7 +108,7 @@ def _ordered(swept: SweptFigure, first: list[int]) -> SweptFigure:
 
 
 def spread_places(count: int, most: int = _PANELS) -> list[int]:
-    """Places spread evenly over all."""
+    """At most ``most`` of ``count`` places, spread evenly over all."""
     return list(range(count)) if count <= most else sorted({round(k * (count - 1) / (most - 1)) for k in range(most)})
 
 

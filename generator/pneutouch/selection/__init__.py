@@ -1,6 +1,6 @@
-"""The inverse: a target in, designs out.
+"""Inverse design: from a target to designs.
 
-`problem` states the target in numbers, `search` finds candidates, `pool` holds them with their margin to every limit,
+`problem` states the target in numbers, `candidates` finds and holds candidates with their margin to every limit,
 `choose` ranks them or states which requirement prevents a design.
 """
 

@@ -1,6 +1,6 @@
 """Candidates with their predicted figures, and how far each is inside or outside every limit.
 
-The rated pressure of candidates: that which `check` and the datasheet state of the design.
+The rated pressure of candidates, as `check` and the datasheet state it for a design.
 
 Candidates over all resins and all that is free: a coarse scan; the sensitivity met exactly along one direction.
 """
@@ -42,7 +42,7 @@ it."""
 
 
 class CandidatePool(NamedTuple):
-    """Candidates, (n,) each: number of the resin, mm, MPa, and the response."""
+    """Candidates, (n,) each: number of the resin, radius and wall in mm, driving pressure in MPa, and response."""
 
     resin: Array
     radius: Array
@@ -58,7 +58,7 @@ class CandidatePool(NamedTuple):
 
     @property
     def figures(self) -> Figures[float]:
-        """Figures of the one candidate of a pool, or of the first."""
+        """Figures of the first, often the only, candidate of the pool."""
         return Figures(*(float(column[0]) for column in self.response.lines))
 
     @property
@@ -220,16 +220,16 @@ def scan(problem: SelectionProblem) -> CandidateGrid:
 
 
 _STARTS, _HALVINGS, _FIRST_STEP = 6, 12, 0.15
-"""Candidates of each resin from which a nearer one is looked for, how often the step is halved, and the first one:
-of the logarithms of radius and wall, and of the pressure in rated pressures."""
+"""Number of candidates of each resin to start from, number of times the step is halved, and the first step: in the
+logarithms of radius and wall, and in rated pressures."""
 
 
 _ENOUGH = 0.02
-"""Margin that rounding to a hundredth of a millimetre does not use up, if there is as much."""
+"""Margin kept for the rounding to a hundredth of a millimetre, if there is as much."""
 
 
 def nearer(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
-    """Candidates that break the limits less than those of a scan, or meet them: steps to the best of all neighbours.
+    """Improved candidates of a scan, by steps to the best neighbour: they break the limits less, or meet them.
 
     A scan has no point in every corner of what is possible, such as the least wall at the greatest diameter. The steps
     start at the best of each resin, which differ, and are halved where no neighbour is better.
@@ -352,7 +352,7 @@ def _log_ratio(target_kPa_per_N: float, pool: CandidatePool) -> Array:
 
 
 def _between(a: Array, b: Array, share: Array) -> Array:
-    """Geometric where both are positive, for sizes; straight for pressures that start at zero."""
+    """Geometric interpolation where both ends are positive (sizes), else linear (pressures that start at zero)."""
     if np.all(a > 0) and np.all(b > 0):
         return np.asarray(a * (b / a) ** share)
     return np.asarray(a + share * (b - a))

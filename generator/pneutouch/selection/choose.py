@@ -27,19 +27,19 @@ from pneutouch.selection.candidates import (
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
 EACH = 3
-"""Candidates of one resin that are looked at closely."""
+"""Number of candidates of one resin that are examined closely."""
 _APART = 1.1
 """Candidates of one resin must differ by this factor in wall ratio or driving pressure to count as two."""
 _DIGITS = 2
 """Sizes are given to a hundredth of a millimetre, below what any of the printers resolves."""
 
 _REFINABLE = 0.1
-"""A sensitivity this near is met by refining: neighbouring fractions of a mix lie less than twice so far apart."""
+"""Relative distance of a sensitivity that refining meets: a mix's fractions lie less than twice as far apart."""
 
 _UNKNOWN = -1.0e9
 
 _UNCOVERED = 10.0
-"""Stands for the uncertainty by the place of contact of a candidate outside its table."""
+"""Value taken for the uncertainty by the place of contact of a candidate that the table does not cover."""
 
 MARGIN_WEIGHT = 0.1
 """Weight of the least margin in the cost."""
@@ -55,10 +55,10 @@ Refine = Callable[[SelectionProblem, CandidatePool], tuple[SelectionProblem, Can
 class Candidate:
     """One candidate with all that it is judged by.
 
-    margins: by name. binding: the smallest but the sensitivity's. expanded: relative expanded uncertainty of the
-    sensitivity. span: sensitivities at no pressure and at the rated one. rated: that pressure, MPa. cost: what the
-    ranking sorts by, less is better. place: relative standard uncertainty of the sensitivity by an unknown place of
-    contact, where the target counts it. contact: where the solid was searched with, for a contact outside the atlas.
+    margins: margins by name. binding: the smallest margin except the sensitivity's. expanded: relative expanded
+    uncertainty of the sensitivity. span: sensitivities at zero and at the rated pressure. rated: rated pressure, MPa.
+    cost: key of the ranking, less is better. place: relative standard uncertainty of the sensitivity by an unknown
+    place of contact, where the target counts it. contact: figures by the solid, for a contact outside the atlas.
     """
 
     resin: CandidateResin
@@ -84,7 +84,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class DroppedRequirement:
-    """A requirement to drop and the best value of it that can then be attained."""
+    """A requirement to drop, and the design without it that comes nearest to it."""
 
     requirement: str
     best: Candidate
@@ -92,10 +92,10 @@ class DroppedRequirement:
 
 @dataclass(frozen=True)
 class SelectionResult:
-    """designs: the best of each resin first, in order of cost, then the runners-up in order of cost.
+    """Result of a selection. designs: the best of each resin first, in order of cost, then the runners-up in order of
+    cost.
 
-    Without designs: the candidate nearest to the target, and which single requirement to drop for a design.
-    """
+    Without designs: the candidate nearest to the target, and which single requirement to drop for a design."""
 
     designs: list[Candidate]
     nearest: Candidate | None
@@ -113,7 +113,7 @@ def choose(
 ) -> SelectionResult:
     """Search, keep what meets every limit, and rank it; weights on robustness and on tunability.
 
-    Without ``thorough`` the scan alone is searched, in a fifth of the time of a search that finds nothing.
+    Without ``thorough`` only the scan is searched, in a fifth of the time of a search that finds nothing.
     """
     pool = searched(problem)
     if pool is None:
@@ -164,7 +164,7 @@ def refinable(problem: SelectionProblem) -> SelectionProblem:
 
 
 def least_margin(margin_of: dict[str, Array]) -> Array:
-    """The least margin but the sensitivity's, no more than 1."""
+    """Least margin of each candidate except the sensitivity's, (n,), at most 1."""
     rest = [margin for name, margin in margin_of.items() if name != "sensitivity"]
     return np.asarray(np.minimum(np.min(rest, axis=0), 1.0))
 
@@ -261,7 +261,7 @@ def _judged(
 
 
 def costs(weights: tuple[float, float], expanded: Array, span: tuple[Array, Array], least: Array) -> Array:
-    """Key of the ranking, (n,): from uncertainties, sensitivities at none and rated pressure, least margins."""
+    """Key of the ranking, (n,): from uncertainties, sensitivities at zero and at rated pressure, least margins."""
     with np.errstate(invalid="ignore", divide="ignore"):
         moves = np.abs(np.log(span[1] / span[0]))
     return np.asarray(
@@ -270,7 +270,7 @@ def costs(weights: tuple[float, float], expanded: Array, span: tuple[Array, Arra
 
 
 def _span(problem: SelectionProblem, pool: CandidatePool) -> tuple[Array, tuple[Array, Array]]:
-    """The rated driving pressure, and the sensitivities at none and at that one."""
+    """Rated driving pressures, and the sensitivities at zero and at rated pressure, (n,) each."""
     highest = rated(problem, pool.resin, pool.radius, pool.wall)
     pressure = np.concatenate([np.zeros_like(highest), highest])
     resin, radius, wall = (np.tile(column, 2) for column in (pool.resin, pool.radius, pool.wall))
@@ -291,11 +291,11 @@ def ranked(choices: list[Candidate]) -> list[Candidate]:
 
 
 _NEAREST = 30
-"""Candidates of which the nearest is taken: rounding can take one over the end of what is known."""
+"""Number of candidates from which the nearest at round sizes is taken: rounding can move one out of the known."""
 
 
 def _least(margin_of: dict[str, Array]) -> Array:
-    """The least margin of each candidate, (n,); a great negative one for what is not known."""
+    """Least margin of each candidate, (n,); unknown margins count as `_UNKNOWN`."""
     every = np.array(list(margin_of.values()))
     return np.asarray(np.where(np.isneginf(every), _UNKNOWN, every).min(axis=0))
 
@@ -328,9 +328,9 @@ _MOST = ("outer diameter", "footprint", "break strain", "gauge range")
 
 
 def missed_percent(problem: SelectionProblem, candidate: Candidate) -> dict[str, float | None]:
-    """Requirements and limits that are broken, and how far its value is off, in percent of the required one.
+    """Requirements and limits that are broken, and how far each value is off, in percent of the required one.
 
-    None if its value is not known.
+    None if the value is not known.
     """
     broken = {name: margin for name, margin in candidate.margins.items() if margin < 0}
     return {

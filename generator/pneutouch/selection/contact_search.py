@@ -40,7 +40,7 @@ _SETTLED = 0.25
 """Share of the tolerance within which a sensitivity counts as settled."""
 
 UNSOLVED = -1.0e9
-"""The least margin of a candidate that the solid gives no figures of."""
+"""Least margin of a candidate for which the solid gives no figures."""
 
 
 class SolvedStates(NamedTuple):
@@ -51,7 +51,7 @@ class SolvedStates(NamedTuple):
 
 
 SolveCandidate = Callable[[CandidateResin, CandidatePool, list[float]], SolvedStates]
-"""The design of a candidate (one row) as the solid answers it with its contact, at driving pressures in MPa, rising."""
+"""Function that solves a candidate (one row) by the solid under its contact, at rising driving pressures in MPa."""
 
 ContactUncertainty = Callable[[CandidateResin, CandidatePool, SensorState], float]
 """Relative expanded uncertainty of the sensitivity of a candidate (one row) under its contact, from its solved state;
@@ -62,9 +62,9 @@ NaN if unknown."""
 class ContactTrial:
     """A candidate with the solid's figures.
 
-    problem: of its resin alone, without factors. pool: one row, with the solid's response; the atlas's where ``why``
-    is why there is none. atlas: the atlas's response. margins: by the solid; empty without its figures. state: the
-    solid's, where it has figures.
+    problem: the problem of its resin only, without factors. pool: one row, with the solid's response, or the atlas's if
+    there is none for the reason ``why``. atlas: the atlas's response. margins: margins by the solid; empty without
+    figures. state: state of the solid, if it has figures.
     """
 
     resin: CandidateResin
@@ -82,22 +82,22 @@ class ContactTrial:
 
     @property
     def place(self) -> Array:
-        """Its row of `places`, (1, 4)."""
+        """Row of the candidate in `places`, (1, 4)."""
         return places(self._batch(), self.atlas)
 
     @property
     def settled(self) -> bool:
-        """True if it keeps everything, and the sensitivity within a quarter of the tolerance."""
+        """True if the candidate keeps every limit, and the sensitivity within a quarter of the tolerance."""
         return self.worst >= 0.0 and self.margins.get("sensitivity", 1.0) >= 1.0 - _SETTLED
 
     @property
     def off_target_alone(self) -> bool:
-        """True if it keeps everything but the sensitivity."""
+        """True if the candidate keeps every limit but the sensitivity."""
         rest = [margin for name, margin in self.margins.items() if name != "sensitivity"]
         return min(rest, default=UNSOLVED) >= 0.0 and self.worst < 0.0
 
     def added_to(self, factors: ContactFactors) -> ContactFactors:
-        """The factors with those of this candidate."""
+        """``factors`` with those of this candidate added."""
         return factors if self.why else factors.with_sample(self.place, self.atlas, self.pool.response)
 
     def candidate(
@@ -117,7 +117,7 @@ class ContactTrial:
         return self.problem.batch(self.pool.resin, self.pool.radius, self.pool.wall, self.pool.pressure)
 
     def _span(self, solve: SolveCandidate, highest: float) -> tuple[float, float]:
-        """Sensitivities at no pressure and at the rated one; NaN if the solid has none."""
+        """Sensitivities at zero and at the rated pressure; NaN if the solid has none."""
         pressures = [0.0, highest]
         driven = float(self.pool.pressure[0])
         solved = {driven: self.pool.figures.sensitivity}
@@ -132,7 +132,7 @@ class ContactTrial:
 
 
 def tried(problem: SelectionProblem, pool: CandidatePool, solve: SolveCandidate) -> ContactTrial:
-    """A candidate (one row) solved."""
+    """Solve a candidate (one row) by the solid."""
     resin = problem.resins[int(pool.resin[0])]
     alone = replace(problem, resins=(resin,), factors=None)
     plain = evaluated(alone, np.zeros(1), pool.radius, pool.wall, pool.pressure)
@@ -150,11 +150,11 @@ def tried(problem: SelectionProblem, pool: CandidatePool, solve: SolveCandidate)
 
 
 ROUNDS = 8
-"""Searches at most."""
+"""Greatest number of searches."""
 _ANYWHERE = 2
 """Number of searches that take the best anywhere; the later ones stay near the solved candidates."""
 _FEW = 2
-"""Up to so many resins each is followed at several candidates, as without this contact; of more, at its best."""
+"""Number of resins up to which each is followed at several candidates; of more, each only at its best."""
 _PROBED, _WITHOUT_FIT = 3, 4
 """Number of resins whose nearest candidate is solved although none fits by the corrected atlas, and for how many
 rounds.
@@ -165,7 +165,7 @@ rounds.
 class _Group:
     """Candidates that are followed together: those of one resin, or of all mixes.
 
-    last: those of the last round that have not settled. rounds: searches until the last of them was solved.
+    last: unsettled candidates of the last round. rounds: searches until the last of them was solved.
     """
 
     last: list[ContactTrial] = field(default_factory=list)
@@ -194,7 +194,7 @@ def choose_by_solid(
     solve: SolveCandidate,
     refine: Refine | None = None,
 ) -> ContactSelection:
-    """Choose as `choose` does, under a contact that the solid alone answers.
+    """Choose as `choose` does, under a contact that only the solid answers.
 
     A candidate is settled where it keeps every limit and the sensitivity within a quarter of the tolerance, all by the
     solid. One that keeps the tolerance when nothing nearer is found is an answer too.
@@ -256,7 +256,7 @@ class _Run:
             self._follow(self.groups[name], problem, pool, margin_of, names == name)
 
     def _followed(self, least: dict[str, float]) -> list[str]:
-        """Groups to solve in this round, by their best margin: those that fit; where none does, those nearest to it.
+        """Groups to solve in this round, best margin first: groups that fit, or the nearest to it if none does.
 
         The first round waits for the factors of others, which may make more of them fit.
         """
@@ -298,7 +298,7 @@ class _Run:
         return rows[np.unique(nearest)]
 
     def trial(self, problem: SelectionProblem, pool: CandidatePool) -> ContactTrial:
-        """A candidate solved, once; its figures correct the next search."""
+        """Solve a candidate, once; its figures correct the next search."""
         resin = problem.resins[int(pool.resin[0])]
         key = (resin.name, resin.shear_modulus, float(pool.radius[0]), float(pool.wall[0]), float(pool.pressure[0]))
         if key not in self._known:

@@ -19,8 +19,8 @@ from pneutouch.selection.contact_search import ContactTrial, SolveCandidate, tri
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
 _RATIOS, _RADII = 44, 8
-"""Places of the scan. For the README's target the fronts are then at most 1.0 % below a brute-force grid in force; with
-30 wall ratios 2.7 %, for a tenth less time."""
+"""Numbers of wall ratios and radii in the scan. For the README's target the fronts are then at most 1.0 % below a
+brute-force grid in force; with 30 wall ratios 2.7 %, for a tenth less time."""
 _FINER = (6, 24)
 """Parts that each cell of the scan is cut into, along wall ratio and radius, to interpolate in it."""
 _LEVELS = 48
@@ -32,7 +32,7 @@ _REQUIREMENTS = ("sensitivity", "force range", "stiffness")
 
 
 class TradeOffFront(NamedTuple):
-    """One resin's trade-off in order of sensitivity: kPa/N, N, and the dome it takes, mm; (n,) each, maybe none."""
+    """One resin's front in order of sensitivity: kPa/N, N, radius and wall of the dome, mm; (n,) each, may be empty."""
 
     resin: CandidateResin
     sensitivity: Array
@@ -42,13 +42,13 @@ class TradeOffFront(NamedTuple):
 
 
 def front(problem: SelectionProblem) -> list[TradeOffFront]:
-    """Fronts of all resins at the problem's driving pressure (none given: no pressure), inside every limit.
+    """Fronts of all resins at the problem's driving pressure (zero if none is given), inside every limit.
 
     No point of a front has both more sensitivity and more force than another. A scan over wall ratio and radius, on a
-    plate without edge, where the figures are smooth; interpolated in it, at each of many levels, the place of most
-    force that is at least so sensitive and stays on the plate; then closer looks around the best candidates. Ends of
-    ranges jump with the dimensions, so that no slope could be followed, and each candidate of a front is evaluated.
-    """
+    plate without edge, where the figures are smooth; in it, interpolated for each of many levels of sensitivity, the
+    place of most force that is at least so sensitive and stays on the plate; then closer looks around the best
+    candidates. Ends of ranges jump with the dimensions, so that no slope could be followed, and each candidate of a
+    front is evaluated."""
     u, v = np.meshgrid(np.linspace(0.0, 1.0, _RATIOS), np.linspace(0.0, 1.0, _RADII), indexing="ij")
     scan = np.stack([u.ravel(), v.ravel()])
     places, pools, near = [], [], []
@@ -159,7 +159,7 @@ def _best(logs: Array, forces: Array) -> tuple[Index, Array]:
     """Rows in even steps along the front of points, and the level that each stands for.
 
     ``logs`` and ``forces`` are the logarithms of sensitivities and forces. A row has the most force of those at least
-    as sensitive as its level. Returns (few,) each; none of none.
+    as sensitive as its level. Returns (few,) each; empty without points.
     """
     rows = _unbeaten(np.stack([logs, forces]))
     if rows.size == 0:
@@ -171,7 +171,7 @@ def _best(logs: Array, forces: Array) -> tuple[Index, Array]:
 
 
 def _unbeaten(points: Array) -> Index:
-    """Those of the points (2, n) that no other exceeds in both, in falling order of the first."""
+    """Indices of the points (2, n) that no other exceeds in both coordinates, in falling order of the first."""
     first, second = points
     rows = np.argsort(-first, kind="stable")
     before = np.maximum.accumulate(np.concatenate([[-np.inf], second[rows]]))[:-1]
@@ -179,7 +179,7 @@ def _unbeaten(points: Array) -> Index:
 
 
 def _hull(problem: SelectionProblem, number: int, pool: CandidatePool) -> TradeOffFront:
-    """Candidates that meet every limit, without those that another beats in both."""
+    """Front of the candidates that meet every limit, without those that another beats in both figures."""
     good = np.flatnonzero(_least_margin(problem, pool) >= 0.0)
     sensitivity = pool.response.lines.sensitivity
     rows = good[_unbeaten(np.stack([sensitivity, pool.force])[:, good])][::-1]
@@ -197,9 +197,9 @@ _NEAR = 0.01
 
 
 class ContactFronts(NamedTuple):
-    """Fronts, and how far those drawn before were off the solid where it was solved next, from the second round on.
+    """Fronts, and errors of the fronts drawn before where the solid was solved next, from the second round on.
 
-    Of each place the larger relative difference of sensitivity and force counts: the median and the greatest of all,
+    For each place the larger relative difference of sensitivity and force counts: the median and the greatest of all,
     NaN if there is none. ``presses`` is the number of places solved.
     """
 
@@ -255,7 +255,7 @@ def _spread(one: TradeOffFront, shares: tuple[float, ...]) -> Index:
 
 
 def place(problem: SelectionProblem, number: int, one: TradeOffFront, row: int) -> CandidatePool:
-    """A place of a front as a candidate, by the atlas alone."""
+    """A place of a front as a candidate, by the atlas only."""
     pressure = np.array([problem.driving_pressure or 0.0])
     radius, wall = one.radius[[row]], one.wall[[row]]
     return evaluated(replace(problem, factors=None), np.array([float(number)]), radius, wall, pressure)

@@ -20,7 +20,7 @@ from pneutouch.selection.problem import CandidateResin, SelectionProblem
 ENOUGH = 0.5
 """A trial that uses no more than this share of every tolerance ends a search for the same sensitivity."""
 _LEAST_GAIN = 1e-3
-"""A search ends where the surface through the trials promises no more than this: of a tolerance, or of the force."""
+"""Gain promised by the surface through the trials, of a tolerance or of the force, below which a search ends."""
 _SPARE_TRIALS = 0.9
 """Share of a tolerance that the surface may use up for the widest range: it is not exact."""
 _LATTICE = 51
@@ -39,10 +39,10 @@ _MISSED = 1.0e3
 
 @dataclass(frozen=True)
 class GradeTarget:
-    """Aims of a grade: sensitivity (kPa/N) at each pressure (MPa) within a share, the same at all within another.
+    """Aims of a grade: sensitivity (kPa/N) at each pressure (MPa) within a share, equal at all within ``same_within``.
 
-    force: what the range must reach (N); None if it need not. widest: whether it shall reach as far as it can.
-    """
+    force: what the range must reach (N); None if it need not. widest: True if the force range shall be as wide as
+    possible."""
 
     sensitivity: float
     tolerance: float
@@ -80,7 +80,7 @@ class GradeTrial:
 
 @dataclass(frozen=True)
 class GradeSearch:
-    """The best trial, whether it meets the target, and all trials in order; one solid solve each."""
+    """The best trial, True if it meets the target, and all trials in order, each solved once by the solid."""
 
     best: GradeTrial
     met: bool
@@ -153,7 +153,7 @@ def _done(target: GradeTarget, trials: list[GradeTrial]) -> bool:
 
 
 def _promising(target: GradeTarget, top: float, trials: list[GradeTrial], surface: str) -> tuple[float, float] | None:
-    """The place of least cost on the surface through the trials, none tried yet; None if it promises no gain."""
+    """Place of least cost, not tried yet, on the surface through the trials; None if it promises no gain."""
     known = [trial for trial in trials if np.isfinite(trial.sensitivity).all()]
     if len(known) < _FEWEST:
         return None
@@ -193,7 +193,7 @@ def _expected(target: GradeTarget, top: float, trials: list[GradeTrial], places:
 
 
 _FRACTIONS = 401
-"""Constant fractions that the atlas evaluates."""
+"""Number of constant fractions that the atlas evaluates."""
 _SPARE = 0.8
 """Share of a tolerance within which the atlas looks for the widest range: the solid, solved next, differs a little."""
 _WALLS = 60
@@ -215,7 +215,7 @@ def trial_of(
     pole: float = np.nan,
     rim: float = np.nan,
 ) -> GradeTrial:
-    """Figures of a sensor by the solid; NaN with the reason where it has none. ``rate``: limits to a rated pressure."""
+    """Figures of a sensor by the solid; NaN, with the reason, if it has none. ``rate`` rates its limits."""
     from pneutouch.mechanics.models.solid import solid_result
 
     unknown = (np.nan,) * len(pressures)

@@ -11,19 +11,19 @@ from pneutouch.selection.candidates import CandidatePool, evaluated, margins
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
 LEVELS = 15
-"""Fractions tried, even in the logarithm of the modulus: 16 % apart for TangoPlus and VeroClear."""
+"""Number of fractions tried, even in the logarithm of the modulus: 16 % apart for TangoPlus and VeroClear."""
 _KEPT = 6
-"""Candidates whose fraction is refined."""
+"""Number of candidates whose fraction is refined."""
 _POLISH = 12
 _DIGITS = 4
 """Digits of a fraction: a hundredth of a percent, finer than a droplet pattern resolves."""
 
 MixedResin = Callable[[float], CandidateResin]
-"""The mix of a fraction as a resin."""
+"""Function that gives the mix of a fraction as a resin."""
 
 
 def greatest(law: ResolvedMixingCurve) -> float:
-    """The greatest fraction offered of a mix: every curve of its pair goes to it, and a wall may be as stiff."""
+    """Greatest fraction offered of a mix: every curve of its pair reaches it, and a wall may be so stiff."""
     return min(law.wall_top, law.curve.common_top)
 
 
@@ -40,10 +40,10 @@ def levels(law: ResolvedMixingCurve, count: int = LEVELS) -> Array:
 def met_by_fraction(
     problem: SelectionProblem, pool: CandidatePool, law: ResolvedMixingCurve, mixed: MixedResin
 ) -> tuple[SelectionProblem, CandidatePool]:
-    """The best few candidates with the fraction at which the sensitivity is met at their sizes and pressures.
+    """The best few candidates, with fractions at which they meet the sensitivity at their sizes and pressures.
 
-    Returns a problem whose resins are these mixes, one each, and the candidates evaluated. Bisected where two
-    neighbouring fractions bracket the sensitivity; else a candidate stays as it is.
+    Returns a problem whose resins are these mixes, one each, and the candidates evaluated. A fraction is bisected where
+    two neighbouring ones bracket the sensitivity; else it stays as it is.
     """
     pool = pool.take(_best(problem, pool))
     at = np.array([_fraction(problem.resins[int(number)]) for number in pool.resin])
@@ -65,7 +65,7 @@ def _fraction(resin: CandidateResin) -> float:
 
 
 def _best(problem: SelectionProblem, pool: CandidatePool) -> Index:
-    """Candidates with the greatest margin, one a fraction at most."""
+    """Candidates with the greatest margin, at most one for each fraction."""
     margin_list = [margin for name, margin in margins(problem, pool).items() if name != "sensitivity"]
     order = np.argsort(-np.minimum(np.min(margin_list, axis=0), 1.0), kind="stable")
     first = np.unique(pool.resin[order], return_index=True)[1]

@@ -16,7 +16,7 @@ from pneutouch.spec.material import Material
 _SMALLEST, _LARGEST = 2.0, 60.0
 """Inner radii that are searched where none is given, mm."""
 _HALVINGS = 14
-"""Halvings of a radius of at most 60 mm: 4 um are left."""
+"""Number of halvings of a radius of at most 60 mm: 4 um are left."""
 _ROUNDED = 0.01
 """Largest change of a wall by rounding, mm."""
 
@@ -48,9 +48,9 @@ class SelectionProblem:
     """Requirements on a sensor and the settled parameters; None for a free one. depth_share: plate travel over R0.
 
     plate_share: the plate's radius over R0 where it is larger than ``plate_radius``, for a plate that goes with the
-    dome. connector: of domes of inner radius and wall (n,), mm; None if no connector matters. limit_spread: where
-    it is None, designs may be driven above their rated pressure. factors: on the atlas's figures, for a contact that it
-    does not cover. anywhere: whether the ranking counts an unknown object and place of contact.
+    dome. connector: its fit to domes of inner radius and wall (n,), mm; None if no connector matters. limit_spread:
+    where it is None, designs may be driven above their rated pressure. factors: factors on the atlas's figures, for a
+    contact that it does not cover. anywhere: True if the ranking counts an unknown object and place of contact.
     """
 
     resins: tuple[CandidateResin, ...]

@@ -1,10 +1,10 @@
-"""Form of a membrane: one meridian, from which solid, print mesh, mould and finite elements all grow.
+"""Form of a membrane: one meridian, from which solid, print mesh, mould and finite elements are derived.
 
-Shapes of the dome: one file each, and one line here.
+Shapes of the dome: one file for each, and one line in `SHAPES`.
 """
 
 from pneutouch.shape.dome import DomeShape
 from pneutouch.shape.hemisphere import Hemisphere
 
 SHAPES: dict[str, type[DomeShape]] = {shape.key: shape for shape in (Hemisphere,)}
-"""Shapes by the name that a design file gives; called with inner radius and wall, mm."""
+"""Shapes by their name in a design file; called with inner radius and wall thickness, mm."""

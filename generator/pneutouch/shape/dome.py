@@ -1,4 +1,4 @@
-"""The form of a dome at rest: two faces over one base plane, from which all that depends on the form follows."""
+"""The form of a dome at rest: two faces over one base plane, and the quantities derived from them."""
 
 from __future__ import annotations
 
@@ -14,18 +14,17 @@ from pneutouch.shape.meridian import Point, Segment
 
 INNER_WALL = "inner wall"
 OUTER_WALL = "outer wall"
-"""Tags of the pieces of both faces."""
+"""Tags of the pieces of the inner and the outer face."""
 
 
 @dataclass(frozen=True, slots=True)
 class DomeShape(ABC):
     """A dome over the base plane z = 0, lengths in mm.
 
-    A base class and no protocol: a shape states its faces, and shares with all others what is derived from them. Each
-    face is a chain of pieces from the base to the pole. Those of one number are opposite each other: straight lines
-    across the wall lead from a share of one to the same share of the other. More sizes of a shape are more fields.
-    ``inner_radius`` is that of the inner face at the base, ``key`` the name in a design file, ``adjective`` the shape
-    in words.
+    This is a base class, not a protocol: a shape defines its faces and inherits all derived quantities. Each face is a
+    chain of pieces from the base to the pole. Pieces with the same index are opposite each other: straight lines across
+    the wall connect equal shares of their lengths. Further sizes of a shape are further fields. ``inner_radius`` is the
+    radius of the inner face at the base, ``key`` the name in a design file, ``adjective`` the shape in words.
     """
 
     inner_radius: float
@@ -45,7 +44,7 @@ class DomeShape(ABC):
 
     @property
     def scale(self) -> float:
-        """Length by which the wall's mechanics scales: what the solid's numbers without unit are relative to."""
+        """Length with which the wall's mechanics scales; the unit of length of the solid's nondimensional numbers."""
         return self.inner_radius
 
     @property
@@ -55,12 +54,12 @@ class DomeShape(ABC):
 
     @property
     def height(self) -> float:
-        """Height of the pole inside."""
+        """Height of the pole of the inner face."""
         return self.inner[-1].end[1]
 
     @property
     def outer_height(self) -> float:
-        """Height of the pole outside."""
+        """Height of the pole of the outer face."""
         return self.outer[-1].end[1]
 
     @property
@@ -86,8 +85,8 @@ class DomeShape(ABC):
         return self._of_face(self.outer, share, normals=True)
 
     def leaning(self, lean: float) -> Point:
-        """Point of the outer face whose normal leans by an angle (rad) off the axis; the nearest that it has."""
-        # Between the places the lean is straight, and so exact on an arc.
+        """Point of the outer face whose normal leans by an angle (rad) off the axis, or the nearest such point."""
+        # The lean is interpolated linearly between the places, which is exact on an arc.
         share = np.linspace(1.0, 0.0, 2001)
         normal = self.normals(share)
         place = np.interp(lean, np.arctan2(normal[:, 0], normal[:, 1]), share)
@@ -106,21 +105,21 @@ class DomeShape(ABC):
         return 1.0 - nearest.reshape(np.shape(radius))
 
     def arc_share_scaled(self, radius: Array, height: Array) -> Array:
-        """`arc_share` of points in units of `scale`, as the solid has them."""
+        """`arc_share` of points in units of `scale`, as used by the solid."""
         return self.arc_share(self.scale * radius, self.scale * height)
 
     def weights(self, arc: Array) -> Array:
-        """Weights of arc positions (n,), 0 at the pole, in a mean over the wall: as the rings there are wide."""
+        """Weights of arc positions (n,), 0 at the pole, for a mean over the wall: the radii of its rings."""
         return np.asarray(self.points(1.0 - arc, np.array([0.5]))[:, 0, 0])
 
     @property
     def _stops(self) -> Array:
-        """Shares of the wall's middle at which the pieces meet, from 0 to 1."""
+        """Shares of the length of the wall's middle, 0 to 1, at which the pieces meet."""
         lengths = [inner.length + outer.length for inner, outer in zip(self.inner, self.outer, strict=True)]
         return np.concatenate([[0.0], np.cumsum(lengths) / np.sum(lengths)])
 
     def _of_face(self, face: tuple[Segment, ...], share: Array, normals: bool = False) -> Array:
-        """Points of a face, or its normals, (n, 2) at shares (n,) of the wall."""
+        """Points (n, 2) of a face, or its normals, at shares (n,) of the wall's length."""
         stops, values = self._stops, np.empty((share.size, 2))
         piece_at = np.clip(np.searchsorted(stops, share, side="right") - 1, 0, len(face) - 1)
         for k, piece in enumerate(face):

@@ -1,4 +1,4 @@
-"""The paper's dome: half a sphere inside and outside."""
+"""The paper's dome: inner and outer face are hemispheres."""
 
 import math
 
@@ -12,7 +12,7 @@ _QUARTER = 0.5 * math.pi
 
 
 class Hemisphere(DomeShape):
-    """Two half spheres about one centre in the base plane; the wall in polar coordinates, which is exact and quick."""
+    """Two concentric hemispheres centred in the base plane; polar coordinates give the wall exactly and fast."""
 
     __slots__ = ()
     key, adjective = "hemisphere", "hemispherical"
@@ -28,20 +28,20 @@ class Hemisphere(DomeShape):
         return (Arc((0.0, 0.0), self.inner_radius + self.wall_thickness, 0.0, _QUARTER, OUTER_WALL),)
 
     def points(self, share: Array, depth: Array) -> Array:
-        """Points (n, m, 2) of the wall."""
+        """Points (n, m, 2) of the wall, as in `DomeShape.points`."""
         angle, radius = _QUARTER * share[:, None], self.inner_radius + self.wall_thickness * depth
         return np.stack([np.cos(angle) * radius, np.sin(angle) * radius], axis=-1)
 
     def arc_share(self, radius: Array, height: Array) -> Array:
-        """Arc position of points: the angle off the axis."""
+        """Arc position of points: the angle off the axis over a right angle."""
         return np.asarray(np.clip(np.arctan2(radius, np.maximum(height, 0.0)) / _QUARTER, 0.0, 1.0))
 
     def arc_share_scaled(self, radius: Array, height: Array) -> Array:
-        """Arc position of points in any unit: an angle has none, and takes no rounding from one."""
+        """Arc position of points in any unit of length: an angle needs no conversion, and so no rounding."""
         return self.arc_share(radius, height)
 
     def weights(self, arc: Array) -> Array:
-        """Weights of arc positions: the wall has its area even over the height."""
+        """Weights of arc positions: the radius of the ring, since the area of a sphere is uniform over its height."""
         return np.asarray(np.sin(_QUARTER * arc))
 
 

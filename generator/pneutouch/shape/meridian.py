@@ -1,11 +1,10 @@
 """Meridians: closed loops of straight lines and arcs in the (r, z) plane, mm, that sweep a solid of revolution.
 
-They are sampled to a chord tolerance, and cut exactly at a level. A piece counts at its lower end and not at its upper
-one, and a point on a crossing lies beyond it: two outlines that share a piece never both hold a point of it, and never
-both leave it out.
+They are sampled to a chord tolerance, and cut exactly at a level. A piece includes its lower end but not its upper end,
+and a point on a crossing counts as beyond it: of two outlines that share a piece, exactly one contains a point on it.
 
-An inscribed polygon always errs to the inside and loses volume to first order in the tolerance. Moving the inner
-vertices of an arc off it by two thirds of the sagitta makes every chord enclose the area of its arc. The greatest error
+An inscribed polygon always errs to the inside and loses volume to first order in the tolerance. If the inner vertices
+of an arc are moved off it by two thirds of the sagitta, every chord encloses the area of its arc. The greatest error
 falls to two thirds, so fewer chords meet the same tolerance.
 """
 
@@ -37,21 +36,21 @@ class Line:
         return math.dist(self.start, self.end)
 
     def along(self, share: Array) -> Array:
-        """Points (n, 2) at shares (n,) of the length, the first end at 0."""
+        """Points (n, 2) at shares (n,) of the length, 0 at the start."""
         return np.asarray(np.outer(1.0 - share, self.start) + np.outer(share, self.end))
 
     def normals(self, share: Array) -> Array:
-        """Unit normals (n, 2) at shares (n,) of the length, to the right of the direction."""
+        """Unit normals (n, 2) at shares (n,) of the length, to the right of the direction from start to end."""
         (r0, z0), (r1, z1) = self.start, self.end
         return np.broadcast_to(np.array([z1 - z0, r0 - r1]) / self.length, (share.size, 2))
 
     def share(self, points: Array) -> Array:
-        """Shares (n,) of the length, 0 to 1, nearest to (n, 2) points in the (r, z) plane."""
+        """Shares (n,) of the length, 0 to 1, at which the piece is nearest to points (n, 2) in the (r, z) plane."""
         along = np.asarray(self.end) - np.asarray(self.start)
         return np.asarray(np.clip((points - np.asarray(self.start)) @ along / (along @ along), 0.0, 1.0))
 
     def reverse(self) -> Line:
-        """The piece from its end to its start."""
+        """The same piece, from its end to its start."""
         return Line(self.end, self.start, self.tag)
 
     def swept(self) -> float:
@@ -71,7 +70,7 @@ class Line:
         return gap
 
     def bounds(self) -> tuple[float, float, float, float]:
-        """Smallest and largest r, then z."""
+        """Smallest and largest r, then smallest and largest z."""
         (r0, z0), (r1, z1) = self.start, self.end
         return min(r0, r1), max(r0, r1), min(z0, z1), max(z0, z1)
 
@@ -87,7 +86,7 @@ class Arc:
     tag: str
 
     def at(self, angle: float, radius: float | None = None) -> Point:
-        """The point at an angle, on the arc or at another radius about its centre."""
+        """Point at an angle, on the arc or at another radius about its centre."""
         rho = self.radius if radius is None else radius
         return self.centre[0] + rho * math.cos(angle), self.centre[1] + rho * math.sin(angle)
 
@@ -112,15 +111,15 @@ class Arc:
         return self.radius * abs(self.last - self.first)
 
     def along(self, share: Array) -> Array:
-        """Points (n, 2) at shares (n,) of the length, the first end at 0."""
+        """Points (n, 2) at shares (n,) of the length, 0 at the start."""
         return np.asarray(np.asarray(self.centre) + self.radius * self._outward(share))
 
     def normals(self, share: Array) -> Array:
-        """Unit normals (n, 2) at shares (n,) of the length, to the right of the direction."""
+        """Unit normals (n, 2) at shares (n,) of the length, to the right of the direction from start to end."""
         return np.asarray(math.copysign(1.0, self.last - self.first) * self._outward(share))
 
     def share(self, points: Array) -> Array:
-        """Shares (n,) of the length, 0 to 1, nearest to (n, 2) points in the (r, z) plane."""
+        """Shares (n,) of the length, 0 to 1, at which the arc is nearest to points (n, 2) in the (r, z) plane."""
         r, z = (points - np.asarray(self.centre)).T
         turn = np.mod(np.arctan2(z, r) - self.first + np.pi, 2 * np.pi) - np.pi
         return np.asarray(np.clip(turn / (self.last - self.first), 0.0, 1.0))
@@ -130,7 +129,7 @@ class Arc:
         return np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
     def reverse(self) -> Arc:
-        """The piece from its end to its start."""
+        """The same piece, from its end to its start."""
         return Arc(self.centre, self.radius, self.last, self.first, self.tag)
 
     def swept(self) -> float:
@@ -163,7 +162,7 @@ class Arc:
         return gap
 
     def bounds(self) -> tuple[float, float, float, float]:
-        """Smallest and largest r, then z."""
+        """Smallest and largest r, then smallest and largest z."""
         low, high = sorted((self.first, self.last))
         quarters = range(math.ceil(low / (math.pi / 2)), math.floor(high / (math.pi / 2)) + 1)
         points = [self.start, self.end, *(self.at(k * math.pi / 2) for k in quarters)]
@@ -175,12 +174,12 @@ Segment = Line | Arc
 
 
 _ON_AXIS = 1e-9
-"""A crossing nearer to the axis than this (mm) is on it."""
+"""Distance from the axis (mm) within which a crossing counts as on it."""
 
 
 @dataclass(frozen=True, slots=True)
 class RisingPiece:
-    """Part of an outline between two levels, mm, that every level between them crosses once."""
+    """Part of an outline between two levels, mm, that crosses each level between them exactly once."""
 
     low: float
     high: float
@@ -196,19 +195,19 @@ class RisingPiece:
         (r0, z0), (r1, z1) = piece.start, piece.end
         if r0 == r1:
             return np.full(np.shape(level), r0)
-        # From the lower end for either direction of the piece: two bodies that share it get the same numbers.
+        # Computed from the lower end for either direction: two bodies that share the piece get the same numbers.
         (r0, z0), (r1, z1) = sorted([(r0, z0), (r1, z1)], key=lambda point: point[1])
         return np.asarray(r0 + (level - z0) * ((r1 - r0) / (z1 - z0)))
 
 
 def rises(outline: Sequence[Segment]) -> tuple[RisingPiece, ...]:
-    """The rises of a closed outline; one that ends on the axis is closed along it."""
+    """Rising pieces of a closed outline; an outline that ends on the axis is closed along it."""
     if math.dist(outline[0].start, outline[-1].end) > _ON_AXIS:
         outline = [*outline, Line(outline[-1].end, outline[0].start, "axis")]
     starts = [piece.start[1] for piece in outline]
     pieces: list[RisingPiece] = []
     for k, piece in enumerate(outline):
-        # Levels where pieces meet are taken from one of them, so that rounding opens no gap between them.
+        # Levels at which pieces meet are taken from one of them, so that rounding opens no gap.
         for first, last, side in _monotone(piece, starts[k], starts[(k + 1) % len(starts)]):
             if first != last:
                 pieces.append(RisingPiece(min(first, last), max(first, last), piece, side))
@@ -216,7 +215,7 @@ def rises(outline: Sequence[Segment]) -> tuple[RisingPiece, ...]:
 
 
 def crossings(parts: Sequence[RisingPiece], level: float) -> list[float]:
-    """First coordinates, in order and even in number, at which a level crosses the outline: in, out, in, out."""
+    """First coordinates at which a level crosses the outline, ascending and even in number: in, out, in, out."""
     radii = [float(part.at(np.asarray(level))) for part in parts if part.low <= level < part.high]
     return sorted(0.0 if abs(r) < _ON_AXIS else r for r in radii)
 
@@ -232,7 +231,7 @@ def encloses(parts: Sequence[RisingPiece], along: Array, level: Array) -> Flags:
 
 
 def _monotone(piece: Segment, first: float, last: float) -> list[tuple[float, float, float]]:
-    """Pieces from level to level, with the side of the centre on which each lies; an arc is cut where it turns."""
+    """Parts that are monotone in level: first and last level, and side of the centre; an arc is cut at its extremes."""
     if not isinstance(piece, Arc):
         return [(first, last, 1.0)]
     low, high = sorted((piece.first, piece.last))
@@ -245,12 +244,12 @@ def _monotone(piece: Segment, first: float, last: float) -> list[tuple[float, fl
 
 
 _CLOSED = 1e-9
-"""Ends that should meet are computed from the same numbers: they may differ by rounding alone (mm)."""
+"""Greatest distance (mm) of ends that should meet: computed from the same numbers, they differ only by rounding."""
 
 
 @dataclass(frozen=True, slots=True)
 class Meridian:
-    """A loop of pieces, counter-clockwise in (r, z); it closes on itself or along the axis r = 0."""
+    """A closed loop of pieces, counter-clockwise in (r, z); it may be closed along the axis r = 0."""
 
     pieces: tuple[Segment, ...]
 
@@ -299,7 +298,7 @@ class Meridian:
 
 
 _AXIS_TOLERANCE = 1e-9
-"""A radius below this (mm) is a pole that rounding moved off the axis."""
+"""Radius (mm) below which a vertex is a pole that rounding moved off the axis."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -315,16 +314,16 @@ class MeridianVertex:
 
 
 def chords(arc: Arc, error: float) -> int:
-    """Number of chords that keep an arc within ``error`` mm once its area is kept."""
+    """Number of chords that keep an arc within ``error`` mm if they preserve its area."""
     sagitta = min(1.5 * error, arc.radius)
     widest = 2 * math.acos(1 - sagitta / arc.radius)
     turn = abs(arc.last - arc.first)
-    # The two end chords keep one end on the arc; they span 1/sqrt(2) of the others (same mean error).
+    # The two end chords have one end on the arc; they span 1/sqrt(2) of the others (same mean error).
     return max(2, math.ceil(turn / widest + 2 - math.sqrt(2)))
 
 
 def sample(meridian: Meridian, error: float) -> list[MeridianVertex]:
-    """Rings of a meridian whose arcs stay within ``error`` mm; the last ring does not repeat the first."""
+    """Vertices (rings) of a meridian whose arcs stay within ``error`` mm; the first is not repeated at the end."""
     rings: list[MeridianVertex] = []
     for piece in meridian.pieces:
         rings.append(MeridianVertex(*piece.start, lean=1.0))
@@ -344,7 +343,7 @@ def _inner_rings(arc: Arc, count: int) -> list[MeridianVertex]:
 
 
 def polygon(outline: tuple[Segment, ...], error: float) -> list[Point]:
-    """Corners of a closed outline in its plane whose arcs stay within ``error`` mm; the area is kept."""
+    """Corners of a closed outline, with arcs within ``error`` mm and the area preserved."""
     corners: list[Point] = []
     for piece in outline:
         corners.append(piece.start)
@@ -357,7 +356,7 @@ TracedPath = list[tuple[str, Point]]
 
 
 def trace(start: Point, path: Iterable[tuple[str, Point]]) -> Meridian:
-    """The meridian of straight faces from ``start``; faces without length are left out."""
+    """Meridian of straight faces from ``start`` along ``path``; faces of zero length are left out."""
     faces, here = [], start
     for tag, to in path:
         if math.dist(here, to) > 0.0:
@@ -367,5 +366,5 @@ def trace(start: Point, path: Iterable[tuple[str, Point]]) -> Meridian:
 
 
 def cylinder(radius: float, low: float, high: float) -> Meridian:
-    """A round rod about the axis."""
+    """Meridian of a solid cylinder about the axis."""
     return trace((0.0, low), [("", (radius, low)), ("", (radius, high)), ("", (0.0, high))])

@@ -1,1 +1,1 @@
-"""A page in the browser, served to this machine alone: a design's form, its drawing, its curves and its limits."""
+"""A page in the browser, served only to this machine: a design's form, its drawing, its curves and its limits."""

@@ -85,7 +85,7 @@ class NamedDesign(PredictedDesign):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class QuickAnswer(NamedDesign):
-    """The answer of the atlas; ``outside`` is the reason where it has none, ``version`` that of the base's file."""
+    """The answer of the atlas; ``outside`` is the reason if it has none, ``version`` the version of the base's file."""
 
     version: str
     drawing: DrawnDesign
@@ -311,7 +311,7 @@ def _drawn_design(assembly: Assembly) -> DrawnDesign:
 
 
 def _bounds(solid: Solid) -> Array:
-    """Smallest and largest corner, shape (2, 3), mm; those of the exact surface where nothing sits on a turned body."""
+    """Smallest and largest corner, shape (2, 3), mm; of the exact surface if nothing sits on a turned body."""
     if not isinstance(solid.base, Meridian) or solid.adds or solid.cuts:
         return solid.mesh(_TOLERANCE).bounds
     radius, low, high = solid.base.bounds()

@@ -1,8 +1,6 @@
-"""A design that was found, as the page shows it: its description, and the state that makes it the page's design.
+"""Designs that a search found, as the page shows them: figures, page state, and the command that saves each.
 
-A design that was found, as a state of the page, and the command that saves it.
-
-A design as the state of the page: a base that it has open, and the fields that differ from it.
+A page state is a base that the page has open, and the fields in which the design differs from it.
 """
 
 from __future__ import annotations
@@ -134,8 +132,8 @@ def _limits(selection: SelectionRun, choice: Candidate, rank: int | None) -> lis
 
 
 def state_of(design: DesignFile, base: str, bases: Mapping[str, str], library: Library) -> Question:
-    """The state that is ``design``: ``base``, by the page's name for it, and by ``table.key`` the texts of its values
-    that differ from the base's file, None if a key is left out.
+    """Page state of ``design``: ``base``, by the page's name for it, and by ``table.key`` the texts of the values that
+    differ from the base's file, None for a key that is left out.
 
     Raises InputError if the page has no such base, or its file is wrong.
     """
@@ -163,7 +161,7 @@ def _flat(design: DesignFile) -> dict[str, Any]:
 
 
 class CandidateStates:
-    """Maker of page states from designs that were found, and of the commands that save them under a free name."""
+    """Maker of page states of designs that were found, and of the commands that save them under a free name."""
 
     def __init__(self, question: Question, bases: Mapping[str, str], library: Library, target: Target) -> None:
         self._bases, self._library, self._target, self._name = bases, library, target, free_name()
@@ -173,7 +171,7 @@ class CandidateStates:
         self._base = question.base if target.setting.base is None else next(named)
 
     def state(self, base: ResolvedDesign, changes: list[str]) -> Question:
-        """The state of the page that is the design that ``select`` saves: a base with assignments."""
+        """Page state of the design that ``select`` saves: ``base`` with the assignments ``changes``."""
         design = validate(DesignFile, assigned(base.design, changes, self._name), PAGE)
         return state_of(design, self._base, self._bases, self._library)
 

@@ -25,10 +25,10 @@ from pneutouch.workflows.build import STEPS, build, calibrated_name, described
 
 
 def nearest_state(source: DesignSource, bases: Mapping[str, str], library: Library) -> Question:
-    """The state whose design is that of ``source``, in every field.
+    """Page state whose design equals that of ``source`` in every field.
 
-    Its base is the one of the same name, else the one from which the design differs in the fewest fields. Raises
-    InputError where the design is wrong, and where no state of the page is this very design.
+    Its base is the one with the design's name, else the one from which the design differs in the fewest fields. Raises
+    InputError if the design is wrong, or if no page state gives exactly this design.
     """
     design = source.changed({})
     states: list[Question] = []
@@ -69,8 +69,8 @@ class OpenedDesign:
 def open_file(
     arguments: Mapping[str, Any], folder: Path, report: Callable[[int, int, str | None], None]
 ) -> OpenedDesign:
-    """Read the one file of ``files``; the state of the page that shows its design, and notes on parts that the page
-    cannot show.
+    """Read the only file of ``files``; return its design as a page state, with notes on parts that the page cannot
+    show.
 
     Raises InputError that names file, key and value.
     """
@@ -145,7 +145,7 @@ def _json(path: Path) -> dict[str, Any]:
 
 
 def _other_parts(scene: ResolvedDesign, here: ResolvedDesign) -> list[str]:
-    """Parts of a recipe whose name stands for something else here."""
+    """Notes on parts of a recipe whose name stands for a different part here."""
     parts = [key for key in scene_kinds() if key != "design" and _data(scene, key) != _data(here, key)]
     return [f"its {key.replace('_', ' ')} is not the one of this name here, which the page takes" for key in parts]
 
@@ -156,7 +156,7 @@ def _data(scene: ResolvedDesign, key: str) -> Any:
 
 
 def _other_options(options: PredictionOptions) -> list[str]:
-    """Options of a prediction that the page does not have."""
+    """Note on options of a prediction that the page does not have; empty without such options."""
     usual = PredictionOptions()
     given = {key: getattr(options, key) for key in ("closure", "clamp")}
     other = [f"{key} {value}" for key, value in given.items() if value != getattr(usual, key)]
@@ -166,7 +166,7 @@ def _other_options(options: PredictionOptions) -> list[str]:
 
 
 def _by_name(error: PneutouchError, path: Path) -> InputError:
-    """The error with the name that the user gave in place of where the file lies."""
+    """The error as an InputError whose message shows the file's name without its folder."""
     place = f"{path.parent}/"
     first, *others = [InputError(_words(each).replace(place, "")) for each in (error, *error.others)]
     first.others = tuple(others)
@@ -174,7 +174,7 @@ def _by_name(error: PneutouchError, path: Path) -> InputError:
 
 
 def _words(error: PneutouchError) -> str:
-    """The message of an error without those of the errors after it."""
+    """Message of one error, without the messages of its ``others``."""
     alone = InputError(error.problem, file=error.file, key=error.key, value=error.value, remedy=error.remedy)
     return alone.message()
 
@@ -208,10 +208,9 @@ class BuiltDesign:
 def build_design(
     arguments: Mapping[str, Any], folder: Path, report: Callable[[int, int, str | None], None]
 ) -> BuiltDesign:
-    """Build the design of ``question`` into ``folder``, under ``name`` where one is given.
+    """Build the design of ``question`` into ``folder``, under ``name`` if one is given.
 
-    Raises InputError
-    naming the field, and RuleBrokenError where a rule is broken.
+    Raises InputError that names the field, and RuleBrokenError if a rule is broken.
     """
     question, library = Question.of(arguments.get("question")), Library.default()
     source = question.source(arguments["bases"], library)

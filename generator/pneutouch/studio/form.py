@@ -1,4 +1,4 @@
-"""Forms of the page, made of declared fields, and a question that they make: a design with its changes, also saved."""
+"""Forms of the page, built from declared fields, and questions: a design with changes, which can be saved."""
 
 import datetime
 import json
@@ -32,7 +32,7 @@ from pneutouch.spec.values import plain_name
 from pneutouch.studio.guard import ChangedFileError
 
 _TWICE = ("contact.plate_diameter_mm",)
-"""Fields that stand in two tables, and in the form once."""
+"""Fields that another table has as well: the form shows them only there."""
 
 _KIND_OF_MATERIAL = {"membrane.material": "elastomer", "connector.material": "rigid", "given.materials": "elastomer"}
 
@@ -65,8 +65,8 @@ class FormGroup:
 
 @dataclass(frozen=True, slots=True)
 class DesignForm:
-    """The form of a design: fields, sizes by object, printers by material, and profiles that cast, which alone need a
-    mould."""
+    """The form of a design: fields, sizes by object, printers by material, and the profiles that cast, the only ones
+    that need a mould."""
 
     groups: list[FormGroup]
     sizes: dict[str, list[str]]
@@ -76,7 +76,7 @@ class DesignForm:
 
 @dataclass(frozen=True, slots=True)
 class TargetForm:
-    """The form of a target, with an example as it sends it."""
+    """The form of a target, with an example as the form would send it."""
 
     groups: list[FormGroup]
     example: dict[str, str]
@@ -104,7 +104,7 @@ def _example_target() -> dict[str, str]:
 
 
 def _printers(library: Library) -> dict[str, list[str]]:
-    """The printers that run each material, by its name."""
+    """Names of the printers that run each material, by the material's name."""
     printers = library.all("printers", Printer)
     materials = library.all("materials", Material)
     return {
@@ -156,7 +156,7 @@ def _field(
 
 
 def _label(declared: Declaration) -> str:
-    """The key in words, without its unit, which stands next to it."""
+    """Label of a field: its key in words, without the unit, which is shown next to it."""
     unit = declared.unit.replace("/", "_per_").replace("%", "percent")
     words = declared.key.removesuffix(f"_{unit}").replace("_", " ")
     return words[:1].upper() + words[1:]
@@ -171,7 +171,7 @@ def _kinds(annotation: Any) -> list[Any]:
 
 
 def _kind(kinds: list[Any], declared: Declaration) -> str:
-    """number, whole, numbers, flag, choice, names, texts, date or text: how the page shows a field."""
+    """Kind of a field for the page: number, whole, numbers, flag, choice, names, texts, date or text."""
     if list[str] in kinds:
         return "names" if declared.registry else "texts"
     if any(
@@ -208,7 +208,7 @@ def _materials(kind: str | None, library: Library) -> list[Option]:
 
 
 def _title(registry: str, name: str, library: Library) -> str:
-    """The title of a part; none where its file cannot be read, which the field then reports when it is chosen."""
+    """Title of a part; empty if its file cannot be read: the error appears when the part is chosen."""
     try:
         return str(getattr(library.load(registry, name), "title", ""))
     except PneutouchError:
@@ -216,7 +216,7 @@ def _title(registry: str, name: str, library: Library) -> str:
 
 
 PAGE = "the page"
-"""Stands for the file where values come from the page."""
+"""Name in place of a file's, for values that come from the page."""
 
 _MOST_FIELDS = 200
 _LONGEST_TEXT = 4000
@@ -224,10 +224,10 @@ _LONGEST_TEXT = 4000
 
 @dataclass(frozen=True)
 class Question:
-    """A design of the catalogue, or the one the studio was started with, by ``base``; and changed fields.
+    """A design by ``base`` (of the catalogue, or the one that the studio was started with), with changed fields.
 
-    ``values`` holds by ``table.key`` the text of a change ``table.key=text``, or None if the key is left out. They are
-    changes of the base's file in one ``version`` (`version_of`); None: as it is now.
+    ``values`` holds by ``table.key`` the text of a change ``table.key=text``, or None if the key is left out. They
+    apply to one ``version`` of the base's file (`version_of`); None accepts any version.
     """
 
     base: str
@@ -252,7 +252,7 @@ class Question:
         return cls(base, values, version)
 
     def source(self, bases: Mapping[str, str], library: Library) -> DesignSource:
-        """The design as a source; ``bases`` are designs by name or path, by the name that the page has for them.
+        """The design as a source; ``bases`` holds the name or path of a design by the page's name for it.
 
         Raises InputError naming key and value, and ChangedFileError.
         """
@@ -280,7 +280,7 @@ def version_of(base: DesignSource) -> str:
 
 
 def _leave_out(content: dict[str, Any], name: str) -> None:
-    """Take a key out of the tables, where it is there."""
+    """Remove ``table.key`` or a whole table from the content, if it is there."""
     table, _, key = name.partition(".")
     tables = content.get(table)
     if not key:
@@ -307,7 +307,7 @@ class PageLibrary(CachedLibrary):
 
 
 async def json_body(request: Request, what: str) -> Any:
-    """The document in a body. Raises InputError, which names it by ``what``, if there is none."""
+    """The JSON document of a request. Raises InputError, which calls it ``what``, if the body is not JSON."""
     try:
         content = json.loads(await request.body())
         # JSON can escape halves of surrogate pairs; such a text has no bytes, so that no answer could repeat it.
@@ -322,15 +322,15 @@ _KEYS = {"question", "name", "replace"}
 
 
 class NameTakenError(InputError):
-    """There is a file of this name already, and it is not to be replaced."""
+    """Error for the name of a file that exists and is not to be replaced."""
 
 
 def save_design(request: Mapping[str, Any], bases: dict[str, str]) -> dict[str, str]:
     """Write the design of ``question`` as ``name`` into the folder of the user's designs, and add it to ``bases``.
 
-    Over a file with ``replace`` alone. A design without changes is copied with its comments. Returns its name and
-    file. Raises NameTakenError if there is such a file, ChangedFileError, and InputError that names the key.
-    """
+    An existing file is replaced only with ``replace``. A design without changes is copied with its comments. Returns
+    its name and file. Raises NameTakenError if it is not to be replaced, ChangedFileError, and InputError that names
+    the key."""
     name, overwrite = _checked(request)
     question, library = Question.of(request.get("question")), Library.default()
     folder = user_folder() / KINDS["designs"].folder
@@ -353,7 +353,7 @@ def save_design(request: Mapping[str, Any], bases: dict[str, str]) -> dict[str, 
 
 
 def _checked(request: Mapping[str, Any]) -> tuple[str, bool]:
-    """Name and whether a file is to be replaced."""
+    """Name of the design, and True if an existing file is to be replaced. Raises InputError."""
     if not request.keys() <= {*_KEYS, "uploads"}:
         raise InputError(f"a design to be saved has the keys {', '.join(sorted(_KEYS))}")
     name, overwrite = request.get("name"), request.get("replace", False)
@@ -363,7 +363,7 @@ def _checked(request: Mapping[str, Any]) -> tuple[str, bool]:
 
 
 def _check_open(name: str, path: Path, bases: Mapping[str, str], library: Library) -> None:
-    """Refuse the name of a design that is open on the page from another place: it would mean two."""
+    """Raise InputError if a design of this name is open on the page from another file: two would share it."""
     if name not in bases or not Path(bases[name]).is_file():
         return
     if Path(bases[name]).resolve() != path.resolve():

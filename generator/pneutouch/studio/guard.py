@@ -1,7 +1,7 @@
 """Guard of the studio, the files that the page was given, and errors as the page takes them.
 
-The studio answers this machine's browser that was given the address, and no page of another site. Files are kept under
-names of our own, limited in size and number.
+The studio answers this machine's browser that was given the address, and no page of another site. Files are kept in
+numbered folders, limited in size and number.
 """
 
 import re
@@ -18,10 +18,10 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
 
 LARGEST_FILE = 64 << 20
-"""Bytes of one file."""
+"""Greatest size of one file, in bytes."""
 
 _LARGEST_SUM = 256 << 20
-"""Bytes of all files, also of those that are still coming; the oldest that is whole goes first."""
+"""Greatest size of all files in bytes, arriving ones included; the oldest complete file is removed first."""
 
 _MOST_FILES = 500
 _LONGEST_NAME = 120
@@ -29,7 +29,7 @@ _NAME = re.compile(r"[\w][\w .,()+@=-]*", re.ASCII)
 
 
 class Upload(NamedTuple):
-    """A file that was given: its name in the user's folder, where it lies, and its bytes."""
+    """A file that was given: its name in the user's folder, its path here, and its size in bytes."""
 
     name: str
     path: Path
@@ -45,7 +45,7 @@ class Uploads:
         self._coming = dict[int, int]()
 
     def __getitem__(self, number: int) -> Upload:
-        """A file by its number. Raises KeyError if unknown, or no longer."""
+        """Return the file with this number. Raises KeyError if it is unknown or removed."""
         return self._files[number]
 
     async def add(self, name: str, stream: AsyncIterator[bytes]) -> int:
@@ -78,7 +78,7 @@ class Uploads:
         return number
 
     def _make_room(self, name: str, size: int) -> None:
-        """Drop the oldest files for one that has come to ``size``. Raises InputError if that does not suffice."""
+        """Remove the oldest files to fit one that has come to ``size`` bytes. Raises InputError if that fails."""
         if size > LARGEST_FILE:
             remedy = f"give files of at most {LARGEST_FILE >> 20} MB, or use the commands"
             raise InputError("the file is too large", key=name, remedy=remedy)
@@ -94,19 +94,19 @@ class Uploads:
 
 
 LARGEST_BODY = 64 * 1024
-"""Bytes of a question."""
+"""Greatest size of a question, in bytes."""
 
 UPLOADS = "/api/uploads"
-"""Takes files, as bytes; everything else takes JSON."""
+"""Path that takes files, as bytes; every other path takes JSON."""
 
 FILES = "/files/"
-"""Addresses of what a job wrote begin so; the ticket of the job stands next, in place of the key."""
+"""Start of the addresses of files that a job wrote; the job's ticket follows, in place of the key."""
 
 KEY = "pneutouch-key"
-"""Header of the page's requests with the key, and of the one to `OPENING` with the one-time token."""
+"""Header of the page's requests that holds the key, or in the one to `OPENING` the one-time token."""
 
 OPENING = "/api/open"
-"""Gives the key for the token."""
+"""Path that returns the key for the token."""
 
 HEADERS = {
     "Content-Security-Policy": "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
@@ -121,7 +121,7 @@ SHEET = {
     "Content-Security-Policy": "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
     "img-src data:; font-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'self'; sandbox allow-scripts"
 }
-"""Policy in place of that of `HEADERS`, for a page that a job wrote: whole in itself, it is shown in a frame, where it
+"""Replaces the policy of `HEADERS` for a page that a job wrote: it is complete in itself and shown in a frame, where it
 has no origin, reaches neither the studio nor anything else, and opens nothing."""
 
 _NAMES = ("127.0.0.1", "localhost")
@@ -134,14 +134,14 @@ Application = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 
 class TooLargeError(Exception):
-    """The body of a request is longer than its path takes."""
+    """Error for a request's body that is longer than its path takes."""
 
 
 class Guard:
-    """Stands before an application: Host, Origin, key, kind and size of what is sent.
+    """Checks requests before an application: Host, Origin, key, and kind and size of what is sent.
 
-    ``token`` is given once for the key, which the page keeps and sends in a header: a browser sends none by itself, and
-    gives none to a page or a server of another port, as it would a cookie. The files of the page, at ``public`` paths,
+    ``token`` is exchanged once for the key, which the page keeps and sends in a header: unlike a cookie, no browser
+    sends it by itself, or gives it to a page or a server of another port. The files of the page, at ``public`` paths,
     hold nothing of the user's and need no key.
     """
 
@@ -151,7 +151,7 @@ class Guard:
         self._hosts = {f"{name}:{port}" for name in _NAMES}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request, or hand it on; every answer has `HEADERS`, a sheet shown in place its own policy."""
+        """Answer a request, or hand it on; every answer has `HEADERS`, but a sheet shown in a frame keeps `SHEET`."""
         if scope["type"] != "http":
             # Start and stop of the server; there are no web sockets.
             if scope["type"] == "lifespan":
@@ -174,7 +174,7 @@ class Guard:
         await self._application(scope, _limited(receive, _largest(scope["path"])), guarded)
 
     def _refused(self, scope: Scope, headers: dict[str, str]) -> Response | None:
-        """The answer to a request that goes no further; None for one that may."""
+        """Response to a request that is refused, or the key for the token; None for a request to pass on."""
         if headers.get("host") not in self._hosts:
             return PlainTextResponse("unknown host", 403)
         path, home = scope["path"], f"http://{headers['host']}"
@@ -191,7 +191,7 @@ class Guard:
         return None if scope["method"] in ("GET", "HEAD") else PlainTextResponse("not allowed", 405)
 
     def _opens(self, given: str) -> bool:
-        """True if this is the token, which is then used up."""
+        """True if ``given`` is the token, which is then used up."""
         if not self._token or not _is(given, self._token):
             return False
         self._token = ""
@@ -226,7 +226,7 @@ def _largest(path: str) -> int:
 
 
 def _limited(receive: Receive, largest: int) -> Receive:
-    """Receive a body of at most ``largest`` bytes, whatever its head states."""
+    """Wrap ``receive``: TooLargeError beyond ``largest`` bytes, whatever length the request's head states."""
     taken = 0
 
     async def counted() -> Message:
@@ -246,12 +246,12 @@ FAILED = 500
 
 
 class ChangedFileError(InputError):
-    """The file of a design was changed since the page read it, which shows other values beside its changes."""
+    """Error for a design's file that was changed since the page read it: the page shows other values."""
 
 
 @dataclass(frozen=True, slots=True)
 class PageProblem:
-    """A problem with its words, which are the CLI's, and the fields, ``table.key``, that it stands at."""
+    """A problem: its message, in the words of the CLI, and the form's fields (``table.key``) where it is shown."""
 
     message: str
     fields: list[str]
@@ -266,7 +266,7 @@ class PageFault:
 
 @dataclass(frozen=True, slots=True)
 class PageResponse:
-    """Status and content of a computation."""
+    """HTTP status and content of the answer of a computation."""
 
     status: int
     content: object
@@ -278,7 +278,7 @@ def faults_of(error: PneutouchError) -> PageFault:
 
 
 def fault_status(error: PneutouchError) -> int:
-    """The status of an answer: a file was changed, the input is wrong, or a computation could not be completed."""
+    """HTTP status of an error: the file was changed, the input is wrong, or the computation failed."""
     if isinstance(error, ChangedFileError):
         return CHANGED
     return BAD_INPUT if isinstance(error, InputError) else FAILED
@@ -298,7 +298,7 @@ def reported(compute: Callable[[], object]) -> PageResponse:
 
 
 def too_little_memory() -> PneutouchError:
-    """The error where memory is short."""
+    """Error for a lack of memory."""
     return ComputationError("not enough memory", remedy="close other programs")
 
 
@@ -308,7 +308,7 @@ def _problem(error: PneutouchError) -> PageProblem:
 
 
 def _fields(error: PneutouchError) -> list[str]:
-    """Fields of an error: its key, or those that one on a table or on the file is about."""
+    """Form's fields of an error: its key if that is a field, else the fields of a table or file it is about."""
     key = (error.key or "").partition("[")[0]
     alone = "." in key or (key in DesignFile.model_fields and table_of(DesignFile, key) is None)
     return [key] if alone else list(error.fields)

@@ -34,7 +34,7 @@ BRIEF = ("open", "recognise")
 """Kinds that take a moment: one of them may run at the same time as a job of another kind."""
 
 LARGEST_MEMORY = 12 << 30
-"""Bytes of address space of a job."""
+"""Greatest address space of a job, in bytes."""
 
 Report = Callable[[int, int, str | None], None]
 
@@ -48,7 +48,7 @@ def answered(request: Mapping[str, Any], report: Report) -> PageResponse:
 
 
 def work(request: bytes, out: BinaryIO) -> None:
-    """Do the job of a request and write its lines."""
+    """Do the job of a request; write its progress and its answer as JSON lines."""
 
     def write(line: Mapping[str, Any]) -> None:
         out.write(json.dumps(line).encode() + b"\n")
@@ -61,14 +61,14 @@ def work(request: bytes, out: BinaryIO) -> None:
 
 
 def _stop(number: int, frame: Any) -> None:
-    """Unwind once, which removes half written files."""
+    """Raise KeyboardInterrupt once, so that half-written files are removed."""
     for each in STOPS:
         signal.signal(each, signal.SIG_IGN)
     raise KeyboardInterrupt
 
 
 def _end_with_input() -> None:
-    """Stop where the input ends before the job does: the studio was killed, and no page takes the answer."""
+    """Stop the job when its input ends early: the studio was killed, and no page takes the answer."""
     os.read(sys.stdin.fileno(), 1)
     os.kill(os.getpid(), signal.SIGTERM)
 

@@ -27,21 +27,21 @@ from pneutouch.studio.guard import FILES, SHEET, UPLOADS, Uploads, fault_status,
 from pneutouch.studio.job import BRIEF, KINDS
 
 KEPT = 8
-"""Jobs of a kind whose files are kept; the oldest goes first."""
+"""Greatest number of jobs of a kind whose files are kept; the oldest is removed first."""
 
 _LONGEST_LINE = 1 << 26
 _LAST_SECONDS = 10.0
-"""Seconds that a job has to take its half-written files away when it is cancelled."""
+"""Seconds that a cancelled job has to remove its half-written files."""
 
 _COMMAND = (sys.executable, "-m", "pneutouch.studio.job")
-"""The process of a job."""
+"""Command that starts the process of a job."""
 
 Content = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
 class JobFile:
-    """A file of a job, by its path below the job's folder."""
+    """A file of a job: its path below the job's folder, and its size in bytes."""
 
     name: str
     bytes: int
@@ -49,7 +49,7 @@ class JobFile:
 
 @dataclass(frozen=True, slots=True)
 class JobRecord:
-    """The state of a job for the page; its files once it is done, below the address of its ``ticket``."""
+    """State of a job for the page; ``files``, once the job is done, lie below the address of its ``ticket``."""
 
     job: int
     ticket: str
@@ -65,7 +65,7 @@ class Job:
     """A job as the page sees it: ``state`` (running, done, failed, cancelled), progress, status and content.
 
     ``place`` is removed with the job; the job writes its files into ``folder`` below it. Links and frames send no key:
-    who has the ``ticket``, which no other request takes, may read these files as long as they are kept.
+    whoever has the ``ticket``, valid for nothing else, may read these files while they are kept.
     """
 
     def __init__(self, number: int, kind: str, place: Path) -> None:
@@ -78,14 +78,14 @@ class Job:
 
     @property
     def runs(self) -> bool:
-        """True if it has not ended; one that was cancelled may take a moment to."""
+        """True if the job has not ended; a cancelled one may take a moment to end."""
         return self.state == "running" or (self.process is not None and self.process.returncode is None)
 
     @property
     def record(self) -> JobRecord:
         """The state of the job for the page.
 
-        One that is cancelled still runs until its process has ended: only then another can begin.
+        A cancelled job counts as running until its process has ended: only then another can begin.
         """
         files = [JobFile(name, path.stat().st_size) for name, path in self.files().items()]
         state = "running" if self.runs else self.state
@@ -111,11 +111,11 @@ class Jobs:
         self._number = 0
 
     def __getitem__(self, number: int) -> Job:
-        """A job by its number. Raises KeyError if unknown, or no longer."""
+        """Return the job with this number. Raises KeyError if it is unknown or removed."""
         return self._jobs[number]
 
     def of_ticket(self, ticket: str) -> Job | None:
-        """The job of a ticket; None if unknown, or no longer."""
+        """The job of a ticket; None if unknown or removed."""
         known = (job for job in self._jobs.values() if secrets.compare_digest(job.ticket.encode(), ticket.encode()))
         return next(known, None)
 
@@ -125,7 +125,7 @@ class Jobs:
         return [job.record for job in self._jobs.values()]
 
     async def start(self, kind: str, arguments: Mapping[str, Any]) -> Job:
-        """Begin a job. Raises ComputationError while another runs."""
+        """Start a job. Raises ComputationError while another of its sort, brief or long, runs."""
         brief = kind in BRIEF
         running = [job for job in self._jobs.values() if job.runs and (job.kind in BRIEF) == brief]
         if running:
@@ -146,7 +146,7 @@ class Jobs:
             shutil.rmtree(self._jobs.pop(old.number).place, ignore_errors=True)
 
     async def cancel(self, job: Job) -> None:
-        """End a job that runs; its files are removed. Nothing where it has ended."""
+        """End a running job and remove its files; nothing is done for a job that has ended."""
         if job.state != "running":
             return
         job.state = "cancelled"
@@ -239,7 +239,7 @@ class Desk:
         self._one, self._saving = asyncio.Lock(), asyncio.Lock()
 
     def routes(self) -> list[Route]:
-        """Its part of the application."""
+        """Routes of the desk in the application."""
         return [
             Route(UPLOADS, self.upload, methods=["POST"]),
             Route("/api/designs", self.save, methods=["POST"]),
@@ -265,7 +265,7 @@ class Desk:
         return JSONResponse({"upload": number, "name": self.uploads[number].name})
 
     async def save(self, request: Request) -> Response:
-        """Write a design into the user's folder; 409 where there is such a file and it is not to be replaced."""
+        """Write a design into the user's folder; status 409 if the file exists and is not to be replaced."""
         try:
             content = await _object(request)
             async with self._saving:
@@ -277,11 +277,11 @@ class Desk:
         return JSONResponse(document)
 
     async def known(self, request: Request) -> Response:
-        """The jobs that run or whose files are kept: a page that is opened again finds its own there."""
+        """The jobs that run or whose files are kept: a page that is opened again finds its jobs among them."""
         return JSONResponse(plain({"jobs": self.jobs.records}))
 
     async def start(self, request: Request) -> Response:
-        """Begin a job with the JSON of the page; ``uploads``, numbers of files, are given to it as paths."""
+        """Start a job with the page's JSON; the files numbered in ``uploads`` are passed to it as paths."""
         kind = request.path_params["kind"]
         try:
             if kind not in KINDS:

@@ -1,4 +1,4 @@
-"""A campaign as the page shows it: files and columns, figures beside the predicted, and the commands that repeat it."""
+"""A campaign on the page: files and columns, figures beside predicted ones, and the commands that repeat it."""
 
 import os
 import shlex
@@ -44,7 +44,7 @@ class FileColumn:
 
 @dataclass(frozen=True, slots=True)
 class PageRun(RunOfSensor):
-    """A run with the columns and the layout of its file, and its error; of one that was read, questions and doubts."""
+    """A run with its file's columns and layout, and its error; if it was read, also questions and doubtful parts."""
 
     columns: tuple[FileColumn, ...]
     format: Mapping[str, str | int]
@@ -90,8 +90,8 @@ class RunCurve:
 
 @dataclass(frozen=True, slots=True)
 class PredictedCurve:
-    """The predicted curve up to the end of its range, with the bands of the sheet's plots: that of the sensitivity
-    about the rise, that of the stiffness about the force."""
+    """The predicted curve up to the end of its range, with the bands of the sheet's plots: the sensitivity's about the
+    rise, the stiffness's about the force."""
 
     indentation_mm: tuple[float, ...]
     force_N: tuple[float, ...]
@@ -218,24 +218,24 @@ def _predicted(comparison: GroupComparison) -> PredictedCurve | None:
 def _band(
     comparison: GroupComparison, figure: str, values: Array
 ) -> tuple[tuple[float, ...] | None, tuple[float, ...] | None]:
-    """Ends of a curve about which the band of a figure is drawn; None without a band."""
+    """Low and high curve (n,) of the band of a figure about the curve ``values``; (None, None) without a band."""
     ends = comparison.relative_band(figure)
     return (None, None) if ends is None else (_drawn(ends[0] * values), _drawn(ends[1] * values))
 
 
 UNNAMED = "campaign"
-"""Folder of files that came without one."""
+"""Name of the folder for files that came without one."""
 
 _DEEPEST, _LONGEST = 8, 200
-"""Folders above a file, and bytes of a name in its path."""
+"""Greatest number of folders above a file, and of bytes of a name in its path."""
 
 
 def placed(files: Sequence[Mapping[str, str]], paths: Sequence[str], place: Path) -> tuple[Path, list[str]]:
     """Put files (name, path) at their relative ``paths`` below ``place``.
 
-    Returns the campaign's folder, relative to ``place``, and the paths of its files, relative to that folder. It is the
-    one that holds the campaign file; else the one that holds all. Raises InputError for a path that is none, for two
-    files at one place and for two campaigns.
+    Returns the campaign's folder, relative to ``place``, and the paths of its files, relative to that folder: the
+    folder of the campaign file, else the one that holds all files. Raises InputError for a path that is not valid, for
+    two files at one place and for two campaigns.
     """
     if len(files) != len(paths):
         raise InputError("each file has one path", key="paths")
@@ -281,7 +281,7 @@ def write_runs(folder: Path, runs: Sequence[Mapping[str, Any]]) -> Path:
 
 
 def _checked(text: Any) -> PurePosixPath:
-    """A path below a folder, without a step out of it. Raises InputError."""
+    """Relative path of a file, checked not to lead out of its folder. Raises InputError."""
     parts = text.split("/") if isinstance(text, str) else [""]
     plain = all(
         part not in ("", ".", "..") and part.isprintable() and "\\" not in part and len(part.encode()) <= _LONGEST
@@ -293,7 +293,7 @@ def _checked(text: Any) -> PurePosixPath:
 
 
 def _link(source: Path, target: Path) -> None:
-    """The same file at another place, without a copy where the file system can."""
+    """Put a file at another place as well, without a copy if the file system can link it."""
     target.parent.mkdir(parents=True, exist_ok=True)
     try:
         target.hardlink_to(source)
@@ -302,9 +302,9 @@ def _link(source: Path, target: Path) -> None:
 
 
 def _bring_named(folder: Path, inside: list[str]) -> None:
-    """Files that were chosen one by one lie in one folder: those that the campaign names in another go there.
+    """Move files that came in one folder, chosen one by one, to the folders where the campaign names them.
 
-    What is wrong with the campaign file is reported when it is read.
+    Errors of the campaign file are reported when it is read.
     """
     try:
         runs = read_toml(folder / CAMPAIGN).get("runs", [])
@@ -331,7 +331,7 @@ def _bring_named(folder: Path, inside: list[str]) -> None:
 _MARKS = {"\t": "tab", " ": "space"}
 
 Parameters = list[tuple[str, str]]
-"""Names of a command's parameters with their texts; a text is empty if the name alone states it."""
+"""Names of a command's parameters with their texts; the text is empty for a parameter that has only a name."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -343,7 +343,7 @@ class CommandWords:
 
 
 def characterize_words(data: Path, question: Question | None, arguments: Mapping[str, Any]) -> CommandWords:
-    """The command, and the steps before it."""
+    """The command ``characterize`` that repeats the job, and the steps before it."""
     parameters: Parameters = []
     if question is not None:
         parameters.append(("design", arguments["bases"][question.base]))
@@ -352,7 +352,7 @@ def characterize_words(data: Path, question: Question | None, arguments: Mapping
 
 
 def _kept(question: Question | None) -> str:
-    """Keys that the page leaves out of the design file: no option of a command does."""
+    """Note on keys that the page leaves out of the design file, which no option of a command can do; or ""."""
     left = [] if question is None else [key for key, text in question.values.items() if text is None]
     return f"it keeps {', '.join(left)} of the design file, which the page leaves out" if left else ""
 
@@ -360,7 +360,7 @@ def _kept(question: Question | None) -> str:
 def calibrate_words(
     data: Path, question: Question | None, arguments: Mapping[str, Any], options: CalibrationOptions
 ) -> CommandWords:
-    """The command, and the steps before it: it takes no changes of a design."""
+    """The command ``calibrate`` that repeats the job, and the steps before it: a changed design is saved first."""
     changed = question is not None and any(key != "calibration" for key in question.values)
     parameters: Parameters = []
     if question is not None:

@@ -1,4 +1,4 @@
-"""Jobs on measured runs: their columns recognised, their figures, the model fitted to a sensor."""
+"""Jobs on measured runs: recognise their columns, compute their figures, fit the model to a sensor."""
 
 import contextlib
 import shutil
@@ -38,7 +38,7 @@ from pneutouch.workflows.characterize.campaign import write
 from pneutouch.workflows.characterize.load import reading_text, with_reading
 
 _NO_RUNS = (".toml", ".json", ".md", ".html", ".pdf", ".svg", ".png", ".zip", ".3mf", ".step", ".stl", ".glb")
-"""Endings of files that lie next to runs and are none."""
+"""Endings of files that may lie next to runs but are none themselves."""
 
 KINDS: tuple[str, ...] = get_args(RunKind)
 """Kinds of runs that a campaign may list."""
@@ -104,7 +104,7 @@ class CharacterizedCampaign(CommandWords):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CalibratedSensor(CommandWords):
-    """A calibration as ``calibrate`` prints it; ``opens`` is the design with a saved one."""
+    """A calibration as ``calibrate`` prints it; ``opens`` is the design with the calibration if it was saved."""
 
     document: OutcomeRecord
     chart: str
@@ -114,8 +114,8 @@ class CalibratedSensor(CommandWords):
 
 @dataclass(frozen=True)
 class _Given:
-    """Input of a job: the campaign's folder (relative to the working folder), its files, whether a campaign file came
-    with them, the page's design (None: the campaign's) and the options for reading files."""
+    """Input of a job: the campaign's folder (relative to the working folder), its files, ``planned`` if a campaign file
+    came with them, the page's design (None: the campaign's) and the options for reading files."""
 
     data: Path
     files: list[str]
@@ -207,7 +207,7 @@ def _proposed(given: _Given, source: DesignSource, report: Report) -> Recognised
 def characterize(arguments: Mapping[str, Any], folder: Path, report: Report) -> CharacterizedCampaign:
     """Run the command ``characterize`` on the campaign; the measured sheet and its files go into ``folder``.
 
-    Raises InputError as it does.
+    Raises InputError as the command does.
     """
     with _given(arguments, folder) as given:
         _plan(given, arguments)
@@ -255,8 +255,8 @@ def _sensors(campaign: Campaign) -> list[FittableSensor]:
 def calibrate(arguments: Mapping[str, Any], folder: Path, report: Report) -> CalibratedSensor:
     """Run the command ``calibrate`` on the campaign; its files go into ``folder``.
 
-    Without ``save`` the calibration goes there as well, and nothing into the user's folder. Raises InputError as it
-    does.
+    Without ``save`` the calibration goes there as well, and nothing into the user's folder. Raises InputError as the
+    command does.
     """
     save = _text(arguments, "save")
     with _given(arguments, folder) as given:
@@ -287,7 +287,7 @@ def calibrate(arguments: Mapping[str, Any], folder: Path, report: Report) -> Cal
 
 
 def _opens(given: _Given, outcome: CalibrationOutcome, bases: Mapping[str, str]) -> Question | None:
-    """The calibrated design, where the page can open it."""
+    """The calibrated design as a question; None if the page cannot open it."""
     named = {"calibration": outcome.record.calibration}
     if given.question is not None:
         return replace(given.question, values={**given.question.values, **named})
@@ -299,9 +299,9 @@ def _opens(given: _Given, outcome: CalibrationOutcome, bases: Mapping[str, str])
 
 @contextlib.contextmanager
 def _given(arguments: Mapping[str, Any], folder: Path) -> Iterator[_Given]:
-    """The campaign's folder, relative to the working folder, so that messages name files as the user does.
+    """Input of a job, with its files in the working folder, so that messages name files as the user does.
 
-    Errors are given with file and key in their words. Raises InputError for what is none of the page's.
+    The messages of errors hold file and key. Raises InputError for arguments that are not valid.
     """
     library, root = Library.default(), user_folder().absolute()
     place = folder.absolute().parent / "input"
@@ -321,7 +321,7 @@ def _given(arguments: Mapping[str, Any], folder: Path) -> Iterator[_Given]:
 
 
 def _plan(given: _Given, arguments: Mapping[str, Any]) -> None:
-    """Write the campaign file of runs that came without one."""
+    """Write the campaign file if the runs came without one. Raises InputError if no runs are given."""
     if given.planned:
         return
     runs = arguments.get("runs")
@@ -331,7 +331,7 @@ def _plan(given: _Given, arguments: Mapping[str, Any]) -> None:
 
 
 def _noted(given: _Given, words: CommandWords) -> CommandWords:
-    """The words of a command, with where the campaign file is that the runs came without."""
+    """Words of a command; for runs without a campaign file they add where the written one is."""
     if given.planned:
         return words
     place = f"{CAMPAIGN}, which the command needs next to the runs, is in the zip of the measured sheet"
@@ -339,7 +339,7 @@ def _noted(given: _Given, words: CommandWords) -> CommandWords:
 
 
 def _reading(arguments: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """The tables [columns] and [format] that the page states, as the options of the command do. Raises InputError."""
+    """The tables [columns] and [format] that the page states, read like the command's options. Raises InputError."""
     columns, stated = arguments.get("columns") or "", arguments.get("format") or {}
     if not isinstance(columns, str) or not isinstance(stated, dict):
         raise InputError("columns is a text and format is an object")

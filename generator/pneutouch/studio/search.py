@@ -1,8 +1,7 @@
 """The job that answers a target: the document of ``select``, its designs as cards, and the trade-off chart.
 
-The answer to a target over several processes: the table of the command, and the best design of each as a card.
-
-A target as the page sends it: fields with texts, as in a question about a design.
+Over several processes the answer is the command's table, and the best design of each process as a card. The page sends
+a target like a question about a design: fields with texts.
 """
 
 from __future__ import annotations
@@ -56,7 +55,7 @@ class PageTable:
 
 @dataclass(frozen=True, slots=True)
 class FrontCurve:
-    """The front of a resin."""
+    """Trade-off front of a resin."""
 
     title: str
     sensitivity_kPa_per_N: tuple[float, ...]
@@ -65,7 +64,7 @@ class FrontCurve:
 
 @dataclass(frozen=True, slots=True)
 class FrontChart:
-    """The chart that ``select`` draws."""
+    """The trade-off chart that ``select`` draws."""
 
     driving_pressure_kPa: float
     gauge_kPa: float
@@ -89,7 +88,7 @@ class PageSelection:
 
 
 def _by_process(selection: ProcessSelection, document: Mapping[str, Any], page: CandidateStates) -> PageSelection:
-    """The best design of each process; for one in which no design meets the target, the card shows the nearest."""
+    """The best design of each process as a card; for a process in which none meets the target, the nearest."""
     row = {process: number for number, (process, _) in enumerate(selection.best, start=1)}
     cards = [_card(process, run, page, row.get(process)) for process, run in selection.runs.items()]
     searched, (head, rows) = len(selection.runs) + len(selection.left_out), processes_table(selection)
@@ -130,7 +129,7 @@ _CHANGES = "setting.assignments"
 
 
 def target_of(question: Question, bases: Mapping[str, str]) -> Target:
-    """The target that the fields of a question state, with the base that the page has by that name.
+    """The target that the fields of a question state, with its base looked up by the page's name for it.
 
     Raises InputError naming key and value.
     """
@@ -147,7 +146,7 @@ def target_of(question: Question, bases: Mapping[str, str]) -> Target:
 
 @contextmanager
 def at_its_fields() -> Iterator[None]:
-    """Put an error about a field of the base to the field of the form that changes it, which its words then name."""
+    """Attach errors about the base's fields to the form's field of assignments; the message names the base's field."""
     try:
         yield
     except PneutouchError as error:
@@ -163,7 +162,7 @@ _CHART = "trade-off chart"
 
 
 def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> PageSelection:
-    """Search for the target that ``values`` state; where it names no base, its designs are those of ``base`` changed.
+    """Search for the target that ``values`` state; its designs change its base, or ``base`` if it has none.
 
     Raises InputError naming the field.
     """
@@ -232,7 +231,7 @@ def _cards(run: SelectionRun, page: CandidateStates) -> list[CandidateCard]:
 
 
 def _nothing_to_drop(run: SelectionRun) -> list[str]:
-    """Lines for a target that no design meets, if none fits without one of its requirements either."""
+    """Lines for a target that no design meets even with one requirement dropped; else empty."""
     answer = run.answer
     return [] if answer.designs or run.rejected or answer.dropped else dropped_lines(run, typed)
 

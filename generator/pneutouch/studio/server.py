@@ -79,14 +79,14 @@ def respond(known: dict[str, PageFile], request: Request) -> Response:
 
 
 _WAITING = 8
-"""Questions that may wait for an answer at once; a page sends two."""
+"""Greatest number of questions that wait for an answer at once; a page sends two."""
 
 
 class Studio:
-    """Answers the page. ``bases`` are the designs that it may open, by name or path; ``first`` the one it begins with.
+    """Answers the page. ``bases`` are the designs that the page may open, by name or path; ``first`` is shown first.
 
-    Kept between requests are the catalogue, one process, which starts with the first question for it, and what the desk
-    has.
+    It keeps between requests the catalogue, one solver process, which starts with its first question, and the desk with
+    its jobs and files.
     """
 
     def __init__(self, bases: dict[str, str], first: str) -> None:
@@ -107,7 +107,7 @@ class Studio:
         return JSONResponse(plain(await run_in_threadpool(target_form, self._library, self._bases)))
 
     async def at_once(self, answer: Callable[[Question], object], request: Request) -> Response:
-        """An answer of ``answer``, which is computed in this process, one at a time."""
+        """Response with what ``answer`` returns, computed in this process, one question at a time."""
         if self._waiting >= _WAITING:
             return _fault(ComputationError("too many questions at once", remedy="wait for an answer"), 503)
         self._waiting += 1
@@ -124,7 +124,7 @@ class Studio:
             self._waiting -= 1
 
     async def solved(self, request: Request) -> Response:
-        """The answer of the process; 409 where a newer question took its place."""
+        """Response with the solver process's answer; status 409 if a newer question replaced this one."""
         try:
             question = await _question(request)
             answer = await self._solver.request(plain(question))
@@ -136,7 +136,7 @@ class Studio:
 
     @contextlib.asynccontextmanager
     async def running(self, application: Starlette) -> AsyncIterator[None]:
-        """Between start and stop of the server; the process ends with it."""
+        """Context of the running server; the solver process and the desk end with it."""
         try:
             yield
         finally:
@@ -184,7 +184,7 @@ async def _refused(request: Request, error: Exception) -> Response:
 
 
 async def _failed(request: Request, error: Exception) -> Response:
-    """A fault of ours, without a traceback."""
+    """Response to an internal fault, without a traceback."""
     fault = ComputationError(f"internal fault ({type(error).__name__}: {error})", remedy="please report it")
     return _fault(fault)
 
@@ -196,22 +196,22 @@ _LAST_ANSWERS = 2
 
 
 _HEAD_SECONDS, _REST_SECONDS = 10, 120
-"""Seconds that a connection has to send the head of a request; to send its body, and to take on with an answer."""
+"""Seconds that a connection has to send a request's head, and to send its body or read on in an answer."""
 
 _MOST_CONNECTIONS, _AT_ONCE = 128, 4
-"""Connections that are open or wait to be; those that are taken before the ones too many are closed."""
+"""Greatest number of connections open or waiting; and of those accepted at once, before surplus ones are closed."""
 
 
 def most_connections(files: int) -> int:
-    """Connections that are open at once where a process may have so many ``files``; -1 is no limit."""
+    """Greatest number of open connections if a process may have ``files`` open files; -1 means no limit."""
     return min(_MOST_CONNECTIONS, files // 4) if files > 0 else _MOST_CONNECTIONS
 
 
 class Connection(H11Protocol):
-    """A connection that is closed where the other side lets the studio wait for too long.
+    """A connection that is closed if the other side lets the studio wait for too long.
 
-    One more than `most` closes the one that has waited longest, or is closed itself where none waits: connections on
-    which nothing comes keep nobody out, and take no file that a job needs.
+    One more than `most` closes the one that has waited longest, or is itself closed if none waits: idle connections
+    keep nobody out, and take no file descriptor that a job needs.
     """
 
     most = most_connections(resource.getrlimit(resource.RLIMIT_NOFILE)[0])
@@ -219,7 +219,7 @@ class Connection(H11Protocol):
     _timer: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Take the connection, where there is room or room is made."""
+        """Accept the connection; beyond `most`, abort the longest waiting one, or else this one."""
         super().connection_made(transport)
         if len(self.connections) > self.most:
             waiting = [each for each in self.connections if isinstance(each, Connection) and each._timer]
@@ -229,7 +229,7 @@ class Connection(H11Protocol):
         self._watch()
 
     def data_received(self, data: bytes) -> None:
-        """Take what was sent."""
+        """Take received data."""
         super().data_received(data)
         self._watch()
 
@@ -239,22 +239,22 @@ class Connection(H11Protocol):
         self._watch()
 
     def pause_writing(self) -> None:
-        """Wait until the other side takes on."""
+        """Stop sending until the other side reads on."""
         super().pause_writing()
         self._watch()
 
     def resume_writing(self) -> None:
-        """Write on."""
+        """Go on sending."""
         super().resume_writing()
         self._watch()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """End."""
+        """End the timer of a closed connection."""
         super().connection_lost(exc)
         self._wait(None)
 
     def _watch(self) -> None:
-        """Limit the time of what the other side has to do next; an answer is computed for as long as it takes."""
+        """Limit the time of the other side's next step; an answer may be computed for as long as it takes."""
         if self.transport.is_closing() or self.flow.write_paused:
             self._wait((_REST_SECONDS, self.cycle))
         elif not self.headers or self.cycle.response_complete:
@@ -263,7 +263,7 @@ class Connection(H11Protocol):
             self._wait((_REST_SECONDS, self.scope) if self.cycle.more_body else None)
 
     def _wait(self, owed: tuple[int, object] | None) -> None:
-        """Begin to wait for what is ``owed``: the seconds, and of which request. Waiting for the same goes on."""
+        """Start a timer for ``owed``, (seconds, request), unless it runs for the same; None stops it."""
         if owed == self._owed:
             return
         if self._timer:
@@ -273,14 +273,14 @@ class Connection(H11Protocol):
 
 
 def without_traceback(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-    """Leave faults of connections, as a lack of files to take one by, off the terminal: the loop tries again, and does
-    so, in vain, at a listener that was closed meanwhile."""
+    """Keep errors of connections, such as a lack of file descriptors for one, off the terminal: the event loop tries
+    again, also, in vain, on a listener that was closed meanwhile."""
     if not isinstance(context.get("exception"), OSError) and "_start_serving" not in context["message"]:
         loop.default_exception_handler(context)
 
 
 class _Server(uvicorn.Server):
-    """A server that reports when it takes requests. A stop signal ends it, and is raised again when it has ended."""
+    """A server that calls ``opened`` when it takes requests. A stop signal ends it, and is raised again afterwards."""
 
     def __init__(self, config: uvicorn.Config, opened: Callable[[], None]) -> None:
         super().__init__(config)
@@ -298,7 +298,7 @@ class _Server(uvicorn.Server):
 
 
 def bases_of(design: str | None) -> tuple[dict[str, str], str]:
-    """Designs that the page may open, by the name shown, and the name that it begins with.
+    """Designs that the page may open, by the name shown, and the name of the one shown first.
 
     ``design`` is a name or a path; a path's design is named by its file. Raises InputError if it is not found.
     """
@@ -315,7 +315,7 @@ def bases_of(design: str | None) -> tuple[dict[str, str], str]:
 
 
 def serve(design: str | None, port: int, opened: Callable[[str], None]) -> None:
-    """Serve until a stop signal raises KeyboardInterrupt; ``opened`` is given the address. ``port`` 0 is a free one.
+    """Serve until a stop signal raises KeyboardInterrupt; ``opened`` receives the address. ``port`` 0: a free one.
 
     Raises InputError if the design is not found or the port is taken.
     """

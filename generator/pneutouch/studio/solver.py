@@ -16,10 +16,10 @@ from pneutouch.studio.form import PageLibrary, Question
 from pneutouch.studio.guard import PageResponse, reported
 
 _LONGEST_LINE = 1 << 26
-"""Bytes of an answer; the longest of a design with fifty driving pressures are a tenth of it."""
+"""Greatest size of an answer in bytes; the longest, of a design with fifty driving pressures, has a tenth of it."""
 
 _PATIENCE = 4.0
-"""Seconds after its start at which a computation is ended for a newer question: a process takes one to start."""
+"""Seconds after which a computation is ended if a newer question waits; a process takes one second to start."""
 
 Answer = dict[str, Any]
 
@@ -31,7 +31,7 @@ class SupersededError(Exception):
 class Solver:
     """Sends questions to the process, one at a time. A newer question replaces the one that waits.
 
-    One that has been computed for longer than `_PATIENCE` is given up as well: its process ends, and another starts.
+    It also replaces one computed for longer than `_PATIENCE`: that process is ended, and another started.
     """
 
     def __init__(self, bases: Mapping[str, str]) -> None:
@@ -69,7 +69,7 @@ class Solver:
             raise
 
     def _pass_on(self) -> None:
-        """Give the process to the question that waits; without one it is free."""
+        """Give the process to the waiting question; mark it free if none waits."""
         turn, self._waiting = self._waiting, None
         self._is_busy = turn is not None
         if turn is not None:
@@ -99,7 +99,7 @@ class Solver:
                     await task
 
     async def _waited_for(self) -> None:
-        """Return when a newer question waits and this one has had its time."""
+        """Return when a newer question waits and this one has been computed for `_PATIENCE`."""
         await asyncio.sleep(_PATIENCE)
         await self._newer.wait()
 

@@ -18,23 +18,23 @@ from pneutouch.tables.layout import RowChunk, TableFormat, TableLayout, library_
 from pneutouch.tables.locate import Located, fewest, header_of, locate
 
 MOST_ROWS, MOST_UNPACKED = 1_000_000_000, 2**30
-"""Rows of a file, a day at 10 kHz; and bytes of one group of rows once unpacked, which is in memory."""
+"""Greatest number of rows of a file, a day at 10 kHz; and of bytes of one unpacked group of rows, held in memory."""
 
 BATCH = 2**17
-"""Rows at once: as many as a chunk of a CSV file holds."""
+"""Rows per batch: as many as in a chunk of a CSV file."""
 
 _EXACT = 2.0**53
 
 
 def parquet_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLayout:
-    """Layout of a parquet file, whose columns have names and no units of their own. Raises InputError."""
+    """Layout of a parquet file, whose columns have names but no units. Raises InputError."""
     with _opened_parquet(path) as file:
         names = tuple(str(name) for name in file.schema_arrow.names)
     return TableLayout(names, ("",) * len(names), given, least=len(names))
 
 
 def parquet_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[RowChunk]:
-    """Chunks of a parquet file; see `read.chunks`. Its rows are numbered from 2, as in a CSV file."""
+    """Chunks of a parquet file; see `read.chunks`. Rows are numbered from 2, as in a CSV file."""
     import pyarrow as pa
 
     with _opened_parquet(path) as file:
@@ -58,10 +58,10 @@ def parquet_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Ite
 
 
 def _check_size(path: Path, stated: Any) -> None:
-    """Raise InputError for more rows, or larger groups of them, than are read: both pack to almost nothing."""
+    """Raise InputError for too many rows or too large groups of rows: both can be compressed to almost nothing."""
     if stated.num_rows > MOST_ROWS:
         raise InputError(f"{stated.num_rows} rows; at most {MOST_ROWS}", file=path)
-    # Of the whole group: with a column's size pyarrow reads its statistics, and ends the process where those are bad.
+    # For the whole group: for a column's size pyarrow reads its statistics, and crashes if those are bad.
     size = max((stated.row_group(k).total_byte_size for k in range(stated.num_row_groups)), default=0)
     if size > MOST_UNPACKED:
         problem = f"{size / 1e6:.0f} MB in one group of rows; at most {MOST_UNPACKED >> 20} MiB"
@@ -70,7 +70,7 @@ def _check_size(path: Path, stated: Any) -> None:
 
 @contextmanager
 def _opened_parquet(path: Path) -> Iterator[Any]:
-    """The file, for reading. Raises InputError if it is no parquet file, or pyarrow is not installed."""
+    """The file, opened for reading. Raises InputError if it is no parquet file, or pyarrow is not installed."""
     with library_file(path, "parquet", "pyarrow", "parquet"):
         import pyarrow.parquet as pq
 
@@ -79,7 +79,7 @@ def _opened_parquet(path: Path) -> Iterator[Any]:
 
 
 def _floats(path: Path, name: str, column: Any, row: int) -> Array:
-    """A column (n,) whose first number is in ``row``. Raises InputError for whole numbers that a float cannot hold."""
+    """Column (n,) as floats, its first number in ``row``. Raises InputError for integers that a float cannot hold."""
     import pyarrow as pa
 
     try:
@@ -96,7 +96,7 @@ def _floats(path: Path, name: str, column: Any, row: int) -> Array:
 
 
 _UNIT_KEYS = ("unit_string", "NI_UnitDescription", "Unit", "unit")
-"""Properties of a channel that hold its unit: the first is the one of LabVIEW's library."""
+"""Properties of a channel that may hold its unit; the first is that of LabVIEW's own library."""
 
 _CHANNELS = 1000
 
@@ -104,7 +104,7 @@ _CHANNELS = 1000
 def tdms_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLayout:
     """Layout of the group that ``given`` names, else of the only one with channels of numbers. Raises InputError.
 
-    Channels without one of times state begin and step of their clock (wf_start_offset, wf_increment)."""
+    Channels without a channel of times state start and step of their clock (wf_start_offset, wf_increment)."""
     with _opened_tdms(path) as file:
         groups = {group.name: channels for group in file.groups() if (channels := _numeric(path, group))}
         if given.sheet is not None and given.sheet not in groups:
@@ -132,7 +132,7 @@ def tdms_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLa
 
 
 def tdms_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[RowChunk]:
-    """Chunks of a group; see `read.chunks`. Its rows are numbered from 1."""
+    """Chunks of a group; see `read.chunks`. Rows are numbered from 1."""
     with _opened_tdms(path) as file:
         channels = [file[layout.format.sheet].channels()[place] for place in places(path, layout, names)]
         total = _length(path, channels)
@@ -153,7 +153,7 @@ def tdms_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterat
 
 
 class _Pieces:
-    """The values of a channel, however small or large the pieces are in which they were written."""
+    """Values of a channel in parts of any size, independent of the pieces in which they were written."""
 
     def __init__(self, channel: Any) -> None:
         self._source, self._held = iter(channel.data_chunks()), np.empty(0)
@@ -194,7 +194,7 @@ def _unit(properties: Any) -> str:
 
 
 def _clock(channels: Sequence[Any]) -> tuple[float, float] | None:
-    """First time and step of the channels, s; None if one has none, or another than the first."""
+    """First time and step of the channels, s; None if one has no clock, or they differ."""
     clocks = {
         (float(one.properties.get("wf_start_offset", 0.0)), float(one.properties.get("wf_increment", 0.0)))
         for one in channels
@@ -205,7 +205,7 @@ def _clock(channels: Sequence[Any]) -> tuple[float, float] | None:
 
 @contextmanager
 def _opened_tdms(path: Path) -> Iterator[Any]:
-    """The file, for reading. Raises InputError if it is no TDMS file, or npTDMS is not installed."""
+    """The file, opened for reading. Raises InputError if it is no TDMS file, or npTDMS is not installed."""
     with library_file(path, "TDMS", "npTDMS", "tdms"):
         from nptdms import TdmsFile
 
@@ -216,13 +216,13 @@ def _opened_tdms(path: Path) -> Iterator[Any]:
 
 
 UNPACKED = 100e6
-"""Bytes of a workbook once unpacked: some 600 000 rows of four columns, half a minute of reading."""
+"""Greatest size in bytes of an unpacked workbook: some 600 000 rows of four columns, half a minute of reading."""
 
 _PARTS, _SHEETS, _ROWS, _COLUMNS = 2000, 50, 2**20, 256
-"""Most files in a workbook and sheets that are looked at; most rows of a sheet, as in Excel, and columns read."""
+"""Greatest numbers of files in a workbook, of sheets examined, of rows of a sheet (as in Excel) and of columns read."""
 
 _EMPTY = 10_000
-"""Empty rows together: a row whose number is spoilt leaves more."""
+"""Greatest number of consecutive empty rows: a corrupted row number leaves more."""
 
 _LOOKED_AT = 500
 _BATCH = 2**16
@@ -254,7 +254,7 @@ def xlsx_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLa
 
 
 def xlsx_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[RowChunk]:
-    """Chunks of a sheet; see `read.chunks`. Its rows are numbered as Excel numbers them."""
+    """Chunks of a sheet; see `read.chunks`. Rows are numbered as in Excel."""
     at, row, count = places(path, layout, names), layout.first_row, 0
     with _workbook(path) as book:
         rows = _rows(book[layout.format.sheet], layout.first_row, max(at) + 1)
@@ -295,7 +295,7 @@ def _layout(title: str, located: Located, names: list[str], least: int, given: T
 
 @contextmanager
 def _workbook(path: Path) -> Iterator[Any]:
-    """The workbook, for reading. Raises InputError if it is no workbook, too large, or openpyxl is not installed."""
+    """The workbook, opened for reading. Raises InputError if it is no workbook, too large, or without openpyxl."""
     with library_file(path, "Excel", "openpyxl", "xlsx"):
         from openpyxl import load_workbook
 
@@ -315,8 +315,8 @@ def _workbook(path: Path) -> Iterator[Any]:
 
 
 def _rows(sheet: Any, first: int, columns: int = _COLUMNS) -> Iterator[tuple[Any, ...]]:
-    """Cells of the rows from ``first`` on. Raises ValueError for more than Excel has, or many empty ones."""
-    # What a sheet states of its size may be wrong.
+    """Cells of the rows from ``first`` on. Raises ValueError for more rows than Excel has, or many empty ones."""
+    # The size that a sheet states may be wrong.
     sheet.reset_dimensions()
     empty = 0
     for k, row in enumerate(sheet.iter_rows(min_row=first, max_col=columns, values_only=True)):

@@ -1,6 +1,6 @@
 """Text tables in chunks of bytes that end at a line end, so that every row and every fault has its row number.
 
-Write CSV that spreadsheets open as data: no text in it is taken for a formula.
+Also the output of CSV that spreadsheets open as data: no text in it is taken for a formula.
 """
 
 import csv
@@ -20,13 +20,13 @@ from pneutouch.tables.text import LONGEST_LINE, TOO_LONG, TextBytes
 _MARKS = tuple(mark.encode() for mark in COMMENT)
 
 CHUNK = 4 * 2**20
-"""Bytes parsed at once: about 100 000 rows; larger ones are not faster and take more memory."""
+"""Bytes parsed at once: about 100 000 rows; larger chunks are not faster and take more memory."""
 
 
 class _Reader(NamedTuple):
-    """A text table with its columns located; ``least`` and ``most`` are the cells of a row.
+    """A text table with its columns located; ``least`` and ``most`` are the numbers of cells of a row.
 
-    ``stamps`` are the places of columns with dates and times; ``begin`` holds the first of each, s, once it was read.
+    ``stamps`` are the indices of columns with dates and times; ``begin`` has the first time of each, s, once read.
     """
 
     path: Path
@@ -48,7 +48,7 @@ class _Reader(NamedTuple):
         return float(text.replace(",", "."))
 
     def value(self, text: str, place: int) -> float | None:
-        """The number of a cell, of a date and time the seconds since the column's first; None if it is neither."""
+        """Number in a cell, or for a date and time the seconds since the column's first; None for other texts."""
         if place not in self.stamps:
             return self.number(text)
         try:
@@ -108,7 +108,7 @@ def csv_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterato
 
 
 def _after(stream: TextBytes, lines: int) -> bytes:
-    """The first bytes after so many lines; empty if the file ends before."""
+    """The first bytes after a number of lines; empty if the file ends before."""
     data = stream.read(CHUNK)
     while data:
         at = -1
@@ -123,7 +123,7 @@ def _after(stream: TextBytes, lines: int) -> bytes:
 
 
 def _check_text(data: bytes, row: int, reader: _Reader) -> None:
-    """Check some lines, of which the first is ``row``. Raises InputError for a text that is not UTF-8."""
+    """Check lines, the first of which is ``row``. Raises InputError for text that is not UTF-8 or has zero bytes."""
     if b"\0" in data:
         at = row + data.count(b"\n", 0, data.index(b"\0"))
         raise reader.fault(at, "holds a zero byte: a binary file", "must be CSV text")
@@ -136,17 +136,17 @@ def _check_text(data: bytes, row: int, reader: _Reader) -> None:
 
 
 def _parse(data: bytes, row: int, reader: _Reader) -> tuple[Array, Array, int]:
-    """Row numbers, values and number of lines of whole lines that begin with ``row``.
+    """Row numbers, values and number of lines, from whole lines that begin with ``row``.
 
-    The default conversion of pandas is used: it is the fastest of its three here and off by a few units in the last
-    place of a double at most, far below any sensor's resolution.
+    The default float conversion of pandas is used: of its three it is the fastest here, and its error is a few units in
+    the last place of a double at most, far below any sensor's resolution.
     """
     import pandas as pd
 
     if not data.isascii() or b"\0" in data:
         _check_text(data, row, reader)
     lines, spaces = data.count(b"\n"), reader.delimiter == " "
-    # The parser ignores superfluous fields without an error, so they are counted here; a comment has other ones.
+    # The parser silently ignores superfluous fields, so they are counted here; comments have other numbers of them.
     count = data.count(reader.delimiter.encode())
     uneven = (
         spaces
@@ -167,7 +167,7 @@ def _parse(data: bytes, row: int, reader: _Reader) -> tuple[Array, Array, int]:
             sep=r"\s+" if spaces else reader.delimiter,
             decimal=reader.decimal,
             header=None,
-            # A column of remarks that rows leave out is none for the parser.
+            # A column of remarks that rows omit does not exist for the parser.
             names=list(range(max(reader.least, max(reader.places) + 1))),
             index_col=False,
             usecols=reader.places,
@@ -188,10 +188,10 @@ def _parse(data: bytes, row: int, reader: _Reader) -> tuple[Array, Array, int]:
 
 
 def _check_widths(data: bytes, row: int, reader: _Reader) -> Array:
-    """Indices of the lines that are neither empty nor comments. Raises InputError for one with too few or too many
+    """Indices of the lines that are neither empty nor comments. Raises InputError for a line with too few or too many
     fields."""
     kept = []
-    # Line feeds end rows: the other line ends of Unicode belong to the cell.
+    # Only line feeds end rows: the other line ends of Unicode belong to the cell.
     for k, line in enumerate(data.decode("utf-8").split("\n")[:-1]):
         if blank(line, reader.delimiter) or comment(line):
             continue
@@ -218,7 +218,7 @@ def _check_width(in_row: Sequence[str], row: int, reader: _Reader) -> None:
 
 
 def _raise_fault(data: bytes, row: int, reader: _Reader) -> None:
-    """Find the row and the cell that the fast parser could not read, cell by cell."""
+    """Raise InputError with row and cell that the fast parser could not read, found cell by cell."""
     lines = data.decode("utf-8").split("\n")[:-1]
     mark = "decimal point" if reader.decimal == "." else "decimal comma"
     for k, line in enumerate(lines):
@@ -235,7 +235,7 @@ def _raise_fault(data: bytes, row: int, reader: _Reader) -> None:
 
 
 def _last(rest: bytes, row: int, reader: _Reader) -> Array:
-    """Values (k, 1) of a last row without a line end. Raises InputError if it is not complete."""
+    """Values (k, 1) of a last row without a line end. Raises InputError if the row is incomplete."""
     _check_text(rest, row, reader)
     text = rest.decode("utf-8")
     in_row = cells(text, reader.delimiter)
@@ -254,9 +254,9 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "＝", "＋", "－", "＠")
 
 
 def safe_cell(value: object) -> object:
-    """A cell for a CSV file: text that a spreadsheet would run as a formula gets an apostrophe in front.
+    """Cell for a CSV file: text that a spreadsheet would run as a formula gets an apostrophe in front.
 
-    Numbers stay as they are, also those given as text: ``-0.25`` is no formula.
+    Numbers are unchanged, also those given as text: ``-0.25`` is not a formula.
     """
     if not isinstance(value, str) or not value.lstrip(" ").startswith(_FORMULA):
         return value

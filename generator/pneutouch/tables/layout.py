@@ -1,4 +1,4 @@
-"""Layout of a table in a file: its cells, its columns, chunks of its rows."""
+"""Layout of a table in a file: its format, cells and columns, and chunks of its rows."""
 
 import csv
 import re
@@ -12,10 +12,10 @@ from pneutouch.arrays import Array
 from pneutouch.errors import InputError, nearest
 
 CLOCK = "X_Value"
-"""Name of the times of a file that states begin and step of its clock in place of a column; LabVIEW's name of times."""
+"""Column name for times in a file that states start and step of a clock instead; LabVIEW's name of times."""
 
 NAMES = {",": "commas", ";": "semicolons", "\t": "tabs", " ": "spaces"}
-"""Delimiters; a space stands for any number of spaces and tabs."""
+"""Delimiters by their names; a space stands for any number of spaces and tabs."""
 
 _DIGITS = 7
 
@@ -24,13 +24,13 @@ DECIMALS = {".": "points", ",": "commas"}
 
 @dataclass(frozen=True, slots=True)
 class TableFormat:
-    """Format of a file; None is found from the file.
+    """Format of a file; None for what is to be detected from the file.
 
     Attributes:
-        delimiter: Between the cells of a text file; one of `NAMES`.
+        delimiter: Delimiter of the cells of a text file; one of `NAMES`.
         decimal: Decimal mark of a text file; one of `DECIMALS`.
-        encoding: Of a text file, as Python calls it.
-        skip_rows: Rows before the header.
+        encoding: Encoding of a text file, by its name in Python.
+        skip_rows: Number of rows before the header.
         sheet: Sheet of a workbook, or group of a TDMS file.
     """
 
@@ -46,16 +46,16 @@ class TableLayout:
     """Place and format of the table in a file.
 
     Attributes:
-        names: Of the columns, as in the header; a table without header has #1, #2 and so on.
-        units: Of the columns as a row or a property of their own states them, "" where none does.
+        names: Names of the columns, as in the header; without a header #1, #2 and so on.
+        units: Units of the columns as stated in a row or property of their own, else "".
         format: Format in which the file is read.
-        guessed: Keys of ``format`` that were found by the look of the numbers or of the bytes; what the file states,
-            such as its delimiter or a byte order mark, is not among them.
+        guessed: Keys of ``format`` that were guessed from the numbers or the bytes; not those that the file states,
+            such as its delimiter or a byte order mark.
         header_row: Row of the header, counted from 1; None without header.
         first_row: Row of the first numbers.
-        least: Fewest cells of a row; the most are those of ``names``.
+        least: Least number of cells of a row; the greatest is that of ``names``.
         clock: First time and step of a file without a column of times, in the unit of `CLOCK`.
-        stamps: Indices of the columns that hold dates with times of day; they are read as seconds from the first.
+        stamps: Indices of the columns with dates and times of day; they are read as seconds from the first.
     """
 
     names: tuple[str, ...]
@@ -70,7 +70,7 @@ class TableLayout:
 
     @property
     def all_names(self) -> tuple[str, ...]:
-        """Names of the columns, and of the times that the file gives in place of a column."""
+        """Names of the columns, preceded by that of the times if the file states a clock instead of a column."""
         return self.names if self.clock is None else (CLOCK, *self.names)
 
     def place(self, name: str) -> int | None:
@@ -78,7 +78,7 @@ class TableLayout:
         if name in self.names:
             return self.names.index(name)
         number = name[1:] if name.startswith("#") else ""
-        # The length bounds what is read as a number.
+        # The limit on the length bounds the number.
         known = number.isascii() and number.isdigit() and len(number) < _DIGITS
         return int(number) - 1 if known and 1 <= int(number) <= len(self.names) else None
 
@@ -89,23 +89,23 @@ class TableLayout:
 
 
 STAMP = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d:\d\d([.,]\d+)?(Z|[+-]\d\d:?\d\d)?")
-"""A date with a time of day, as ISO 8601 writes it."""
+"""A date with a time of day in the form of ISO 8601."""
 
 NUMBER = {
     ".": re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?"),
     ",": re.compile(r"[+-]?(\d+(,\d*)?|,\d+)([eE][+-]?\d+)?"),
 }
-"""Numbers by their decimal mark; none has separators of thousands."""
+"""Patterns of numbers by their decimal mark, without separators of thousands."""
 
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
 
 _TEXT = 1.5
-"""Number of cells of numbers that outweigh a cell of text: our choice. A table has a column of remarks or dates at
-most."""
+"""Number of numeric cells that outweigh a cell of text: our choice. A table has at most one column of remarks or
+dates."""
 
 
 def cells(line: str, delimiter: str) -> list[str]:
-    """Cells of a line without the spaces about them; a delimiter within quotes is part of its cell."""
+    """Cells of a line without surrounding spaces; a delimiter within quotes is part of its cell."""
     if delimiter == " ":
         return line.split()
     if '"' not in line:
@@ -117,19 +117,19 @@ def cells(line: str, delimiter: str) -> list[str]:
 
 
 def blank(line: str, delimiter: str) -> bool:
-    """True if a line counts as empty: one of spaces and tabs alone, but not of delimiters."""
+    """True if a line counts as empty: only spaces and tabs, but no delimiters."""
     return not line.strip(" \r\t" if delimiter != "\t" else " \r")
 
 
 def score(row: Sequence[str], decimal: str) -> float:
-    """Score of a row as one of numbers: above 0 if it looks like one."""
+    """Score of a row as a row of numbers: above 0 if it looks like one."""
     filled = [cell for cell in row if cell]
     numbers = sum((NUMBER[decimal].fullmatch(cell) or STAMP.fullmatch(cell)) is not None for cell in filled)
     return numbers - _TEXT * (len(filled) - numbers)
 
 
 def undecided_comma(rows: Sequence[Sequence[str]]) -> str | None:
-    """A number whose comma may be a decimal comma or one of thousands, where no number of the rows decides."""
+    """A number whose comma may be decimal or one of thousands, if no number of the rows decides which; else None."""
     commas = [cell for row in rows for cell in row if "," in cell and NUMBER[","].fullmatch(cell)]
     return commas[0] if commas and all(_THOUSANDS.fullmatch(cell) for cell in commas) else None
 
@@ -138,13 +138,13 @@ class RowChunk(NamedTuple):
     """Some rows of a file.
 
     Attributes:
-        rows: Their numbers in the file, (n,), counted from 1.
+        rows: Numbers of the rows in the file, (n,), counted from 1.
         values: The requested columns, (k, n), in the requested order; all finite.
         share: Share of the file that has been read, 0 to 1.
-        total: Number of rows of numbers in the file; of a text file as estimated from its bytes.
-        last: A complete last row without a line end, whose last number may be cut: its values (k, 1), not among
-            ``values``; else None.
-        last_row: Its number in the file.
+        total: Number of rows of numbers in the file; for a text file estimated from its bytes.
+        last: Values (k, 1) of a complete last row without a line end, whose last number may be cut; not part of
+            ``values``; None without such a row.
+        last_row: Number of that row in the file.
     """
 
     rows: Array
@@ -156,9 +156,9 @@ class RowChunk(NamedTuple):
 
 
 def places(path: Path, layout: TableLayout, names: Sequence[str]) -> list[int]:
-    """Indices of the columns in a table; #2 is the second one whatever its name.
+    """Indices of the columns in a table; #2 is the second one, whatever its name.
 
-    Raises InputError for a column that is missing or there twice."""
+    Raises InputError for a column that is missing or occurs twice."""
     header, indices = layout.names, []
     for name in names:
         if header.count(name) > 1:
@@ -176,9 +176,9 @@ def places(path: Path, layout: TableLayout, names: Sequence[str]) -> list[int]:
 
 @contextmanager
 def library_file(path: Path, kind: str, library: str, extra: str) -> Iterator[None]:
-    """Import and use the library of ``extra`` that reads files of a ``kind``.
+    """Context for the import and use of the library of ``extra`` that reads files of a ``kind``.
 
-    Raises InputError if it is not installed, and in place of whatever its parsers raise.
+    Raises InputError if the library is not installed, and in place of all errors of its parsers.
     """
     try:
         yield

@@ -1,6 +1,6 @@
 """Place of the table in the rows of a file: its header, a row of units, and the first numbers.
 
-Headers in which text files of some makers describe themselves: LabVIEW measurement files and MTS's exports.
+Also the self-describing headers of some makers' text files: LabVIEW measurement files and MTS exports.
 
 Sources: NI, Specification for the LabVIEW Measurement File (.lvm), ni.com/tutorial/4139; MTS Series 793 Application
 manual, MultiPurpose TestWare, page 136, How to parse the MPT specimen data file.
@@ -19,14 +19,14 @@ COMMENT = ("#", "%", "!")
 """Marks that begin a comment."""
 _NO_UNIT = frozenset({"", "-", "%", "°C", "°F", "°", "V", "mV", "V/V", "1", "1/min", "Hz", "mm/min", "mm/s", "MPa/s"})
 _SHORT = 8
-"""Characters of the longest unit."""
+"""Number of characters of the longest unit."""
 
 _REMARK = "comment"
-"""Last column of a LabVIEW file, which holds text in the first row at most."""
+"""Name of the last column of a LabVIEW file, which has text in the first row at most."""
 
 
 class Located(NamedTuple):
-    """Indices of rows, counted from 0: of the header (None without) and of the first numbers; the names and units."""
+    """Indices of the header (None without) and of the first row of numbers, from 0; names and units of the columns."""
 
     header: int | None
     first: int
@@ -35,7 +35,7 @@ class Located(NamedTuple):
 
 
 def width_of(rows: Sequence[Sequence[str]], decimal: str) -> tuple[int, float]:
-    """Number of cells of the rows of numbers, and their score in all; 0 and 0.0 where none is one of numbers."""
+    """Number of cells of the rows of numbers, and their total score; 0 and 0.0 if no row is one of numbers."""
     scores: dict[int, float] = {}
     for row in rows:
         value = score(row, decimal)
@@ -55,7 +55,7 @@ def header_of(rows: Sequence[Sequence[str]], known: Sequence[str]) -> int | None
 
 
 def locate(rows: Sequence[Sequence[str]], decimal: str, header: int | None) -> Located | None:
-    """The table in the first rows of a file; ``header`` where it is known. None if there are no numbers."""
+    """Location of the table in the first rows of a file; ``header`` is its index if known. None without numbers."""
     width = width_of(rows, decimal)[0]
     if header is None:
         first = _first(rows, decimal, width)
@@ -74,7 +74,7 @@ def locate(rows: Sequence[Sequence[str]], decimal: str, header: int | None) -> L
 
 
 def fewest(names: Sequence[str], rows: Sequence[Sequence[str]], decimal: str) -> tuple[list[str], int]:
-    """The names, with one more for cells that are empty behind the last, and the fewest cells of a row.
+    """Names, with one more for empty cells after the last, and the least number of cells of a row.
 
     A last column without a name, or of LabVIEW's remarks, may be missing from the rows."""
     names, width = list(names), width_of(rows, decimal)[0]
@@ -92,7 +92,7 @@ def comment(line: str) -> bool:
 
 
 def _first(rows: Sequence[Sequence[str]], decimal: str, width: int) -> int | None:
-    """The first row of numbers that another follows, or that is the last."""
+    """Index of the first row of numbers that is followed by another or is the last row; None without any."""
     alike = [k for k, row in enumerate(rows) if len(row) == width and score(row, decimal) > 0]
     for k in alike:
         after = _next(rows, k + 1)
@@ -117,7 +117,7 @@ def _above(rows: Sequence[Sequence[str]], first: int, width: int) -> tuple[int |
 
 
 def _fits(row: Sequence[str], width: int) -> bool:
-    """True if a row may be the header of rows of so many cells: one may be missing, or be left over and empty."""
+    """True if a row can be the header of rows with ``width`` cells: one may be missing, or be extra and empty."""
     return len(row) in (width, width - 1) or (len(row) == width + 1 and row[-1].lower() in ("", _REMARK))
 
 
@@ -125,7 +125,7 @@ def _are_units(row: Sequence[str]) -> bool:
     filled = [cell for cell in row if cell]
     known = [cell for cell in filled if unit_of(cell)]
     others = [cell.strip("()[]") for cell in filled if not unit_of(cell)]
-    # Units of other quantities, which are not known here, may stand among as many of ours.
+    # Units of quantities that are unknown here may occur among as many known ones.
     alike = len(known) > 1 and len(known) >= len(others) and all(len(cell) <= _SHORT for cell in others)
     return alike or (bool(known) and all(cell in _NO_UNIT for cell in others))
 
@@ -137,7 +137,7 @@ _MTS_FIELDS = 6
 
 
 def stated_format(lines: Sequence[str], given: TableFormat) -> TableFormat:
-    """``given`` with the delimiter and the decimal mark that an MTS file gives in its first line."""
+    """Format ``given`` with the delimiter and the decimal mark that an MTS file states in its first line."""
     fields = lines[0].split("|") if lines and lines[0].startswith(_MTS) else []
     if len(fields) < _MTS_FIELDS:
         return given
@@ -146,12 +146,12 @@ def stated_format(lines: Sequence[str], given: TableFormat) -> TableFormat:
 
 
 def is_lvm(lines: Sequence[str]) -> bool:
-    """True if these are the first lines of a LabVIEW measurement file."""
+    """True if the lines are the first ones of a LabVIEW measurement file."""
     return bool(lines) and lines[0].startswith(_LVM)
 
 
 def lvm_layout(path: Path, lines: Sequence[str], given: TableFormat) -> TableLayout:
-    """Layout of a LabVIEW measurement file. Raises InputError if its header is not whole, or has several clocks."""
+    """Layout of a LabVIEW measurement file. Raises InputError if its header is incomplete, or has several clocks."""
     ends = [k for k, line in enumerate(lines) if line.startswith(_END)]
     tags = _tags(lines[: ends[0]] if ends else lines)
     delimiter = given.delimiter or _delimiter(tags.get("Separator", ""))
@@ -176,19 +176,19 @@ def lvm_layout(path: Path, lines: Sequence[str], given: TableFormat) -> TableLay
 
 
 def _tags(lines: Sequence[str]) -> dict[str, str]:
-    """Tags with the text that follows them, the delimiter first."""
+    """Tags with the text that follows them, which begins with the delimiter."""
     heads = ("Separator", "Decimal_Separator", "X_Columns")
     return {head: line[len(head) :] for line in lines for head in heads if line.startswith(head)}
 
 
 def _delimiter(text: str) -> str:
-    """The delimiter follows its tag, and its name, as a rule, follows it."""
+    """Delimiter from the text after its tag, which begins with the delimiter and mostly ends with its name."""
     name = text[1:].strip(" ,;\t")
     return _LVM_DELIMITERS.get(name) or (text[0] if text and text[0] in NAMES else "\t")
 
 
 def _least(columns: Sequence[str], numbers: Sequence[Sequence[str]], decimal: str) -> int:
-    """Fewest cells of a row: without the last column, that of remarks, if rows leave it out."""
+    """Least number of cells of a row: without the last column, that of remarks, if rows omit it."""
     short = any(len(row) == len(columns) - 1 and score(row, decimal) > 0 for row in numbers)
     return len(columns) - 1 if short and len(columns) > 1 else len(columns)
 
@@ -196,7 +196,7 @@ def _least(columns: Sequence[str], numbers: Sequence[Sequence[str]], decimal: st
 def _with_clock(
     path: Path, layout: TableLayout, segment: dict[str, list[str]], numbers: Sequence[Sequence[str]]
 ) -> TableLayout:
-    """The layout with the clock of the first channel, all of which must have the same."""
+    """Layout with the clock of the first channel. Raises InputError if the channels have different clocks."""
     clock = []
     for tag in ("X0", "Delta_X"):
         values = {text for text in segment.get(tag, []) if text}
@@ -207,7 +207,7 @@ def _with_clock(
             problem = f"no column of times (X_Columns No), and {tag} is not one number for all channels"
             raise InputError(problem, file=path, remedy="write the file again with one column of times") from None
     first = numbers[0] if numbers else []
-    # The cell of the times is there and empty, or it is left out.
+    # The cell of the times is either empty or missing.
     if first and first[0]:
         kept = replace(layout, names=layout.names[1:], units=layout.units[1:], least=max(layout.least - 1, 1))
     else:

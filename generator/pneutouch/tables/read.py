@@ -25,11 +25,11 @@ from pneutouch.tables.text import text_layout
 _ANY = TableFormat()
 
 MOST_NUMBERS = 20_000_000
-"""Largest number of cells of a table that is in memory as a whole: 160 MB."""
+"""Greatest number of cells of a table that is held in memory as a whole: 160 MB."""
 
 
 class _Kind(NamedTuple):
-    """A kind of file: how its layout is found, and how its rows are read."""
+    """A kind of file, with the functions that find its layout and read its rows."""
 
     layout: Callable[[Path, TableFormat, Sequence[str]], TableLayout]
     chunks: Callable[[Path, Sequence[str], TableLayout], Iterator[RowChunk]]
@@ -42,24 +42,24 @@ _KINDS = {
     ".xlsm": _Kind(xlsx_layout, xlsx_chunks),
     ".tdms": _Kind(tdms_layout, tdms_chunks),
 }
-"""Kinds of file by their suffix; a file of any other suffix is text."""
+"""Kinds of file by their suffix; a file with any other suffix is text."""
 
 
 def layout_of(path: Path, given: TableFormat = _ANY, known: Sequence[str] = ()) -> TableLayout:
-    """Place and format of the table in a file; parts that ``given`` leaves open are found from the file.
+    """Place and format of the table in a file; parts that ``given`` leaves open are detected from the file.
 
-    ``known`` are columns that, where a row names them all, make it the header. Raises InputError for a file that cannot
-    be read, and for what its content leaves open."""
+    A row that names all of the ``known`` columns is the header. Raises InputError for a file that cannot be read, and
+    for parts of the format that its content does not decide."""
     with _readable(path):
         return _kind(path).layout(path, given, known)
 
 
 def chunks(path: Path, names: Sequence[str], layout: TableLayout | None = None) -> Iterator[RowChunk]:
-    """The columns ``names`` of a file in chunks, at least one row in all (it may be `RowChunk.last`).
+    """Columns ``names`` of a file in chunks, with at least one row in total (it may be `RowChunk.last`).
 
-    ``layout`` left out is found, with ``names`` as the known columns. The suffix states the kind: .parquet, .xlsx,
-    .tdms, else text. Raises InputError, naming file, column and row, for a file that cannot be read, is cut off or has
-    no rows, for a missing or doubled column, and for a cell that is not a finite number.
+    Without ``layout`` it is detected, with ``names`` as the known columns. The suffix determines the kind: .parquet,
+    .xlsx, .tdms, else text. Raises InputError, naming file, column and row, for a file that cannot be read, is cut off
+    or has no rows, for a missing or doubled column, and for a cell that is not a finite number.
     """
     layout = layout or layout_of(path, known=names)
     rows = 0
@@ -76,8 +76,8 @@ def chunks(path: Path, names: Sequence[str], layout: TableLayout | None = None) 
 def whole(path: Path, names: Sequence[str], layout: TableLayout | None = None) -> tuple[Array, Array]:
     """Row numbers (n,) and columns (k, n) of a small file. Raises InputError as `chunks`.
 
-    A complete last row without a line end is kept: a table typed by hand often ends so, and its last row is often the
-    greatest."""
+    A complete last row without a line end is included: a table typed by hand often ends so, and its last row often has
+    the greatest values."""
     rows, values, count = [], [], 0
     for part in chunks(path, names, layout):
         count += part.values.size
@@ -98,11 +98,11 @@ def _kind(path: Path) -> _Kind:
 
 
 def _clocked(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[RowChunk]:
-    """Chunks with the times of the file's clock in the place of `CLOCK`."""
+    """Chunks with the times of the file's clock in place of the column `CLOCK`."""
     assert layout.clock is not None
     place, (first, step), done = list(names).index(CLOCK), layout.clock, 0
     for part in _kind(path).chunks(path, [name for name in names if name != CLOCK], layout):
-        # A file may state any step: times that are no numbers, or too great, are refused where they are scaled.
+        # A file may state any step: invalid or too great times are refused where they are scaled.
         with np.errstate(over="ignore", invalid="ignore"):
             times = first + step * np.arange(done, done + part.rows.size)
         done += part.rows.size
@@ -114,7 +114,7 @@ def _clocked(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[
 
 @contextmanager
 def _readable(path: Path) -> Iterator[None]:
-    """Errors of the system in words. Raises InputError for a folder, a device, an empty file."""
+    """Context that turns errors of the system into InputError; also raised for a folder, a device, an empty file."""
     try:
         if path.is_dir():
             raise InputError("this is a folder", file=path, remedy="give a file of numbers")

@@ -1,6 +1,6 @@
-"""Text files of any encoding: which it is, their first lines, and their bytes in UTF-8.
+"""Text files of any encoding: detection of the encoding, their first lines, and their bytes in UTF-8.
 
-Format of a text file of numbers: encoding, delimiter, decimal mark and the rows before the header.
+Also the format of a text file of numbers: encoding, delimiter, decimal mark and the rows before the header.
 """
 
 import codecs
@@ -25,26 +25,26 @@ from pneutouch.tables.locate import (
 )
 
 HEAD = 2**18
-"""Bytes in which a table must begin: a few thousand rows of what instruments write before it."""
+"""Number of bytes within which a table must begin: a few thousand rows of what instruments write before it."""
 
 LONGEST_LINE = 2**16
-"""Bytes of the longest line: some thousand cells."""
+"""Greatest length of a line in bytes: some thousand cells."""
 
 TOO_LONG = f"over {LONGEST_LINE} bytes without a line end; not a CSV file of numbers"
 
 _MARKS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
 _MANY = 0.3
-"""Share of zero bytes, all at even or all at odd places, from which bytes are UTF-16 without a mark: half in ASCII."""
+"""Share of zero bytes, all at even or all at odd places, that shows UTF-16 without a mark: half of them in ASCII."""
 
 _CONTROL = frozenset(range(32)) - {9, 10, 11, 12, 13, 26, 27, 28, 29, 30, 31}
 _UNDEFINED = frozenset({0x81, 0x8D, 0x8F, 0x90, 0x9D})
-"""Bytes without a meaning in CP1252."""
+"""Bytes that are undefined in CP1252."""
 
 
 class TextBytes(io.RawIOBase):
-    """The bytes of a text file in UTF-8, whatever its encoding; a byte order mark is left out.
+    """Bytes of a text file of any encoding, converted to UTF-8; a byte order mark is omitted.
 
-    Raises InputError, naming the row, where bytes are not of the encoding."""
+    Raises InputError, naming the row, for bytes that are not of the encoding."""
 
     def __init__(self, path: Path, stream: BinaryIO, encoding: str) -> None:
         self._path, self._stream, self._encoding = path, stream, encoding
@@ -59,7 +59,7 @@ class TextBytes(io.RawIOBase):
         """Bytes in UTF-8 returned so far."""
 
     def read(self, size: int = -1) -> bytes:
-        """The next bytes, about ``size`` of the file's; empty at its end."""
+        """The next bytes, from about ``size`` bytes of the file; empty at its end."""
         while data := self._stream.read(size):
             self.consumed += len(data)
             text = data if self._decoder is None else self._decoded(data, False)
@@ -83,9 +83,9 @@ class TextBytes(io.RawIOBase):
 
 
 def encoding_of(path: Path, start: bytes) -> tuple[str, bool]:
-    """Encoding of a file by its first bytes, and whether that is by their look and not by a mark or by being UTF-8.
+    """Encoding of a file from its first bytes, and True if it was guessed, that is neither marked nor UTF-8.
 
-    Raises InputError for zero bytes and control characters, which no text has."""
+    Raises InputError for zero bytes and control characters, which do not occur in text."""
     for mark, encoding in _MARKS:
         if start.startswith(mark):
             return encoding, False
@@ -112,9 +112,9 @@ def encoding_of(path: Path, start: bytes) -> tuple[str, bool]:
 
 
 def head_lines(path: Path, encoding: str | None) -> tuple[list[str], str, bool]:
-    """The first lines, without line ends; the encoding, and whether that was guessed. Raises InputError.
+    """First lines, without line ends; the encoding, and True if that was guessed. Raises InputError.
 
-    The last line is left out where it is not whole."""
+    The last line is omitted if it is not complete."""
     with path.open("rb") as stream:
         guessed = False
         if encoding is None:
@@ -135,19 +135,19 @@ def head_lines(path: Path, encoding: str | None) -> tuple[list[str], str, bool]:
 
 
 LOOKED_AT = 600
-"""Rows that are looked at: more than instruments write before their table."""
+"""Number of rows that are examined: more than instruments write before their table."""
 
 _STATE = "state it in the campaign file, or give `delimiter`, `decimal` or `skip_rows`"
 _FORMAT = '[format]\ndelimiter = ";"  # or "," or "\\t" or " "\ndecimal = ","  # or "."\nskip_rows = 7'
 
 _ORDER = ("\t", ";", ",", " ")
-"""Delimiters in the order in which they are preferred where the rows look the same by several."""
+"""Delimiters in order of preference, for rows that look the same with several."""
 
 
 def text_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLayout:
     """Layout of a text file; its header is the first row that names the ``known`` columns, or stands above the numbers.
 
-    Raises InputError if no table is found, and where a comma may be a decimal comma or one of thousands."""
+    Raises InputError if no table is found, and if a comma may be either decimal or a separator of thousands."""
     lines, encoding, guessed = head_lines(path, given.encoding)
     if not any(line.strip() for line in lines):
         raise InputError("no header row", file=path, remedy=f"must name the columns, as {','.join(known)}")
@@ -197,14 +197,14 @@ def _of_rows(path: Path, lines: Sequence[str], given: TableFormat, known: Sequen
 
 
 def _cells(line: str, delimiter: str) -> list[str]:
-    """Cells of a line; those of a comment without its mark, as numpy writes a header."""
+    """Cells of a line; for a comment without its mark, because numpy writes a header in that way."""
     if blank(line, delimiter):
         return []
     return cells(line.lstrip().lstrip("#").strip() if comment(line) else line, delimiter)
 
 
 def _known_header(rows: Sequence[str], given: TableFormat, known: Sequence[str]) -> tuple[str | None, int | None]:
-    """The delimiter by which a row names all known columns, and the row's index, None if no row does."""
+    """Delimiter with which a row names all known columns, and the index of the row; None if no row does."""
     for delimiter in (given.delimiter,) if given.delimiter else _ORDER:
         split = [_cells(line, delimiter) if all(name in line for name in known) else [] for line in rows]
         header = header_of(split, known)
@@ -214,7 +214,7 @@ def _known_header(rows: Sequence[str], given: TableFormat, known: Sequence[str])
 
 
 def _written(rows: Sequence[str], given: TableFormat) -> tuple[str | None, str]:
-    """Delimiter and decimal mark by which the rows have most numbers; None and a point where they have none."""
+    """Delimiter and decimal mark with which the rows have most numbers; by default those given, and a point."""
     best, chosen = 0.0, (given.delimiter, given.decimal or ".")
     for delimiter in (given.delimiter,) if given.delimiter else _ORDER:
         table = [_cells(line, delimiter) for line in rows]
@@ -226,13 +226,13 @@ def _written(rows: Sequence[str], given: TableFormat) -> tuple[str | None, str]:
 
 
 def _of_header(rows: Sequence[str], header: int | None) -> str:
-    """The delimiter that gives a header most cells, where no number shows which it is."""
+    """Delimiter that gives a header most cells, for tables without numbers to decide it."""
     text = "" if header is None else rows[header]
     return max((",", ";", "\t"), key=lambda delimiter: len(cells(text, delimiter)))
 
 
 def _check_header(path: Path, table: Sequence[Sequence[str]], located: Located, begin: int, delimiter: str) -> None:
-    """Check that a header stands above the numbers. Raises InputError if the row above them has other cells."""
+    """Check that a header stands above the numbers. Raises InputError if the row above has another number of cells."""
     above = [k for k in range(located.first) if table[k]]
     if located.header is not None or not above:
         return

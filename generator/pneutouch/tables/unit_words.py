@@ -1,6 +1,6 @@
 """Units of measured columns, and the words that instruments write for them.
 
-In a file of its own without numpy: completing a command line reads it.
+This file does not import numpy, because the completion of command lines reads it.
 """
 
 import re
@@ -27,10 +27,10 @@ UNITS: dict[str, dict[str, float]] = {
     },
     "volume": {"mL": 1e3, "uL": 1.0, "mm3": 1.0, "L": 1e6},
 }
-"""Units a column may have, with their factor to the inner units: s, mm, N, MPa, mm3."""
+"""Units of columns by channel, with their factor to the internal units: s, mm, N, MPa, mm3."""
 
 ABSOLUTE = "_abs"
-"""Ending of the units of absolute pressures, of which the ambient pressure is subtracted."""
+"""Ending of the units of absolute pressures, from which the ambient pressure is subtracted."""
 
 _WORDS: dict[str, dict[str, str]] = {
     "time": {
@@ -91,13 +91,13 @@ def _table() -> dict[str, tuple[str, str]]:
 
 _TABLE = _table()
 _LONG = 4
-"""Letters from which a word may be in any case, as may `_SMALL`: of others the case distinguishes milli from mega."""
+"""Least length of a word whose case is ignored, as it is for `_SMALL`; in others it tells milli from mega."""
 
 BRACKETS = re.compile(r"[(\[{<]\s*([^(\[{<]*?(?:\((?:g|a|abs)\))?)\s*[)\]}>]")
 
 
 def unit_of(word: str) -> tuple[str, str] | None:
-    """Channel and unit that a word stands for, as of "kPa" or "[µm]"; None if it is no unit of a channel."""
+    """Channel and unit that a word stands for, such as "kPa" or "[µm]"; None if it is no unit of a channel."""
     word = word.strip()
     bracketed = BRACKETS.fullmatch(word)
     word = bracketed[1] if bracketed else word

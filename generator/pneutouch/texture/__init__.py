@@ -1,1 +1,1 @@
-"""Scans over textured specimens and the wavelet spectra of their pressure."""
+"""Scans over textured specimens, and wavelet spectra of the measured pressure."""

@@ -1,12 +1,12 @@
-"""Is there a pattern at a target frequency: amplitude over the noise floor, and how often noise alone shows it.
+"""Detection of a pattern at a target frequency: amplitude over the noise floor, and how often noise alone reaches it.
 
-The noise a signal would be without its lines: a smooth spectrum, and records drawn from it.
+The noise of a signal without its lines: a smooth spectrum, and records drawn from it.
 
-Shuffled samples make white noise, under which every peak of a red spectrum passes for a find; a record with its phases
-randomised (Theiler et al. 1992, doi 10.1016/0167-2789(92)90102-S) keeps its lines, so that no line ever stands out; and
-shuffled blocks whiten whatever is slower than a block, the tested pattern among it, or keep the pattern. So surrogates
-are typical realisations (Schreiber & Schmitz 2000, doi 10.1016/S0167-2789(00)00043-9, sec. 4): Gaussian noise, phases
-and magnitudes random, with a smooth spectrum fitted between the lines.
+Shuffled samples give white noise, against which every peak of a red spectrum seems significant. A record with
+randomised phases (Theiler et al. 1992, doi 10.1016/0167-2789(92)90102-S) keeps its lines, so that no line ever stands
+out. Shuffled blocks whiten everything slower than a block, including the tested pattern, or keep the pattern. So
+surrogates are typical realisations (Schreiber & Schmitz 2000, doi 10.1016/S0167-2789(00)00043-9, sec. 4): Gaussian
+noise, phases and magnitudes random, with a smooth spectrum fitted between the lines.
 """
 
 import math
@@ -21,16 +21,16 @@ from pneutouch.texture.scalogram import HIGHEST_SHARE, MORSE, VOICES, Morse, Rid
 from pneutouch.texture.signal import OVERSAMPLING, Signal, decimated
 
 DEGREE = 3
-"""Degree of the polynomial of ln power over ln frequency: 0 is white, 1 a power law, 3 a low-passed noise and a
+"""Degree of the polynomial of ln power over ln frequency: 0 is white noise, 1 a power law, 3 low-passed noise plus a
 floor."""
 
 _CLIP = 3.0
-"""Most that a bin counts above its fit, in units of it: undeclared lines bend it little, 2 % of noise bins are cut."""
+"""Limit of a bin's relative excess over the fit: undeclared lines hardly bend it, and 2 % of noise bins are clipped."""
 
 
 @dataclass(frozen=True, slots=True)
 class BackgroundFitter:
-    """Fits backgrounds to records of one length: ``taper`` (n,), the ``bins`` used, their ln f scaled to [-1, 1]."""
+    """Fits backgrounds to records of one length: ``taper`` (n,), ``bins`` in use, range of ln f scaled to [-1, 1]."""
 
     rate: float
     taper: Array
@@ -39,7 +39,7 @@ class BackgroundFitter:
     high: float
 
     def design(self, frequency: Array) -> Array:
-        """Powers of ln f, (m, DEGREE + 1), held at the ends of the fitted range, where the polynomial does not hold."""
+        """Powers of scaled ln f, (m, DEGREE + 1), constant beyond the fitted range, where the fit is not valid."""
         centre, half = np.log(self.low * self.high) / 2, np.log(self.high / self.low) / 2
         place = (np.log(np.clip(frequency, self.low, self.high)) - centre) / half
         return np.stack([place**k for k in range(DEGREE + 1)], axis=-1)
@@ -47,15 +47,15 @@ class BackgroundFitter:
     def fit(self, values: Array) -> Array:
         """Coefficients (..., DEGREE + 1) of ln of the two-sided power density, MPa^2/Hz, of records (..., n).
 
-        Whittle's likelihood by scoring: a periodogram is exponentially distributed about the density, which makes it a
-        generalised linear model with logarithmic link whose weights are all one.
+        Whittle's likelihood by scoring: a periodogram is exponentially distributed about the density, so this is a
+        generalised linear model with logarithmic link and unit weights.
         """
         count = len(self.taper)
         power = np.abs(np.fft.rfft(detrended(values) * self.taper)) ** 2 / (self.rate * (self.taper @ self.taper))
         frequency = np.asarray(np.fft.rfftfreq(count, 1 / self.rate)[self.bins], float)
         observed, design = np.maximum(power[..., self.bins], np.finfo(float).tiny), self.design(frequency)
         solver = np.linalg.pinv(design).T
-        # ln of an exponential variable lies 0.577 below ln of its mean, Euler's constant.
+        # The mean of ln of an exponential variable is 0.577, Euler's constant, below ln of its mean.
         coefficients = (np.log(observed) + np.euler_gamma) @ solver
         for _ in range(12):
             excess = observed * np.exp(-coefficients @ design.T) - 1
@@ -75,7 +75,7 @@ class BackgroundFitter:
         return np.asarray(np.sqrt(shaped @ gain * voices))
 
     def draw(self, coefficients: Array, number: int, rng: np.random.Generator) -> Array:
-        """``number`` records (number, n): pieces of periodic noise twice as long, so that their ends do not meet."""
+        """Draw ``number`` records (number, n): halves of periodic noise, so that their ends do not meet."""
         import scipy.fft
 
         count = len(self.taper)
@@ -90,10 +90,10 @@ class BackgroundFitter:
 def fitter(
     count: int, rate: float, low: float, high: float, lines: Array, overtones: Array, band: float
 ) -> BackgroundFitter:
-    """A fitter for records of ``count`` samples at ``rate`` Hz over ``low`` to ``high`` Hz, without ``lines`` (m,) Hz.
+    """Fitter for records of ``count`` samples at ``rate`` Hz over ``low`` to ``high`` Hz, without ``lines`` (m,) Hz.
 
-    Left out around each line are the share ``band`` and the two bins that the Hann taper spreads a tone over; clear
-    ``overtones`` (k,) Hz those two bins alone.
+    Around each line, the share ``band`` and the two bins over which the Hann taper spreads a tone are left out; around
+    ``overtones`` (k,) Hz only those two bins.
     """
     frequency = np.fft.rfftfreq(count, 1 / rate)
     spread = 2 * rate / count
@@ -104,52 +104,52 @@ def fitter(
 
 
 def detrended(values: Array) -> Array:
-    """Records (..., n) less their straight lines."""
+    """Records (..., n) without their linear trends."""
     place = np.linspace(-1.0, 1.0, values.shape[-1])
     centred = values - values.mean(axis=-1, keepdims=True)
     return np.asarray(centred - (centred @ place / (place @ place))[..., None] * place)
 
 
 BAND = 0.15
-"""A pattern may lie this share off the target frequency: a pitch and a speed as the paper gives them are 11 % off."""
+"""Share by which a pattern may be off the target frequency: by pitch and speed in the paper it is 11 % off."""
 
 CYCLES = 3.0
-"""Cycles of the target frequency that must lie outside the cone of influence."""
+"""Number of cycles of the target frequency that must lie outside the cone of influence."""
 
 SURROGATES = 999
 LEVEL = 0.05
 
 _OVERTONES = (2.0, 3.0)
-"""Overtones of a target frequency, at which a pattern with edges has lines too: bins that its taper spreads them over
-are no noise.
+"""Overtones of a target frequency, at which a pattern with edges has lines, too: bins over which the taper spreads them
+are not noise.
 
-No more than these: patterns whose frequencies are multiples of one another would leave no noise between them.
+Only these two: patterns whose frequencies are multiples of one another would leave no noise between them.
 """
 
 _APART = 0.25
-"""ln f from a line within which the wavelet spectrum is not taken for noise: a tone leaks 15 % of itself that far."""
+"""Distance in ln f from a line within which the wavelet spectrum is not used as noise: a tone leaks 15 % that far."""
 
 _BELOW, _ABOVE = 4.0, 8.0
-"""Noise is read from a quarter of a target frequency, as far as the record allows, to eight times it."""
+"""Range of noise over the target frequency: from a quarter of it, as far as the record allows, to eight times it."""
 
 _LEAST_QUIET = 3
-"""Voices without lines that a median needs."""
+"""Least number of voices without lines for a median."""
 
 
 @dataclass(frozen=True, slots=True)
 class Detection:
-    """One target frequency; frequencies in Hz, amplitudes in MPa.
+    """Result for one target frequency; frequencies in Hz, amplitudes in MPa.
 
     Attributes:
         target: The target frequency.
-        frequency: Of the highest point of the time-averaged amplitude within the band.
-        amplitude: There.
-        floor: Noise at the target frequency: what the time-averaged amplitude would be without a line.
-        threshold: Amplitude over floor that noise alone passes in the share ``level`` of records.
-        p_value: Share of noise records with the same amplitude over floor or more (Phipson & Smyth 2010,
-            doi 10.2202/1544-6115.1585: counted with the record itself, so never 0). Of this frequency alone.
+        frequency: Frequency of the highest point of the time-averaged amplitude within the band.
+        amplitude: Time-averaged amplitude at that point.
+        floor: Noise at the target frequency: the time-averaged amplitude expected without a line.
+        threshold: Ratio of amplitude to floor that noise alone exceeds in the share ``level`` of records.
+        p_value: Share of noise records with the same ratio or more (Phipson & Smyth 2010, doi 10.2202/1544-6115.1585:
+            the record itself is counted, so never 0), for this frequency only.
         surrogates: Number of noise records.
-        level: Of significance.
+        level: Level of significance.
         is_ridge: True if the highest point is a maximum inside the band, not the slope of another line.
     """
 
@@ -165,18 +165,18 @@ class Detection:
 
     @property
     def ratio(self) -> float:
-        """Amplitude over floor."""
+        """Ratio of amplitude to floor."""
         return self.amplitude / self.floor
 
     @property
     def detected(self) -> bool:
-        """True if noise alone would show as much in no more than ``level`` of records."""
+        """True if noise alone reaches the ratio in no more than ``level`` of records."""
         return self.p_value <= self.level
 
 
 @dataclass(frozen=True, slots=True)
 class _Reader:
-    """Reads amplitude and floor at one target frequency from records, the measured one and noise alike."""
+    """Measures amplitude and floor at one target frequency, in the same way for the measured record and for noise."""
 
     fitter: BackgroundFitter
     target: float
@@ -188,7 +188,7 @@ class _Reader:
         amplitude = time_average(values, self.fitter.rate, self.voices)
         peak = ridge(amplitude, self.voices, self.target / (1 + BAND), self.target * (1 + BAND))
         coefficients = self.fitter.fit(values)
-        # The median is taken of the spectrum over its expected course: even white noise reads as the square root of f.
+        # The median is of the spectrum over its expected course: even white noise reads as the square root of f.
         expected = self.fitter.spectrum(coefficients, np.append(self.voices, self.target), MORSE)
         level = np.median((amplitude / expected[..., :-1])[..., self.quiet], axis=-1)
         return peak, level * expected[..., -1]
@@ -202,14 +202,14 @@ def detect(
     seed: int = 0,
     where: str = "signal",
 ) -> tuple[Detection, ...]:
-    """Detection of each target frequency in Hz, in the order given.
+    """Detection of each target frequency in Hz, in the given order.
 
-    The statistic is the highest time-averaged |W| within ``BAND`` of the target frequency, outside the cone of
-    influence,
-    over the floor: the median of the time-averaged spectrum over its expected course (``background``) away from all
-    target frequencies. Noise records are read in the same way, fit and all. A pattern that
-    fills a part of the record counts with that part. Each frequency is judged alone: of twenty, one passes by chance.
-    Raises InputError for frequencies the sampling or the length of the record cannot read, and for a constant signal.
+    The statistic is the ratio of the highest time-averaged |W| within ``BAND`` of the target frequency, outside the
+    cone of influence, to the floor: the median ratio of the time-averaged spectrum to its expected course
+    (`BackgroundFitter.spectrum`) away from all target frequencies, times that course at the target. Noise records are
+    evaluated in the same way, including the fit. A pattern that fills part of the record counts with that part. Each
+    frequency is judged separately: of twenty, one passes by chance. Raises InputError for frequencies that sampling or
+    length of the record cannot resolve, and for a constant signal.
     """
     _check(given, target, surrogates, level, where)
     lines = np.asarray(target, float)
@@ -221,7 +221,7 @@ def _detect(
 ) -> Detection:
     reader, values = _reader(given, target, lines, where)
     peak, floor = reader.read(values)
-    # The same seed for each frequency: the result at one does not depend on which others were tested before it.
+    # The same seed for each frequency: the result at one does not depend on which others were tested before.
     noise = reader.fitter.draw(reader.fitter.fit(values), surrogates, np.random.default_rng(seed))
     noise_own, noise_floor = reader.read(detrended(noise))
     ratios = np.sort(noise_own.amplitude / noise_floor)
@@ -241,15 +241,15 @@ def _detect(
 
 
 def least_duration(frequency: float) -> float:
-    """Duration of a record that can test a frequency in Hz, s: ``CYCLES`` cycles between two e-folding times."""
+    """Least duration, s, of a record that can test a frequency in Hz: ``CYCLES`` cycles between two e-folding times."""
     return 2 * float(MORSE.e_folding(np.float64(frequency))) + CYCLES / frequency
 
 
 def _reader(given: Signal, target: float, lines: Array, where: str) -> tuple[_Reader, Array]:
-    """The reader of a signal at one frequency and its values, decimated and less their straight line."""
+    """The reader of a signal at one frequency, and the signal's values, decimated and without their linear trend."""
     top = min(_ABOVE * target, HIGHEST_SHARE * given.rate)
     kept = decimated(given, top)
-    # One cycle outside the cone is the least that a voice of the background must show.
+    # A voice of the background must have at least one cycle outside the cone.
     bottom = max(target / _BELOW, (2 * float(MORSE.e_folding(np.float64(1.0))) + 1) / kept.duration)
     voices = bottom * 2.0 ** (np.arange(math.floor(VOICES * math.log2(top / bottom) + 1e-9) + 1) / VOICES)
     quiet = np.asarray((np.abs(np.log(voices[:, None] / lines)) > _APART).all(axis=1), bool)

@@ -1,10 +1,10 @@
 """A scalogram: the wavelet transform of a signal with its times, voices and cone of influence, and its ridges.
 
-The analytic Morse wavelet transform, amplitude-true: a sinusoid of amplitude A reads |W| = A at its frequency.
+The analytic Morse wavelet transform preserves amplitude: a sinusoid of amplitude A gives |W| = A at its frequency.
 
 Psi(w) = U(w) a w^beta exp(-w^gamma), P^2 = beta gamma (Lilly & Olhede 2012, doi 10.1109/TSP.2012.2210890), with a such
-that Psi is 2 at its peak w = (beta/gamma)^(1/gamma): L1 normalisation, where equal amplitudes read the same at every
-frequency. gamma = 3 and P^2 = 60 are MATLAB's ``cwt`` defaults, which the paper's figure 9 states.
+that Psi is 2 at its peak w = (beta/gamma)^(1/gamma): L1 normalisation, for which equal amplitudes read the same at
+every frequency. gamma = 3 and P^2 = 60 are the defaults of MATLAB's ``cwt``, which the paper's figure 9 states.
 """
 
 import math
@@ -21,36 +21,36 @@ from pneutouch.texture.signal import Signal, decimated
 Boundary = Literal["reflect", "zero"]
 
 VOICES = 10
-"""Voices an octave, MATLAB's default: the half-power band spans three of them."""
+"""Voices per octave, MATLAB's default: the half-power band spans three of them."""
 
 HIGHEST_SHARE = 0.4
-"""Highest voice over sampling rate: a quarter octave below the Nyquist frequency the wavelet is cut off."""
+"""Greatest voice over sampling rate: from a quarter octave below the Nyquist frequency on, the wavelet is cut off."""
 
 _SUPPORT = 4.5
-"""E-folding times after which a wavelet is over: its envelope has then fallen to 1e-9 or less."""
+"""Number of e-folding times to the end of a wavelet, where its envelope has fallen to 1e-9 or less."""
 
 _CUT = 1e-9
-"""Response below which a time average leaves bins of the spectrum out."""
+"""Response below which a time average omits bins of the spectrum."""
 
 
 @dataclass(frozen=True, slots=True)
 class Morse:
-    """A Morse wavelet of order zero: ``gamma`` its symmetry, ``time_bandwidth`` its P^2."""
+    """A Morse wavelet of order zero: ``gamma`` is its symmetry, ``time_bandwidth`` its P^2."""
 
     gamma: float = 3.0
     time_bandwidth: float = 60.0
 
     @property
     def beta(self) -> float:
-        """P^2 / gamma."""
+        """Exponent beta = P^2 / gamma."""
         return self.time_bandwidth / self.gamma
 
     def log_response(self, offset: Array) -> Array:
-        """Logarithm of a voice's response to a tone of amplitude 1, ``offset`` = ln(tone over voice), any shape."""
+        """Logarithm of a voice's response, over its peak, to a tone at ``offset`` = ln(tone over voice), any shape."""
         return self.beta * (offset - np.expm1(self.gamma * offset) / self.gamma)
 
     def response(self, ratio: Array) -> Array:
-        """Filter of a voice over frequency / voice, any shape: 2 at 1; 0 at 0 and below, the mirror half."""
+        """Response of a voice over frequency / voice, any shape: 2 at 1; 0 for zero and negative frequencies."""
         with np.errstate(over="ignore"):
             offset = np.log(np.where(ratio > 0, ratio, 1.0))
             return np.where(ratio > 0, 2.0 * np.exp(self.log_response(offset)), 0.0)
@@ -58,8 +58,8 @@ class Morse:
     def e_folding(self, frequency: Array | float) -> Array:
         """Time in s over which the wavelet's magnitude falls to 1/e, its power to e^-2, for voices in Hz, any shape.
 
-        By P's definition the envelope is exp(-(w t / P)^2 / 2) about its middle (Lilly & Olhede 2012, sec. II), so
-        t = sqrt(2) P / w: half of Lilly's footprint (2017, doi 10.1098/rspa.2016.0776), and the e-folding time by which
+        By P's definition the envelope is exp(-(w t / P)^2 / 2) about its middle (Lilly & Olhede 2012, sec. II), so t =
+        sqrt(2) P / w: half of Lilly's footprint (2017, doi 10.1098/rspa.2016.0776), and the e-folding time with which
         Torrence & Compo (1998, doi 10.1175/1520-0477(1998)079<0061:APGTWA>2.0.CO;2) draw the cone of influence.
         """
         return np.asarray(math.sqrt(2 * self.time_bandwidth) / (2 * math.pi * frequency))
@@ -69,7 +69,7 @@ MORSE = Morse()
 
 
 def voices(low: float, high: float, per_octave: int = VOICES) -> Array:
-    """Frequencies in Hz, rising, (k,): from ``low`` by steps of 2^(1/per_octave) to the first at or above ``high``."""
+    """Frequencies in Hz, ascending, (k,): from ``low`` by steps of 2^(1/per_octave) to the first not below ``high``."""
     count = math.ceil(per_octave * math.log2(high / low) - 1e-9) + 1
     return low * 2.0 ** (np.arange(count) / per_octave)
 
@@ -79,9 +79,9 @@ def transform(
 ) -> Complex:
     """Wavelet transform of ``values`` (..., n), sampled at ``rate`` Hz, at voices ``frequency`` (k,) Hz: (..., k, n).
 
-    ``boundary`` selects what stands beyond the ends: ``reflect`` the record mirrored at its first and last sample,
-    ``zero`` its mean. Neither is data: see ``e_folding``. Raises ValueError for voices above ``HIGHEST_SHARE`` of the
-    rate.
+    ``boundary`` sets the values beyond the ends: ``reflect`` mirrors the record at its first and last sample, ``zero``
+    continues with its mean. Neither is data: see ``e_folding``. Raises ValueError for voices above ``HIGHEST_SHARE`` of
+    the rate.
     """
     import scipy.fft
 
@@ -94,7 +94,7 @@ def transform(
 
 
 def time_average(values: Array, rate: float, frequency: Array, wavelet: Morse = MORSE) -> Array:
-    """Mean of |W| over the times outside the cone of influence, (..., k), mirrored ends; arguments as ``transform``.
+    """Mean of |W| over the times outside the cone of influence, (..., k), mirrored ends; arguments as in `transform`.
 
     Every voice is sampled as coarsely as its band allows: exact samples of the same transform, in a tenth of the time.
     Raises ValueError if a voice's cone covers the record.
@@ -118,7 +118,7 @@ def time_average(values: Array, rate: float, frequency: Array, wavelet: Morse = 
 def _spectrum(
     values: Array, rate: float, frequency: Array, wavelet: Morse, boundary: Boundary
 ) -> tuple[Complex, int, int]:
-    """Half spectrum of the padded record, samples put before it, and the padded length."""
+    """Half spectrum of the padded record, number of samples padded in front, and padded length."""
     import scipy.fft
 
     if frequency.max() > HIGHEST_SHARE * rate * (1 + 1e-12):
@@ -135,9 +135,9 @@ def _spectrum(
 def _filtered(
     spectrum: Complex, bin_width: float, frequency: Array, wavelet: Morse, cut: float
 ) -> Iterator[tuple[Complex, float]]:
-    """Each voice's share of the half spectrum up to where its response falls under ``cut``, with its e-folding time.
+    """Half spectrum times the response of each voice, up to where this falls below ``cut``, and the e-folding time.
 
-    The half spectrum padded with zeros to the full length is that of the analytic signal: no negative frequencies.
+    A half spectrum padded with zeros to the full length is that of the analytic signal, without negative frequencies.
     """
     bins = np.arange(spectrum.shape[-1]) * bin_width
     for voice in frequency:
@@ -162,14 +162,14 @@ class Scalogram:
 
     @property
     def inside(self) -> Flags:
-        """True where the record's ends do not reach, (k, n): an e-folding time or more from both."""
+        """True where the record's ends have no influence, (k, n): at least an e-folding time from both."""
         edge = self.wavelet.e_folding(self.frequency)[:, None]
         both = (self.time - self.time[0] >= edge) & (self.time[-1] - self.time >= edge)
         return np.asarray(both, bool)
 
 
 class Ridge(NamedTuple):
-    """Frequency in Hz and amplitude of ridges, (...); ``inner`` is False where the range has no maximum inside it."""
+    """Frequency in Hz and amplitude of ridges, (...); ``inner`` is False if the range has no maximum inside."""
 
     frequency: Array
     amplitude: Array
@@ -184,9 +184,9 @@ def scalogram(
     wavelet: Morse = MORSE,
     boundary: Boundary = "reflect",
 ) -> Scalogram:
-    """Scalogram from ``low`` to ``high`` Hz of a signal, decimated for ``high`` first.
+    """Scalogram of a signal from ``low`` to ``high`` Hz, decimated for ``high`` first.
 
-    Raises InputError for a range that is empty or that the signal's sampling cannot read.
+    Raises InputError for an empty range and for one that the signal's sampling cannot resolve.
     """
     if not 0 < low < high < math.inf:
         raise InputError(f"scalogram from {low:g} to {high:g} Hz: the first must be above 0 and below the second")
@@ -200,10 +200,10 @@ def scalogram(
 
 
 def ridge(amplitude: Array, frequency: Array, low: float, high: float, wavelet: Morse = MORSE) -> Ridge:
-    """The highest point between ``low`` and ``high`` Hz of amplitudes (..., k) at evenly spaced voices (k,), rising.
+    """Highest point between ``low`` and ``high`` Hz of amplitudes (..., k) at evenly spaced voices (k,), ascending.
 
-    A parabola through the logarithms of three voices over ln f, once the wavelet's own departure from a parabola is
-    taken off: of a pure tone nothing remains but rounding. Raises ValueError if no voice lies in the range.
+    A parabola through the logarithms of three voices over ln f, after subtraction of the wavelet's own deviation from a
+    parabola: for a pure tone only rounding remains. Raises ValueError if no voice lies in the range.
     """
     within = np.flatnonzero((frequency >= low) & (frequency <= high))
     within = within[(within > 0) & (within < len(frequency) - 1)]
@@ -220,7 +220,7 @@ def ridge(amplitude: Array, frequency: Array, low: float, high: float, wavelet: 
 
 
 def _vertex(logs: Array, step: float, wavelet: Morse) -> tuple[Array, Array]:
-    """Offset from the middle voice and height of the maximum of ``logs`` (3, ...), in logarithms."""
+    """Offset of the maximum of ``logs`` (3, ...) from the middle voice, and its height, both logarithmic."""
     places = np.array([-step, 0.0, step]).reshape(3, *[1] * (logs.ndim - 1))
     offset = np.zeros(logs.shape[1:])
     height = logs[1]

@@ -15,34 +15,34 @@ from pneutouch.texture.substrate import BarRow, MatrixLayer, amplitude
 from pneutouch.units import KPA
 
 BLUR = (0.85, 1.0, 1.15)
-"""Contact radii over the predicted one that an amplitude is the root mean square of. A real patch has no sharp edge, so
-its filter has no zeros; a dome must not be chosen for standing on one."""
+"""Factors on the predicted contact radius over which an amplitude is a root mean square. A real patch has no sharp
+edge, so its filter has no zeros; a dome must not be selected because it is at a zero."""
 
 LEAST_RATIO = 3.0
-"""Amplitude over noise that a pattern must have in the state meant for it."""
+"""Least ratio of amplitude to noise of a pattern in the state meant for it."""
 
 LEAST_TRAVEL = 0.025
-"""Indentation over R0 from which the atlas's contact radius is smooth; before, it walks from element to element."""
+"""Indentation over R0 from which the atlas's contact radius is smooth; below it, it jumps from element to element."""
 
 POINTS = 23
-"""Driving pressures looked at."""
+"""Number of driving pressures examined."""
 
 
 class BarPattern(NamedTuple):
-    """Bars, half bar and half gap, by pitch and depth in mm."""
+    """Bars with equal bars and gaps, by pitch and depth in mm."""
 
     pitch: float
     depth: float
 
     @property
     def bars(self) -> BarRow:
-        """The pattern as a row."""
+        """The pattern as a row of bars."""
         half = 0.5 * self.pitch
         return BarRow(f"{self.pitch:g}@{self.depth:g}", self.pitch, half, 1.0, self.depth, np.array([[0.0, half]]))
 
 
 class PressureAdvice(NamedTuple):
-    """A driving pressure (MPa), the amplitude there and at no pressure (MPa), and all examined, (n,) each."""
+    """A driving pressure (MPa), the amplitudes at it and at zero pressure (MPa), and all those examined, (n,) each."""
 
     driving_pressure: float
     amplitude: float
@@ -52,9 +52,9 @@ class PressureAdvice(NamedTuple):
 
 
 class Separation(NamedTuple):
-    """Domes, best first, (n,) each: number, the two states' pressures (MPa), amplitudes (n, 2 states, 2 patterns).
+    """Domes, best first, (n,) each: number, pressures of the two states (MPa), amplitudes (n, 2 states, 2 patterns).
 
-    The first state favours the first pattern. ``contrast``: by how much more than the second state.
+    The first state favours the first pattern; ``contrast`` is the factor by which it does so more than the second.
     """
 
     dome: Array
@@ -71,7 +71,7 @@ def noise_amplitude(frequency: float, noise: float = NOISE, rate: float = RATE) 
 
 
 def amplitudes(batch: SensorBatch, preload: float, matrix: MatrixLayer, patterns: list[BarPattern]) -> Array:
-    """Pressure amplitudes at a held height, MPa, (n, patterns), blurred.
+    """Pressure amplitudes at a held height, MPa, (n, patterns), averaged over `BLUR`.
 
     NaN if a dome does not reach the preload, or reaches it within `LEAST_TRAVEL`.
     """
@@ -87,9 +87,9 @@ def amplitudes(batch: SensorBatch, preload: float, matrix: MatrixLayer, patterns
 def recommend(
     pattern: BarPattern, sensor: Sensor, matrix: MatrixLayer, highest: float, preload: float = 0.5
 ) -> PressureAdvice:
-    """The driving pressure up to ``highest`` (MPa) at which a sensor shows a pattern with the greatest amplitude.
+    """Driving pressure up to ``highest`` (MPa) at which a sensor shows a pattern with the greatest amplitude.
 
-    The sensor must lie in the atlas. Raises InputError if it reaches the preload at none.
+    The sensor must lie in the atlas. Raises InputError if it does not reach the preload at any pressure.
     """
     check(pattern, matrix)
     pressures = np.linspace(0.0, highest, POINTS)
@@ -110,17 +110,17 @@ def separate(
     patterns: tuple[BarPattern, BarPattern],
     floor: tuple[float, float],
 ) -> Separation:
-    """Rank domes by how differently two driving pressures weigh two patterns.
+    """Rank domes by the difference with which two driving pressures weight two patterns.
 
-    ``dome`` (n,) numbers the rows of ``batch`` that are one dome at several pressures; ``floor`` is the noise of each
-    pattern, MPa. Contrast: (A1/A2 in the first state) over (A1/A2 in the second), amplitudes no less than their floor;
-    the pattern that a state is for must stand ``LEAST_RATIO`` times above its floor there.
+    ``dome`` (n,) has the same number for the rows of ``batch`` that are one dome at several pressures; ``floor`` is the
+    noise of each pattern, MPa. Contrast: (A1/A2 in the first state) over (A1/A2 in the second), with amplitudes of at
+    least their floor; in its state, a pattern must be at least ``LEAST_RATIO`` times its floor.
     """
     for pattern in patterns:
         check(pattern, matrix)
     levels = amplitudes(batch, preload, matrix, list(patterns))
     level = np.log(np.maximum(levels, floor))
-    # NaN, a dome that cannot be judged, is not above anything.
+    # NaN, for a dome that cannot be judged, compares as not greater.
     seen = levels >= LEAST_RATIO * np.array(floor)
     lean = level[:, 0] - level[:, 1]
     rows = []
@@ -141,7 +141,7 @@ def separate(
 
 
 def check(pattern: BarPattern, matrix: MatrixLayer) -> None:
-    """Raise InputError for a pattern that no specimen can have."""
+    """Raise InputError for a pattern that a specimen cannot have."""
     if not (0.0 < pattern.pitch < np.inf and 0.0 <= pattern.depth < matrix.height):
         raise InputError(
             f"pattern {pattern.pitch:g}@{pattern.depth:g}: pitch must be more than 0 and depth from 0 to less than the "

@@ -1,6 +1,6 @@
-"""A pressure signal sampled at even times, and its decimation.
+"""A pressure signal sampled at equal time steps, and its decimation.
 
-A measured signal from a CSV or parquet file: times in s and pressures in kPa.
+A measured signal is read from a CSV or parquet file with times in s and pressures in kPa.
 """
 
 import math
@@ -19,17 +19,17 @@ OVERSAMPLING = 5.0
 """Sampling rate kept over the highest target frequency."""
 
 _PASSED = 1.6
-"""Highest frequency passed over the highest target frequency: the Morse response (3, 60) is 2e-5 of its peak there."""
+"""Highest frequency passed, over the highest target frequency: the Morse response (3, 60) is 2e-5 of its peak there."""
 
 _STOP_DB = 100.0
-"""Level of the part that folds back, and of the ripple of the part that passes, in dB below it: 1e-5 of the
-amplitude."""
+"""Attenuation in dB of the part that is aliased, and level of the ripple in the pass band below its amplitude: 1e-5 of
+the amplitude."""
 
 MOST = 1e6 * KPA
-"""Greatest pressure that is taken for one, MPa: a million kPa."""
+"""Greatest plausible pressure, MPa: a million kPa."""
 
 _OFF = 0.25
-"""Distance, in steps, of a time from the even grid that rounding in a file explains, and no lost sample."""
+"""Greatest deviation of a time from the even grid, in steps, that is ascribed to rounding and not to a lost sample."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,10 +57,10 @@ class Signal:
 
 
 def signal(time: Array, pressure: Array, where: str = "signal", rows: Sequence[int] | None = None) -> Signal:
-    """A signal from times in s and pressures in MPa, (n,) each.
+    """Signal from times in s and pressures in MPa, (n,) each.
 
-    ``where`` and ``rows`` (n,) name the source and its rows in messages; left out, rows count from 1. Raises InputError
-    for fewer than 4 rows, values that are not finite, and times that stand still, run back, leave a gap or are uneven.
+    ``where`` and ``rows`` (n,) name the source and its rows in messages; by default rows count from 1. Raises
+    InputError for fewer than 4 rows, non-finite values, and times that repeat, go back, leave a gap or are uneven.
     """
     numbers = range(1, len(time) + 1) if rows is None else rows
     if len(time) != len(pressure):
@@ -117,10 +117,10 @@ def _check_steps(time: Array, where: str, rows: Sequence[int]) -> None:
 
 
 def decimated(given: Signal, highest: float) -> Signal:
-    """Every q-th sample of a signal without aliases, q the largest that keeps ``OVERSAMPLING`` x ``highest`` Hz.
+    """Every q-th sample of a signal without aliases, with the largest q that keeps ``OVERSAMPLING`` x ``highest`` Hz.
 
-    A Kaiser low-pass without delay, evaluated only at the samples kept (polyphase), mirrored ends: amplitudes up to
-    1.6 ``highest`` stay within 1e-5. The signal itself where q is 1.
+    A Kaiser low-pass without delay, evaluated only at the samples kept (polyphase), with mirrored ends: amplitudes up
+    to 1.6 ``highest`` stay within 1e-5. If q is 1, the signal itself.
     """
     from scipy.signal import firwin, kaiser_beta, upfirdn
 
@@ -129,7 +129,7 @@ def decimated(given: Signal, highest: float) -> Signal:
         return given
     rate = given.rate / factor
     stop = rate - _PASSED * highest
-    # Kaiser's estimate of the length; half of it a multiple of the factor, so that kept samples fall on filter outputs.
+    # Kaiser's estimate of the length; half of it is a multiple of the factor: kept samples fall on filter outputs.
     length = (_STOP_DB - 7.95) / (2.285 * 2 * math.pi * (stop - _PASSED * highest) / given.rate)
     blocks = math.ceil(length / 2 / factor)
     half = blocks * factor
@@ -143,17 +143,17 @@ def decimated(given: Signal, highest: float) -> Signal:
 
 @dataclass(frozen=True, slots=True)
 class RecordColumns:
-    """Column names in the file's header; the units are s and kPa gauge whatever the names are."""
+    """Column names in the file's header; the units are s and kPa gauge, independent of the names."""
 
     time_s: str = "time_s"
     pressure_kPa: str = "pressure_kPa"
 
 
 def read_signal(path: Path, columns: RecordColumns = RecordColumns()) -> Signal:
-    """The signal in a file; other columns are ignored.
+    """Signal in a file; other columns are ignored.
 
-    Raises InputError, naming file, row and column, as `tables.read.chunks`, where one column is named for both, and for
-    uneven sampling (``signal``).
+    Raises InputError, naming file, row and column, as `tables.read.chunks`, if one column is named for both, and for
+    uneven sampling (`signal`).
     """
     names = columns.time_s, columns.pressure_kPa
     if names[0] == names[1]:

@@ -1,10 +1,10 @@
-"""A dome at a preload slides over a specimen, held at one height or at one force, and its pressure is recorded.
+"""A dome at a preload slides over a specimen at constant height or constant force, and its pressure is recorded.
 
-The plate is flat, rigid and frictionless, the gas trapped (Boyle, with the dead volume): the specimen sinks far less
-than the dome (`substrate`). Dome (stiffness k) and specimen (compliance c) are springs in series. At a held height
-delta(F) + c(x) F = const, so that dp = -dp/d(delta) F dc/(1 + k c) to first order (physics.md 4.2); here the dome's
-whole curve is used. At a held force only the sensor's height follows the specimen. No friction, no inertia, no
-relaxation, no relief.
+The plate is flat, rigid and frictionless, the gas trapped (Boyle, with the dead volume): the specimen deforms far less
+than the dome (`substrate`). Dome (stiffness k) and specimen (compliance c) are springs in series. At constant height
+delta(F) + c(x) F = const, so that dp = -dp/d(delta) F dc/(1 + k c) to first order (physics.md 4.2); here the whole
+curve of the dome is used. At constant force only the sensor's height follows the specimen. Friction, inertia,
+relaxation and relief are neglected.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ from pneutouch.texture.substrate import BarRow, Substrate
 from pneutouch.units import GAUGE_LIMIT, KPA
 
 _COLUMNS = 61
-"""Plate heights of a loading curve; between them Hermite cubics with the exact slopes."""
+"""Number of plate heights of a loading curve; Hermite cubics with the exact slopes in between."""
 _SOLID_STEPS = 30
 _HALVINGS = 40
 
@@ -35,12 +35,12 @@ class PreloadContact:
 
     Attributes:
         driving_pressure, preload: As given.
-        indentation, contact_radius, pressure: At the preload; pressure is gauge.
+        indentation, contact_radius, pressure: Values at the preload; pressure is gauge.
         stiffness: dF/d(indentation), N/mm, gas included.
         pressure_slope: dp/d(indentation), MPa/mm, gas included.
-        model: The model that answered.
-        travel, force, rise: Loading curve, (n,), from first contact on; rise is pressure above the driving one.
-        force_slope, rise_slope: Their derivatives by travel, (n,).
+        model: Name of the model that was used.
+        travel, force, rise: Loading curve, (n,), from first contact on; rise is above the driving pressure.
+        force_slope, rise_slope: Derivatives of force and rise by travel, (n,).
     """
 
     driving_pressure: float
@@ -62,7 +62,7 @@ class PreloadContact:
         return _along(indentation, self.travel, self.force, self.force_slope)
 
     def force_slope_at(self, indentation: Array) -> Array:
-        """Its derivative, N/mm, straight between the curve's points: for Newton's method, which only needs it near."""
+        """Derivative of the force, N/mm, linear between the curve's points: approximate, as Newton's method allows."""
         return np.interp(indentation, self.travel, self.force_slope)
 
     def pressure_at(self, indentation: Array) -> Array:
@@ -80,10 +80,10 @@ class PreloadContacts(NamedTuple):
 
 
 def touch(sensor: Sensor, driving_pressure: float, preload: float) -> PreloadContact:
-    """The dome at a driving pressure (MPa) pressed to a preload (N): by the atlas, by the solid where that is outside.
+    """Press the dome at a driving pressure (MPa) to a preload (N): by the atlas, or by the solid outside the atlas.
 
-    Raises InputError for a preload that is not positive or beyond what the press reaches within the sensor's depth, and
-    for pressures that are negative, beyond the limit point or beyond the pressure sensor's range.
+    Raises InputError for a preload that is not positive or not reached within the sensor's depth, and for pressures
+    that are negative, beyond the limit point or beyond the pressure sensor's range.
     """
     _check_preload(sensor, driving_pressure, preload)
     curve = None if outside("atlas", sensor) else _atlas_curve(sensor, driving_pressure)
@@ -121,7 +121,7 @@ def touch(sensor: Sensor, driving_pressure: float, preload: float) -> PreloadCon
 
 
 def touches(batch: SensorBatch, preload: float) -> PreloadContacts:
-    """Many sensors at once at a preload (N), by the atlas; the batch must lie inside its box and below limit points."""
+    """Many sensors at a preload (N), by the atlas; the batch must lie inside its box and below the limit points."""
     walls, k = np.unique(batch.wall_ratio, return_inverse=True)
     press = AtlasPress(batch, shipped().slices(walls, ("contact_radius",)), k)
     depth = batch.depth / batch.inner_radius
@@ -168,7 +168,7 @@ LoadingCurve = tuple[Array, Array, Array, Array, Array, Array]
 
 
 def _atlas_curve(sensor: Sensor, pressure: float) -> LoadingCurve | None:
-    """The curve as far as the atlas covers it; None if that is not even the first steps."""
+    """The curve as far as the atlas covers it; None if it covers fewer than four points."""
     batch = batch_of(sensor, [pressure])
     press = AtlasPress(batch, shipped().slices(batch.wall_ratio, ("contact_radius",)), np.zeros(1, dtype=np.intp))
     track = press.march(np.linspace(0.0, sensor.protocol.depth / sensor.dome.inner_radius, _COLUMNS)[None, :])
@@ -180,7 +180,7 @@ def _atlas_curve(sensor: Sensor, pressure: float) -> LoadingCurve | None:
 
 
 def _dimensional(press: AtlasPress, track: PressTrack) -> LoadingCurve:
-    """Curves (n, m) in mm, N and MPa, with exact slopes: the volume follows the plate as the gas lets it."""
+    """Curves (n, m) in mm, N and MPa, with exact slopes that include the change of volume with the plate."""
     mu, size = press.batch.shear_modulus[:, None], press.batch.inner_radius[:, None]
     point = track.point
     swell = point.by_height / np.where(track.margin > 0, track.margin, np.inf)
@@ -219,7 +219,7 @@ def _along(at: Array, travel: Array, values: Array, slopes: Array) -> Array:
 
 
 def _inverse(level: Array, travel: Array, force: Array, slope: Array) -> Array:
-    """Travel at which each curve (n, m) first reaches a force (n,), by halving on its Hermite cubic."""
+    """Travel at which each curve (n, m) first reaches a force (n,), by bisection on its Hermite cubic."""
     rows = np.arange(len(level))
     after = np.maximum((force >= level[:, None]).argmax(axis=1), 1)
     low, high = travel[rows, after - 1], travel[rows, after]
@@ -248,7 +248,7 @@ _NEWTON = 6
 
 @dataclass(frozen=True, slots=True)
 class ScanPath:
-    """Movement of the sensor: mm from ``start`` to ``end`` at ``speed`` mm/s, held at a "height" or a "force"."""
+    """Movement of the sensor: mm from ``start`` to ``end`` at ``speed`` mm/s, at constant "height" or "force"."""
 
     start: float
     end: float
@@ -269,9 +269,9 @@ class Recorder:
 
 @dataclass(frozen=True, slots=True)
 class TextureScan:
-    """A scan: the record, the same without noise, and the place (mm), (n,) each.
+    """A scan: the recorded signal, the pressure without noise, and the position (mm), (n,) each.
 
-    ``height``: of the sensor above that at the preload, mm; not zero where the force is held.
+    ``height``: of the sensor above its height at the preload, mm; not zero at constant force.
     """
 
     signal: Signal
@@ -285,14 +285,14 @@ class TextureScan:
 
 
 def gain(touch: PreloadContact, compliance: float) -> float:
-    """Pressure by the specimen's compliance at a held height, MPa per mm/N: -dp/d(delta) F/(1 + k c)."""
+    """Pressure by the specimen's compliance at constant height, MPa per mm/N: -dp/d(delta) F/(1 + k c)."""
     return -touch.pressure_slope * touch.preload / (1.0 + touch.stiffness * compliance)
 
 
 def pressure_amplitude(
     touch: PreloadContact, substrate: Substrate, bars: BarRow, control: Control = "height", order: int = 1
 ) -> float:
-    """Amplitude of the pressure at a pattern's frequency, MPa, to first order; never negative, 0 at a held force."""
+    """Amplitude of the pressure at a pattern's frequency, MPa, to first order; not negative, 0 at constant force."""
     if control == "force":
         return 0.0
     response = gain(touch, float(substrate.compliance(_NODES).mean())) * substrate.amplitude(bars, order)
@@ -300,8 +300,8 @@ def pressure_amplitude(
 
 
 def scan(touch: PreloadContact, substrate: Substrate, path: ScanPath, recorder: Recorder = Recorder()) -> TextureScan:
-    """Slide a dome over a specimen. Raises InputError for an impossible path, or one that leaves the curve of the
-    dome."""
+    """Slide a dome over a specimen. Raises InputError for an impossible path, and if the dome's indentation leaves its
+    curve."""
     _check(touch, substrate, path, recorder)
     time = (
         np.arange(int(np.floor((path.end - path.start) / path.speed * recorder.rate * (1 + 1e-12))) + 1) / recorder.rate
@@ -321,7 +321,7 @@ def scan(touch: PreloadContact, substrate: Substrate, path: ScanPath, recorder: 
 
 
 def record(pressure: Array, recorder: Recorder) -> Array:
-    """Pressures as recorded: with noise, in steps, cut at the range."""
+    """Pressures as recorded: with noise, rounded to steps, limited to the range."""
     noisy = pressure + recorder.noise * np.random.default_rng(recorder.seed).standard_normal(len(pressure))
     if recorder.step > 0:
         noisy = recorder.step * np.round(noisy / recorder.step)
@@ -329,7 +329,7 @@ def record(pressure: Array, recorder: Recorder) -> Array:
 
 
 def _held(touch: PreloadContact, compliance: Array, approach: float) -> Array:
-    """The dome's indentations where dome and specimen share one approach (mm): delta + c F(delta) = approach."""
+    """Indentations of the dome for one common approach (mm) of dome and specimen: delta + c F(delta) = approach."""
     at = np.full_like(compliance, touch.indentation)
     for _ in range(_NEWTON):
         excess = at + compliance * touch.force_at(at) - approach
@@ -352,7 +352,7 @@ def _check(touch: PreloadContact, substrate: Substrate, path: ScanPath, recorder
     if not 0 <= recorder.noise < np.inf:
         raise InputError(f"noise = {recorder.noise / KPA:g} kPa: must not be below 0")
     for row in substrate.bars:
-        # The lobes beyond are those of a sharp-edged uniform patch, which a real contact has not.
+        # The lobes beyond are those of a sharp-edged uniform patch, which real contacts do not have.
         if row.pitch < LEAST_PITCH * touch.contact_radius:
             raise InputError(
                 f"{row.name}: pitch {row.pitch:g} mm: less than {LEAST_PITCH:g} times the patch, whose radius is "

@@ -1,9 +1,8 @@
 """The specimen under the dome: a soft layer on a rigid floor with rows of stiff bars, as a compliance along the path.
 
-How stiff bars enter. Vero is some 4,000 times stiffer than Agilus30, so a first-order theory in the contrast of moduli
-is of no use: a little volume of it already takes away all the strain it can. But a bar as stiff as that is a beam that
-spreads the patch's load along its length (`BarRow.bending_length`) and hardly sinks. So bars are taken to stand still,
-and
+The effect of stiff bars. Vero is some 4,000 times stiffer than Agilus30, so a first-order theory in the contrast of
+moduli is useless: a small volume of it already removes all the strain that it can. But such a stiff bar is a beam that
+spreads the patch's load along its length (`BarRow.bending_length`) and hardly moves. So bars are taken as fixed, and
 
     over a bar      only the cover sinks, a layer as thin as the bar is deep, bonded to it;
     over a gap      the whole layer sinks;
@@ -13,8 +12,8 @@ and
     field           all of it in the field of the specimen with its bars: times mean compliance over bare compliance.
 
 Both filters and both compliances are exact for their layers (Airy's function; Johnson, Contact Mechanics, 1985, ch.
-13); how they are put together is an approximation, which docs/background/texture.md measures against finite elements.
-Linear, no friction, uniform pressure over a disc, no surface relief.
+13); their combination is an approximation, which docs/background/texture.md compares with finite elements. Linear, no
+friction, uniform pressure over a disc, no surface relief.
 """
 
 from dataclasses import dataclass
@@ -27,14 +26,14 @@ from pneutouch.arrays import Array
 
 _HIGHEST = 40.0
 _STEP = 0.05
-"""Wavenumbers of a disc's field, over 1/radius: compliances to 3e-4."""
+"""Greatest wavenumber and step of the integral over a disc's field, over 1/radius: compliances accurate to 3e-4."""
 
 FIRST_ZERO = 3.8317
-"""k rho at which the patch feels nothing of a pattern: J1's first zero; rho is then 0.61 pitches."""
+"""Value of k rho at which the patch does not respond to a pattern: first zero of J1; rho is then 0.61 pitches."""
 
 
 def patch_filter(k: Array, radius: Array | float) -> Array:
-    """Share of a pattern that a uniform disc leaves: 2 J1(k rho)/(k rho); physics.md 4.2."""
+    """Share of a pattern that remains under a uniform disc: 2 J1(k rho)/(k rho); physics.md 4.2."""
     from scipy.special import j1
 
     x = np.maximum(k * radius, 1e-9)
@@ -42,29 +41,29 @@ def patch_filter(k: Array, radius: Array | float) -> Array:
 
 
 def half_space(k: Array, shear: float, poisson: float) -> Array:
-    """Sinking over pressure of a half-space at wavenumbers k, mm/MPa: (1 - nu)/(mu k); Johnson, ch. 13."""
+    """Deflection over pressure of a half-space at wavenumbers k, mm/MPa: (1 - nu)/(mu k); Johnson, ch. 13."""
     return np.asarray((1.0 - poisson) / (shear * k))
 
 
 def bonded_layer(k: Array, height: float, shear: float, poisson: float) -> Array:
-    """Sinking over pressure, mm/MPa, of a layer bonded to a rigid floor, at wavenumbers k above 0.
+    """Deflection over pressure, mm/MPa, of a layer bonded to a rigid floor, at wavenumbers k above 0.
 
     (1-nu)/(mu k) (c sinh 2q - 2q)/(c cosh 2q + 2q^2 + (1+c^2)/2), q = k h, c = 3 - 4 nu: at nu = 1/2 the formula of
     physics.md 4.2, for q to 0 the oedometer's h (1 - 2 nu)/(2 mu (1 - nu)). A test solves the layer independently.
     """
     q, c = k * height, 3.0 - 4.0 * poisson
     e = np.exp(-2.0 * q)
-    # Both sides over exp(2q)/2, so that nothing overflows; small q with sinh itself, so that nothing cancels.
+    # Both sides over exp(2q)/2, so that nothing overflows; sinh itself for small q, so that nothing cancels.
     few = np.minimum(q, 1.0)
     above = np.where(q < 1.0, 2.0 * e * (c * np.sinh(2.0 * few) - 2.0 * few), c * (1.0 - e * e) - 4.0 * q * e)
     return np.asarray(half_space(k, shear, poisson) * above / _below(q, c))
 
 
 def reaching(k: Array, depth: float, poisson: float) -> Array:
-    """Pressure on a rigid plate at ``depth`` over that on top, at wavenumbers k; 1 for k or depth to 0.
+    """Pressure on a rigid plate at ``depth`` over the pressure on top, at wavenumbers k; 1 as k or depth goes to 0.
 
-    (1+c)((1+c)/2 cosh q + q sinh q)/(c cosh 2q + 2q^2 + (1+c^2)/2), q = k d, c = 3 - 4 nu. Deep down at nu = 1/2 it is
-    twice the (1 + kd) exp(-kd) of a half-space (physics.md 4.2), for the plate throws the load back.
+    (1+c)((1+c)/2 cosh q + q sinh q)/(c cosh 2q + 2q^2 + (1+c^2)/2), q = k d, c = 3 - 4 nu. For great depth at nu = 1/2
+    it is twice the (1 + kd) exp(-kd) of a half-space (physics.md 4.2), because the plate reflects the load.
     """
     q, c = k * depth, 3.0 - 4.0 * poisson
     e = np.exp(-2.0 * q)
@@ -73,7 +72,7 @@ def reaching(k: Array, depth: float, poisson: float) -> Array:
 
 
 def _below(q: Array, c: float) -> Array:
-    """The denominator of both, over exp(2q)/2."""
+    """Denominator of `bonded_layer` and `reaching`, over exp(2q)/2."""
     e = np.exp(-2.0 * q)
     return np.asarray(c * (1.0 + e * e) + 2.0 * e * (2.0 * q * q + 0.5 * (1.0 + c * c)))
 
@@ -86,7 +85,7 @@ class MatrixLayer(NamedTuple):
     poisson_ratio: float
 
     def compliance(self, radius: Array, height: float | None = None) -> Array:
-        """Mean sinking under a uniform disc over its force, mm/N, radii (n,); ``height`` in place of the layer's."""
+        """Mean deflection under a uniform disc over its force, mm/N, radii (n,); ``height`` replaces the layer's."""
         depth = self.height if height is None else height
         if depth <= 0.0:
             return np.zeros_like(radius)
@@ -113,7 +112,7 @@ class BarRow:
 
     @property
     def duty(self) -> float:
-        """Covered share where the pattern is."""
+        """Covered share of the patterned part."""
         return self.width / self.pitch
 
     def harmonic(self, order: int = 1) -> float:
@@ -128,28 +127,28 @@ class BarRow:
         return np.asarray((share * np.exp(-2j * np.pi * n * middle / length)).sum(axis=1))
 
     def covers(self, place: Array) -> Array:
-        """1 where a bar is under a place (n,), else 0."""
+        """Flags (n,): 1 for positions with a bar below, else 0."""
         inside = (place[:, None] >= self.edges[:, 0]) & (place[:, None] < self.edges[:, 1])
         return np.asarray(inside.any(axis=1), float)
 
     def bending_length(self, young: float, shear: float) -> float:
-        """Length over which a bar spreads a load, mm: (4 E I/(4 pi mu))^(1/4), a beam on a bed (Hetenyi 1946).
+        """Length over which a bar spreads a load, mm: (4 E I/(4 pi mu))^(1/4), a beam on an elastic bed (Hetenyi 1946).
 
-        4 pi mu is the order of a soft body's reaction to a sinking line (slender rods: Batchelor 1970, doi
-        10.1017/S002211207000191X, without its logarithm). Bars stand still where it is longer than the patch.
+        4 pi mu is the order of the reaction of a soft body to a sinking line (slender rods: Batchelor 1970, doi
+        10.1017/S002211207000191X, without its logarithm). Bars stand still if this length is greater than the patch.
         """
         return float((young * self.width * self.height**3 / 12.0 / (np.pi * shear)) ** 0.25)
 
 
 def contrast(matrix: MatrixLayer, depth: float, radius: Array) -> Array:
-    """Compliance over a gap less that over a bar, mm/N, patch radii (n,)."""
+    """Compliance over a gap minus compliance over a bar, mm/N, patch radii (n,)."""
     return np.asarray(matrix.compliance(radius) - matrix.compliance(radius, depth))
 
 
 def amplitude(matrix: MatrixLayer, bars: BarRow, radius: Array, order: int = 1) -> Array:
-    """Amplitude of one row's compliance at a harmonic of its pitch, mm/N, patch radii (n,), alone in the specimen.
+    """Amplitude of a row's compliance at a harmonic of its pitch, mm/N, patch radii (n,), as the only row.
 
-    Negative where the patch sinks more with its middle over a bar: beyond the patch filter's first zero.
+    Negative where the patch sinks more with its centre over a bar: beyond the first zero of the patch filter.
     """
     k = np.asarray(2.0 * np.pi * order / bars.pitch)
     felt = patch_filter(k, radius) * reaching(k, bars.depth, matrix.poisson_ratio)
@@ -160,7 +159,7 @@ def amplitude(matrix: MatrixLayer, bars: BarRow, radius: Array, order: int = 1) 
 
 @dataclass(frozen=True)
 class Substrate:
-    """A specimen under a patch of a radius: its compliance along a path of ``length`` mm, which repeats at its ends."""
+    """A specimen under a patch of a radius: its compliance along a path of ``length`` mm, periodic over that length."""
 
     matrix: MatrixLayer
     bars: tuple[BarRow, ...]
@@ -174,22 +173,22 @@ class Substrate:
 
     @cached_property
     def shares(self) -> tuple[float, ...]:
-        """Mean compliance over bare compliance of each row alone, over the part of the path that it fills."""
+        """Mean over bare compliance for each row as the only one, over the part of the path that it fills."""
         taken = [float(contrast(self.matrix, row.depth, np.array(self.radius))) for row in self.bars]
         return tuple(1.0 - row.duty * part / self.bare for row, part in zip(self.bars, taken, strict=True))
 
     def field(self, row: BarRow) -> float:
-        """Field at a row over the bare layer's: rows that share a part of the path with it shield it, and it itself."""
+        """Field at a row over that of the bare layer: the product of the shares of all rows there, itself included."""
         pairs = zip(self.bars, self.shares, strict=True)
         return float(np.prod([share for other, share in pairs if _meet(row, other)]))
 
     def amplitude(self, row: BarRow, order: int = 1) -> float:
-        """Amplitude of the compliance at a harmonic of a row's pitch, mm/N, with other rows; sign as `amplitude`."""
+        """Amplitude of the compliance at a harmonic of a row's pitch, mm/N, with other rows; sign as in `amplitude`."""
         share = self.shares[self.bars.index(row)]
         return float(amplitude(self.matrix, row, np.array(self.radius), order)) * self.field(row) / share
 
     def compliance(self, count: int) -> Array:
-        """Compliance at ``count`` even places of the path, mm/N, from each row's Fourier series."""
+        """Compliance at ``count`` equally spaced places of the path, mm/N, from the Fourier series of each row."""
         orders = min(count // 2 - 1, int(_HIGHEST / self.radius * self.length / (2.0 * np.pi)))
         k = np.asarray(2.0 * np.pi * np.arange(orders + 1) / self.length, float)
         spectrum = np.zeros(count // 2 + 1, complex)
@@ -201,12 +200,12 @@ class Substrate:
         return np.asarray(np.fft.irfft(spectrum, count) * count)
 
     def _mean(self) -> float:
-        """Mean along the path: shares of rows multiply, each to the part of the path that its row fills."""
+        """Mean along the path: shares of rows multiply, each to the power of the part that its row fills."""
         filled = [float(np.diff(row.edges, axis=1).sum()) / row.duty / self.length for row in self.bars]
         pairs = zip(self.shares, filled, strict=True)
         return self.bare * float(np.prod([share ** min(part, 1.0) for share, part in pairs]))
 
 
 def _meet(one: BarRow, other: BarRow) -> bool:
-    """True if two rows share a part of the path, or are one."""
+    """True if two rows share a part of the path, or are the same row."""
     return bool(one.edges.min() < other.edges.max() and other.edges.min() < one.edges.max())

@@ -1,1 +1,1 @@
-"""One folder a command. A workflow imports from another only what that one's `__init__` offers."""
+"""Workflows of the commands, one folder each. One imports from another only what the other's `__init__` offers."""

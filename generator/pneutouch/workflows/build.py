@@ -1,4 +1,4 @@
-"""Build a design: print files, those of its mould, prediction, datasheet, print sheet and manifest, in one folder."""
+"""Build a design: print files of sensor and mould, prediction, datasheet, print sheet, manifest, in one folder."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -142,7 +142,7 @@ def _meshes(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, BodyM
 
 
 _NAME = "NAME"
-"""Stands for the name of the design."""
+"""Placeholder of the design's name in patterns."""
 
 CONTENTS: tuple[tuple[tuple[str, ...], str], ...] = (
     (
@@ -259,7 +259,7 @@ def exploded(mould: MouldAssembly) -> tuple[Body, ...]:
 
 
 def _part(name: str) -> str:
-    """The part that a numbered body is one of: ``mould-core-2`` is a mould-core."""
+    """Name of the part that a numbered body is a copy of: ``mould-core`` of ``mould-core-2``."""
     return name.rstrip("0123456789").rstrip("-")
 
 

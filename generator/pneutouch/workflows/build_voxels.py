@@ -1,4 +1,4 @@
-"""A voxel stack of a design: the bodies printed with the membrane, one PNG a layer, in a folder of its own."""
+"""A voxel stack of a design: the bodies printed with the membrane, one PNG per layer, in a folder of its own."""
 
 import zlib
 from collections.abc import Callable, Mapping
@@ -142,7 +142,7 @@ def write_stack(
 
 
 def check_stack_folder(folder: Path) -> None:
-    """Raise InputError where a stack cannot be written into ``folder``, or a file in it is not as one was written."""
+    """Raise InputError where a stack cannot be written into ``folder``, or a file in it is not as a stack wrote it."""
     if not folder.is_dir() or folder.is_symlink() or not any(folder.iterdir()):
         check_writable(folder)
         return

@@ -81,7 +81,7 @@ class PredictedColumn:
     notes: tuple[str, ...] = ()
 
     def sensor(self, depths: Depths) -> ComparedSensor:
-        """The column; where there is a measurement, figures of the curve are read at its depths.
+        """The column as a sensor; if there is a measurement, figures of the curve are read at its ``depths``.
 
         Raises InputError if a build's prediction is not as it was written."""
         with as_written(Path(self.source), "prediction.json", _REMEDY) if self.evaluation is None else nullcontext():
@@ -235,12 +235,12 @@ Compared = str | DesignSource
 _Column: TypeAlias = PredictedColumn | MeasuredColumn
 
 _LONGEST = 100
-"""Letters of an output folder's name."""
+"""Greatest length of an output folder's name, in letters."""
 
 
 @dataclass(frozen=True)
 class CompareResult:
-    """The columns, and everything that the comparison states; ``evaluations`` are those of the designs, None else."""
+    """The columns, and everything that the comparison states; ``evaluations`` has None for all but designs."""
 
     sensors: tuple[ComparedSensor, ...]
     evaluations: tuple[Evaluation | None, ...]
@@ -274,10 +274,10 @@ def compare(
     progress: Callable[[int, int, str], None] = lambda done, total, what: None,
     **options: Any,
 ) -> CompareResult:
-    """Set two or more columns side by side; a folder of results alone is its measurement and its prediction.
+    """Set two or more columns side by side; a single folder of results gives its measurement and its prediction.
 
-    ``changes`` are laid over every design, and over that of every build, which is then predicted again; ``options``
-    are those of `evaluation.evaluate`. Raises InputError if something cannot be compared.
+    ``changes`` are laid over every design, and over that of every build, which is then predicted again; ``options`` are
+    those of `evaluation.evaluate`. Raises InputError if something cannot be compared.
     """
     library = library or Library.default()
     _check_given(given)

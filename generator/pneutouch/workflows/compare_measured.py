@@ -1,4 +1,4 @@
-"""Measured columns of a comparison: the groups of a folder that ``characterize`` wrote, one a resin and age.
+"""Measured columns of a comparison: the groups of a folder that ``characterize`` wrote, one for each resin and age.
 
 An output folder read back: the files that its manifest lists, as they were written.
 """
@@ -54,8 +54,8 @@ _MISFORMED = (KeyError, ValueError, TypeError, AttributeError, IndexError, Overf
 
 @contextmanager
 def as_written(folder: Path, name: str, remedy: str) -> Iterator[None]:
-    """Use the content of a file of ours. Raises InputError in place of the exceptions that content of another form
-    raises."""
+    """Context to use a file that the program wrote: raises InputError in place of the exceptions that content of
+    another form raises."""
     try:
         yield
     except _MISFORMED as error:
@@ -110,12 +110,12 @@ class MeasuredColumn:
     depths: Mapping[float, list[list[Array]]] = field(default_factory=dict)
 
     def sensor(self) -> ComparedSensor:
-        """The column."""
+        """The column as a sensor to compare."""
         return ComparedSensor(self.name, self.kind, self.source, {}, None, self.states, simulated=self.simulated)
 
 
 def measured_columns(folder: Path, *, predicted: bool = False) -> list[MeasuredColumn]:
-    """The columns of a folder of results; ``predicted`` adds the prediction that stands in it, before each.
+    """The columns of a folder of results; ``predicted`` adds the prediction in it before each measurement.
 
     Raises InputError if the folder is damaged or holds no group.
     """

@@ -37,8 +37,8 @@ from pneutouch.units import KPA
 
 @dataclass(frozen=True)
 class ReaderResult:
-    """A reader: the name of its folder, its record, the JSON data of that, of which its files are made, these by name,
-    and why there is no sketch."""
+    """A reader: the name of its folder, its record, the record as JSON data, the files made of that, by name, and the
+    reason why there is no sketch."""
 
     name: str
     record: ReaderRecord

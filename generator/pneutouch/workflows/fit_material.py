@@ -95,7 +95,7 @@ def _notes(fitted: FittedMaterial, small: float) -> list[str]:
 
 
 def _uncast(fitted: FittedMaterial) -> list[str]:
-    """Data that a material which no profile makes needs before it can be cast."""
+    """Note on a material that no profile makes and that lacks the data for casting; else empty."""
     if _material(fitted).is_cast or _profile(fitted) is not None:
         return []
     return [
@@ -117,7 +117,7 @@ def _material(fitted: FittedMaterial) -> Material:
 
 
 def _hardness(fitted: FittedMaterial, small: float) -> list[str]:
-    """The modulus against the hardness of the file."""
+    """Note on the modulus against the hardness that the material file states."""
     material = _material(fitted)
     if material.shore_a is None:
         return []
@@ -150,7 +150,7 @@ def _chart(fitted: FittedMaterial) -> str:
 
 
 def fit_material(data: Sequence[Path], options: FitOptions, library: Library | None = None) -> FittedMaterial:
-    """Read, check and fit; nothing is written. Raises InputError for data of no law and for a file of others."""
+    """Read, check and fit; nothing is written. Raises InputError for unusable data and for a file not made by a fit."""
     plain_name(options.name, key="name")
     size = puck_of(options)
     if not data:
@@ -207,13 +207,13 @@ class FittedMaterial:
     """Result of a fit.
 
     Attributes:
-        data: Tensile files, one a specimen; of a puck one file.
-        options: As given.
+        data: Tensile files, one for each specimen; for a puck one file.
+        options: Options as given.
         law: The law taken.
         neo_hookean: The neo-Hookean law over the same stretches.
-        largest: Stretch of tension up to which they were fitted.
-        choice: The fits of all laws; None of a puck.
-        puck: The fit of a puck; None of tension.
+        largest: Stretch of tension up to which the laws were fitted.
+        choice: The fits of all laws; None for a puck.
+        puck: The fit of a puck; None for tension.
         path: The material file.
         text: Its content.
     """
@@ -230,7 +230,7 @@ class FittedMaterial:
 
 
 HEAD = "# Written by pneutouch fit-material"
-"""First words of every file that is ours to overwrite."""
+"""First words of every file that the command may overwrite."""
 
 _COLOUR = "#C8BFB4"
 _POISSON = {
@@ -279,8 +279,8 @@ def _check_ours(path: Path) -> None:
 
 
 def _base(fitted: FittedMaterial, library: Library) -> dict[str, Any]:
-    """Known numbers of the material: of the one it is like, of a shipped one of its name, else those that a file
-    needs."""
+    """Known data of the material: of the material that it is like, or of a shipped one of its name; else those that a
+    file needs."""
     name, facts = fitted.options.name, fitted.options
     known = library.paths("materials")
     like = facts.like or (name if name in known and known[name] != fitted.path else None)

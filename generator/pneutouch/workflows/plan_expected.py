@@ -14,7 +14,7 @@ from pneutouch.spec.campaign import Rig
 from pneutouch.units import KPA, ML
 
 RESOLVED = 3.0
-"""A first step below this many resolutions of the force sensor is no detection (IUPAC's limit of detection)."""
+"""Resolutions of the force sensor below which a first step is not detected (IUPAC's limit of detection)."""
 
 ROUND = tuple(ML * digit * 10.0**power for power in (-2, -1, 0, 1) for digit in (1, 2, 5))
 """Round volumes that a syringe can push, mm3."""
@@ -23,8 +23,8 @@ MORE = 0.1 * ML
 """Extra dead volume whose effect is shown as well, mm3: 20 mm of a 2.5 mm bore, our choice."""
 
 _OF_RATED, _OF_RANGE = 0.5, 0.8
-"""Air pushed into the sensor may take it to this share of its rated pressure, into the line to this one of the gauge's
-range: our choice, so that neither is strained by the test."""
+"""Pushed air may take the sensor to the first share of its rated pressure, and the line to the second share of the
+gauge's range: our choice, so that neither is strained by the test."""
 
 _LEAK_SHARE = 0.01
 """The leak may take this share of the first step's rise while one indentation lasts: our choice."""
@@ -45,7 +45,7 @@ def points(curve: PressCurve, depths: tuple[float, ...]) -> tuple[ExpectedPoint,
 def curve_warnings(
     resin: str, rating: Rating, curve: PressCurve, tests: Mapping[str, RunProtocol], rig: Rig
 ) -> list[PlanViolation]:
-    """Limits that the kinds of run at one driving pressure would pass; ``tests`` are their protocols by kind."""
+    """Limits that the kinds of run at one driving pressure would exceed; ``tests`` are their protocols by kind."""
     driving_kPa = curve.driving / KPA
     depths = tuple(sorted({depth for test in tests.values() for depth in test.depths}))
     expected = points(curve, depths)

@@ -31,7 +31,7 @@ from pneutouch.units import KPA
 _SIZE = re.compile(r"(.+?)\s*(N|mm)$")
 
 _FREQUENCIES = (1e-3, 1e4)
-"""Hz."""
+"""Least and greatest frequency of a sine, Hz."""
 
 CYCLES = 10.0
 """Cycles of a sine, where no duration is given."""
@@ -68,12 +68,12 @@ class Load:
 
     @property
     def unit(self) -> str:
-        """N or mm."""
+        """Unit of the load, N or mm."""
         return "mm" if self.travel else "N"
 
     @property
     def seconds(self) -> float:
-        """Length of the record."""
+        """Length of the record, s."""
         if self.duration is not None:
             return self.duration
         return STEP_SECONDS if self.frequency is None else CYCLES / self.frequency
@@ -89,7 +89,7 @@ class Load:
 
 
 def load_size(text: str, key: str) -> tuple[float, bool]:
-    """Size of a load from text such as 2N or 3mm, and whether it is a travel. Raises InputError naming ``key``."""
+    """Size of a load from text such as 2N or 3mm, and True if it is a travel. Raises InputError naming ``key``."""
     match = _SIZE.match(text.strip())
     try:
         if match is None:
@@ -111,13 +111,13 @@ _A_PERIOD = 40.0
 """Samples in a period of the first resonance or of the sine, whichever is shorter."""
 
 _LEAST_RATE, _MOST_RATE = 2e3, 5e4
-"""Samples a second of a signal."""
+"""Least and greatest sampling rate of a signal, Hz."""
 
 MOST_SAMPLES = 2**18
-"""Longest signal."""
+"""Greatest number of samples of a signal."""
 
 _MORE_GAS = 0.1
-"""Share of all gas that the second press has in addition."""
+"""Additional gas of the second press, as a share of all gas."""
 
 _SMALL_LOAD = 0.02
 """Share of the range below which the wall's compliance is that without contact."""
@@ -157,7 +157,7 @@ class StateSignal:
 
 @dataclass(frozen=True)
 class RespondRun:
-    """A whole run."""
+    """Simulation of a load: the evaluated design, the load, the seed of the noise, and a signal for each state."""
 
     evaluation: Evaluation
     load: Load
@@ -228,7 +228,7 @@ def _compliances(evaluation: Evaluation, load: Load, peak: float) -> list[float]
 def _compliance(
     one: tuple[SensorState, float], two: tuple[SensorState, float], ambient: float, load: Load, peak: float
 ) -> float | None:
-    """Difference of volume over that of pressure at one load behind two dead volumes; the volume by Boyle's law."""
+    """Compliance: ratio of the changes of volume (by Boyle's law) and pressure at a load, from two dead volumes."""
     ends, places = [], []
     for state, dead in (one, two):
         x, rise = _curve(state, load)

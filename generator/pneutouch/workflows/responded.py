@@ -26,7 +26,7 @@ _MOST_ROWS = 20000
 """Rows of a signal's CSV file: of a longer signal every second, third ... sample is written."""
 
 _LOWEST = 0.1
-"""Hz, where the chart of the gain begins."""
+"""Lowest frequency in the chart of the gain, Hz."""
 
 CHAIN = (
     "slow press: the predicted curve; wall, gas and line linear about half of the load, with the compliance there",
@@ -127,7 +127,7 @@ def _csv(columns: dict[str, Array]) -> bytes:
 
 
 def _chart(run: RespondRun) -> str:
-    """The signal of the highest driving pressure, its step alone where there is one, and the gain of every state."""
+    """The signal of the highest driving pressure, only around the step if there is one, and the gain of every state."""
     shown = run.signals[-1]
     part = slice(None)
     if run.load.frequency is None:

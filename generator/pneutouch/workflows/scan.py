@@ -1,4 +1,4 @@
-"""A specimen scanned by a sensor at each driving pressure, and the domes that distinguish two patterns of it."""
+"""A specimen scanned by a sensor at each driving pressure, and the domes that best distinguish two patterns."""
 
 import re
 from dataclasses import dataclass, replace
@@ -38,7 +38,7 @@ from pneutouch.units import KPA
 from pneutouch.workflows.specimen import ResolvedSpecimen, draw, load_specimen
 
 KEPT = 20.0
-"""Highest frequency of signals in CSV files, Hz, or twice the highest pattern's; with five times as many samples."""
+"""Frequency up to which CSV files keep signals, Hz, or twice the highest pattern's; sampled at five times that."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class AnalysedSignal:
 
 @dataclass(frozen=True)
 class ScanRun:
-    """A whole run; ``frequencies`` are the patterns' at the speed of the scan, Hz, by name; ``noise`` in MPa rms."""
+    """A scan with its inputs and signals; ``frequencies`` of the patterns, Hz, by name; ``noise`` in MPa rms."""
 
     specimen: ResolvedSpecimen
     design: ResolvedDesign
@@ -120,7 +120,7 @@ def _load_both(
 ) -> tuple[ResolvedSpecimen, ResolvedDesign, Sensor]:
     """A specimen and a sensor; one that is ``scanned`` is checked as it is for printing.
 
-    Raises InputError, also where one is the other.
+    Raises InputError, also if the design is a specimen.
     """
     context = load_specimen(specimen, None, library)
     if isinstance(design, str) and library.specimen_file(design) is not None:
@@ -239,13 +239,13 @@ def _measured(path: Path, frequencies: dict[str, float]) -> AnalysedSignal:
 
 _RADII, _RATIOS, _PRESSURES = 8, 8, 9
 _SMALLEST, _LARGEST = 4.0, 20.0
-"""Inner radii looked at, mm."""
+"""Smallest and largest inner radius considered, mm."""
 _SHOWN, _DIGITS = 8, 4
 
 
 @dataclass(frozen=True)
 class DomeCandidates:
-    """Candidates, (n,) each: resin by number in ``names``, mm, and one row a driving pressure."""
+    """Candidate domes, (n,) each: resin by number in ``names``, sizes in mm, one row for each driving pressure."""
 
     names: tuple[str, ...]
     resin: Array
@@ -383,5 +383,5 @@ def _rated(domes: SensorBatch, resin: Array, materials: list[Material], scene: R
 
 
 def _grid(*axes: Array) -> list[Array]:
-    """Every combination, one array an axis; the last axis runs fastest."""
+    """All combinations, one flat array for each axis; the last axis varies fastest."""
     return [np.asarray(grid, float).ravel() for grid in np.meshgrid(*axes, indexing="ij")]

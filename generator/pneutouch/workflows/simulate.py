@@ -58,7 +58,7 @@ PUSHED = np.linspace(0.0, 0.5, 11) * ML
 _OPTIONS = {"rate_Hz": "rate"} | {
     key: key for key in ("specimens", "driving_pressures_kPa", "runs", "kinds", "seed", "model", "ages_days", "parquet")
 }
-"""Options that a campaign depends on, in addition to its resins, and their keys in what is hashed."""
+"""Options that a campaign depends on, in addition to its resins, and their keys in the hashed inputs."""
 
 _DEVIATION = 1
 """Number of the random stream of a specimen's deviation, apart from that of its parameters."""
@@ -77,8 +77,8 @@ def simulate(
 ) -> Path:
     """Write ``out/<design>-campaign/``: campaign.toml, runs, truth.json, manifest; the same input, the same bytes.
 
-    ``design`` may be the folder of a plan, whose runs are simulated. Runs are written to a hidden folder next to the
-    one to be as they are made. Raises InputError if that is impossible.
+    ``design`` may be the folder of a plan, whose runs are simulated. While they are made, runs are written to a hidden
+    folder next to the final one. Raises InputError if that is impossible.
     """
     library = library or Library.default()
     design, changes, asked = as_planned(design, changes, options, library)
@@ -197,7 +197,7 @@ def _parameters(subject: SimulatedResin) -> dict[str, dict[str, ParameterValue]]
 
 
 def campaign_toml(campaign: Campaign, comment: str) -> bytes:
-    """A campaign as a file; raises InputError where it would not be read again.
+    """A campaign as a file; raises InputError if it could not be read again.
 
     Columns and format are left out where nothing is stated of them, so that they are found from the files."""
     open_ = {key for key in ("columns", "format") if getattr(campaign, key) == Campaign.model_fields[key].default}

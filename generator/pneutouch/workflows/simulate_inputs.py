@@ -73,7 +73,7 @@ def runs_of(sensor: str, subject: SimulatedResin, age: float, options: Requested
 
 
 def label(sensor: str, age: float, options: RequestedRuns) -> str:
-    """A specimen with its age, where there are several."""
+    """Name of a specimen, with its age unless all are fresh."""
     return sensor if options.ages_days == [0.0] else f"{sensor}-{age:g}d"
 
 

@@ -1,4 +1,4 @@
-"""The fit: parameters of one sensor from its measurements, with intervals, and those that the data leave open."""
+"""Fit of one sensor's parameters to its measurements, with intervals, and the parameters that the data leave open."""
 
 from dataclasses import dataclass
 
@@ -18,16 +18,16 @@ _START_SHARE = 0.9
 """The search begins where the greatest driving pressure is at most this share of the limit pressure: our choice."""
 
 _ROUNDS = 2
-"""Repetitions of the fit with errors and sizes estimated from the residuals: our choice, a third changes nothing."""
+"""Repetitions of the fit with errors and discrepancy taken from the residuals: our choice, a third changes nothing."""
 
 _CENTRED = 3
-"""Most repetitions of the fit with the solid's ratio of the contact at the estimate: our choice."""
+"""Greatest number of refits with the solid's contact ratio recomputed at the estimate: our choice."""
 
 _NEAR = 0.02
 """Distance of the estimate below which that ratio is kept: it moves the force by less than 0.005."""
 
 _SMOOTH = 0.1
-"""Smooth share of a reading that may be anything while the scatter of points is estimated: our choice, generous."""
+"""Model discrepancy, share of the reading, allowed while the scatter of points is estimated: our choice, generous."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,15 +36,15 @@ class CalibrationFit:
 
     Attributes:
         observations, points, parameters, sensor: Inputs of the fit; the sensor as designed, in the laboratory's air.
-        problem, solution: As solved, weights with the scatter of the runs.
-        covariance: Its uncertainty.
-        half_width: Of the 95 % intervals, (k,); NaN on a bound.
+        problem, solution: Least-squares problem, weighted with the scatter of the runs, and its solution.
+        covariance: Uncertainty of the solution.
+        half_width: Half-widths of the 95 % intervals, (k,); NaN for a parameter on a bound.
         chi_squared, freedom: Sum of squared residuals by the covariance of reading, atlas, first contact and what the
             model leaves out, and its degrees of freedom.
-        channel_factor: Standard deviations of points over their stated ones: force, rise, injection.
-        sizes: Of what the model leaves out of all runs alike, share of the reading: force, rise, injection.
-        run_factor: Variance by which runs scatter more than independent points would.
-        contact: Contact whose ratio by the solid the model takes; None for a plate without friction.
+        channel_factor: Ratios of the points' standard deviations to the stated ones: force, rise, injection.
+        sizes: Model discrepancy, common to all runs, share of the reading: force, rise, injection.
+        run_factor: Ratio of the variance between runs to that of independent points.
+        contact: Contact whose ratio, from the solid, the model applies; None for a plate without friction.
     """
 
     observations: Observations
@@ -73,13 +73,13 @@ class CalibrationFit:
 
     @property
     def left_out(self) -> Flags:
-        """Points that the model does not have, (c, m) curves; see also `injections_left_out`."""
+        """Curve points that the model does not reach, (c, m); see also `injections_left_out`."""
         size = self.points.there.size
         return self.points.there & ~self.solution.use[:size].reshape(self.points.there.shape)
 
     @property
     def injections_left_out(self) -> Flags:
-        """Injected volumes that the model does not have, (i, n)."""
+        """Injected volumes that the model does not reach, (i, n)."""
         size = self.points.there.size
         return self.points.known & ~self.solution.use[2 * size :].reshape(self.points.known.shape)
 
@@ -163,7 +163,7 @@ def _fit(
 
 
 def _others(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> Array:
-    """Derivatives by the parameters that are not fitted but uncertain, (N, 5), over the errors; 0 by the others."""
+    """Derivatives of the values, over their errors, by parameters uncertain but not fitted, (N, 5); else 0."""
     slopes = np.zeros((solution.residual.size, len(NAMES)))
     others = list(problem.chosen.others)
     if others:
@@ -177,7 +177,7 @@ def _others(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> Arr
 
 
 def _sizes(problem: LeastSquaresProblem, solution: LeastSquaresSolution, shared: SharedUnknowns, floor: Array) -> Array:
-    """Sizes of the model discrepancy; everything that has a prior may explain the residuals first."""
+    """Sizes of the model discrepancy, (3,), from the residuals that parameters with a prior do not explain."""
     others, use = list(problem.chosen.others), solution.use
     residual, jacobian, _, _ = problem.look(solution.at)
     whole = np.hstack([jacobian, _others(problem, solution)[:, others]])
@@ -190,7 +190,7 @@ def _sizes(problem: LeastSquaresProblem, solution: LeastSquaresSolution, shared:
 
 
 def _start(sensor: Sensor, points: ObservationPoints, parameters: CalibrationParameters) -> Array:
-    """The design's values, the modulus raised where it would burst under the pressures that the sensor stood."""
+    """Start values: the design's, the modulus raised if the dome would burst at a pressure that the sensor stood."""
     start = parameters.start[list(parameters.fitted)].copy()
     if MODULUS in parameters.fitted and points.driving.size:
         slices = shipped().slices(np.array([sensor.dome.wall_thickness / sensor.dome.inner_radius]), ())
@@ -201,7 +201,7 @@ def _start(sensor: Sensor, points: ObservationPoints, parameters: CalibrationPar
 
 
 def _channel_factors(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> Array:
-    """Root mean square by channel, at least 1, of the residuals that no smooth share explains."""
+    """Root mean square by channel, (3,), at least 1, of the residuals beyond the smooth shared errors."""
     factors, use = np.ones(3), solution.use
     residual, shared = problem.look(solution.at)[0], problem.shared[use]
     explained = shared.T @ shared
@@ -237,13 +237,13 @@ class CorrelatedParameters:
     """Strongly correlated parameters.
 
     Attributes:
-        members: Their numbers.
+        members: Numbers of the parameters.
         correlation: Greatest correlation among them, in the data alone, with its sign.
         alone: Standard deviation of each by the scatter of the data alone, were the model true; of modulus and wall
             relative, of the dead volume mm3, of the offset mm.
-        given: The same were the others known.
-        combination: Exponents of modulus and wall in the product that is known, where they are the members; else None.
-    """
+        given: The same if the other members were known.
+        combination: Exponents of modulus and wall in the product that is known, if these two are the members; else
+            None."""
 
     members: tuple[int, ...]
     correlation: float
@@ -284,7 +284,7 @@ def identify(fit: CalibrationFit) -> Identifiability:
 
 
 def _left(fit: CalibrationFit, place: int, seen: bool) -> float:
-    """Standard deviation with prior and data over that of the prior."""
+    """Standard deviation of a parameter by prior and data, over that of the prior alone."""
     if not seen:
         return 1.0
     prior_spread = fit.parameters.prior_spread[list(fit.parameters.fitted)]
@@ -293,9 +293,9 @@ def _left(fit: CalibrationFit, place: int, seen: bool) -> float:
 
 
 def _groups(curves: Array, known: Array, numbers: Array, prior_spread: Array) -> list[CorrelatedParameters]:
-    """Sets of parameters along the directions that the curves, by their information (n, n), hold least of.
+    """Sets of correlated parameters: those along the directions of which the curves' information (n, n) is least.
 
-    ``known``, (n, n), is the information with what many values share taken into account.
+    ``known``, (n, n), is the information with errors that many values share taken into account.
     """
     scale = np.sqrt(np.diag(curves))
     values, vectors = np.linalg.eigh(curves / np.outer(scale, scale))
@@ -321,14 +321,14 @@ def _groups(curves: Array, known: Array, numbers: Array, prior_spread: Array) ->
 
 
 def _spreads(known: Array) -> Array:
-    """Standard deviations (n,) by information (n, n)."""
+    """Standard deviations (n,) from an information matrix (n, n)."""
     scale = np.sqrt(np.diag(known))
     values, vectors = np.linalg.eigh(known / np.outer(scale, scale))
     return np.asarray(np.sqrt(((vectors**2) / np.maximum(values, _LEAST)).sum(axis=1)) / scale)
 
 
 def _product(covariance: Array, numbers: Array) -> float | None:
-    """Exponent a of the product modulus x wall^a that is known best, for the pair of both."""
+    """Exponent a of the best-determined product modulus x wall^a, if these two are the pair; else None."""
     if numbers.size != 2 or not LOGARITHMIC[numbers].all():
         return None
     # Along the ridge d ln mu = -a d ln t0; the ridge is the direction of the greatest variance.

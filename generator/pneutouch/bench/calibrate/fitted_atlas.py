@@ -36,13 +36,13 @@ from pneutouch.mechanics.sensor import Sensor
 
 _NODES = 60
 _NEWTON = 4
-"""Nodes from which a volume is first guessed, and steps of Newton's method from there: the last is below 1e-9 of it."""
+"""Numbers of nodes for a first guess of the volume, and of Newton steps from it: the last step is below 1e-9 of it."""
 
 
 def injected(slices: AtlasSlices, k: Index, ambient: Array, dead: Array, volume: Array) -> tuple[Array, Flags]:
-    """Pressures of s sensors after injected volumes (n,) and whether the atlas covers them, (s, n).
+    """Pressures of s sensors after injected volumes (n,) and True where the atlas covers them, (s, n).
 
-    Solves (p + pa)(V(p) + Vd) = pa (V0 + Vd + dV), V the free dome's volume, by V: the injected volume rises with it
+    Solves (p + pa)(V(p) + Vd) = pa (V0 + Vd + dV), V the free dome's volume, for V: the injected volume rises with V
     through the limit point, where a driven pressure would not. All nondimensional; ambient and dead (s,), by slices k.
     """
     s, n = k.size, volume.size
@@ -78,11 +78,11 @@ _GAP = 0.08
 
 @dataclass(frozen=True, slots=True)
 class FittedContact:
-    """Another contact than a plate without friction.
+    """Contact other than a plate without friction.
 
     Attributes:
-        centre: The sensor that the solid's ratio is of.
-        frictions: Coefficients that it is solved at, ascending.
+        centre: Sensor for which the solid's ratio is computed.
+        frictions: Coefficients of friction at which the solid is solved, ascending.
     """
 
     centre: Sensor
@@ -90,8 +90,8 @@ class FittedContact:
 
     @classmethod
     def of(cls, sensor: Sensor, chosen: CalibrationParameters, full: Array) -> "FittedContact | None":
-        """Contact of a sensor with all parameters at their coordinates ``full``, (5,); None for the atlas's own
-        plate."""
+        """Contact of a sensor with all parameters at their coordinates ``full``, (5,); None for a plate without
+        friction, as in the atlas."""
         if not chosen.frictions:
             return None
         modulus, wall = (float(np.exp(full[k])) for k in (MODULUS, WALL))
@@ -99,7 +99,7 @@ class FittedContact:
         return cls(centre, chosen.frictions)
 
     def distance(self, other: "FittedContact") -> float:
-        """Distance to another one's sensor: the greatest change of ln modulus, ln wall and ln gas volume."""
+        """Distance of two contacts' centres: the greatest change of ln modulus, ln wall and ln gas volume."""
         pairs = [
             (
                 one.wall.shear_modulus,
@@ -115,9 +115,9 @@ class AtlasModel:
     """The atlas at ``points``. Parameter sets are (s, 5) coordinates, values (s, N) in the order of
     `ObservationPoints.values`.
 
-    Under another contact than a plate without friction it is the atlas times the solid's ratio of both, of the sensor
-    ``contact.centre``. Raises InputError if the atlas does not cover the sensor, ComputationError where the solid
-    cannot press it.
+    For a contact other than a plate without friction, values of the atlas are multiplied by the solid's ratio of the
+    two contacts for the sensor ``contact.centre``. Raises InputError if the atlas does not cover the sensor,
+    ComputationError where the solid cannot press it.
     """
 
     def __init__(self, sensor: Sensor, points: ObservationPoints, contact: "FittedContact | None" = None) -> None:
@@ -137,7 +137,7 @@ class AtlasModel:
         self._between = np.linspace(0.0, deepest, int(np.ceil(deepest / _GAP)) + 1)[1:] * size if wide else np.zeros(0)
 
     def values(self, sets: Array) -> tuple[Array, Flags]:
-        """Values and whether the model has them, (s, N) each. The last result is kept: fits begin where others end."""
+        """Values, and True where the model has them, (s, N) each. The last result is kept: fits often restart there."""
         key = sets.tobytes()
         if self._last is None or self._last[0] != key:
             self._last = key, *self._evaluated(sets)
@@ -187,7 +187,7 @@ class AtlasModel:
         return SensorBatch(size, wall, modulus, *loads, unlimited, unlimited)
 
     def _injections(self, sets: Array, slices: AtlasSlices, k: Index) -> tuple[Array, Flags]:
-        """Gauge pressures after the injections, (s, i n)."""
+        """Gauge pressures after the injections, and True where the atlas covers them, (s, i n) each."""
         volume, s = self.points.volume.ravel(), len(sets)
         if not volume.size:
             return np.zeros((s, 0)), np.zeros((s, 0), dtype=bool)
@@ -201,12 +201,12 @@ FLOOR = np.array([0.01, 0.005, 0.005])
 """Least standard deviation of the model discrepancy, as a share of force, of pressure rise and of an injection's
 pressure.
 
-A share that is the same everywhere is a modulus to the model, so no residual shows it. Our choice: a wall that relaxes
+A share that is the same everywhere looks like another modulus, so no residual shows it. Our choice: a wall that relaxes
 carries more at the end of a 4 s hold than at rest; no Prony data of these resins are published, the paper's Fig. S1
-calls relaxation low, and what the air reads of it is less than what the plate does."""
+calls relaxation low, and the air shows less of it than the plate does."""
 
 LARGEST = 0.3
-"""Greatest size considered: our choice, no longer a model of the sensor."""
+"""Greatest size of the discrepancy considered: our choice; beyond it the model does not describe the sensor."""
 
 _LENGTH = 0.5
 """Length, as a share of a run's travel, over which the discrepancy stays correlated: our choice."""
@@ -216,27 +216,27 @@ _GAUSS_NODES = 4
 
 _GRID = 12
 TRAVEL = 3
-"""Number of the columns of travel, after those of force 0, rise 1, injection 2."""
+"""Kind of the columns of travel errors; the kinds before are the channels: force 0, rise 1, injection 2."""
 
 
 @dataclass(frozen=True, slots=True)
 class SharedUnknowns:
-    """Unknowns that move many values together: ``columns`` (N, q) for size one, in N and MPa; ``kind`` (q,) of each, as
-    `FLOOR`, or `TRAVEL`, whose size is one already."""
+    """Unknowns that many values share: ``columns`` (N, q), their effect at size 1, in N and MPa; ``kind`` (q,), an
+    index of `FLOOR`, or `TRAVEL`, whose columns already have their size."""
 
     columns: Array
     kind: Array
 
     def sized(self, sizes: Array) -> Array:
-        """Columns for sizes (3,) of the kinds."""
+        """Columns (N, q) scaled by the sizes (3,) of their kinds."""
         return np.asarray(self.columns * np.append(sizes, 1.0)[self.kind])
 
 
 def shared_of(points: ObservationPoints) -> SharedUnknowns:
-    """Columns for points.
+    """Shared unknowns of points.
 
-    Of each channel one share of all its readings, whatever the pressure, and at each pressure a smooth share along the
-    travel; of each curve one error of its travel, which moves force and rise together."""
+    Each channel has one share of all its readings, whatever the pressure, and at each pressure a smooth share along the
+    travel; each curve has one error of its travel, which moves force and rise together."""
     m, values, channels = points.travel.shape[1], points.values, points.channels
     travel = points.travel / points.travel.max(axis=1, initial=1e-9)[:, None]
     shape = _shape(
@@ -264,12 +264,12 @@ def shared_of(points: ObservationPoints) -> SharedUnknowns:
 def sizes_of(
     shared: SharedUnknowns, jacobian: Array, residual: Array, prior_weight: Array, pull: Array, floor: Array
 ) -> Array:
-    """Sizes (3,) that the residuals make most likely, the parameters taken out (restricted likelihood: Patterson and
-    Thompson, Biometrika 58, 1971, 545-554); at least ``floor``.
+    """Sizes (3,) that the residuals make most likely, the parameters integrated out (restricted likelihood: Patterson
+    and Thompson, Biometrika 58, 1971, 545-554); at least ``floor``.
 
-    Rows are those used, over their standard deviations: ``shared`` (n, q), ``jacobian`` (n, k), ``residual`` (n,);
-    ``prior_weight`` (k,) are the weights of the parameters, ``pull`` (k,) how many standard deviations each is off it.
-    Where the likelihood is greatest is sought kind by kind on a grid, twice round."""
+    Rows are the values used, over their standard deviations: ``shared`` (n, q), ``jacobian`` (n, k), ``residual`` (n,);
+    ``prior_weight`` (k,) are the prior weights of the parameters, ``pull`` (k,) their distances from the prior in
+    standard deviations. The greatest likelihood is sought kind by kind on a grid, in two passes."""
     k, q = jacobian.shape[1], shared.kind.size
     rows = np.hstack([jacobian, shared.columns, residual[:, None]])
     gram = rows.T @ rows
@@ -301,7 +301,7 @@ def _unlikely(gram: Array, weight: Array) -> float:
 
 
 def _shape(depth: Array) -> Array:
-    """A smooth share along a unit length with unit variance, as weights (N, nodes) of independent unknowns."""
+    """Weights (N, nodes) of independent unit unknowns that make a smooth share of unit variance over a unit length."""
     nodes = np.linspace(0.0, 1.0, _GAUSS_NODES)
 
     def alike(a: Array, b: Array) -> Array:

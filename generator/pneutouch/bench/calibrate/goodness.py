@@ -4,8 +4,8 @@ Misfit of the model to the runs as a whole, and the test that it is a model of t
 
 Correction of the fitted model by its error in the curves: factors on force and pressure by driving pressure.
 
-The sensitivity of a soft dome hardly depends on modulus, wall and dead volume, so no fit of them takes the model's
-error in it away. What the runs show of that error is corrected where it was measured, and between.
+The sensitivity of a soft dome hardly depends on modulus, wall and dead volume, so a fit of them does not remove the
+model's error in it. That error, as the runs show it, is corrected at the measured driving pressures and between them.
 """
 
 from collections.abc import Sequence
@@ -25,20 +25,20 @@ MISSED = 0.005
 """Least residual over full scale that is called a miss: our choice, a few times the atlas's own error."""
 
 _CHANCE = 0.001
-"""Chance at which a scatter between runs would show a miss at a point by itself: our choice."""
+"""Probability that scatter between runs alone would show a miss at a point: our choice."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunResiduals:
-    """One run: model less measured; arrays (n,), NaN if the model has no state. Of an injection ``force`` is empty.
+    """Residuals of one run, model less measured; arrays (n,), NaN if the model has no state. An injection has no
+    ``force``.
 
     Attributes:
-        label: Of the run.
-        driving_pressure_kPa: Driving pressure as the campaign names it, kPa; of an injection NaN.
-        at: Indentation, mm; of an injection the volume, mm3.
+        label: Label of the run.
+        driving_pressure_kPa: Driving pressure as the campaign names it, kPa; NaN for an injection.
+        at: Indentation, mm; for an injection the volume, mm3.
         force, rise: Residuals, N and MPa.
-        force_scale, rise_scale: Greatest measured force and rise: full scale.
-    """
+        force_scale, rise_scale: Greatest measured force and rise: full scale."""
 
     label: str
     driving_pressure_kPa: float
@@ -78,11 +78,10 @@ def residuals(fit: CalibrationFit) -> tuple[RunResiduals, ...]:
 
 
 def misses(fit: CalibrationFit) -> list[MissRecord]:
-    """Stretches of travel where the runs at a driving pressure deviate by more than their scatter: the model is not the
-    sensor.
+    """Stretches of travel where the runs at a driving pressure deviate from the model by more than their scatter.
 
-    The scatter is pooled over pressures and travels, in shares of full scale; without repeated runs only the stated
-    errors are there to compare with.
+    The scatter is pooled over pressures and travels, in shares of full scale; without repeated runs a deviation is only
+    compared with `MISSED`.
     """
     runs = [run for run in residuals(fit) if run.force.size]
     deviations = []
@@ -149,15 +148,15 @@ DOUBTFUL, DOUBTFUL_CHI = 0.1, 3.0
 sensors, with all errors that the intervals count, have at most 0.018 and 0.8 (36 of three resins)."""
 
 CONTRADICTED_CHI = 10.0
-"""Chi-squared per degree of freedom above which the runs contradict the model: our choice. Its covariance holds a model
-discrepancy of up to `LARGEST` already, so that of a model that applies is about 1, whatever its error."""
+"""Chi-squared per degree of freedom above which the runs contradict the model: our choice. The covariance includes a
+model discrepancy of up to `LARGEST`, so that a model that applies has about 1, whatever its error."""
 
 
 @dataclass(frozen=True, slots=True)
 class ModelMisfit:
     """Root mean square residuals of all runs over their full scale, and chi-squared per degree of freedom.
 
-    ``shares`` are those of force, pressure rise and an injection's pressure; of a channel that was not measured 0.
+    ``shares`` are the residuals of force, pressure rise and injection pressure; 0 for a channel that was not measured.
     """
 
     shares: tuple[float, float, float]
@@ -201,8 +200,8 @@ def _pooled_error(errors: list[float]) -> float:
 
 ASSUMED_SCATTER = 0.018
 """Relative standard deviation between runs of one specimen where none was repeated: root mean square of the seven
-resins of the paper's Table S1, repeatability over the sensitivity at 0 kPa. Of the force nothing is published; the same
-is taken."""
+resins of the paper's Table S1, repeatability over the sensitivity at 0 kPa. For the force nothing is published; the
+same value is taken."""
 
 _LEAST_POINTS = 3
 
@@ -212,14 +211,14 @@ _MOST_FREEDOM = 1e6
 
 @dataclass(frozen=True, slots=True)
 class ResponseGap:
-    """Logarithms of measured over modelled, (n,) by driving pressure, means over its runs.
+    """Logarithms of measured over modelled force and sensitivity, (n,) by driving pressure, means over its runs.
 
     Attributes:
         driving_pressures_kPa: Driving pressures, kPa, ascending.
-        force, sensitivity: Of the contact force and of the sensitivity.
+        force, sensitivity: Log ratios of the contact force and of the sensitivity.
         force_errors, sensitivity_errors: Their standard uncertainties: scatter of the runs, pooled over the pressures,
             and the least share that no residual shows (`FLOOR`).
-        depth: Travel, mm, to which every run went of the driving pressure whose runs went deepest.
+        depth: Travel, mm, that all runs reached at the driving pressure with the deepest runs.
         freedom: Degrees of freedom of these errors, the fewest there; 0 where no run was repeated and the scatter is
             `ASSUMED_SCATTER`.
     """
@@ -234,14 +233,14 @@ class ResponseGap:
 
     @property
     def correction(self) -> ResponseCorrection:
-        """The factors that make the model's curves those measured."""
+        """Factors on force and pressure rise that bring the model's curves to the measured ones."""
         force, rise = np.exp(self.force), np.exp(self.force + self.sensitivity)
         pressures = (np.array(self.driving_pressures_kPa) * KPA).tolist()
         return ResponseCorrection(tuple(pressures), tuple(force.tolist()), tuple(rise.tolist()))
 
 
 def response_gap(fit: CalibrationFit) -> ResponseGap | None:
-    """The gap of a fit; None if no run has enough points in the model."""
+    """Gap between the runs of a fit and its model; None if no run has `_LEAST_POINTS` points that the model reaches."""
     p, size = fit.points, fit.points.there.size
     shape = p.there.shape
     use = fit.solution.use[:size].reshape(shape)
@@ -289,6 +288,6 @@ def _gap(travel: Array, measured: tuple[Array, Array], model: tuple[Array, Array
 
 
 def _sensitivity(travel: Array, force: Array, rise: Array, use: Flags) -> float:
-    """Slope of the rise over the force; the origin belongs to the curve."""
+    """Sensitivity of a curve, kPa/N, with the origin as its first point."""
     x, f, r = (np.concatenate([[0.0], part[use]]) for part in (travel, force, rise))
     return float(lines(x, f, r / KPA).sensitivity)

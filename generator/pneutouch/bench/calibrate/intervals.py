@@ -12,12 +12,12 @@ from pneutouch.arrays import Array, Flags, Index
 from pneutouch.bench.calibrate.solve import LeastSquaresProblem, LeastSquaresSolution
 
 LEAST_RUNS = 3
-"""Fewer runs give no scatter between runs."""
+"""Least number of runs that give a scatter between runs."""
 
 LEVEL = 0.95
 
 _LEVERAGE = 0.9
-"""A run with a greater share of the information in a direction shows no scatter there: our choice."""
+"""Share of the information in a direction above which a run shows no scatter there: our choice."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,10 +29,10 @@ class Covariance:
         information: Information of the data alone, at the average scatter of the runs, (k, k).
         freedom: Degrees of freedom of the scatter between runs, infinite without scatter between runs.
         share: Share of the data in each parameter's variance, (k,).
-        considered: Standard deviations that the parameters not fitted add, by those, (k, 4); they are in ``matrix``.
-        even: Those that have a uniform prior, (4,).
+        considered: Standard deviations added by each uncertain parameter not fitted, (k, 5); ``matrix`` includes them.
+        even: Parameters that have a uniform prior, (5,).
         runs: Runs with a point in the fit.
-        alone: For each parameter the number of the one run that it rests on, -1 where there are several, (k,).
+        alone: For each parameter the number of the only run that determines it, -1 where several do, (k,).
     """
 
     matrix: Array
@@ -82,10 +82,10 @@ def information(jacobian: Array) -> Array:
 
 
 def scatter(clusters: Array, part: WeightedRows, normal: Array) -> RunScatter:
-    """Scatter of the slopes between runs whose points move together.
+    """Scatter of the gradient between runs; the points of one run move together.
 
     Cluster-robust with the leverage correction of Bell and McCaffrey (Survey Methodology 28, 2002, 169-181): a run's
-    residuals are too small by what it pulls the fit towards itself. ``normal``, (j, j), is the information of all runs
+    residuals are too small because it pulls the fit towards itself. ``normal``, (j, j), is the information of all runs
     and priors."""
     root = _root(normal)
     total, held = np.zeros_like(normal), np.zeros_like(normal)
@@ -108,7 +108,7 @@ def scatter(clusters: Array, part: WeightedRows, normal: Array) -> RunScatter:
 
 
 def factor(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> float:
-    """Variance of the data's slopes over that of independent points, mean over directions; at least 1."""
+    """Variance of the gradient between runs over that of independent points, mean over directions; at least 1."""
     free = np.flatnonzero(~solution.bound & (np.abs(solution.jacobian).max(axis=0) > 0))
     if not free.size or _freedom(problem, solution) < 1:
         return 1.0
@@ -121,9 +121,9 @@ def factor(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> floa
 def covariance(
     problem: LeastSquaresProblem, solution: LeastSquaresSolution, run_factor: float, others: Array
 ) -> Covariance:
-    """Covariances at a solution whose weights hold ``run_factor`` (`factor`).
+    """Covariances at a solution whose weights include ``run_factor`` (`factor`).
 
-    ``others``, (N, 4), are derivatives by the parameters that are not fitted but uncertain, times their standard
+    ``others``, (N, 5), are derivatives by the parameters that are not fitted but uncertain, times their standard
     deviations: they move the estimates although they are not estimated (consider covariance: Schmidt, in Advances in
     Control Systems 3, 1966)."""
     k, runs = solution.at.size, _runs(problem, solution)
@@ -195,7 +195,7 @@ def _runs(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> int:
 
 
 def _freedom(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> int:
-    """Runs beyond the first of each driving pressure: an error that all runs share is in none of their differences."""
+    """Number of runs beyond the first at each driving pressure: their differences hold no error that all runs share."""
     points = problem.model.points
     clusters = np.unique(points.clusters[solution.use])
     curves = clusters[clusters < points.group.size].astype(int)
@@ -213,15 +213,15 @@ def _rows(problem: LeastSquaresProblem, solution: LeastSquaresSolution, free: In
 
 
 def _root(normal: Array) -> Array:
-    """The inverse's symmetric root."""
+    """Symmetric root of the inverse of ``normal``."""
     values, vectors = np.linalg.eigh(normal)
     return np.asarray((vectors / np.sqrt(values)) @ vectors.T)
 
 
 def _at_least(score: Array, data: Array, normal: Array, held: Array, run_factor: float) -> Array:
-    """The scatter, nowhere less than that of independent points.
+    """Scatter ``score``, raised where it is less than that of independent points.
 
-    A direction that one run alone determines shows none; there the run is assumed to scatter as the others on average.
+    A direction that only one run determines shows none; there the run is assumed to scatter as the others on average.
     """
     root = _root(normal)
     least = root @ data @ root / run_factor + (1.0 - 1.0 / run_factor) * held

@@ -61,7 +61,7 @@ def _shift(fit: CalibrationFit, residual: Array) -> Array:
 def predict_held_out(
     observations: Observations, sensor: Sensor, parameters: CalibrationParameters, driving_pressure_kPa: float
 ) -> HeldOutRecord:
-    """Leave out a driving pressure (kPa), fit to the rest, predict it by that fit and its correction.
+    """Leave out a driving pressure (kPa), fit the other runs, and predict it by that fit and its correction.
 
     Raises InputError for a pressure that was not measured, where nothing is left to fit, and where the model has too
     few of its points to compare."""
@@ -133,9 +133,9 @@ def _listed(pressures_kPa: tuple[float, ...]) -> str:
 CHANNELS = ("force", "pressure rise", "injection's pressure")
 WORDS = ("shear modulus", "wall thickness", "dead volume", "contact offset", "friction")
 _WORTH = 1.2
-"""A test that shrinks the widest interval by a smaller factor is not listed: our choice."""
+"""Least factor by which a listed test shrinks the widest interval: our choice."""
 _FAR = 2.0
-"""Prior standard deviations from the design from which on an estimate is noted: our choice, one in twenty by chance."""
+"""Distance from the design, in prior standard deviations, that is noted: our choice, one in twenty by chance."""
 _MANY = 100.0
 _MOVED = 0.2
 """Share of an interval's half width below which the effect of a gain error is not listed: our choice."""
@@ -214,7 +214,7 @@ def _bounds(fit: CalibrationFit) -> list[str]:
 
 
 def _far(fit: CalibrationFit) -> list[str]:
-    """Estimates that the priors keep away from the optimum of the data."""
+    """Notes on estimates far from the design's value, which the priors keep away from the optimum of the data."""
     notes = []
     for place, k in enumerate(fit.parameters.fitted):
         away = abs(fit.solution.at[place] - fit.parameters.start[k]) / fit.parameters.prior_spread[k]

@@ -20,10 +20,10 @@ ATLAS_FORCE, ATLAS_PRESSURE = 0.0011, 0.0004
 
 READING = 0.05 * KPA
 """Least standard deviation of a pressure point, MPa: our choice, half of the 0.1 kPa that such gauges show; the paper
-gives the resolution of its force sensor alone."""
+gives only the resolution of its force sensor."""
 
 _RANGE = 0.99
-"""Share of the force sensor's range from which on a reading may be cut off: our choice, the zero is taken off it."""
+"""Share of the force sensor's range from which on a reading counts as clipped: our choice, the zero is subtracted."""
 
 _AVERAGED = 100
 """Greatest number of samples whose noise is taken to average out in a point: our choice, for noise is not white."""
@@ -60,7 +60,7 @@ class Observations:
         return replace(self, curves=kept)
 
     def only(self, driving_pressure_kPa: float) -> Observations:
-        """The curves of a driving pressure, kPa, alone."""
+        """Only the curves at a driving pressure, kPa, without the injections."""
         kept = tuple(curve for curve in self.curves if curve.run.driving_pressure_kPa == driving_pressure_kPa)
         return replace(self, curves=kept, injections=())
 
@@ -90,12 +90,12 @@ class ObservationPoints(NamedTuple):
 
     @property
     def force_slope(self) -> Array:
-        """Force by travel, (c, m) N/mm."""
+        """Derivative of the force by travel, N/mm, (c, m)."""
         return _slopes(self.travel, self.force)
 
     @property
     def rise_slope(self) -> Array:
-        """Rise by travel, (c, m) MPa/mm."""
+        """Derivative of the rise by travel, MPa/mm, (c, m)."""
         return _slopes(self.travel, self.rise)
 
     @property
@@ -105,19 +105,19 @@ class ObservationPoints(NamedTuple):
 
     @property
     def errors(self) -> Array:
-        """Their standard deviations, (N,)."""
+        """Standard deviations of `values`, (N,)."""
         return np.concatenate([self.force_error.ravel(), self.rise_error.ravel(), self.pressure_error.ravel()])
 
     @property
     def full_scale(self) -> Array:
-        """Greatest reading of each value's run and channel, (N,)."""
+        """Full scale of each value, (N,): greatest magnitude in its run and channel."""
         parts = self.force, self.rise, self.pressure
         return np.concatenate(
             [np.broadcast_to(np.abs(part).max(axis=1, initial=0.0)[:, None], part.shape).ravel() for part in parts]
         )
 
     def with_values(self, values: Array) -> ObservationPoints:
-        """These points with other values, (N,)."""
+        """These points with other measured values, (N,), in the order of `values`."""
         force, rise, pressure = np.split(values, [self.force.size, 2 * self.force.size])
         return self._replace(
             force=force.reshape(self.force.shape),
@@ -127,7 +127,7 @@ class ObservationPoints(NamedTuple):
 
     @property
     def use(self) -> Flags:
-        """Points that can be used, (N,)."""
+        """Flags of real values, not padding, (N,)."""
         return np.concatenate([self.there.ravel(), self.there.ravel(), self.known.ravel()])
 
     @property
@@ -140,7 +140,7 @@ class ObservationPoints(NamedTuple):
 
     @property
     def channels(self) -> Array:
-        """0 force, 1 rise, 2 injection, (N,)."""
+        """Channel of each value, (N,): 0 force, 1 rise, 2 injection."""
         sizes = self.force.size, self.rise.size, self.pressure.size
         return np.repeat(np.arange(3), sizes)
 
@@ -167,7 +167,7 @@ def points_of(observations: Observations) -> ObservationPoints:
 
 
 def _curve(curve: MeasuredCurve, rig: Rig) -> tuple[Array, ...]:
-    """Travel, force, rise and their errors; the origin is no measurement but the definition of zero."""
+    """Travel, force, rise, and errors of force and rise; without the origin, which defines zero and is not measured."""
     loaded = (curve.indentation > 0) & ~clipped(curve, rig)
     x, force, rise = curve.indentation[loaded], curve.force[loaded], curve.rise[loaded]
     if not x.size:
@@ -187,14 +187,14 @@ def _curve(curve: MeasuredCurve, rig: Rig) -> tuple[Array, ...]:
 
 
 def clipped(curve: MeasuredCurve, rig: Rig) -> Flags:
-    """Points at the end of the force sensor's range, (n,): it reads no more, whatever there is."""
+    """Points at the end of the force sensor's range, (n,), where its reading stops."""
     return np.asarray(np.abs(curve.force) >= _RANGE * rig.force_range_N)
 
 
 def _travel_errors(curves: Sequence[MeasuredCurve]) -> Array:
-    """Standard errors of the runs' first contacts, mm, (c,): of the indentations that each is the median of.
+    """Standard errors of the runs' first contacts, mm, (c,), each the median over the first indentations of its run.
 
-    The spread is that of all runs together: of a few indentations it would be far too small as often as too large.
+    The spread is pooled over all runs: from the few indentations of one run it would be far off either way.
     """
     groups = []
     for curve in curves:
@@ -207,7 +207,7 @@ def _travel_errors(curves: Sequence[MeasuredCurve]) -> Array:
 
 
 def _slopes(travel: Array, values: Array) -> Array:
-    """Slopes along each row, (c, m); of repeated travels, which only pad, zero."""
+    """Slopes along each row, (c, m); zero at repeated travels, which are padding."""
     slopes = np.zeros_like(values)
     for row, (x, y) in enumerate(zip(travel, values, strict=True)):
         at = np.concatenate([[0.0], np.unique(x)])
@@ -228,7 +228,7 @@ def _injection(injection: Injection) -> tuple[Array, ...]:
 
 
 def _padded(rows: list[tuple[Array, ...]], columns: int) -> list[Array]:
-    """Columns of rows as (rows, longest) arrays, the last value repeated, and which entries are there."""
+    """Columns of rows as (rows, longest) arrays, padded with the last value, and flags of the real entries."""
     longest = max((row[0].size for row in rows), default=0)
     arrays = [
         np.array([np.pad(row[k], (0, longest - row[k].size), mode="edge") for row in rows]).reshape(len(rows), longest)

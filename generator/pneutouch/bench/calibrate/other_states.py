@@ -39,7 +39,7 @@ class SuggestedTest:
     Attributes:
         what: The test in words.
         gain: Factor by which it shrinks the interval of the most uncertain combination.
-        half_width: 95 % intervals then expected of the fitted parameters, coordinates, (k,).
+        half_width: Half widths of the 95 % intervals expected after the test, in the fitted coordinates, (k,).
     """
 
     what: str
@@ -143,7 +143,7 @@ def _planned(travel: Array, driving: Array, volume: Array) -> ObservationPoints:
 
 
 def _indented(fit: CalibrationFit, full: Array, pressure: float, depth: float) -> Array:
-    """Repeated runs at one pressure, scattering as the runs measured do."""
+    """Information of repeated runs at one pressure, which scatter as the measured runs do."""
     row = np.linspace(0.0, depth, _STEPS + 1)[None, 1:]
     points = _planned(row, np.array([pressure]), np.zeros((0, 0)))
     values, derivatives = _evaluated(fit, full, points)
@@ -169,7 +169,7 @@ def _volume(fit: CalibrationFit, full: Array, pressure: float) -> float:
 
 
 def _injected(fit: CalibrationFit, full: Array, volume: float) -> Array:
-    """An injection in steps, all its volumes wrong by one factor."""
+    """Information of an injection in steps, with one relative error common to all its volumes."""
     row = np.linspace(0.0, volume, _STEPS + 1)[None, 1:]
     points = _planned(np.zeros((0, 0)), np.zeros(0), row)
     values, derivatives = _evaluated(fit, full, points)

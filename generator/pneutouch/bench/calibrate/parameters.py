@@ -29,7 +29,7 @@ USUAL = NAMES[:FRICTION]
 """Parameters that are fitted by default."""
 
 KEYS = ("shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL", "contact_offset_mm", "friction")
-"""Their names outside, with unit."""
+"""Names of the parameters in files, with unit."""
 
 UNITS = ("MPa", "mm", "mL", "mm", "1")
 LOGARITHMIC = np.array([True, True, False, False, False])
@@ -57,8 +57,8 @@ class CalibrationParameters:
     """Coordinates of the five parameters: ln MPa, ln mm, mm3, mm, coefficient; (5,) arrays.
 
     Attributes:
-        fitted: Numbers of those that are fitted, ascending.
-        start: Design values; what is not fitted keeps them.
+        fitted: Numbers of the fitted parameters, ascending.
+        start: Design values; parameters that are not fitted keep them.
         low, high: Bounds.
         prior_spread: Standard deviations of the priors around ``start``.
         even: Priors that are uniform; the others are normal.
@@ -81,24 +81,24 @@ class CalibrationParameters:
 
     @property
     def others(self) -> tuple[int, ...]:
-        """Numbers of those that are not fitted but have a prior; none where the priors are not used."""
+        """Numbers of the parameters that are not fitted but have a prior; none where the priors are not used."""
         known = [k not in self.fitted and self.prior_spread[k] > 0.0 for k in range(len(NAMES))]
         return tuple(k for k in range(len(NAMES)) if known[k]) if self.priors else ()
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the fitted ones."""
+        """Names of the fitted parameters."""
         return tuple(NAMES[k] for k in self.fitted)
 
     def full(self, fitted: Array) -> Array:
-        """All five from the fitted ones, (..., k) to (..., 5)."""
+        """All five coordinates, (..., 5), from the fitted ones, (..., k)."""
         full = np.broadcast_to(self.start, (*fitted.shape[:-1], len(NAMES))).copy()
         full[..., list(self.fitted)] = fitted
         return full
 
 
 def outside_value(k: int, coordinate: float) -> float:
-    """A parameter in the unit it leaves with (`UNITS`) from its coordinate."""
+    """Value of parameter k in the unit of files (`UNITS`), from its coordinate."""
     return float((np.exp(coordinate) if LOGARITHMIC[k] else coordinate) / _OUTSIDE[k])
 
 
@@ -151,7 +151,7 @@ def _frictions(sensor: Sensor, *, fitted: bool) -> tuple[float, ...]:
 
 
 def _friction_prior(sensor: Sensor, *, fitted: bool) -> tuple[float, str]:
-    """Standard deviation of the coefficient; none where it is neither fitted nor stated."""
+    """Prior standard deviation of the coefficient of friction, and its origin; 0 where neither fitted nor stated."""
     stated = min(sensor.protocol.friction, GRIPS)
     if fitted:
         return float(FRICTION_PRIOR), f"normal, {FRICTION_PRIOR:.2g}: our choice, that of anything from 0 to {GRIPS:g}"
@@ -164,9 +164,9 @@ def _friction_prior(sensor: Sensor, *, fitted: bool) -> tuple[float, str]:
 def _priors(
     sensor: Sensor, material: Material, printer: Printer, *, fitted: bool
 ) -> tuple[Array, Flags, tuple[str, ...]]:
-    """Standard deviations, which are uniform, and origins: the sources of every prediction's uncertainty.
+    """Prior standard deviations, flags of uniform priors, and origins, from the sources of a prediction's uncertainty.
 
-    ``fitted``: whether the friction is.
+    ``fitted`` is True if the friction is fitted.
     """
     built = build_sources(batch_of(sensor, [0.0]), printer)
     groups = (

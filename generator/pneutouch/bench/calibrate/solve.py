@@ -19,10 +19,10 @@ _ROUNDS = 60
 _DAMPING = 1e-3
 _MOST = 1e9
 _SETTLED = 1e-4
-"""The search ends where a step would lower the sum of squares by less, a hundredth of a standard deviation. The
-criterion is the sum, not the step: along an undetermined direction steps stay long."""
+"""Least decrease of the sum of squares for which the search goes on, a hundredth of a standard deviation. The criterion
+is the sum, not the step: along an undetermined direction steps stay long."""
 _MOST_LOST = 0.5
-"""A step that loses more than this share of a run's points is too long: our choice; else runs could vanish unseen."""
+"""Share of a run's points above which a step that loses them is too long: our choice; else runs could vanish unseen."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class LeastSquaresSolution:
         at: Coordinates of the fitted parameters.
         residual: Model less measured over the standard deviation, 0 where not used, (N,).
         local: The residual less the contribution of the shared unknowns, (N,).
-        jacobian: Its derivatives, (N, k).
+        jacobian: Derivatives of the residual, (N, k).
         model: Values of the model, (N,).
         use: Points that were used, (N,).
         bound: Parameters on a bound that would go beyond it, (k,).
@@ -83,10 +83,10 @@ class LeastSquaresProblem:
         return bool((after < (1 - _MOST_LOST) * before).any())
 
     def whitened(self, rows: Array, use: Flags) -> Array:
-        """Columns of ``rows`` (N, j) as columns (n + q, j) whose products are those weighed by the inverse covariance.
+        """Columns (n + q, j) with the scalar products of the columns of ``rows`` (N, j) weighted by the inverse
+        covariance.
 
-        With b the unknowns that suit a column best, they are what b leaves of it, then b itself.
-        """
+        The first n entries of a column are its residual after the best-fitting shared unknowns b, the last q are b."""
         shared, seen = self.shared[use], rows[use]
         best = np.linalg.solve(np.eye(shared.shape[1]) + shared.T @ shared, shared.T @ seen)
         return np.vstack([seen - shared @ best, best])
@@ -160,7 +160,7 @@ def _descend(problem: LeastSquaresProblem, at: Array) -> LeastSquaresSolution:
 def _step(
     problem: LeastSquaresProblem, at: Array, residual: Array, jacobian: Array, use: Flags, damping: float
 ) -> tuple[Array, Flags, float]:
-    """The damped step, which parameters it holds on their bounds, and by how much it is to lower the cost."""
+    """Damped step, (k,), flags of the parameters that it holds on their bounds, and its expected decrease of cost."""
     whole = problem.whitened(np.column_stack([residual, jacobian]), use)
     r, j = whole[:, 0], whole[:, 1:]
     slope = j.T @ r + problem.weight * (at - problem.centre)

@@ -79,8 +79,8 @@ class PressCurves:
 def press_curves(
     sensor: Sensor, pressures: Sequence[float], depth: float, model: str = "solid", steps: int = STEPS
 ) -> PressCurves:
-    """Press a sensor to ``depth`` mm at ascending driving pressures (MPa). The gauge ends no range: the rig clips. A
-    shear after the press is left out, and an object off the axis makes at most `OFF_AXIS_STEPS`.
+    """Press a sensor to ``depth`` mm at ascending driving pressures (MPa). The gauge does not end the range: the rig
+    clips. A shear after the press is left out, and an object off the axis makes at most `OFF_AXIS_STEPS`.
 
     Raises what `predict` raises, and InputError where the range ends before the plate has moved.
     """
@@ -94,7 +94,7 @@ def press_curves(
 
 
 def _curve(sensor: Sensor, state: SensorState, model: str) -> PressCurve:
-    """The curve of a state to the end of its range; where that comes early, pressed again so that points reach it."""
+    """Curve of a state to the end of its range; if that comes early, the sensor is pressed again up to there."""
     ending = next((event for event in state.events if event.ends_range), None)
     ends = None if ending is None else (ending.kind, state.range_end)
     if state.beyond_axis is not None and state.range_end > 0:
@@ -118,7 +118,7 @@ _WAVES = 3
 """Half waves along the travel that a smooth deviation is made of, the k-th 1/k as large: our choice."""
 
 _TURN = 22.0 * KPA
-"""Driving pressure at which the smooth share is independent of that without one: the paper's highest."""
+"""Driving pressure, MPa, at which the smooth share is independent of the share at zero: the paper's highest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +133,7 @@ class ModelDeviation:
     )
 
     def deviated(self, curves: PressCurves, rng: np.random.Generator) -> PressCurves:
-        """The curves of one specimen with the shares that ``rng`` draws for it; as they are where nothing deviates."""
+        """Curves of one specimen with the deviations that ``rng`` draws for it; unchanged if there are none."""
         if self == ModelDeviation():
             return curves
         common = self.common * rng.standard_normal(2)
@@ -142,7 +142,7 @@ class ModelDeviation:
 
 
 def _deviated(curve: PressCurve, common: Array, waves: Array) -> PressCurve:
-    """A curve with the shares of force and rise (2,) and the weights of their waves (2, 2, waves)."""
+    """The curve with shares ``common`` of force and rise, (2,), and weights ``waves`` of waves, (2, 2, waves)."""
     order = np.arange(1, _WAVES + 1)
     shape = np.cos(np.pi * np.outer(curve.indentation / curve.indentation[-1], order))
     shape *= np.sqrt(2.0) / order / np.sqrt((1.0 / order**2).sum())

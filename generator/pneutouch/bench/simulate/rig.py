@@ -39,10 +39,10 @@ def parameters(model: Any) -> dict[str, ParameterValue]:
 
 
 YEAR = 365.0
-"""Days."""
+"""Days in a year."""
 
 _LEAST_WALL = 0.05
-"""Share of the nominal wall that a specimen has at least."""
+"""Least wall thickness of a specimen as a share of the nominal one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +87,7 @@ class ScatterModel:
 
 @dataclass(frozen=True, slots=True)
 class SimulatedSpecimens:
-    """Specimens that were drawn, arrays (n,): factor on the modulus, deviation of the wall (mm), extra air (mm3)."""
+    """Drawn specimens, arrays (n,): factor on the modulus, deviation of the wall (mm), extra dead volume (mm3)."""
 
     modulus: Array
     wall: Array
@@ -95,7 +95,7 @@ class SimulatedSpecimens:
 
     @classmethod
     def draw(cls, scatter: ScatterModel, count: int, rng: np.random.Generator) -> SimulatedSpecimens:
-        """``count`` specimens."""
+        """Draw ``count`` specimens."""
         return cls(
             np.exp(scatter.modulus * rng.standard_normal(count)),
             scatter.wall * rng.uniform(-1.0, 1.0, count),
@@ -110,10 +110,10 @@ class SimulatedSpecimens:
 
 
 def ageing_factor(scatter: ScatterModel, days: float) -> float:
-    """Factor on the modulus after ``days``: even in its logarithm over the first year, then none.
+    """Factor on the modulus after ``days``: its logarithm grows linearly over the first year, then stays.
 
-    The paper measured at the ends of a year alone (Table 1); what lies between and after is our choice.
-    """
+    The paper measured only at the beginning and the end of a year (Table 1); the course between and after is our
+    choice."""
     return float(np.exp(scatter.ageing * min(days / YEAR, 1.0)))
 
 
@@ -129,12 +129,12 @@ def stiffened(sensor: Sensor, factor: float) -> Sensor:
 _ASSUMED = "the simulator's own, no data published; small, as the paper's Fig. S1 shows"
 
 _RATE = 50.0
-"""Samples a second at which the memory of a protocol is added up."""
+"""Samples per second at which the memory of a protocol is integrated."""
 
 
 @dataclass(frozen=True, slots=True)
 class WallMemory:
-    """Terms of the memory: shares of force and of pressure rise, and times in s; equally many each."""
+    """Terms of the wall's memory: for each, its shares of force and of pressure rise, and its time constant in s."""
 
     force: tuple[float, ...] = parameter((0.01, 0.01, 0.01), "1", _ASSUMED)
     rise: tuple[float, ...] = parameter(
@@ -145,12 +145,12 @@ class WallMemory:
     )
 
     def over(self, values: Array, shares: tuple[float, ...], step: float) -> Array:
-        """Contribution of the memory to relaxed values (n, ...) at equal ``step`` in s along the first axis."""
+        """Contribution of the memory, (n, ...), to relaxed values at equal ``step`` (s) along the first axis."""
         parts = [share * part for share, part in zip(shares, self.terms(values, step), strict=True)]
         return np.asarray(sum(parts, np.zeros_like(values)))
 
     def terms(self, values: Array, step: float) -> list[Array]:
-        """Each term with share one; exact for values that go straight between samples."""
+        """Terms of the memory for a share of 1, each (n, ...); exact for values that are linear between samples."""
         from scipy.signal import lfilter
 
         change = np.diff(values, axis=0, prepend=values[:1])
@@ -161,11 +161,11 @@ class WallMemory:
         return terms
 
     def held(self, protocol: RunProtocol, nodes: Array) -> tuple[Array, Array]:
-        """Contribution of the memory at the end of every hold, as matrices (depths, nodes) on relaxed values at travels
+        """Matrices (depths, nodes) that give the memory's contribution at the end of every hold from relaxed values at
         ``nodes``.
 
-        The first is for the force, the second for the rise, which counts from before the plate moves in. Between the
-        nodes the curve counts as straight."""
+        The first is for the force, the second for the rise, counted from before the plate moves in. The curve is taken
+        as linear between the travels ``nodes``."""
         knots, travels = protocol.knots()
         count = round(float(knots[-1]) * _RATE) + 1
         travel = np.clip(np.interp(np.arange(count) / _RATE, knots, travels), 0.0, nodes[-1])
@@ -179,7 +179,7 @@ class WallMemory:
 
 
 def _hats(travel: Array, nodes: Array) -> Array:
-    """Weights (n, m) of values at nodes for a straight interpolation at travels (n,)."""
+    """Weights (n, m) of the values at m nodes for linear interpolation at travels (n,)."""
     k = np.clip(np.searchsorted(nodes, travel, side="right") - 1, 0, nodes.size - 2)
     share = (travel - nodes[k]) / (nodes[k + 1] - nodes[k])
     weights = np.zeros((travel.size, nodes.size))
@@ -245,9 +245,9 @@ class RigModel:
         return cls(**{one.name: unlimited.get(one.name, 0.0) for one in fields(cls)})
 
     def with_gauge(self, reading: GaugeReading) -> RigModel:
-        """The rig with a gauge: its noise, step and range in place of those that are the paper's.
+        """The rig with a gauge's noise, step and range, where this rig still has the paper's values.
 
-        An unknown noise or step stays the paper's.
+        A noise or step that the gauge does not state stays the paper's.
         """
         paper = RigModel()
         gauge = {"pressure_noise": reading.noise, "pressure_step": reading.step, "pressure_range": reading.limit}
@@ -259,11 +259,11 @@ class RigModel:
         return replace(self, **changed)
 
     def share(self, rate: float) -> float:
-        """Weight of the new sample in the low pass at ``rate`` Hz."""
+        """Weight of the latest sample in the low pass at ``rate`` Hz."""
         return float(-np.expm1(-2.0 * np.pi * self.cutoff / rate))
 
     def passed(self, values: Array, rate: float, start: float) -> Array:
-        """Values (n,) after the low pass, which stood at ``start``."""
+        """Values (n,) after the low pass, whose output was ``start`` before the first."""
         share = self.share(rate)
         if share >= 1.0:
             return values
@@ -282,7 +282,7 @@ class RigModel:
         return float(self.force_noise * kept), float(pressure)
 
     def drift(self, driving: float) -> float:
-        """Slope of the shut-in pressure at a driving pressure (MPa), MPa/s."""
+        """Drift of the shut-in pressure at a driving pressure (MPa), MPa/s: warming less leak."""
         return self.temperature - self.leak * driving
 
     def stepped(self, pressure: Array) -> Array:
@@ -296,10 +296,10 @@ LEAK_SECONDS = 600.0
 """Duration of a leak run, s: our choice, as long as the relaxation run."""
 
 MARK = "# simulated by pneutouch"
-"""First line of every file."""
+"""Comment that marks every simulated file."""
 
 _DECIMALS = {"time_s": 6, "position_mm": 5, "force_N": 5, "pressure_kPa": 6, "volume_mL": 4}
-"""Decimals in files: a hundredth of the finest noise."""
+"""Decimals of each column in a file: a hundredth of the finest noise."""
 
 
 def encoded(columns: dict[str, Array], *, parquet: bool = False) -> bytes:

@@ -1,4 +1,4 @@
-"""One run on the simulated rig, and the true values of such runs: figures of each specimen and of its population."""
+"""Runs on the simulated rig, and their true values: figures of each specimen and of the population."""
 
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, cast
@@ -28,12 +28,12 @@ from pneutouch.units import KPA
 WALL, SCATTER = WallMemory(), ScatterModel()
 
 VENT, REFILL, SHUT, VALVE = 0.2, 0.4, 0.6, 0.02
-"""Shares of a rest: when the cavity is vented, filled again and shut in, and the time constant of both: our choice.
-Shut in, it is within 0.005 % of its driving pressure."""
+"""Shares of a rest at which the cavity is vented, filled again and shut in, and the time constant of venting and
+filling, a share too: our choice. When shut in, the cavity is within 0.005 % of its driving pressure."""
 
 
 class RecordSamples(NamedTuple):
-    """A record: s, mm, N, MPa, (n,) each."""
+    """Record of a run: time s, position mm, force N, pressure MPa, (n,) each."""
 
     time: Array
     position: Array
@@ -42,7 +42,7 @@ class RecordSamples(NamedTuple):
 
 
 def within(protocol: RunProtocol, reach: float) -> RunProtocol:
-    """The protocol with no depth beyond ``reach``: steps omit the deeper ones, the others stop there."""
+    """The protocol with no depth beyond ``reach``: loop and relaxation stop there, other kinds omit deeper steps."""
     if protocol.kind in ("loop", "relaxation"):
         return replace(protocol, depths=tuple(min(depth, reach) for depth in protocol.depths))
     return replace(protocol, depths=tuple(depth for depth in protocol.depths if depth <= reach * (1 + 1e-9)))
@@ -77,14 +77,14 @@ def simulate_run(
 def simulate_leak(
     driving: float, seconds: float, rig: RigModel, rate: float, rng: np.random.Generator
 ) -> RecordSamples:
-    """A closed, unpressed sensor left alone at a driving pressure (MPa)."""
+    """Simulate a leak run: a closed, unpressed sensor at a driving pressure (MPa)."""
     time = np.arange(round(seconds * rate) + 1) / rate
     still = np.zeros_like(time)
     return _read(rig, rate, rng, RecordSamples(time, still, still, driving + rig.drift(driving) * time))
 
 
 def _pressed(curve: PressCurve, travel: Array, wall: WallMemory, step: float) -> tuple[Array, Array]:
-    """Force and rise with the wall's memory at plate travels (n,); below zero the plate is clear."""
+    """Force and rise with the wall's memory at plate travels (n,); travels below zero are clear of the dome."""
     force, rise = np.zeros_like(travel), np.zeros_like(travel)
     touched = travel > 0.0
     force[touched], rise[touched] = curve.at(np.minimum(travel[touched], curve.reach))
@@ -220,8 +220,8 @@ def loading(curve: PressCurve, steps: RunProtocol, wall: WallMemory) -> tuple[Ar
 def specimen_figures(curve: PressCurve, truth: SimulationTruth, height: float, rate: float) -> dict[str, float | None]:
     """Figures of one specimen at one driving pressure without noise, by key.
 
-    Relaxation is as the rig reads it, its drift in it. Drift is the rig's alone: the wall's recovery after a press is
-    not in it."""
+    Relaxation includes the rig's drift, as a measurement does. The drift is only the rig's, without the wall's recovery
+    after a press."""
     steps = truth.protocol("steps", height, curve.reach)
     depth, force, rise = loading(curve, steps, truth.wall)
     loading_figures = _by_key(lines(depth, force, rise / KPA))
@@ -241,7 +241,7 @@ def specimen_figures(curve: PressCurve, truth: SimulationTruth, height: float, r
 
 
 def loop_figures(curve: PressCurve, truth: SimulationTruth, height: float) -> dict[str, float]:
-    """Hysteresis of the noise-free loop, percent, mean over its cycles; the rise counts from before each."""
+    """Hysteresis of the noise-free loop, percent, mean over its cycles; the rise is counted from before each cycle."""
     loop = truth.protocol("loop", height, curve.reach)
     quiet = ScatterModel.none()
     record = simulate_run(
@@ -261,10 +261,10 @@ def loop_figures(curve: PressCurve, truth: SimulationTruth, height: float) -> di
 
 
 def relaxation_figures(curve: PressCurve, truth: SimulationTruth, height: float) -> dict[str, float]:
-    """Loss from 1 s into the hold to its end, and its slope over log10 of time, over the value at 1 s; percent.
+    """Relaxation of force and pressure, percent of the value at 1 s: loss from then to the end of the hold, and per
+    decade.
 
-    As the rig reads it: what its zero and the gas drift in that time is in it.
-
+    The drift of the force's zero and of the gas in that time is included, as the rig reads it.
     The slope is the least-squares line through instants even in log time; a loss counts as positive.
     """
     test = truth.protocol("relaxation", height, curve.reach)
@@ -293,7 +293,7 @@ def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float
 
     Specimens come from the atlas in one batch. Mean and spread of each figure are then scaled by the nominal sensor's
     own figure over the atlas's, so that they belong to the model behind the records. Outside the atlas, the figures are
-    the nominal sensor's and there is no spread but the runs'."""
+    the nominal sensor's and the only spread is that between runs."""
     sensor, curve = pressed.sensor, pressed.curves[k]
     nominal = specimen_figures(curve, truth, sensor.dome.shape.height, rate)
     steps = truth.protocol("steps", sensor.dome.shape.height, curve.reach)
@@ -348,7 +348,7 @@ def _drawn(
 
 
 def _held(force: Array, rise: Array, nodes: Array, steps: RunProtocol, wall: WallMemory) -> tuple[Array, Array]:
-    """Values at the ends of the holds of curves (n, nodes), the origin first."""
+    """Force and rise of curves (n, nodes) at the ends of the holds, the origin first, (n, depths + 1) each."""
     from scipy.interpolate import PchipInterpolator
 
     rows = []
@@ -363,7 +363,7 @@ def _by_key(arrays: Figures[Array]) -> dict[str, float | None]:
 
 
 def _with_runs(mean: dict[str, float | None], truth: SimulationTruth, parts: float | None) -> dict[str, float | None]:
-    """The mean with the spread of the sensitivity between runs of one specimen and between specimens."""
+    """Mean figures, with the spread of the sensitivity between runs of one specimen and between specimens added."""
     slope = mean[SENSITIVITY_KEY]
     return {
         **mean,

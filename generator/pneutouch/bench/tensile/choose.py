@@ -34,10 +34,10 @@ _RATIOS = {"uniaxial tension": -0.5, "pure shear": 0.0, "equibiaxial tension": 1
 
 
 def instability(name: str, constants: tuple[float, ...], largest: float) -> str | None:
-    """The first state in which a law is unstable, in words; None for a stable law.
+    """First state in which a law is unstable, in words; None for a stable law.
 
-    States are those whose first invariant is at most that of uniaxial tension by ``largest``. Raises InputError for
-    constants that give no solid at all.
+    The states considered have at most the first invariant of uniaxial tension to the stretch ``largest``. Raises
+    InputError for constants that give no solid at all.
     """
     law = hyperelastic(name, constants, _POISSON_RATIO)
     most = float(first_invariant(largest))
@@ -52,7 +52,7 @@ def instability(name: str, constants: tuple[float, ...], largest: float) -> str 
 
 
 def _least_stiffness(law: Hyperelastic, first: Array, second: Array) -> Array:
-    """The lesser eigenvalue of the second derivatives by the logarithms of two stretches, (n,), by differences."""
+    """Lesser eigenvalue, (n,), of the second derivatives of the energy by two log stretches, by finite differences."""
 
     def energy(one: Array, other: Array) -> Array:
         a, j = np.exp(2.0 * one) + np.exp(2.0 * other), np.exp(one + other)
@@ -69,14 +69,14 @@ def _least_stiffness(law: Hyperelastic, first: Array, second: Array) -> Array:
 
 
 SOFT = 0.1
-"""MPa; below this the wall is stretched further."""
+"""Shear modulus, MPa, below which a wall is stretched further (`REACHED_SOFT`)."""
 
 REACHED, REACHED_SOFT = 2.0, 2.5
-"""Stretches of uniaxial tension, rounded up from the measured ones."""
+"""Uniaxial stretches that walls, and walls softer than `SOFT`, reach: rounded up from the measured ones above."""
 
 
 def reached_stretch(shear_modulus: float) -> float:
-    """Stretch of uniaxial tension that a law for a wall of a shear modulus (MPa) has to be fitted up to."""
+    """Uniaxial stretch up to which the law of a wall with a given shear modulus (MPa) has to be fitted."""
     return REACHED_SOFT if shear_modulus < SOFT else REACHED
 
 
@@ -93,16 +93,15 @@ FORMS = (
     LawForm("yeoh", 3),
     LawForm("ogden", 4),
 )
-"""Laws in the order in which they are preferred: fewest constants first. Of as many constants Yeoh's comes first: it
-depends on the first invariant alone, and what tension states of it carries over to two directions (Yeoh, Rubber Chem.
-Technol. 66, 754-771, 1993); tension hardly determines the constant of the second invariant (Treloar 1975,
-p. 215)."""
+"""Laws in the order in which they are preferred: fewest constants first. Among laws with equally many Yeoh's comes
+first: it depends only on the first invariant, so that a fit in tension also holds in two directions (Yeoh, Rubber Chem.
+Technol. 66, 754-771, 1993); tension hardly determines the constant of the second invariant (Treloar 1975, p. 215)."""
 
 LAST = LawForm("ogden", 6)
-"""Tried where none of `FORMS` is good enough: six constants, of which few curves determine all."""
+"""Law tried if none of `FORMS` is good enough: few curves determine all of its six constants."""
 
 _NEAR_BEST = 0.01
-"""If no law is good enough, the one with fewest constants within this of the least misfit is taken."""
+"""Distance from the least misfit within which the law with the fewest constants is taken if none is good enough."""
 
 _MOST_SLACK, _SLACK_STEPS = 0.08, 81
 _LEAST_SLACK = 0.002
@@ -114,13 +113,13 @@ class LawChoice:
     """The fits of all laws, the one taken and the reason.
 
     Attributes:
-        curves: As fitted: without slack, up to the largest stretch.
-        whole: The same with their points beyond the range.
+        curves: Fitted curves: without slack, up to the largest stretch.
+        whole: The same curves with the points beyond the range.
         largest: Greatest stretch of the fit.
-        fits: The laws that were tried, in the order of `FORMS`; Ogden's alone where none before was good enough.
+        fits: The laws that were tried, in the order of `FORMS`; Ogden's only if none before was good enough.
         refused: Reasons why a law cannot be used, by its index in ``fits``.
         chosen: Index of the law taken.
-        each: Shear modulus of the neo-Hookean law of each curve alone, MPa.
+        each: Neo-Hookean shear modulus fitted to each single curve, MPa.
     """
 
     curves: tuple[TensionCurve, ...]
@@ -152,12 +151,12 @@ def choose_law(curves: Sequence[TensionCurve], largest: float | None = None, sla
 
     Args:
         curves: Rising curves.
-        largest: Stretch to fit up to; None: what the sensor reaches with such a modulus (`reach`), or the data's end.
+        largest: Stretch to fit up to; None: the stretch that a wall of this modulus reaches (`reached_stretch`), or the
+            data's end.
         slack: Strain to take off every curve; None: found for each.
 
     Raises:
-        InputError: No law is stable over the range, or a curve has too few points in it.
-    """
+        InputError: No law is stable over the range, or a curve has too few points in it."""
     first = reached_stretch(_modulus(curves)) if largest is None else largest
     whole = tuple(curve.without_slack(_slack(curve, first) if slack is None else slack) for curve in curves)
     modulus = _modulus([curve.up_to(first) for curve in whole])
@@ -174,8 +173,8 @@ def choose_law(curves: Sequence[TensionCurve], largest: float | None = None, sla
 
 
 def _tried(curves: Sequence[TensionCurve], largest: float) -> tuple[list[LawFit], dict[int, str]]:
-    """The laws in the order of `FORMS` up to the first that is good enough, at least those that are linear in their
-    constants, and why some cannot be used."""
+    """Fits of the laws in the order of `FORMS`, Ogden's only while none is good enough, and why some cannot be used, by
+    index."""
     fits: list[LawFit] = []
     refused: dict[int, str] = {}
     good = False
@@ -212,7 +211,7 @@ def _modulus(curves: Sequence[TensionCurve]) -> float:
 
 
 def _slack(curve: TensionCurve, largest: float) -> float:
-    """Strain before the specimen carries load: that with which Yeoh's law of three terms is nearest to the data.
+    """Strain before the specimen carries load: the value with which Yeoh's law of three terms is nearest to the data.
 
     Grips that slide and a specimen that straightens add to the travel of a crosshead at the beginning. The law goes
     through the origin whatever its constants, so that the first points decide. 0 where the data begin without slack.
@@ -231,10 +230,10 @@ def _slack(curve: TensionCurve, largest: float) -> float:
 
 
 _LEAST, _MOST = 0.05, 0.4
-"""Compression over thickness that a test must reach, and that the fit goes up to."""
+"""Compression over thickness that a test must reach, and that is fitted at most."""
 
 _ZEROS = np.linspace(0.0, 0.1, 101)
-"""Travel before the plate touches, over the thickness."""
+"""Candidates for the travel before the plate touches, over the thickness."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -254,10 +253,10 @@ class PuckSize:
 
 @dataclass(frozen=True, slots=True)
 class PuckFit:
-    """Modulus in MPa, its k = 2 uncertainty by the scatter of the points, and how far the law is off.
+    """Shear modulus in MPa, its k = 2 uncertainty from the scatter of the points, and the misfit of the law.
 
     Attributes:
-        stretch: Of the fitted points, below 1 (n,).
+        stretch: Stretches of the fitted points, below 1, (n,).
         stress: Their nominal stress, compression negative, MPa (n,), as of a puck whose faces slide.
         misfit: Greatest relative difference of stress where the compression is above a twentieth of the thickness.
         largest: Stretch of uniaxial tension with the greatest first invariant of the test.
@@ -302,7 +301,7 @@ def fit_puck(path: Path, size: PuckSize) -> PuckFit:
 
 
 def _fit(travel: Array, stress: Array, thickness: float) -> tuple[float, float, Array, Array, float] | None:
-    """Modulus, twice its standard error, the points and the misfit; None if there are too few points."""
+    """Modulus, twice its standard error, points and misfit; None for too few points or too little compression."""
     near = (travel > 0.0) & (travel <= _MOST * thickness)
     if near.sum() < LEAST_POINTS or travel[near].max() < _LEAST * thickness:
         return None

@@ -34,7 +34,7 @@ class TensionCurve:
     facts: dict[str, str] = field(default_factory=dict)
 
     def without_slack(self, slack: float) -> "TensionCurve":
-        """The curve with its stretch counted from where the specimen begins to carry load, later points alone."""
+        """The curve with its stretch counted from the onset of load (``slack``), without the points before."""
         stretch = self.stretch / (1.0 + slack)
         kept = stretch > 1.0
         return replace(self, stretch=stretch[kept], stress=self.stress[kept], slack=slack)
@@ -45,12 +45,12 @@ class TensionCurve:
         return replace(self, stretch=self.stretch[kept], stress=self.stress[kept])
 
     def stress_at(self, stretch: float) -> float:
-        """Nominal stress at a stretch, straight between the points and from the origin, MPa."""
+        """Nominal stress at a stretch, interpolated linearly between the points and from the origin, MPa."""
         return float(np.interp(stretch, [1.0, *self.stretch], [0.0, *self.stress]))
 
 
 def tension_basis(name: str, count: int, stretch: Array) -> Array:
-    """Columns (n, count) whose sum with the constants is the nominal stress: of the laws linear in their constants."""
+    """Columns (n, count) that, times the constants, add up to the nominal stress; for laws linear in these."""
     plain, above = stretch - stretch**-2, first_invariant(stretch) - 3.0
     if name == "neo-hookean":
         columns = [plain]
@@ -72,7 +72,7 @@ def tension(name: str, constants: Sequence[float], stretch: Array) -> Array:
 
 
 FROM_STRAIN = 0.1
-"""Strain from which the misfit is stated: below it slack, crosshead and the zero of the load cell decide."""
+"""Strain from which on the misfit is evaluated: below it slack, crosshead and the zero of the load cell dominate."""
 
 WINDOW = 0.1
 """Stretch over which the differences of neighbouring points are averaged before the greatest of them is taken."""
@@ -87,10 +87,10 @@ _STARTS: tuple[tuple[tuple[float, ...], ...], ...] = (
 """Exponents from which Ogden's law is fitted, by its number of terms; the best of the fits is kept."""
 
 _EXPONENTS = (1.0, 25.0)
-"""Bounds of Ogden's exponents. A negative one is felt in two directions and hardly in tension, which cannot give it."""
+"""Bounds of Ogden's exponents. A negative one acts in biaxial states; tension hardly shows and cannot determine it."""
 
 _MODULI = 50.0
-"""Bound of a term's modulus over that of the whole curve."""
+"""Bound of a term's modulus, as a multiple of the modulus of the whole curve."""
 
 
 class LawForm(NamedTuple):
@@ -109,13 +109,13 @@ class LawForm(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class LawFit:
-    """A fitted law: constants in MPa (Ogden: mu, alpha, ...) with their k = 2 uncertainties, and how far it is off.
+    """A fitted law: constants in MPa (Ogden: mu, alpha, ...) with their k = 2 uncertainties, and its misfit.
 
     Attributes:
-        errors: Twice the standard errors of the fit. They hold the scatter of the points alone, not that of batches.
+        errors: Twice the standard errors of the fit. They include only the scatter of the points, not that of batches.
         misfit: Greatest relative difference of nominal stress to the running mean of the data over `WINDOW`, from a
-            strain of `FROM_STRAIN` on: the noise of a load cell is not the law's.
-        worst: The same to the single points.
+            strain of `FROM_STRAIN` on: the mean keeps out the noise of the load cell.
+        worst: Greatest relative difference to the single points.
     """
 
     form: LawForm
@@ -135,7 +135,7 @@ class LawFit:
 
 
 def joined_points(curves: Sequence[TensionCurve]) -> tuple[Array, Array, Array]:
-    """Stretch, stress and the stress that a difference is set against (n,): its own, at least that at `FROM_STRAIN`."""
+    """Stretch, stress and the stress that differences are divided by (n,): the point's, at least at `FROM_STRAIN`."""
     stretch = np.concatenate([curve.stretch for curve in curves])
     stress = np.concatenate([curve.stress for curve in curves])
     least = np.concatenate([np.full(curve.stretch.size, curve.stress_at(1.0 + FROM_STRAIN)) for curve in curves])
@@ -143,9 +143,9 @@ def joined_points(curves: Sequence[TensionCurve]) -> tuple[Array, Array, Array]:
 
 
 def fit_law(form: LawForm, curves: Sequence[TensionCurve]) -> LawFit:
-    """The law's constants over all points of the curves; each difference counts relative to the measured stress.
+    """Fit a law's constants to all points of the curves, by least squares of differences relative to the stress.
 
-    Relative differences give each part of the range the same weight, and the greatest of them is the stated misfit.
+    Relative differences give each part of the range the same weight; the stated misfit is relative too.
     """
     stretch, stress, scale = joined_points(curves)
     constants: Array

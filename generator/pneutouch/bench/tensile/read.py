@@ -36,17 +36,17 @@ _PERCENT = ("%", "percent", "per cent", "pct")
 _PLAIN = ("", "-", "mm/mm", "m/m", "1", "mm mm-1")
 
 _PAIRS = ((("stretch", "strain"), "stress"), (("stretch", "strain"), "force"), (("travel",), "force"))
-"""Kinds of the column of the length with that of the load, the best first."""
+"""Kinds of a length column, and the kind of load column that goes with them, the best pair first."""
 
 NAMES = "Engineering Strain, Engineering Stress (MPa)"
 """Names of columns that are understood, for messages."""
 
 
 class TensileColumn(NamedTuple):
-    """One column: its name in the file, its kind, whether it is true or nominal, and its factor to 1, mm, MPa, N.
+    """One column: its name in the file, its kind, ``true`` (else nominal), ``stated`` if its name says so, and its
+    factor to 1, mm, MPa, N.
 
-    ``factor`` is None if its name gives no unit.
-    """
+    ``factor`` is None if its name gives no unit."""
 
     name: str
     kind: str
@@ -56,7 +56,7 @@ class TensileColumn(NamedTuple):
 
 
 class ColumnPair(NamedTuple):
-    """The column of the length and that of the load."""
+    """A column of length (stretch, strain or travel) and a column of load (stress or force)."""
 
     length: TensileColumn
     load: TensileColumn
@@ -65,7 +65,7 @@ class ColumnPair(NamedTuple):
 def column_pairs(names: Sequence[str], units: Sequence[str], file: str) -> list[ColumnPair]:
     """The pairs that a file has, the best first: nominal before true, stress before force.
 
-    Raises InputError if there is none, where a stress states no unit, or a unit is none of that quantity.
+    Raises InputError if there is none, where a stress states no unit, or a unit does not belong to its quantity.
     """
     known = [column for pair in zip(names, units, strict=True) if (column := _column(*pair, file)) is not None]
     pairs = []
@@ -108,7 +108,7 @@ def _column(name: str, unit: str, file: str) -> TensileColumn | None:
 
 
 def _parted(name: str) -> tuple[str, str]:
-    """Label and unit of a header: in brackets, else its last part where that is a unit."""
+    """Label and unit of a header; the unit is in brackets, or the last part if that is a unit."""
     brackets = list(BRACKETS.finditer(name))
     if brackets:
         last = brackets[-1]
@@ -137,14 +137,14 @@ def _factor(name: str, kind: str, unit: str, file: str) -> float | None:
 
 
 LEAST_POINTS = 8
-"""Points of a curve: two for each constant of the laws of four, our choice."""
+"""Least number of points of a curve: two for each constant of a law with four, our choice."""
 
 LEAST_STRETCH = 1.2
 """Stretch that a curve must reach: a shorter curve gives a modulus and no law."""
 
 MODULI = (0.002, STIFFEST_ELASTOMER_MPA)
-"""MPa: outside these the numbers are in other units. The softest silicone gels have about 0.005, printed elastomers up
-to 5.3."""
+"""Range of shear moduli, MPa: outside it the numbers are in other units. The softest silicone gels have about 0.005,
+printed elastomers up to 5.3."""
 
 _MOST_STRAIN = 20.0
 """Strains above this are per cent: the silicones tear at 10 at most."""
@@ -188,7 +188,7 @@ def read_tension(path: Path, size: SpecimenSize | None = None) -> TensionCurve:
 
 
 def _first_filled(path: Path, pairs: list[ColumnPair], layout: TableLayout) -> tuple[ColumnPair, Array, Array]:
-    """The first pair whose columns hold numbers, and those."""
+    """First pair whose columns hold numbers, with the numbers of its length and its load."""
     failures = []
     for pair in pairs:
         try:
@@ -287,7 +287,7 @@ def _agrees(
 
 
 def _check_sign(stress: Array, file: str, key: str) -> None:
-    """Raise InputError where the stress that is greatest in size is below zero."""
+    """Raise InputError if the stress of greatest magnitude is negative."""
     deep = float(stress[np.argmax(np.abs(stress))])
     if deep < 0.0:
         remedy = "tension is positive, stretch and stress alike: turn the signs in the file"
@@ -315,7 +315,7 @@ def _loading(curve: TensionCurve) -> TensionCurve:
 
 
 def _plausible(curve: TensionCurve) -> None:
-    """Check number of points, reach and size. Raises InputError."""
+    """Raise InputError for too few points, too small a largest stretch, or a modulus outside `MODULI`."""
     if curve.stretch.size < LEAST_POINTS:
         raise InputError(f"{curve.stretch.size} points", file=curve.file, remedy=f"at least {LEAST_POINTS}")
     most = float(curve.stretch[-1])

@@ -80,16 +80,16 @@ def _steiner(mass: float, centre: Array) -> Array:
 
 
 _TIME_STEP = 0.002
-"""s. MuJoCo's default."""
+"""Time step, s: MuJoCo's default."""
 
 _INERTIA_SHARE = 0.5
-"""Inertia of the joint in greatest stiffness times time step squared. An explicit spring is stable from 0.25 on."""
+"""Inertia of the joint over greatest stiffness times time step squared. An explicit spring is stable from 0.25 on."""
 
 _GAUSS = 24
 """Points of Gauss along a piece of a face: exact to rounding on a quarter circle."""
 
 _DAMPING_SHARE = 0.2
-"""Damping of the joint in time step times greatest stiffness. Our choice: the wall's own damping is not known."""
+"""Damping of the joint over time step times greatest stiffness. Our choice: the wall's own damping is not known."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ class PressTable:
 def press_table(
     driving_pressure_kPa: float, apex_mm: float, indentation_mm: Array, force: Array, rise_kPa: Array
 ) -> PressTable:
-    """The table of a curve: monotone between its points (Fritsch and Carlson), as they are in `PchipInterpolator`."""
+    """Table of a curve, monotone between its points (Fritsch and Carlson), with the slopes of `PchipInterpolator`."""
     from scipy.interpolate import PchipInterpolator
 
     depth = 1e-3 * indentation_mm
@@ -137,11 +137,11 @@ class SimulatedSensor:
     Attributes:
         name: Name of the design, of its link and body.
         bodies: Print meshes, mm, in the frame of the base plane: z outwards along the axis of the dome.
-        inertia: Of all bodies together.
-        moving: The share of it that moves with the apex; see `moving_share`.
-        radius: Height of the unloaded dome outside, that of the sphere that stands for it, m.
+        inertia: Inertia of all bodies together.
+        moving: The share of this inertia that moves with the apex; see `moving_share`.
+        radius: Outer height of the unloaded dome, and radius of the sphere that stands for it, m.
         rear: Height of the rearmost face, m: below the base plane.
-        tables: One a driving pressure, rising.
+        tables: One for each driving pressure, rising.
     """
 
     name: str
@@ -185,7 +185,7 @@ def simulated_sensor(
 
 
 def moving_share(shape: DomeShape, density: float) -> RigidInertia:
-    """The mass that moves with the apex (kg/m3), at the centroid of the wall.
+    """Inertia that moves with the apex, at the centroid of the wall, by the ``density`` in kg/m3.
 
     A wall whose points move in proportion to their height z has the kinetic energy of the mass of z2/h2: over a
     hemisphere z is evenly spread (Archimedes), and that is a third of the wall's.
@@ -197,7 +197,7 @@ def moving_share(shape: DomeShape, density: float) -> RigidInertia:
 
 
 def _moments(face: Sequence[Segment]) -> tuple[float, float, float]:
-    """Area of a face (mm2), the integral of z2 over it (mm4), and that of z over the space within (mm4)."""
+    """Area of a face (mm2), the integral of z2 over it (mm4), and the integral of z over the space within (mm4)."""
     at, weight = np.polynomial.legendre.leggauss(_GAUSS)
     area, square, within = 0.0, 0.0, 0.0
     for piece in face:
@@ -249,7 +249,7 @@ def mjcf_files(sensor: SimulatedSensor) -> dict[str, bytes]:
 
 
 def module(sensor: SimulatedSensor) -> bytes:
-    """The callbacks with the table of the sensor, as a module that needs MuJoCo alone."""
+    """The callbacks with the table of the sensor, as a module that needs only MuJoCo."""
     source = (Path(__file__).parent / "dome_force.py").read_text(encoding="utf-8")
     table = pprint.pformat(plain(dome_table(sensor)), width=118, compact=True, sort_dicts=False)
     usage = (

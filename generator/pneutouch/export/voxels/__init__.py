@@ -1,1 +1,1 @@
-"""Voxel stacks: one PNG a layer, every pixel a droplet of one base resin (GrabCAD Voxel Print)."""
+"""Voxel stacks: one PNG per layer, every pixel a droplet of one base resin (GrabCAD Voxel Print)."""

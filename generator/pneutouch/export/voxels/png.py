@@ -16,14 +16,14 @@ from pneutouch.export.voxels.raster import INCH
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _LEVEL = 3
-"""zlib's: on dithered slices as quick as 1 and half its size; 6 takes twice the time for half again (measured)."""
+"""zlib level: on dithered slices as quick as 1 at half the size; 6 takes twice the time for half again (measured)."""
 
 _KINDS = {0: "grey", 2: "RGB without alpha", 3: "an indexed palette", 4: "grey with alpha"}
 _PER_METRE = 1000 / INCH
 
 
 def table(colours: list[tuple[int, int, int, int]]) -> Pixels:
-    """Colours as the pixels that `encode` takes labels to."""
+    """Colours as pixel values, indexed by label, for `encode`."""
     return np.array(colours, np.uint8).view(np.uint32).ravel()
 
 

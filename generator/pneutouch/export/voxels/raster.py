@@ -22,7 +22,7 @@ from pneutouch.spec.material import Material
 from pneutouch.units import UM
 
 INCH = 25.4
-"""Millimetres."""
+"""An inch, mm."""
 
 _ROUNDING = 1e-6
 """Share of a step by which a size may miss a whole number of steps through rounding."""
@@ -59,7 +59,7 @@ class Raster:
         return z, y, x
 
     def plane(self, rows: slice, columns: slice) -> Window:
-        """The rows and columns of a layer, as sections are taken."""
+        """Window of rows and columns of a layer, in which sections are taken."""
         return Window(self.x[columns], self.y[rows])
 
 
@@ -98,9 +98,9 @@ Share = Callable[[Array, Array], Array]
 
 @dataclass(frozen=True)
 class ResinBlend:
-    """The resins of a body, soft one first; ``share`` is of the second, None if there is one alone.
+    """The resins of a body, soft one first; ``share`` is of the second, None if there is only one.
 
-    ``most`` is its greatest value. ``assumed`` says what the share rests on where it was neither measured nor
+    ``most`` is its greatest value. ``assumed`` states the basis of the share where it was neither measured nor
     requested.
     """
 
@@ -111,8 +111,8 @@ class ResinBlend:
 
 
 def blend(material: Material, name: str, library: Library, where: str, shape: DomeShape) -> ResinBlend:
-    """The blend of a material; ``name`` is its own in the catalogue, ``where`` the file and key that request it,
-    ``shape`` that of the dome along whose arc a graded material varies.
+    """The blend of a material; ``name`` is its name in the catalogue, ``where`` the file and key that request it,
+    ``shape`` the shape of the dome along whose arc a graded material varies.
 
     A digital material of the catalogue has no published mix: its fraction is taken from the mixing curve that it is a
     point of. Raises InputError if there is none, and for more than two resins.
@@ -196,7 +196,7 @@ class VoxelJob:
 
     @property
     def colours(self) -> dict[str, tuple[int, int, int, int]]:
-        """The colour of each resin in use: that of its place among the printer's, the same in every stack."""
+        """The colour of each resin in use, by its place among the printer's resins: the same in every stack."""
         return colours_of(self.resins, self.used)
 
 
@@ -237,7 +237,7 @@ def reach_for(most: float, pitch: tuple[float, float, float]) -> float:
 
 
 class RecentLayers(Generic[Item]):
-    """Something made for layers in turn; the last ``keep`` are kept, so that neighbours need not be made again."""
+    """Items made for layers in turn; the last ``keep`` are kept, so that those of neighbours are not made again."""
 
     def __init__(self, make: Callable[[int], Item], keep: int) -> None:
         self._make, self._keep = make, keep
@@ -256,8 +256,8 @@ class SkinCompensation:
     """Addition to the share of every interior voxel, so that the body keeps the share of its skin.
 
     The share requested in a skin voxel goes in equal parts to the interior voxels of the box of ``reach`` mm around it:
-    the sum over the body is kept, and so is that of any region much larger than the reach. What has no interior near is
-    lost.
+    the sum over the body is kept, and so is that of any region much larger than the reach. A share with no interior
+    near is lost.
     """
 
     def __init__(
@@ -275,7 +275,7 @@ class SkinCompensation:
         return 2 * self._up
 
     def layer(self, number: int) -> Singles | None:
-        """Addition in a layer, (rows, columns); it has a meaning for the interior alone."""
+        """Addition in a layer, (rows, columns); it has a meaning only in the interior."""
         return _sum(self._given(k) for k in self._around(number))
 
     def _around(self, number: int) -> range:

@@ -71,12 +71,12 @@ class _Field:
         return int(self.energy.argmin())
 
     def cluster(self) -> int:
-        """The most crowded of those that are taken."""
+        """The most crowded place that is taken."""
         return int(self.energy.argmax())
 
 
 def void_and_cluster(shape: tuple[int, int, int], pitch: tuple[float, float, float], seed: int) -> Indices:
-    """Indices 0 to n - 1 of a block's voxels, ``shape`` and ``pitch`` (mm) along z, y, x."""
+    """Ranks, 0 to n - 1, of a block's voxels by void and cluster; ``shape`` and ``pitch`` (mm) along z, y, x."""
     field = _Field(shape, pitch, seed)
     count = int(_START * len(field.on))
     for _ in range(count):
@@ -165,7 +165,7 @@ class Cubes:
         return Cubes(shape, counts)  # type: ignore[arg-type]
 
     def empty(self) -> Array:
-        """A number for every cube."""
+        """Array of zeros, one number for every cube."""
         return np.zeros(tuple(-(-n // e) for n, e in zip(self.shape, self.edge, strict=True)))
 
     def add(self, totals: Array, layer: int, values: Array | Flags | Singles) -> None:
@@ -202,7 +202,7 @@ class VoxelCounts:
 
 @dataclass
 class VoxelSlicer:
-    """Slices of a job in turn. ``tallies`` by body and ``counts`` by resin are whole after the last one."""
+    """Slices of a job in turn. ``tallies`` by body and ``counts`` by resin are complete after the last slice."""
 
     job: VoxelJob
     tallies: dict[str, VoxelCounts] = field(default_factory=dict)
@@ -272,7 +272,7 @@ class _Layers:
             part[self._mixed.stiff(number, self.tally)] = self._labels[1]
 
     def finish(self) -> VoxelCounts:
-        """The tally, its cubes looked through."""
+        """Complete the tally by its comparison in cubes, and return it."""
         if self.body.blend.share is not None:
             self._mixed.finish(self.tally)
         return self.tally
@@ -329,7 +329,7 @@ class _Mixed:
         return chosen
 
     def finish(self, tally: VoxelCounts) -> None:
-        """Look through the cubes that are full enough."""
+        """Put the greatest difference of the cubes that are full enough into the tally."""
         held = self._voxels_in >= FULL * np.prod(self._cubes.edge)
         tally.cubes = int(np.count_nonzero(held))
         if tally.cubes:

@@ -42,7 +42,7 @@ def slice_name(prefix: str, number: int) -> str:
 
 
 def whole_hash(hashes: Sequence[str]) -> str:
-    """SHA-256 over the slices' own, one a line, in order."""
+    """SHA-256 of the slices' hashes, one per line, in order."""
     return hashlib.sha256("".join(f"{one}\n" for one in hashes).encode()).hexdigest()
 
 
@@ -233,7 +233,7 @@ def _colours(manifest: dict[str, Any]) -> Pixels:
 
 
 def _check_names(folder: Path, manifest: dict[str, Any]) -> None:
-    """Slices from 0 without gaps, as many as the manifest states, and no other PNG."""
+    """Raise InputError unless slices count from 0 without gaps, as many as stated, and no other PNG is there."""
     prefix, layers = manifest["prefix"], manifest["layers"]
     pattern = re.compile(re.escape(prefix) + r"(0|[1-9][0-9]*)\.png")
     numbers = set()

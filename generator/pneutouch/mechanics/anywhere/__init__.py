@@ -1,6 +1,6 @@
 """Errors of a sensor's reading under contact off the centre, tabulated once in dimensionless form.
 
-`recipe` states the presses that the table is made from, `table` interpolates in it, `conditions` makes its variables
-from sensors, `reading` the errors of a force that is read by the central calibration. The table is built outside the
+`table` states the presses that the table is made from and interpolates in it. `reading` computes the table's input
+variables for sensors, and the error of a force that is read by the central calibration. The table is built outside the
 package: ``make contact-table``.
 """

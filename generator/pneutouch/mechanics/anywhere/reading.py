@@ -1,6 +1,6 @@
 """Error of a force that is read by the central calibration while the contact is off the centre.
 
-The table's variables of sensors, and the limits of the table.
+Also the input variables of the contact table for given sensors, and the limits of the table.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ _SLACK = 1e-9
 
 
 def batch_conditions(batch: SensorBatch, limit_pressure: Array, cavity_volume: Array) -> DomeConditions:
-    """Conditions of n sensors with their limit pressures (MPa) and the cavity volumes at their driving pressures
-    (mm3)."""
+    """Table inputs of n sensors, from their limit pressures (MPa) and their cavity volumes (mm3) at the driving
+    pressures."""
     volume = (cavity_volume + batch.dead_volume) / batch.inner_radius**3
     gas = (batch.driving_pressure + batch.ambient_pressure) / batch.shear_modulus / volume
     return DomeConditions(batch.wall_ratio, batch.driving_pressure / limit_pressure, gas)
 
 
 def state_conditions(sensor: Sensor, states: Sequence[SensorState], limit_pressure: float) -> DomeConditions:
-    """Conditions of one sensor in n predicted states; its limit pressure in MPa."""
+    """Table inputs of one sensor in n predicted states; ``limit_pressure`` in MPa."""
     driving, cavity = (np.array([getattr(s, name) for s in states]) for name in ("driving_pressure", "cavity_volume"))
     return batch_conditions(batch_of(sensor, driving), np.full(driving.size, limit_pressure), cavity)
 
 
 def covered(domes: DomeConditions) -> Flags:
-    """True for those of n domes that lie inside the table."""
+    """Mask (n,) of the domes that lie inside the table."""
     inside = np.ones(domes.share.shape, dtype=bool)
     for values, nodes in _axes(domes):
         inside &= (values >= nodes[0] * (1 - _SLACK)) & (values <= nodes[-1] * (1 + _SLACK))
@@ -67,44 +67,43 @@ def _axes(domes: DomeConditions) -> list[tuple[Array, tuple[float, ...]]]:
 
 
 SMALLEST_BALL, FARTHEST, STEEPEST_TILT = 0.3, 0.6, float(np.radians(20.0))
-"""Assumptions on an unknown contact: a ball of at least this radius in R0, its axis at most this far off the dome's in
-R0, and a plate that leans by at most this angle."""
+"""Ranges assumed for an unknown contact: smallest ball radius and greatest offset of its axis from the dome's, both in
+R0, and the greatest tilt of a plate, rad."""
 
 TABLE_ERROR = 0.05
-"""Greatest error of the logarithm of the force found in presses that the table was not made from
+"""Greatest error of the logarithm of the force, found in presses that were not used to make the table
 (docs/background/off-axis.md)."""
 
 _POINTS, _FEWER = 4, 3
 _LEVELS = 8
 _FIRST = 0.05
-"""Least travel of the central plate whose reading counts, in R0."""
+"""Least travel of the central plate, in R0, from which a reading is counted."""
 
 
 def ball_places(wall_ratio: Array, radius: Array, offset: Array) -> ContactPlaces:
-    """Balls of radii (m,) at offsets (m,), both in R0, on domes of wall ratios (n,); a radius may be infinite."""
+    """Places of balls of radii (m,), may be infinite, at offsets (m,), both in R0, on domes of wall ratios (n,)."""
     curvature = np.broadcast_to(1.0 / radius, (wall_ratio.size, radius.size))
     lean = offset * curvature / ((1.0 + wall_ratio)[:, None] * curvature + 1.0)
     return ContactPlaces(curvature, lean)
 
 
 def edge_places(wall_ratio: Array, radius: Array, offset: Array) -> ContactPlaces:
-    """Edges of bars with noses of radii (m,) whose middle planes stand at offsets (m,), both in R0, on domes of wall
-    ratios (n,); a radius may be infinite. A section across a bar is that of a ball."""
+    """Places of bar edges with nose radii (m,) and middle planes at offsets (m,), both in R0, on domes of wall ratios
+    (n,); a radius may be infinite. The cross-section of a bar touches like that of a ball of the same radius."""
     return ball_places(wall_ratio, radius, offset)._replace(lying=True)
 
 
 def plate_places(wall_ratio: Array, tilt: Array) -> ContactPlaces:
-    """Plates that lean by angles (m,), rad, on domes of wall ratios (n,)."""
+    """Places of plates that lean by angles (m,), rad, on domes of wall ratios (n,)."""
     lean = np.broadcast_to(np.sin(tilt), (wall_ratio.size, tilt.size))
     return ContactPlaces(np.zeros_like(lean), lean)
 
 
 def force_logs(domes: DomeConditions, places: ContactPlaces, levels: Array, table: PlaceTable | None = None) -> Array:
-    """Logarithm of the force under objects over the central plate's at the readings that the plate has at travels
-    ``levels`` (n, k) in R0; (n, m, k), NaN if the object does not reach the reading within 0.75 R0.
-
-    A force that is read by the central calibration is exp(-logarithm) times the true one.
-    """
+    """Logarithm (n, m, k) of the force under an object over that under the central plate at the same reading. The
+    readings are those of the plate at travels ``levels`` (n, k) in R0; NaN if the object does not reach the reading by
+    0.75 R0.
+    A force that is read by the central calibration is exp(-logarithm) times the true one."""
     table = table or shipped()
     nodes, known = np.array(table.recipe.levels), table.logs(domes, places)
     at = np.clip(levels, nodes[0], nodes[-1])
@@ -116,13 +115,13 @@ def force_logs(domes: DomeConditions, places: ContactPlaces, levels: Array, tabl
 
 
 def place_uncertainty(domes: DomeConditions, range_end: Array) -> Array:
-    """Standard uncertainty (n,) of the logarithm of a force that is read by the central calibration where object and
+    """Standard uncertainty (n,) of the logarithm of a force that is read by the central calibration while object and
     place of contact are unknown; NaN outside the table.
 
-    A Type B evaluation (JCGM 100, 4.3.7). The object is a ball, its curvature even from none to that of 0.3 R0, its
-    axis even over the disc of 0.6 R0; a plate leans by an angle even from 0 to 20 degrees. Both are root mean squares
-    over the readings from first contact to the plate's travel ``range_end`` (n,) in R0, in equal steps of that travel,
-    as far as the object reaches them; the two are independent. A mean is not corrected: it counts in full.
+    A Type B evaluation (JCGM 100, 4.3.7) with two independent parts. A ball: curvature uniform from 0 to that of radius
+    0.3 R0, axis uniform over the disc of radius 0.6 R0. A leaning plate: angle uniform from 0 to 20 degrees. Each part
+    is a root mean square over readings at equal steps of the central plate's travel, from first contact to
+    ``range_end`` (n,) in R0, as far as the object reaches them. The mean error is not corrected: it counts in full.
     """
     inside = covered(domes) & (range_end > _FIRST)
     result = np.full(range_end.shape, np.nan)
@@ -135,7 +134,7 @@ def place_uncertainty(domes: DomeConditions, range_end: Array) -> Array:
 
 
 def _balls(domes: DomeConditions) -> tuple[ContactPlaces, Array]:
-    """Balls at their places, (n, m), and their weights (m,)."""
+    """Quadrature points over balls and their offsets, (n, m), with their weights (m,)."""
     curvature, by_curvature = _even(_POINTS, 1.0 / SMALLEST_BALL)
     disc, by_disc = _even(_FEWER, 1.0)
     radius, offset = np.repeat(1.0 / curvature, _FEWER), np.tile(FARTHEST * np.sqrt(disc), _POINTS)
@@ -143,13 +142,13 @@ def _balls(domes: DomeConditions) -> tuple[ContactPlaces, Array]:
 
 
 def _tilts(domes: DomeConditions) -> tuple[ContactPlaces, Array]:
-    """Leaning plates and their weights."""
+    """Quadrature points over the tilt of a plate, (n, m), with their weights (m,)."""
     tilt, weight = _even(_FEWER, STEEPEST_TILT)
     return plate_places(domes.wall_ratio, tilt), weight
 
 
 def _even(count: int, end: float) -> tuple[Array, Array]:
-    """Points of Gauss and Legendre from 0 to ``end`` and their weights, which sum to 1."""
+    """Gauss-Legendre points from 0 to ``end`` and their weights, which sum to 1."""
     points, weights = np.polynomial.legendre.leggauss(count)
     return 0.5 * end * (points + 1.0), 0.5 * weights
 

@@ -1,6 +1,6 @@
-"""The table of contact anywhere, read once, and values looked up in it.
+"""Table of contact anywhere on the dome: the presses it is made from, and interpolation in it.
 
-The presses that the table of contact anywhere is made from.
+The shipped table is read once.
 """
 
 from __future__ import annotations
@@ -22,22 +22,22 @@ from pneutouch.mechanics.atlas.recipe import StoredRecipe
 class PlaceTableRecipe(StoredRecipe):
     """Nodes of the table, in units of R0 and mu.
 
-    An object of curvature ``R0/a`` (a: its radius; 0: a plate) first touches the unloaded dome where the normal leans
-    by an angle whose sine is its ``lean``: that of the tilt of a plate, or for a ball e/(Ro + a) by its offset e and
-    the outer radius Ro. A wall ratio, a share of the limit pressure and a gas stiffness state the dome before contact.
-    A reading is stated by the travel of the central plate that gives it, over R0: its ``level``.
+    The dome before contact is stated by its wall ratio, its share of the limit pressure and its gas stiffness. An
+    object of radius a has the curvature R0/a; a plate has 0. Its ``lean`` is the sine of the angle between the axis and
+    the normal at first contact on the unloaded dome: the sine of a plate's tilt, or e/(Ro + a) for a ball at offset e,
+    with the outer radius Ro. A reading is stated by its ``level``: the travel, in R0, of the central plate that gives
+    it.
 
     Central presses by the solid: every combination of walls, shares, gases and curvatures, default mesh. Presses with a
     lean, by the solid with harmonics to ``order`` on ``cells`` cells along the arc: every combination of leaning_walls,
-    leaning_shares, leaning_curvatures and leans, at ``leaning_gas``; of these the table has the difference from the
-    central press on the same mesh.
-
-    Presses by the edge of a bar, whose curvature is that of its round nose and whose lean is a ball's, at
-    ``leaning_gas`` on ``cells`` cells, with harmonics to ``edge_order``. Across the pole, with even harmonics: every
-    combination of leaning_walls, leaning_shares and edge_curvatures; of these the table has the logarithm as a share of
-    that of the central ball of half the curvature, which has the same mean curvature, and the highest level as a
-    difference from that of the ball of the same. With a lean: every combination of edge_walls, edge_shares,
-    edge_curvatures and leans; of these it has what the lean changes, less what it changes under a plate.
+    leaning_shares, leaning_curvatures and leans, at ``leaning_gas``; the table holds their difference from the central
+    press on the same mesh.
+    Presses by the edge of a bar, with the curvature of its round nose and the lean of a ball, at ``leaning_gas`` on
+    ``cells`` cells, with harmonics to ``edge_order``. Across the pole, with even harmonics: every combination of
+    leaning_walls, leaning_shares and edge_curvatures. The table holds their logarithm as a share of the logarithm for
+    the central ball of half the curvature (the same mean curvature), and their highest level as a difference from the
+    level of the ball of the same curvature. With a lean: every combination of edge_walls, edge_shares, edge_curvatures
+    and leans; the table holds the change by the lean less the change under a plate.
     """
 
     poisson_ratio: float = 0.49
@@ -71,8 +71,8 @@ class NodeAxis(NamedTuple):
     nodes: Array
 
     def weights(self, at: Array) -> Array:
-        """Weights (n, m) of the nodes for values at (n,): a cubic between two nodes through both, with the slopes that
-        a parabola through each node and its neighbours has; a parabola with three nodes. The ends hold beyond."""
+        """Weights (n, m) of the nodes for values at (n,): cubic between two nodes, with the slopes of the parabola
+        through each node and its neighbours; linear if there are only two nodes. Constant beyond the ends."""
         x, size = self.nodes, self.nodes.size
         if size == 1:
             return np.ones((at.size, 1))
@@ -87,7 +87,7 @@ class NodeAxis(NamedTuple):
         return np.asarray((1 - rise) * one[k] + rise * one[k + 1] + left * slopes[k] + right * slopes[k + 1])
 
     def straight(self, at: Array) -> Array:
-        """Weights (n, m) of straight lines between the nodes; the ends hold beyond."""
+        """Weights (n, m) for linear interpolation between the nodes; constant beyond the ends."""
         return np.asarray(np.stack([np.interp(at, self.nodes, row) for row in np.eye(self.nodes.size)], axis=-1))
 
 
@@ -99,12 +99,12 @@ SHIPPED = Path(__file__).with_name("contact.npz")
 NodeWeights = Callable[[NodeAxis, Array], Array]
 
 _PLATE_FIRST = ((0, 0), (1, 0), (0, 0))
-"""Puts the plate before the curvatures of a table (n, curvatures, k)."""
+"""Padding that puts the plate before the curvatures of a table (n, curvatures, k)."""
 
 
 class DomeConditions(NamedTuple):
-    """Domes before contact, (n,) each: wall ratio t0/R0, share of the limit pressure, and stiffness of the gas in
-    mu/R0^3: its absolute pressure over its volume at first contact."""
+    """Domes before contact, (n,) each: wall ratio t0/R0, share of the limit pressure, and gas stiffness in mu/R0^3, the
+    absolute gas pressure over the gas volume at first contact."""
 
     wall_ratio: Array
     share: Array
@@ -112,9 +112,8 @@ class DomeConditions(NamedTuple):
 
 
 class ContactPlaces(NamedTuple):
-    """Objects and where they touch n domes, (n, m) each: curvature R0/a and lean, see `recipe.PlaceTableRecipe`.
-
-    They are balls and plates, or edges of bars that lie across the plane of their lean."""
+    """Objects and their places on n domes, (n, m) each: curvature R0/a and lean, as in `PlaceTableRecipe`. The objects
+    are balls and plates; if ``lying``, edges of bars that lie across the plane of the lean."""
 
     curvature: Array
     lean: Array
@@ -122,20 +121,20 @@ class ContactPlaces(NamedTuple):
 
 
 class PlaceTable:
-    """The logarithm of the force under an object over the central plate's at equal reading."""
+    """Tables of the logarithm of the force under an object over that under the central plate at equal reading."""
 
     def __init__(self, tables: Mapping[str, Array], recipe: PlaceTableRecipe) -> None:
         self.recipe, self._tables = recipe, {name: np.asarray(table, dtype=float) for name, table in tables.items()}
 
     def logs(self, domes: DomeConditions, places: ContactPlaces) -> Array:
-        """Logarithms at every level of the recipe, (n, m, levels); beyond the nodes as at the last ones."""
+        """Logarithms at every level of the recipe, (n, m, levels); constant beyond the outermost nodes."""
         r = self.recipe
         central = np.pad(self._of_central(domes, "central"), _PLATE_FIRST)
         if not places.lying:
             middle = _at((0.0, *r.curvatures), places.curvature) @ central
         else:
-            # A slight curvature acts by its mean around the axis alone: its deviation from that of a body of
-            # revolution has no effect to first order. The share of the ball of this mean curvature begins at 1.
+            # A slight curvature acts only by its mean around the axis: its deviation from a body of revolution has no
+            # effect to first order. The share of the ball of this mean curvature begins at 1.
             shares = np.pad(self._of_leaning(domes, "edge"), _PLATE_FIRST, constant_values=1.0)
             nodes = tuple(float(_narrow(bend)) for bend in (0.0, *r.edge_curvatures))
             middle = _at((0.0, *r.curvatures), 0.5 * places.curvature) @ central
@@ -154,7 +153,7 @@ class PlaceTable:
         return np.asarray(np.minimum(values[..., 0], r.depth))
 
     def _of_central(self, domes: DomeConditions, name: str) -> Array:
-        """A table of central presses by plates and balls at domes, (n, curvatures, ...)."""
+        """Table ``name`` of central presses by plates and balls, interpolated at domes, (n, curvatures, ...)."""
         r = self.recipe
         walls, shares = _dome_weights(r.walls, r.shares, domes)
         gases = NodeAxis(np.log(r.gases)).weights(np.log(domes.gas))
@@ -162,21 +161,21 @@ class PlaceTable:
         return np.asarray(np.einsum("nw,ns,ng,wsg...->n...", walls, shares, gases, table, optimize=True))
 
     def _of_leaning(self, domes: DomeConditions, name: str) -> Array:
-        """A table over leaning walls and shares at domes, (n, ...)."""
+        """Table ``name`` over leaning_walls and leaning_shares, interpolated at domes, (n, ...)."""
         return self._over(self.recipe.leaning_walls, self.recipe.leaning_shares, domes, name)
 
     def _over(self, walls: Sequence[float], shares: Sequence[float], domes: DomeConditions, name: str) -> Array:
-        """A table over walls and shares at domes, (n, ...)."""
+        """Table ``name`` over walls and shares, interpolated at domes, (n, ...)."""
         by_wall, by_share = _dome_weights(walls, shares, domes)
         return np.asarray(np.einsum("nw,ns,ws...->n...", by_wall, by_share, self._tables[name], optimize=True))
 
     def _off_axis(
         self, domes: DomeConditions, places: ContactPlaces, names: tuple[str, str], weights: NodeWeights
     ) -> Array:
-        """Changes by a lean, (n, m, levels), from the tables of balls and of edges; (n, m, 1) for the highest levels.
+        """Changes by the lean, (n, m, levels), from the tables of balls and of edges; (n, m, 1) for the highest levels.
 
-        The scene with a negative lean is the mirrored one: the lean enters by its square. A range by an edge mostly
-        ends where the wall has come to the end of its nose, on the side of the offset: there it enters by its size.
+        A negative lean gives the mirror image: the lean enters by its square. The highest level under an edge is mostly
+        where the wall comes to the end of the nose, on the side of the offset: there the lean enters by its size.
         """
         r, balls = self.recipe, self._of_leaning(domes, names[0])
         table, nodes = balls, r.leaning_curvatures
@@ -211,7 +210,7 @@ def _narrow(curvature: float | Array) -> Array:
 
 
 def digest(tables: Mapping[str, Array]) -> str:
-    """SHA-256 of the tables' numbers, the first 16 digits."""
+    """First 16 hexadecimal digits of the SHA-256 of the tables' numbers."""
     content = b"".join(name.encode() + np.ascontiguousarray(tables[name], "<f4").tobytes() for name in sorted(tables))
     return sha256(content).hexdigest()[:16]
 

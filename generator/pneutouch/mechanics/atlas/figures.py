@@ -1,4 +1,4 @@
-"""The predicted figures of batches and of their neighbours, whose inputs are moved, in one call of the atlas."""
+"""Predicted figures of batches and of their neighbours with shifted inputs, in one call of the atlas."""
 
 from dataclasses import replace
 from functools import cache
@@ -23,8 +23,8 @@ FIGURES = (
 """The predicted figures, in the order of every array over figures."""
 
 INPUTS = ("shear_modulus", "wall_thickness", "inner_radius", "dead_volume", "ambient_pressure", "driving_pressure")
-"""Inputs that a source may act on through the model, in the order of every array over inputs; names of
-`SensorBatch`."""
+"""Inputs through which a source of uncertainty may act on the model, in the order of every array over inputs; field or
+property names of `SensorBatch`."""
 
 SENSITIVITY = FIGURES.index(SENSITIVITY_KEY)
 CONTACT_FIGURES = (
@@ -33,28 +33,28 @@ CONTACT_FIGURES = (
     FIGURES.index("force_at_range_end_N"),
     FIGURES.index("range_end_mm"),
 )
-"""Figures that depend on the contact; the last is the end of the range."""
+"""Indices of the figures that depend on the contact; the last is the end of the range."""
 DEAD = INPUTS.index("dead_volume")
 
 
 _MARGIN = 0.001
-"""Distance by which the neighbourhood of the box stays inside the surveyed data (`AtlasRecipe.beyond`), in R0."""
+"""Distance in R0 that the depth of `neighbourhood` keeps from the edge of the surveyed data (`AtlasRecipe.beyond`)."""
 
 SOFTEST = 6.0
-"""Greatest ambient pressure over modulus for which derivatives are taken from the tables. The gas is no coordinate of
-theirs: it only decides which states a press passes, and those in a stiff gas lie among the ones surveyed. Without
-driving pressure and at 6 % of the limit pressure, the paper's dome: at 1.8, 4.1 and 5.8 moduli its figures meet the
-solid's within 0.2 %, derivatives by modulus and wall within 5 % or 0.04 (`tests/mechanics/uncertainty/
-test_soft_walls.py`); at 11 the figures are 2 %, the derivatives up to 25 % off."""
+"""Greatest ambient pressure over modulus for which derivatives are taken from the tables. The gas is not one of their
+coordinates: it only decides which states a press passes, and in a stiff gas these are among the surveyed ones. Checked
+with the paper's dome without driving pressure and at 6 % of the limit pressure
+(`tests/mechanics/uncertainty/test_soft_walls.py`): at 1.8, 4.1 and 5.8 moduli the figures are within 0.2 % of the
+solid's, derivatives by modulus and wall within 5 % or 0.04; at 11 they are off by 2 % and up to 25 %."""
 
 
 @cache
 def neighbourhood() -> Atlas:
-    """The shipped atlas with its box opened to nearly all the data it holds.
+    """The shipped atlas with its box opened to nearly all the data it holds, for sensors with shifted inputs.
 
-    A sensor pressed to three quarters of R0 lies on the edge of the box, where a smaller radius with the same travel is
-    outside. The survey went on to `AtlasRecipe.beyond` and to walls outside the box, so that its neighbours can be
-    evaluated. The gas may be twice as stiff as in `softer_walls`, whose neighbours are needed too.
+    A sensor pressed to three quarters of R0 is on the edge of the box, and outside if its radius is reduced at the same
+    travel. The survey went on to `AtlasRecipe.beyond` and to walls outside the box, so that such neighbours can be
+    evaluated. The gas may be twice as stiff as in `softer_walls`, because the neighbours of those sensors count too.
     """
     known = shipped()
     recipe, walls = known.recipe, known.recipe.wall_ratios
@@ -77,9 +77,9 @@ def softer_walls() -> Atlas:
 
 
 def moved(batch: SensorBatch, name: str, by: Array) -> SensorBatch:
-    """The batch with one input moved, (n,): times exp(by); the dead volume plus ``by`` mm3.
+    """The batch with one input changed by ``by`` (n,): times exp(by); the dead volume plus ``by`` mm3.
 
-    At least half of the unloaded cavity stays: a deviation of some 0.1 mL is more than a tiny sensor holds.
+    At least half of the unloaded cavity stays as gas volume: a tiny sensor holds less than a deviation of 0.1 mL.
     """
     value = getattr(batch, name)
     if name != INPUTS[DEAD]:
@@ -89,7 +89,7 @@ def moved(batch: SensorBatch, name: str, by: Array) -> SensorBatch:
 
 
 def unit_step(batch: SensorBatch) -> Array:
-    """Size of a step of one in each input, (inputs, n): the input itself; for the dead volume all the gas, mm3."""
+    """Unit step of each input, (inputs, n): 1 in the logarithm; for the dead volume the whole gas volume, mm3."""
     steps = np.ones((len(INPUTS), len(batch)))
     steps[DEAD] = REST_VOLUME * batch.inner_radius**3 + np.maximum(batch.dead_volume, 0.0)
     return steps
@@ -98,7 +98,7 @@ def unit_step(batch: SensorBatch) -> Array:
 def log_figures(batch: SensorBatch, groups: Index | None = None) -> Array:
     """Natural logarithms of the figures, (figures, n); NaN for a missing figure. Units as stated in `FIGURES`.
 
-    ``groups`` are those of `respond`.
+    ``groups`` as in `respond`.
     """
     # In order of the wall ratio, because the atlas cuts its tables once for each ratio of a chunk.
     order = np.argsort(batch.wall_ratio, kind="stable")

@@ -1,6 +1,6 @@
-"""Many sensors pressed at once in the atlas: trapped gas, limits and events added to its states.
+"""Many sensors pressed at once with the states of the atlas, with trapped gas.
 
-Sensors as the atlas takes them.
+`SensorBatch` holds the inputs of the sensors.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ from pneutouch.mechanics.solid.object_contact import flat_radius, rim_radius
 _NEWTON = 8
 _LONGEST = 0.05
 _LAST_STEP = 1.0e-4
-"""Longest step of a solution in nu, and the step after which none is needed."""
+"""Longest Newton step in nu, and the step length at which a solution counts as converged."""
 _CLOSE = 1.0e-9
 _NO_TRAVEL = 1.0e-9
 _INFLATING = 40
 _BELOW_REST = 0.01
-"""The table's pressure at rest is zero to its error only: the root may lie that little below."""
+"""Lowest nu of an inflated state: the table's pressure at rest differs from zero by its error, so nu may be below 0."""
 
 
 @dataclass(frozen=True)
 class SensorBatch:
-    """Sensors to press, arrays of one length: mm, mm^3, MPa. break_stretch and plate_radius may be infinite."""
+    """Sensors to press, arrays of one length in mm, mm^3 and MPa. break_stretch and plate_radius may be infinite."""
 
     inner_radius: Array
     wall_thickness: Array
@@ -48,11 +48,11 @@ class SensorBatch:
 
     @classmethod
     def join(cls, batches: Sequence[SensorBatch]) -> SensorBatch:
-        """Batches one after the other."""
+        """Join several batches, one after the other."""
         return cls(*(np.concatenate([getattr(batch, field.name) for batch in batches]) for field in fields(cls)))
 
     def take(self, rows: Index | Flags | slice) -> SensorBatch:
-        """Some of the sensors."""
+        """Batch of the selected sensors."""
         return SensorBatch(*(getattr(self, field.name)[rows] for field in fields(self)))
 
     @property
@@ -73,8 +73,8 @@ def longest_outer_edge(wall_ratio: Array) -> Array:
 
 
 class PressTrack(NamedTuple):
-    """States along the plate's travel, (n, m) each; nondimensional. ok: the gas has a stable state and the atlas
-    covers it; margin: dp/dV of wall less gas, positive while stable."""
+    """States along the plate's travel, (n, m) each; nondimensional. ok: the gas has a stable state and the atlas covers
+    it; margin: dp/dV of the wall minus that of the gas, positive while stable."""
 
     nu: Array
     height: Array
@@ -83,14 +83,14 @@ class PressTrack(NamedTuple):
     ok: Flags
 
     def each(self, change: Callable[[Any], Any]) -> PressTrack:
-        """The track with every array changed."""
+        """Track with a function applied to every array."""
         return PressTrack(
             change(self.nu), change(self.height), self.point.each(change), change(self.margin), change(self.ok)
         )
 
 
 class AtlasSolution(NamedTuple):
-    """Solutions, (n,) each; see `PressTrack`. ``converged`` also of states that are not supported or are folded."""
+    """Solutions, (n,) each; see `PressTrack`. ``converged`` may also be True for unsupported or folded states."""
 
     nu: Array
     point: AtlasPoint
@@ -104,10 +104,10 @@ class AtlasSolution(NamedTuple):
 
 
 class AtlasPress:
-    """A batch with its slices, gas and inflated states; all nondimensional from here on.
+    """A batch with its slices of the atlas, its gas and its inflated states; all attributes nondimensional.
 
-    ``groups`` are numbers from 0 on, (n,), of what several calls would compute, joined because a call costs the most:
-    the sensors of a group end their iterations together, with the result of a call of their own.
+    ``groups`` (n,), numbered from 0, joins several calls in one, because the overhead of a call dominates: the sensors
+    of a group end their iterations together, so that each group has the same result as in a call of its own.
     """
 
     def __init__(self, batch: SensorBatch, slices: AtlasSlices, k: Index, groups: Index | None = None) -> None:
@@ -124,11 +124,11 @@ class AtlasPress:
         self.content = (self.pressure + self.ambient) * gas_volume
 
     def volume(self, nu: Array) -> Array:
-        """Cavity volume."""
+        """Cavity volume at nu."""
         return REST_VOLUME + nu * self.reach
 
     def rows(self, rows: Index | Flags) -> AtlasPress:
-        """Some of the sensors, inflated states kept."""
+        """Press of the selected sensors, with their inflated states."""
         part = object.__new__(AtlasPress)
         part.batch, part.slices, part.k = self.batch.take(rows), self.slices, self.k[rows]
         for name in ("groups", "pressure", "ambient", "dead", "reach", "limit", "free", "apex", "content"):
@@ -143,10 +143,10 @@ class AtlasPress:
         memory: Array | float = 0.0,
         iterations: int = _NEWTON,
     ) -> AtlasSolution:
-        """States in which wall and gas have one pressure, from guesses of their volume, by Newton's method; (n,).
+        """Equilibria (n,) of wall and gas at one pressure, by Newton's method from guesses ``nu`` of the volume.
 
-        The wall's pressure is that of the atlas times ``stiffening``, plus ``memory``. The last step is so small that
-        the values follow it along their tangents, to its square.
+        The wall's pressure is that of the atlas times ``stiffening``, plus ``memory``. Pressure and force are corrected
+        along their tangents for the last step, which is small enough for that to be accurate to its square.
         """
         at, reached = nu, np.zeros(nu.size, dtype=bool)
         for _ in range(iterations):
@@ -203,14 +203,14 @@ class AtlasPress:
 
 
 def waiting(groups: Index, settled: Flags) -> Flags:
-    """Sensors of the groups, (n,) numbers, that hold one which is not settled yet."""
+    """True for the sensors, (n,), whose group has at least one sensor that is not settled."""
     return np.asarray(np.bincount(groups, weights=~settled)[groups] > 0.0)
 
 
 def _inflated(slices: AtlasSlices, k: Index, pressure: Array, groups: Index) -> Array:
-    """The volume nu of the free dome at a pressure on the rising branch; 1 at and beyond the limit point.
+    """Volume nu of the free dome at a pressure on the rising branch; 1 at and beyond the limit point.
 
-    Newton's method, kept between brackets and halving where it would leave them: near the limit point the slope goes.
+    Newton's method inside a bracket, with bisection where a step would leave it: the slope vanishes at the limit point.
     """
     low, high = np.full_like(pressure, -_BELOW_REST), np.ones_like(pressure)
     nu = np.clip(1.0 - np.sqrt(np.maximum(1.0 - pressure / slices.limit_pressure[k], 0.0)), 0.0, 1.0)
@@ -223,7 +223,7 @@ def _inflated(slices: AtlasSlices, k: Index, pressure: Array, groups: Index) -> 
         gap = point.pressure - pressure
         low, high = np.where(gap < 0, nu, low), np.where(gap < 0, high, nu)
         newton = nu - gap / np.where(slope > 0, slope, 1.0)
-        # The ends count as inside: a step of nothing ends on the root, half of the bracket would leave it.
+        # The ends count as inside: a zero step is then accepted at the root, which bisection would leave.
         inside = (newton >= low) & (newton <= high) & (slope > 0)
         step = np.where(inside, newton, 0.5 * (low + high)) - nu
         nu = nu + np.where(moving, step, 0.0)
@@ -234,9 +234,9 @@ def _inflated(slices: AtlasSlices, k: Index, pressure: Array, groups: Index) -> 
 
 
 def batch_of(sensor: Sensor, driving_pressures: Sequence[float] | Array) -> SensorBatch:
-    """One sensor at n driving pressures (MPa).
+    """Batch of one sensor at n driving pressures (MPa).
 
-    Its own law, Poisson ratio and flange are left aside: the atlas is neo-Hookean, at 0.49, clamped at the base.
+    The sensor's own law, Poisson ratio and flange are ignored: the atlas is neo-Hookean, at 0.49, clamped at the base.
     """
     size = len(driving_pressures)
     facts = (

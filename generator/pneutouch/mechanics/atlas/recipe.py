@@ -1,8 +1,8 @@
-"""Recipe of the atlas: the presses for which the solid is solved, and the form in which its answers are stored.
+"""Recipe of the atlas: the presses for which the solid is solved, and the form in which its results are stored.
 
-Uniform B-splines: few numbers, smooth derivatives, and a value from a handful of products.
+The tables are uniform B-splines: few numbers, smooth derivatives, and each value from a handful of products.
 
-A recipe of a shipped table as text, as the table's file carries it.
+Recipes are stored as text (JSON) in the file of the shipped table.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pneutouch.arrays import Array, Index
 
 @lru_cache
 def pieces(degree: int) -> Array:
-    """Powers of the position u in a cell to the degree + 1 B-splines that live there, (degree + 1, degree + 1).
+    """Coefficients, by powers of u, of the degree + 1 B-splines in a cell at position u, (degree + 1, degree + 1).
 
     Row k holds the factors of u^k. By the recursion of de Boor (1972) on uniform knots.
     """
@@ -40,7 +40,7 @@ def pieces(degree: int) -> Array:
 
 @dataclass(frozen=True)
 class SplineAxis:
-    """An interval cut into cells; it carries cells + degree coefficients.
+    """An interval divided into cells, with cells + degree spline coefficients.
 
     The cells are equal in z = sqrt(x - low + stretch^2), finest at the low end, or in x where ``stretch`` is None.
     """
@@ -68,13 +68,13 @@ class SplineAxis:
         return np.sqrt(np.maximum(x - self.low, 0.0) + self.stretch**2) - self.stretch
 
     def even(self, count: int) -> Array:
-        """Points of even distance in z from end to end, (count,)."""
+        """Points equally spaced in z from end to end, (count,)."""
         z = np.linspace(0.0, self._spacing * self.cells, count)
         return self.low + (z if self.stretch is None else z * (z + 2 * self.stretch))
 
     @cached_property
     def _derivatives(self) -> Array:
-        """Piece matrices of value and first two derivatives by z, side by side; (degree + 1, 3 (degree + 1))."""
+        """Coefficients of value and first two derivatives by z, side by side; (degree + 1, 3 (degree + 1))."""
         value = pieces(self.degree)
         n = self.degree + 1
         power = np.arange(1.0, n)
@@ -84,9 +84,9 @@ class SplineAxis:
         return np.concatenate([value, first / self._spacing, second / self._spacing**2], axis=1)
 
     def basis(self, x: Array) -> tuple[Index, Array]:
-        """First coefficient of each x and the weights of value, slope and curvature: (n,) and (n, 3, degree + 1).
+        """Index of the first coefficient (n,) for each x, and weights of value, slope and curvature (n, 3, degree + 1).
 
-        Beyond the ends the last cell's polynomial goes on.
+        Beyond the ends the polynomial of the last cell is extrapolated.
         """
         z, cell, powers = self._powers(x)
         weight = (powers @ self._derivatives).reshape(cell.size, 3, self.degree + 1)
@@ -97,12 +97,12 @@ class SplineAxis:
         return cell, weight
 
     def values(self, x: Array) -> tuple[Index, Array]:
-        """First coefficient of each x and the weights of the value alone: (n,) and (n, degree + 1)."""
+        """Index of the first coefficient (n,) for each x, and weights of the value only (n, degree + 1)."""
         _, cell, powers = self._powers(x)
         return cell, powers @ pieces(self.degree)
 
     def _powers(self, x: Array) -> tuple[Array, Index, Array]:
-        """z, its cell (n,) and the powers of the place in the cell, (n, degree + 1)."""
+        """Coordinate z (n,), its cell (n,) and powers of the local coordinate in the cell, (n, degree + 1)."""
         z = self._stretched(x)
         u = z / self._spacing
         cell = np.minimum(np.maximum(np.floor(u), 0), self.cells - 1).astype(np.intp)
@@ -114,7 +114,7 @@ class SplineAxis:
         return z, cell, powers
 
     def rows(self, x: Array, order: int = 0) -> Array:
-        """The weights of one derivative as full rows, (n, size)."""
+        """Weights of the derivative of one order as full rows, (n, size)."""
         cell, weight = self.basis(x)
         out = np.zeros((x.size, self.size))
         np.put_along_axis(out, cell[:, None] + np.arange(self.degree + 1), weight[:, order], axis=1)
@@ -123,7 +123,7 @@ class SplineAxis:
 
 @dataclass(frozen=True)
 class StoredRecipe:
-    """Recipe of a stored table: numbers, and tuples of them."""
+    """Recipe of a stored table; its fields are numbers and tuples of numbers."""
 
     def text(self) -> str:
         """The recipe as JSON."""
@@ -131,7 +131,7 @@ class StoredRecipe:
 
     @classmethod
     def from_text(cls, text: str) -> Self:
-        """A recipe read back."""
+        """Recipe from its JSON text."""
         content: dict[str, Any] = json.loads(text)
         fields: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in content.items()}
         return cls(**fields)
@@ -139,15 +139,14 @@ class StoredRecipe:
 
 @dataclass(frozen=True)
 class AtlasRecipe(StoredRecipe):
-    """The box and the resolution of the atlas, in units of R0 and mu.
+    """Box and resolution of the atlas, in units of R0 and mu.
 
-    Coordinates: t0/R0; ``nu``, the cavity volume above the unloaded one as a share of that at the limit point; ``w``,
-    how far the plate is below the free apex at that volume. A press with trapped gas leaves nu = 0 downwards where the
-    cavity is squeezed below its unloaded volume. ambients, first_pressures: presses with trapped
-    gas from these ambient pressures (in mu; 0: vented) and shares of the limit pressure, which line the edge at zero
-    pressure. stiffest_gas: greatest ambient pressure over mu that is solved; stiffest: that is inside the box.
-    deepest: greatest plate travel;
-    states are solved to ``beyond``, so that the edge of the box is not the edge of the data.
+    Coordinates: t0/R0; ``nu``, the cavity volume above the unloaded one, as a share of its value at the limit point;
+    ``w``, the distance of the plate below the free apex at that volume. A press with trapped gas reaches nu < 0 where
+    the cavity is squeezed below its unloaded volume. ambients, first_pressures: ambient pressures (in mu; 0: vented)
+    and shares of the limit pressure of the presses with trapped gas that line the edge at zero pressure. stiffest_gas:
+    greatest ambient pressure over mu that is solved; stiffest: the greatest inside the box. deepest: greatest plate
+    travel inside the box; states are solved to ``beyond``, so that the edge of the box is not the edge of the data.
     """
 
     poisson_ratio: float = 0.49
@@ -174,12 +173,12 @@ class AtlasRecipe(StoredRecipe):
 
     @property
     def wall_ratios(self) -> Array:
-        """Surveyed t0/R0, (walls,): even in the logarithm, from a little below the box to a little above it."""
+        """Surveyed t0/R0, (walls,), equally spaced in the logarithm from slightly below the box to slightly above."""
         return np.geomspace(self.thinnest / self.margin, self.thickest * self.margin, self.walls)
 
     @property
     def fold_depths(self) -> Array:
-        """Depths below the unloaded apex at which the buckling edge is kept, (folds,)."""
+        """Depths below the unloaded apex at which the edge of buckling is stored, (folds,)."""
         return np.linspace(0.35, self.beyond, self.folds)
 
 
@@ -192,7 +191,7 @@ class AtlasAxes(NamedTuple):
 
 
 def axes(recipe: AtlasRecipe) -> AtlasAxes:
-    """The directions of a recipe; walls in their logarithm, cubic, knots on the surveys."""
+    """Axes of a recipe; walls in their logarithm, cubic, with knots at the surveyed wall ratios."""
     walls = recipe.wall_ratios
     return AtlasAxes(
         SplineAxis(float(np.log(walls[0])), float(np.log(walls[-1])), recipe.walls - 1, 3),
@@ -206,17 +205,17 @@ def axes(recipe: AtlasRecipe) -> AtlasAxes:
 RECIPE = AtlasRecipe()
 
 FIELDS = ("contact_radius", "stretch", "von_mises", "fold", "inner_apex")
-"""Fields that can be read in addition to the potential: see `solid.PressState`; lengths in R0, stresses in mu."""
+"""Fields that can be read in addition to the potential, see `indent.PressState`; lengths in R0, stresses in mu."""
 
 STRETCHES = tuple(f"stretch_{face}_{part}" for face in ("inner", "outer") for part in ("low", "middle", "high"))
-"""The greatest stretch by face and third of the arc, each smooth where the greatest of all has kinks."""
+"""Greatest stretch on each face and third of the arc: each is smooth, while the greatest of all has kinks."""
 
 STORED = (*STRETCHES, "contact_radius", "von_mises", "fold", "inner_apex")
 """Quantities that are tabulated."""
 
 
 def parts(name: str) -> tuple[str, ...]:
-    """The tables a field is the greatest of."""
+    """Names of the tables whose maximum is the field."""
     return STRETCHES if name == "stretch" else (name,)
 
 
@@ -226,12 +225,12 @@ _MOST = 0.9
 
 
 def flattened(name: str, values: Array) -> Array:
-    """A field as it is tabulated: where a face turns over at a crease's tip, strains are immense and mean nothing."""
+    """A field as it is tabulated, saturated: a face that turns over at a crease's tip has huge, meaningless strains."""
     return values / (values + _HALF) if name in _SATURATING else values
 
 
 def unflattened(name: str, values: Array) -> Array:
-    """Inverse of `flattened`; immense values are cut at 18."""
+    """Inverse of `flattened`; values are limited to 18."""
     if name not in _SATURATING:
         return values
     share = np.clip(values, 0.0, _MOST)

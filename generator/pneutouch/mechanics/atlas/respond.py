@@ -1,4 +1,4 @@
-"""Figures of many sensors at once, from the atlas and through the same `response` as every other curve."""
+"""Figures of many sensors at once from the atlas, by the same `response` functions as for every other curve."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from pneutouch.mechanics.response import Figures, lines
 from pneutouch.units import KPA
 
 ENDS = ("depth", "plate edge", "gauge range", "break strain", "inward buckling", "outside the atlas")
-"""Ends of a range, by number in an `AtlasResponse`. The first is no event: the whole travel was used."""
+"""Reasons for the end of a range, by number in an `AtlasResponse`. The first is no event: the whole travel was used."""
 DEPTH, EDGE, GAUGE, BREAK, BUCKLING, OUTSIDE = range(len(ENDS))
 
 NEAR = 0.03
-"""Travel in R0 before buckling where the table is less certain: the stiffness falls faster than it resolves."""
+"""Travel in R0 before buckling in which the table is less certain: the stiffness falls too fast for its resolution."""
 _CHUNK = 1000
 _FIELDS = ("stretch", "contact_radius")
 _ROUNDS = 14
@@ -27,13 +27,13 @@ _WITHIN = 2.0e-5
 
 
 class AtlasResponse(NamedTuple):
-    """Answers for n sensors; (n,) or (n, m) arrays in mm, N, MPa, sensitivities in kPa/N.
+    """Responses of n sensors; (n,) or (n, m) arrays in mm, N, MPa, sensitivities in kPa/N.
 
-    ends: number in `ENDS`. near_buckling: the wall would buckle within NEAR more of travel, so close to the edge of the
-    tabulated states that they are less certain. range_end: mm of indentation. contact_radius: of the contact at
-    range_end. limit_pressure: of the limit point. Curves reach from first contact to range_end in equal steps.
-    max_stretch: over the range, the free state included.
-    Rows that cannot be (beyond the limit point, outside the box) are NaN throughout.
+    ends: number in `ENDS`. near_buckling: the wall would buckle within NEAR of further travel; these states lie so
+    close to the edge of the table that they are less certain. range_end: mm of indentation. contact_radius: at
+    range_end. limit_pressure: of the limit point. Curves run from first contact to range_end in equal steps.
+    max_stretch: over the range, the free state included. Rows of impossible sensors (beyond the limit point, outside
+    the box) are NaN throughout.
     """
 
     lines: Figures[Array]
@@ -50,23 +50,23 @@ class AtlasResponse(NamedTuple):
     rise: Array
 
     def take(self, rows: Index | Flags) -> AtlasResponse:
-        """Some of the sensors."""
+        """Responses of the selected sensors."""
         some: list[Any] = [column[rows] for column in self[1:]]
         return AtlasResponse(Figures(*(column[rows] for column in self.lines)), *some)
 
     @classmethod
     def join(cls, parts: Sequence[AtlasResponse]) -> AtlasResponse:
-        """Several as one."""
+        """Join the responses of several batches."""
         columns: list[Any] = [np.concatenate(column) for column in zip(*(part[1:] for part in parts), strict=True)]
         solved = [np.concatenate(column) for column in zip(*(part.lines for part in parts), strict=True)]
         return cls(Figures(*solved), *columns)
 
 
 def inside(batch: SensorBatch, atlas: Atlas) -> Flags:
-    """True for sensors that the atlas covers: wall, depth, stiffness of the gas, no suction; negative values and NaN
-    are never covered.
+    """Mask (n,) of the sensors that the atlas covers: wall, depth, stiffness of the gas, no suction; sensors with
+    negative or NaN values are outside.
 
-    A dead volume may be negative as a deviation of a small one; half of the unloaded cavity must be left.
+    A dead volume may be negative, as a deviation from a small one, down to minus half of the unloaded cavity.
     """
     recipe, size, slack = atlas.recipe, batch.inner_radius, 1e-9
     return np.asarray(
@@ -87,8 +87,8 @@ def inside(batch: SensorBatch, atlas: Atlas) -> Flags:
 
 
 def _harmless(batch: SensorBatch, good: Flags, atlas: Atlas) -> SensorBatch:
-    """The batch with a plain sensor in place of impossible ones, so that no NaN or overflow reaches the others'
-    loops."""
+    """The batch with a harmless sensor in place of those that are not ``good``, so that no NaN or overflow of theirs
+    reaches the iterations of the others."""
     plain = SensorBatch(
         *(np.array(x) for x in (1.0, atlas.recipe.thickest, 1.0, 0.0, 0.0, 0.0, 0.1, np.inf, np.inf, np.inf))
     )
@@ -98,9 +98,9 @@ def _harmless(batch: SensorBatch, good: Flags, atlas: Atlas) -> SensorBatch:
 def respond(
     batch: SensorBatch, steps: int = 14, atlas: Atlas | None = None, groups: Index | None = None
 ) -> AtlasResponse:
-    """Press every sensor to its depth, or to the first event that ends the range, and read off the figures.
+    """Press every sensor to its depth, or to the first event that ends the range, and compute the figures.
 
-    ``groups`` are those of `AtlasPress`: calls joined into one, each with its own result.
+    ``groups`` as in `AtlasPress`: several calls joined in one, each with its own result.
     """
     chosen = atlas or shipped()
     groups = np.zeros(len(batch), dtype=np.intp) if groups is None else groups
@@ -110,8 +110,8 @@ def respond(
 
 
 class AtlasRun(NamedTuple):
-    """One pass over sensors: their answers, the press with its inflated states, and every press over its whole depth,
-    (n, steps + 1), whatever ends its range before."""
+    """One pass over sensors: their responses, the press with its inflated states, and the states of every press over
+    its whole depth, (n, steps + 1), also beyond the end of its range."""
 
     response: AtlasResponse
     press: AtlasPress
@@ -119,7 +119,7 @@ class AtlasRun(NamedTuple):
 
 
 def run(batch: SensorBatch, steps: int, atlas: Atlas, groups: Index, names: tuple[str, ...] = _FIELDS) -> AtlasRun:
-    """`respond` in one pass, with the states behind it; ``names`` are the fields that are looked up in them."""
+    """`respond` in one pass, together with the states behind it; ``names`` are the fields to cut from the tables."""
     good = inside(batch, atlas)
     batch = _harmless(batch, good, atlas)
     walls, k = np.unique(batch.wall_ratio, return_inverse=True)
@@ -145,8 +145,8 @@ def run(batch: SensorBatch, steps: int, atlas: Atlas, groups: Index, names: tupl
 def _read_off(
     press: AtlasPress, track: PressTrack, end: Array, ends: Index, good: Flags, known: tuple[Array, Array]
 ) -> AtlasResponse:
-    """The answers along presses to the travel ``end`` in R0, (n,); ``good`` are the sensors that the atlas covers,
-    ``known`` are stretch and contact radius along the presses, (n, m) each."""
+    """Responses along presses to the travel ``end`` (n,) in R0; ``good`` marks the sensors that the atlas covers,
+    ``known`` holds stretch and contact radius along the presses, (n, m) each."""
     batch = press.batch
     limit = press.limit * batch.shear_modulus
     share = np.linspace(0.0, 1.0, track.nu.shape[1])
@@ -175,7 +175,7 @@ def _read_off(
 
 
 def _near(press: AtlasPress, track: PressTrack) -> Flags:
-    """True if a press, continued straight beyond its end, would buckle within NEAR of travel."""
+    """True if a press, extrapolated linearly beyond its end, would buckle within NEAR of further travel."""
     margin = np.where(track.margin[:, -1] > 0, track.margin[:, -1], 1.0)
     rate = track.point.by_height[:, -1] / margin / press.reach
     nu, height = track.nu[:, -1] + NEAR * rate, track.height[:, -1] - NEAR
@@ -190,7 +190,7 @@ def _margins(press: AtlasPress, track: PressTrack, stretch: Array, radius: Array
 
 
 def _first_end(press: AtlasPress, indentation: Array, track: PressTrack, margins: Array) -> tuple[Array, Index]:
-    """Plate travel (R0) at which each range ends, and why."""
+    """Plate travel (R0) at which each range ends, and the reason as its number in `ENDS`."""
     broken = (margins > 0.0).any(axis=0) | ~track.ok
     hit = np.flatnonzero(broken.any(axis=1))
     end, ends = indentation[:, -1].copy(), np.full(len(press.batch), DEPTH)
@@ -207,9 +207,9 @@ def _first_end(press: AtlasPress, indentation: Array, track: PressTrack, margins
 
 
 def _closed_in(press: AtlasPress, nu: Array, bracket: tuple[Array, Array]) -> tuple[Array, Index]:
-    """Close in on the first end between a sound travel and one past it; the last sound travel, and the reason.
+    """Locate the first end of a range in a bracket of travels; the travel there, and the reason's number in `ENDS`.
 
-    By false position with halved weights (Illinois) on the greatest margin, by halves where the state itself is lost.
+    Illinois variant of false position on the greatest margin; bisection where there is no state.
     """
     low, high = bracket
     before, _, _ = _worst(press, nu, low)
@@ -233,7 +233,7 @@ def _closed_in(press: AtlasPress, nu: Array, bracket: tuple[Array, Array]) -> tu
 
 
 def _worst(press: AtlasPress, nu: Array, indentation: Array) -> tuple[Array, Index, Array]:
-    """Greatest margin at plate travels (n,), infinite where the state is lost; its reason; and the volume nu."""
+    """Greatest margin at plate travels (n,), infinite where there is no state; its reason; and the volume nu."""
     height = press.apex - indentation
     solved = press.solve(nu, height)
     one = PressTrack(solved.nu, height, solved.point, solved.margin, solved.ok).each(lambda column: column[:, None])

@@ -1,6 +1,6 @@
-"""The atlas: its tables, read once, and states looked up in them.
+"""Tables of the atlas, read once, and the states interpolated in them.
 
-Least limits of free inflation over the wall ratio: limit point and break strain of many domes at once.
+Also the first limit of free inflation over the wall ratio, limit point or break strain, for many domes at once.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ REST_VOLUME = 2.0 / 3.0 * np.pi
 
 
 class AtlasPoint(NamedTuple):
-    """A state looked up, nondimensional; arrays of one length.
+    """Interpolated states, nondimensional; arrays of one length.
 
-    by_volume, by_height: derivatives of the pressure by volume and plate height; force_by_height: of the force.
-    supported: whether the solid was solved near it. folded: whether the wall has buckled before it.
+    by_volume, by_height: derivatives of the pressure by volume and plate height; force_by_height: derivative of the
+    force. supported: the solid was solved near the state. folded: the wall has buckled before the state.
     """
 
     pressure: Array
@@ -38,16 +38,16 @@ class AtlasPoint(NamedTuple):
     folded: Flags
 
     def each(self, change: Callable[[Any], Any]) -> AtlasPoint:
-        """The point with every array changed."""
+        """Point with a function applied to every array."""
         return AtlasPoint(*map(change, self))
 
 
 @dataclass(frozen=True)
 class AtlasSlices:
-    """The tables cut at wall ratios: limit_volume, limit_pressure (k,), apex (k, volume), potential (k, volume, depth),
-    support (k, volume cells, depth cells), fields: tables (k, volume, depth) by name. rest_apex: outer height of the
-    unloaded dome;
-    fold_from, fold_volume (k,), (k, folds): the buckling edge, see `survey._fold`."""
+    """Tables of the atlas at k wall ratios: limit_volume, limit_pressure (k,), apex (k, volume), potential (k, volume,
+    depth), support (k, volume cells, depth cells), fields: tables (k, volume, depth) by name. rest_apex (k,): outer
+    apex height of the unloaded dome. fold_from (k,), fold_volume (k, folds): edge of buckling, see `survey._fold`:
+    least volume of an unbuckled wall at fold_depths, from depth fold_from on."""
 
     grid: AtlasAxes
     limit_volume: Array
@@ -62,7 +62,7 @@ class AtlasSlices:
     fields: dict[str, Array]
 
     def reach(self, k: Index) -> Array:
-        """Volume from rest to the limit point, of the slices k."""
+        """Volume between rest and limit point at the slices k."""
         values: Array = self.limit_volume[k] - REST_VOLUME
         return values
 
@@ -77,13 +77,13 @@ class AtlasSlices:
 
     @cached_property
     def _apex_windows(self) -> Array:
-        """The apex's coefficients of each cell, (k, volume cells, coefficients)."""
+        """Spline coefficients of the apex height in each cell, (k, volume cells, coefficients)."""
         return np.lib.stride_tricks.sliding_window_view(self.apex, self.grid.volume.degree + 1, axis=1)
 
     def point(self, k: Index, nu: Array, height: Array, *, with_folded: bool = True) -> AtlasPoint:
         """Pressure, force and their slopes at volumes nu and plate heights, (n,) each.
 
-        ``with_folded`` False leaves ``folded`` at False: an iteration needs it at its end alone.
+        ``with_folded`` False leaves ``folded`` at False: an iteration needs it only at its end.
         """
         cell, by_nu = self.grid.volume.basis(nu)
         apex = self._apex(k, cell, by_nu)
@@ -106,7 +106,7 @@ class AtlasSlices:
 
     @cached_property
     def _windows(self) -> Array:
-        """The potential's coefficients of each cell, (k, volume cells, depth cells, coefficients, coefficients)."""
+        """Spline coefficients of the potential in each cell, (k, volume cells, depth cells, coefficients twice)."""
         size = self.grid.volume.degree + 1, self.grid.depth.degree + 1
         return np.lib.stride_tricks.sliding_window_view(self.potential, size, axis=(1, 2))
 
@@ -140,12 +140,12 @@ class AtlasSlices:
         def looked_up(part: str) -> Array:
             return np.asarray((self.fields[part].take(where) * weight).sum(axis=1))
 
-        # The saturation of a part rises with it: the greatest of a field's parts is found before it is taken off.
+        # Saturation is monotone, so the maximum over the parts of a field is taken before the saturation is undone.
         return [unflattened(name, np.max([looked_up(part) for part in parts(name)], axis=0)) for name in names]
 
 
 class Atlas:
-    """The tables over all wall ratios, and the recipe they were made by."""
+    """Tables over all wall ratios, with the recipe they were made by."""
 
     def __init__(self, tables: dict[str, Array], recipe: AtlasRecipe) -> None:
         self.recipe = recipe
@@ -157,14 +157,14 @@ class Atlas:
         return Atlas(self._tables, recipe)
 
     def slices(self, wall_ratio: Array, names: tuple[str, ...] = FIELDS) -> AtlasSlices:
-        """The tables at wall ratios inside the box, (k,), with the named fields."""
+        """Tables interpolated at wall ratios (k,) inside the box, with the named fields."""
         grid = self._grid.wall
         cell, weight = grid.basis(np.log(wall_ratio))
         starts = np.flatnonzero(np.diff(cell, prepend=-1))
         together = list(zip(starts, [*starts[1:], cell.size], strict=True)) if cell.size else []
 
         def cut(name: str) -> Array:
-            # Neighbours of one cell at once: a spline takes few walls of the table, and products with zeros take time.
+            # All ratios of one cell at once: a spline takes few walls of the table, and products with zeros take time.
             table = self._tables[name]
             flat = table.reshape(table.shape[0], -1)
             values = np.empty((cell.size, flat.shape[1]))
@@ -209,14 +209,14 @@ def shipped() -> Atlas:
 
 
 _RATIOS, _VOLUMES = 60, 91
-"""Wall ratios 3 % apart: between them limit pressures are straight to 0.02 %."""
+"""Numbers of wall ratios and volumes. The ratios are 3 % apart: limit pressures are linear between them to 0.02 %."""
 
 
 def least_limit(wall_ratio: Array, break_stretch: Array) -> Array:
     """Driving pressure over the shear modulus at which an inflated dome meets its first limit, (n,).
 
-    That is the limit point, or the break stretch (n,) where the wall reaches it before. Wall ratios (n,) outside the
-    atlas have the limit of its edge.
+    The limit is the limit point, or the break stretch (n,) if the wall reaches it earlier. A wall ratio (n,) outside
+    the atlas has the limit of the nearest edge.
     """
     ratios, limit, stretch, pressure = _inflations()
     least = np.interp(wall_ratio, ratios, limit)
@@ -228,7 +228,7 @@ def least_limit(wall_ratio: Array, break_stretch: Array) -> Array:
 
 
 def _ruptured(break_stretch: float, stretch: Array, pressure: Array) -> Array:
-    """Pressure at a break stretch for each wall ratio; NaN if the limit point comes before."""
+    """Pressure at which each wall ratio reaches the break stretch; NaN if the limit point comes first."""
     reached = stretch >= break_stretch
     after = np.maximum(reached.argmax(axis=1), 1)
     rows = np.arange(after.size)
@@ -240,7 +240,7 @@ def _ruptured(break_stretch: float, stretch: Array, pressure: Array) -> Array:
 
 @cache
 def _inflations() -> tuple[Array, Array, Array, Array]:
-    """Wall ratios (k,), limit pressures (k,), stretches and pressures up to the limit point (k, volumes), over mu."""
+    """Wall ratios (k,), limit pressures (k,), stretches and pressures over mu up to the limit (k, volumes)."""
     recipe = shipped().recipe
     ratios = np.linspace(recipe.thinnest, recipe.thickest, _RATIOS)
     slices = shipped().slices(ratios, ("stretch",))

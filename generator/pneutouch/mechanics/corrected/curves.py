@@ -1,10 +1,10 @@
-"""Friction and other objects as a correction of the atlas: the solid's curves under a contact over those under a plate.
+"""Friction and other objects as a correction of the atlas: ratio of the solid's curves under a contact and a plate.
 
-The atlas presses with a plate without friction. Its force and pressure rise times the ratio of the solid's curves with
-a contact to the solid's with that plate, at the same travels and driving pressures, are those under the contact. The
-ratio is of one sensor; nearby its logarithm is taken as the same. With friction that of the force moves by up to 0.04
-for a modulus 1.3 times as large, that of the sensitivity by up to 0.02 (`tests/mechanics/test_corrected_curves.py`):
-a fit takes the ratio at its own estimate.
+The atlas presses with a frictionless plate. Its force and pressure rise are multiplied by the ratio of the solid's
+curve under the contact to the solid's curve under that plate, at the same travel and driving pressure. The ratio is
+computed for one sensor and taken as constant nearby. With friction, the logarithm of the force ratio changes by up to
+0.04 for a modulus 1.3 times as large, that of the sensitivity by up to 0.02
+(`tests/mechanics/test_corrected_curves.py`): a fit takes the ratio at its own estimate.
 """
 
 from dataclasses import dataclass
@@ -20,22 +20,22 @@ from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.units import KPA
 
 NODES = (0.0, 0.1, 0.25, 0.45, 0.7, 1.0, 1.4, GRIPS)
-"""Coefficients at which the solid is solved where friction is fitted."""
+"""Coefficients of friction at which the solid is solved where friction is fitted."""
 
 _STEPS = 28
 _GRAIN = 0.5 * KPA
-"""Driving pressures nearer to each other than this have one ratio."""
+"""Driving pressures are rounded to multiples of this, MPa, and each multiple has one ratio."""
 
 
 @dataclass(frozen=True)
 class ContactRatio:
-    """Logarithms of force and rise under a contact over those under the plate without friction.
+    """Logarithms of force and rise under a contact over those under the frictionless plate.
 
     Attributes:
-        frictions: Coefficients, ascending, (q,).
+        frictions: Coefficients of friction, ascending, (q,).
         pressures: Driving pressures, MPa, ascending, (p,).
         depths: Travels, mm, ascending, (m,).
-        logs: Of force and rise, (2, q, p, m).
+        logs: Logarithms of the ratios of force and rise, (2, q, p, m).
         ends: Travels up to which the wall is free of the ring that clamps its flange, mm, (p,).
     """
 
@@ -46,9 +46,9 @@ class ContactRatio:
     ends: Array
 
     def at(self, friction: Array, driving: Array, travel: Array) -> Array:
-        """Logarithms (2, n, m) at coefficients (n,), driving pressures (n,) and travels (n, m).
+        """Logarithms (2, n, m) at coefficients of friction (n,), driving pressures (n,) and travels (n, m).
 
-        Between coefficients a monotone cubic, between pressures and travels straight lines, beyond all constant.
+        Monotone cubic in the coefficient, linear in pressure and travel; constant beyond the ends.
         """
         by_friction = self._by_friction(np.clip(friction, self.frictions[0], self.frictions[-1]))
         where = np.interp(driving, self.pressures, np.arange(self.pressures.size))
@@ -60,7 +60,7 @@ class ContactRatio:
         return np.array(pairs).reshape(2, *travel.shape)
 
     def _by_friction(self, friction: Array) -> Array:
-        """(2, n, p, m) at coefficients (n,)."""
+        """Logarithms (2, n, p, m) at coefficients of friction (n,)."""
         if self.frictions.size == 1:
             return np.repeat(self.logs, friction.size, axis=1)
         from scipy.interpolate import PchipInterpolator
@@ -76,15 +76,15 @@ few tenths of a millimetre to twice as much, and the place depends on every size
 def contact_ratio(
     sensor: Sensor, frictions: tuple[float, ...], driving_pressures: Array, deepest: float
 ) -> ContactRatio:
-    """The ratio of a sensor with its object at coefficients, near driving pressures (MPa) and to a travel (mm), the
-    ring around its flange left out.
+    """Ratio of a sensor with its object at coefficients of friction, near driving pressures (MPa) and to a travel (mm),
+    without the ring around its flange.
 
     Raises ComputationError if the solid cannot press the sensor at any of the pressures.
     """
     grains = np.unique(np.round(driving_pressures / _GRAIN)) * _GRAIN
     whole = sensor.replace(depth=deepest, steps=_STEPS, waves=0, gauge_limit=np.inf, break_stretch=None, friction=0.0)
     bare = whole if whole.dome.base is None else whole.replace(base=RigidBase())
-    # A surface that grips in place of the largest coefficients: nothing slips there any more.
+    # Coefficients from GRIPS on stand for a surface that grips: nothing slips there.
     held = [bare.replace(friction=np.inf if friction >= GRIPS else friction) for friction in frictions]
     depths, pressures = np.linspace(0.0, deepest, _STEPS + 1)[1:], tuple(grains.tolist())
     under, over = _pressed(stand_in(bare), pressures), [_pressed(one, pressures) for one in held]
@@ -111,8 +111,8 @@ def _parting(ringed: Array, free: Array, depths: Array) -> float:
 
 @lru_cache(maxsize=64)
 def _pressed(sensor: Sensor, pressures: tuple[float, ...]) -> tuple[Array, ...]:
-    """Travel, force and rise (3, n) by the solid at ascending pressures, without the highest that it cannot be driven
-    to; a fit and its checks need the same ones again."""
+    """Travel, force and rise (3, n) by the solid at each of ascending pressures, without the highest ones that fail;
+    cached, because a fit and its checks need the same ones again."""
     from pneutouch.mechanics.models.solid import solid_states
 
     for count in range(len(pressures), 0, -1):
@@ -125,7 +125,7 @@ def _pressed(sensor: Sensor, pressures: tuple[float, ...]) -> tuple[Array, ...]:
 
 
 def _log_ratio(contact: Array, plate: Array, depths: Array) -> Array:
-    """Ln of force and rise (2, m) at travels, of two presses; beyond the end of either as at that end."""
+    """Logarithms of the ratios of force and rise (2, m) of two presses at travels; constant beyond the shorter one."""
     at = np.minimum(depths, min(contact[0, -1], plate[0, -1]))
     over, under = (np.array([np.interp(at, one[0], row) for row in one[1:]]) for one in (contact, plate))
     return np.asarray(np.log(over / under))

@@ -1,9 +1,9 @@
-"""Figures under another contact than the atlas's: the atlas's times factors that the solid gave at some sensors.
+"""Figures under a contact outside the atlas: figures of the atlas times factors that the solid gave at some sensors.
 
 Space mapping (Bandler et al., IEEE Trans. Microwave Theory Tech. 42 (1994) 2536, doi:10.1109/22.339794): the cheap
-model is corrected to meet the accurate one where that was solved, and is searched again.
+model is corrected to agree with the accurate model where that was solved, and is searched again.
 
-The solid's state of a candidate under a contact that the atlas does not cover, as an answer of the atlas.
+Also the solid's state of a candidate under such a contact, in the form of an atlas response.
 """
 
 from __future__ import annotations
@@ -19,16 +19,15 @@ from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.response import Figures
 
 _LENGTHS = np.array([0.3, 0.25, 0.5, 1.0])
-"""Distances that count as one in the columns of `places`."""
+"""Unit of distance of each column of `places`."""
 _SAME = 1e-9
-"""Two samples nearer than this are one."""
+"""Distance below which two samples are the same."""
 
 
 def places(batch: SensorBatch, response: AtlasResponse) -> Array:
-    """Coordinates of sensors, (n, 4), by which neighbours are found: logarithm of the wall ratio, driving pressure over
-    that of the limit point, logarithms of the inner radius and of the ambient pressure over the shear modulus; each
-    over its `_LENGTHS`.
-    """
+    """Coordinates (n, 4) in which the distance between sensors is measured: logarithm of the wall ratio, driving
+    pressure over that of the limit point, logarithms of the inner radius and of the ambient pressure over the shear
+    modulus; each over its `_LENGTHS`."""
     columns = [
         np.log(batch.wall_ratio),
         batch.driving_pressure / response.limit_pressure,
@@ -39,8 +38,7 @@ def places(batch: SensorBatch, response: AtlasResponse) -> Array:
 
 
 def figures_of(response: AtlasResponse) -> Array:
-    """Figures that are corrected, (n, 5): sensitivity, stiffness, force and travel at the end of the range, stretch
-    above 1."""
+    """Figures to correct, (n, 5): sensitivity, stiffness, force and travel at the end of the range, stretch minus 1."""
     lines = response.lines
     columns = [lines.sensitivity, lines.stiffness, lines.force_high, response.range_end, response.max_stretch - 1.0]
     return np.stack(columns, axis=1)
@@ -54,11 +52,11 @@ class ContactFactors(NamedTuple):
 
     @classmethod
     def none(cls) -> ContactFactors:
-        """No sample: nothing is corrected."""
+        """Factors without samples: nothing is corrected."""
         return cls(np.zeros((0, 4)), np.zeros((0, 5)))
 
     def with_sample(self, place: Array, atlas: AtlasResponse, solid: AtlasResponse) -> ContactFactors:
-        """One more sensor (one row each) that both models answered; left out where it is known or has no figures."""
+        """Factors with one more sensor (one row each) added; unchanged if it is known or has no figures."""
         with np.errstate(invalid="ignore", divide="ignore"):
             log = np.log(figures_of(solid) / figures_of(atlas))
         near = np.linalg.norm(self.places - place, axis=1) < _SAME
@@ -69,8 +67,8 @@ class ContactFactors(NamedTuple):
     def at(self, where: Array) -> Array:
         """Factors (n, 5) at places (n, 4).
 
-        Interpolated by the radial function r and a constant, which is straight between two samples; never beyond the
-        least and the greatest of the samples.
+        Interpolated by the radial basis function r plus a constant, which is linear between two samples; limited to the
+        range of the samples.
         """
         count = len(self.places)
         if count == 0:
@@ -83,7 +81,7 @@ class ContactFactors(NamedTuple):
         return np.asarray(np.exp(np.clip(logs, self.logs.min(axis=0), self.logs.max(axis=0))))
 
     def corrected(self, batch: SensorBatch, response: AtlasResponse) -> AtlasResponse:
-        """Answers of the atlas with the factors at their places."""
+        """Responses of the atlas multiplied by the factors at their places."""
         known = np.isfinite(response.limit_pressure)
         factors = np.full((len(batch), self.logs.shape[1]), np.nan)
         factors[known] = self.at(places(batch, response)[known])
@@ -112,10 +110,10 @@ def _distances(a: Array, b: Array) -> Array:
 
 
 class ContactFigures(NamedTuple):
-    """Record of a candidate under a contact that the atlas does not cover; its figures are the solid's.
+    """A candidate under a contact that the atlas does not cover; its figures are those of the solid.
 
-    ends_with: what ends its range. plate_kPa_per_N: sensitivity by the atlas, under the plate without friction.
-    rounds: searches that were made until it was found.
+    ends_with: event that ends its range. plate_kPa_per_N: sensitivity by the atlas, under the frictionless plate.
+    rounds: number of searches until the candidate was found.
     """
 
     ends_with: str
@@ -124,14 +122,14 @@ class ContactFigures(NamedTuple):
 
 
 def ending(state: SensorState) -> str:
-    """End of the range of a state: an event, or the depth."""
+    """Reason for the end of a state's range: the kind of an event, or the depth."""
     return next((event.kind for event in state.events if event.ends_range), ENDS[DEPTH])
 
 
 def solid_response(state: SensorState, atlas: AtlasResponse) -> AtlasResponse | None:
-    """A state of the solid as an answer of one row; the atlas's row gives the limit point, which no contact changes.
+    """A state of the solid as a response of one row; the limit point is the atlas's, because no contact changes it.
 
-    None if the state has no figures. An end that the atlas does not have counts as buckling, which no margin reads.
+    None if the state has no figures. An end of another kind than `ENDS` counts as buckling, which no margin uses.
     """
     figures, kind = state.figures, ending(state)
     if figures is None:

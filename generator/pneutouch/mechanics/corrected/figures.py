@@ -1,7 +1,7 @@
-"""The atlas corrected by the solid: figures of a sensor under another contact than a plate without friction.
+"""The atlas corrected by the solid: figures of a sensor under another contact than the frictionless plate.
 
-The solid answers at the few driving pressures that suffice. The logarithm of its figures over those of the atlas, under
-the plate, is straight between them.
+The solid is solved at as few driving pressures as suffice. The logarithm of the ratio of its figures to those of the
+atlas under the plate is interpolated linearly between them.
 """
 
 from collections.abc import Sequence
@@ -20,17 +20,17 @@ from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
 from pneutouch.mechanics.solid.indenter import RigidBase
 
 GRIPS = 2.0
-"""Coefficient from which on the contact is taken as one that grips: beyond it the sensitivity of the paper's sensor in
-its resins changes by less than 0.5 % (`tests/mechanics/test_corrected_curves.py`)."""
+"""Coefficient of friction from which the contact is treated as gripping: above it the sensitivity of the paper's sensor
+in its resins changes by less than 0.5 % (`tests/mechanics/test_corrected_curves.py`)."""
 
 SAME = 1e-6
-"""Driving pressures nearer to each other than this, MPa, are one."""
+"""Driving pressures closer to each other than this, MPa, count as the same."""
 
 
 @lru_cache(maxsize=128)
 def pressed_logs(sensor: Sensor, pressures: tuple[float, ...]) -> Array:
     """Logarithms of the figures at ascending driving pressures, MPa, (figures, n), read-only; all NaN if the solid
-    cannot solve the highest. The chart, the budget and the curves of a datasheet need the same ones again."""
+    cannot solve the highest. Cached, because chart, budget and curves of a datasheet need the same figures."""
     from pneutouch.mechanics.models.solid import solid_states
 
     try:
@@ -42,8 +42,8 @@ def pressed_logs(sensor: Sensor, pressures: tuple[float, ...]) -> Array:
 
 
 def state_logs(states: Sequence[SensorState], correction: ResponseCorrection | None = None) -> Array:
-    """Logarithms of the figures of solved states, (figures, n); NaN for a missing figure. The factors of a
-    ``correction`` that the states hold are taken out."""
+    """Logarithms of the figures of solved states, (figures, n); NaN for a missing figure. A ``correction`` that the
+    states contain is divided out."""
     rows = np.full((len(FIGURES), len(states)), np.nan)
     for k, state in enumerate(states):
         if state.figures is not None:
@@ -57,10 +57,10 @@ def state_logs(states: Sequence[SensorState], correction: ResponseCorrection | N
 def solved_at(
     sensor: Sensor, pressures: Sequence[float], states: Sequence[SensorState], least: int = 3
 ) -> tuple[Array, Array]:
-    """Driving pressures (k,) from which those at ``pressures`` follow, and the logarithms of the figures (figures, k).
+    """Driving pressures (k,) to interpolate to ``pressures``, and the logarithms of the figures there (figures, k).
 
-    ``states`` of the sensor are taken as they are. What lies beyond them is solved at its ends, without the highest
-    that the solid cannot be driven to, and the middle of all where there are fewer than ``least`` then.
+    The given ``states`` of the sensor are used. Of the pressures outside their range the first and the last are solved,
+    without the highest ones that fail; then the middle of the range, if fewer than ``least`` are known.
     """
     given, bare = state_logs(states, sensor.correction), sensor.replace(waves=0)
     known = {state.driving_pressure: given[:, k] for k, state in enumerate(states)}
@@ -86,8 +86,8 @@ def _among(pressure: float, others: dict[float, Array]) -> bool:
 
 
 def between(where: Array, at: Array, values: Array) -> Array:
-    """Straight lines between values (figures, k) at driving pressures (k,), at others (n,); NaN above the highest, and
-    below the lowest, that have one."""
+    """Values (figures, k) at driving pressures ``at`` (k,), interpolated linearly to ``where`` (n,); NaN outside the
+    range of the finite values."""
     rows = np.full((len(values), where.size), np.nan)
     for row, line in zip(rows, values, strict=True):
         good = np.isfinite(line)
@@ -98,9 +98,9 @@ def between(where: Array, at: Array, values: Array) -> Array:
 
 
 def under_plate(sensor: Sensor) -> Sensor:
-    """The sensor under a plate without friction; one that is wide enough where an object was in its place.
+    """The sensor under a frictionless plate; a sufficiently wide plate takes the place of another object.
 
-    A place off the axis and an object that lies across the dome are kept: the correction is axisymmetric.
+    An offset, tilt or shear and an object that lies across the dome are kept: the correction is axisymmetric.
     """
     protocol = sensor.protocol
     if protocol.other_contact is None or (protocol.body is not None and protocol.body.lying):
@@ -120,26 +120,25 @@ def stand_in(sensor: Sensor) -> Sensor:
 
 
 _DEPTH = 0.75
-"""Depth in R0 that a fit takes at most: that of the sensitivity test (paper, section 3-B)."""
+"""Greatest depth in R0 that a fit uses, that of the sensitivity test (paper, section 3-B)."""
 
 
 def outside_corrected(sensor: Sensor) -> str | None:
-    """Reason why the atlas covers a sensor not even under a plate without friction, or None if it does."""
+    """Reason why the atlas does not cover a sensor even under a frictionless plate, or None if it does."""
     return outside("atlas", under_plate(sensor))
 
 
 def outside_fit(sensor: Sensor) -> str | None:
-    """Reason why no fit to measured runs covers a sensor, or None if one does: every fit is made with the atlas, at
-    depths that it has, and the ratio of the solid to it where the atlas does not cover law, grade, softness or contact.
-    """
+    """Reason why a sensor cannot be fitted to measured runs, or None if it can: a fit uses the atlas, at depths that it
+    covers, times the solid's ratio to it where it does not cover law, grade, softness or contact."""
     from pneutouch.mechanics.models.atlas import outside_atlas
 
     return outside_atlas(stand_in(_shallow(sensor)), softer_walls())
 
 
 def is_corrected(sensor: Sensor) -> bool:
-    """True if a fit takes the atlas times the ratio of the solid to it: the atlas itself does not cover the sensor, or
-    leaves out the ring that its wall meets."""
+    """True if a fit uses the atlas times the solid's ratio to it: the atlas does not cover the sensor, or leaves out
+    the ring that its wall meets."""
     from pneutouch.mechanics.models.atlas import meets_ring
 
     return outside("atlas", _shallow(sensor)) is not None or meets_ring(_shallow(sensor))
@@ -153,8 +152,8 @@ def _shallow(sensor: Sensor) -> Sensor:
 class CorrectedAtlas:
     """Figures of one sensor under its contact at n ascending driving pressures, MPa.
 
-    ``states`` are those of the solid where it has been solved already, at these or at other driving pressures; between
-    them, and ``least`` pressures, the logarithm of the figures over those under the plate is straight.
+    ``states`` are solutions of the solid that are available already, at these or other pressures; more are solved, up
+    to ``least`` in total. Between them the logarithm of the figures over those under the plate is linear.
     """
 
     sensor: Sensor
@@ -178,7 +177,7 @@ class CorrectedAtlas:
 
     @cached_property
     def solved(self) -> tuple[Array, Array]:
-        """Driving pressures (k,) that the sensor is solved at, and the logarithms of its figures (figures, k)."""
+        """Driving pressures (k,) at which the sensor is solved, and the logarithms of its figures (figures, k)."""
         return solved_at(self.sensor, self.pressures, self.states, self.least)
 
     def plate(self, pressures: Sequence[float] | Array) -> Array:

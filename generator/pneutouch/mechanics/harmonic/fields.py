@@ -15,19 +15,19 @@ import numpy as np
 from pneutouch.arrays import Array, Index
 
 AngleFunction = Callable[[Array], Array]
-"""A function of the angle times the harmonic's number."""
+"""An even or odd function of the phase, the angle times the number of the harmonic."""
 
 RADIAL, AXIAL, AROUND = range(3)
-"""Components of a position: outwards, along the axis and along the circle, at the angle of the material point."""
+"""Components of a position: radial, axial and circumferential, at the angle of the material point."""
 
 
 @dataclass(frozen=True)
 class Harmonics:
-    """Fourier sums to the order ``order`` for positions symmetric about the plane of angle 0.
+    """Fourier sums to the order M = ``order`` for positions symmetric about the plane of angle 0.
 
-    The coefficients of a node stand in one row, ``columns`` long: r_0, z_0, then r_m, z_m, s_m for m = 1 to M. With
-    order 0 it is the position (r, z) of the axisymmetric solid. With ``stride`` 2 positions are symmetric about the
-    plane of angle 90 degrees too: m is even, and a quarter of the circle has all angles. M is a multiple of it.
+    A node has one row of coefficients, ``columns`` long: r_0, z_0, then r_m, z_m, s_m for m = 1 to M. With order 0 the
+    row is the position (r, z) of the axisymmetric solid. With ``stride`` 2 positions are also symmetric about the plane
+    of angle 90 degrees: m is even, and a quarter of the circle has all angles. M is a multiple of ``stride``.
     """
 
     order: int
@@ -35,12 +35,12 @@ class Harmonics:
 
     @property
     def waves(self) -> int:
-        """Harmonics above m = 0."""
+        """Number n of harmonics above m = 0."""
         return self.order // self.stride
 
     @property
     def columns(self) -> int:
-        """Coefficients of a node."""
+        """Number of coefficients of a node."""
         return 3 * self.waves + 2
 
     @property
@@ -50,9 +50,9 @@ class Harmonics:
 
     @cached_property
     def angles(self) -> Array:
-        """Angles of integration on the half circle, or on the quarter, (n_angles,): 2 n + 1 midpoints for n harmonics.
+        """Integration angles on the half circle (the quarter for ``stride`` 2), (n_angles,): 2 n + 1 midpoints.
 
-        Sums over them with equal weights integrate harmonics up to 4 M + 1 exactly.
+        Sums over these angles with equal weights integrate harmonics up to 4 M + 1 exactly.
         """
         return self._midpoints(2 * self.waves + 1)
 
@@ -60,16 +60,16 @@ class Harmonics:
     def contact_angles(self) -> Array:
         """Angles at which contact is evaluated, (n + 1,) midpoints: as many as a component has coefficients.
 
-        At more points than that a contact with a stiff penalty cannot close at all of them.
+        At more points than coefficients, a contact with a stiff penalty cannot close at all of them.
         """
         return self._midpoints(self.waves + 1)
 
     def values(self, angles: Array) -> Array:
-        """Rows by which coefficients give the components at angles, (n_angles, 3, columns)."""
+        """Matrices that map coefficients to the components at angles, (n_angles, 3, columns)."""
         return self._rows(angles, np.cos, np.sin)
 
     def slopes(self, angles: Array) -> Array:
-        """Rows by which coefficients give the derivatives of the components by the angle."""
+        """Matrices that map coefficients to the derivatives of the components by the angle."""
 
         def falling(x: Array) -> Array:
             return np.asarray(-np.sin(x))
@@ -77,15 +77,15 @@ class Harmonics:
         return self._rows(angles, falling, np.cos, by_order=True)
 
     def turned(self, angles: Array) -> Array:
-        """Rows by which coefficients give the derivative of the position by the angle, in components: the base vectors
-        turn with it."""
+        """Matrices that map coefficients to the components of the position's derivative by the angle, including the
+        rotation of the base vectors."""
         out, values = self.slopes(angles), self.values(angles)
         out[:, RADIAL] -= values[:, AROUND]
         out[:, AROUND] += values[:, RADIAL]
         return out
 
     def cartesian(self, angles: Array) -> Array:
-        """Rows that give (x, y, z), x in the plane of symmetry at angle 0, (n_angles, 3, columns)."""
+        """Matrices that map coefficients to (x, y, z), x in the symmetry plane at angle 0, (n_angles, 3, columns)."""
         values = self.values(angles)
         cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
         x = cos * values[:, RADIAL] - sin * values[:, AROUND]
@@ -93,8 +93,8 @@ class Harmonics:
         return np.stack([x, y, values[:, AXIAL]], axis=1)
 
     def cosines(self, angles: Array) -> Array:
-        """Cosines to the order M, orthonormal under the mean over equally spaced angles, times its weights; (n + 1,
-        n_angles)."""
+        """Cosines to the order M at equally spaced angles, orthonormal under the mean over them, multiplied by the
+        weights of that mean; (n + 1, n_angles)."""
         m = self._numbers[:, None]
         return np.asarray(np.where(m > 0, np.sqrt(2.0), 1.0) * np.cos(m * angles) / angles.size)
 
@@ -122,18 +122,18 @@ class Harmonics:
 
 
 class FieldGroup(NamedTuple):
-    """Fields that share one shape in the meridian: ``shape`` (n_blocks, n_points, n_nodes), or without its first axis
-    where all blocks share it, and ``rows`` (n_angles, n_fields, columns) of the coefficients around the axis."""
+    """Fields with one shape function in the meridian: ``shape`` (n_blocks, n_points, n_nodes), without its first axis
+    if all blocks share it, and ``rows`` (n_angles, n_fields, columns) of factors on the coefficients."""
 
     shape: Array
     rows: Array
 
 
 class FieldOperator:
-    """Fields at the points and angles of cells or edges, and what belongs to nodes of what belongs to fields.
+    """Maps nodal coefficients to fields at the points and angles of cells or edges, and derivatives by fields to nodes.
 
-    ``nodes`` (n_blocks, n_nodes); ``signs`` (n_mesh_nodes, columns) turns coefficients that are tied to the negative of
-    another one, in forces and stiffnesses.
+    ``nodes`` (n_blocks, n_nodes); ``signs`` (n_mesh_nodes, columns) is -1 for coefficients tied to the negative of
+    another coefficient, in forces and stiffnesses.
     """
 
     def __init__(self, groups: list[FieldGroup], nodes: Index, signs: Array) -> None:
@@ -163,7 +163,7 @@ class FieldOperator:
         return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=3)
 
     def forces(self, by_field: Array) -> Array:
-        """Derivative by the coefficients of the nodes, (n_blocks, n_nodes columns), of one by the fields."""
+        """Derivative by the nodal coefficients, (n_blocks, n_nodes columns), from the derivative by the fields."""
         blocks, points = by_field.shape[:2]
         parts = [
             by_field[..., a:b].reshape(blocks * points, -1) @ rows
@@ -175,8 +175,8 @@ class FieldOperator:
         return np.asarray(out)
 
     def stiffness(self, by_fields: Array) -> Array:
-        """Second derivative by the coefficients, (n_blocks, n, n) with n nodes times columns, of one by the fields,
-        (n_blocks, n_points, n_angles, n_fields, n_fields)."""
+        """Second derivative by the coefficients, (n_blocks, n, n) with n nodes times columns, from the second
+        derivative by the fields, (n_blocks, n_points, n_angles, n_fields, n_fields)."""
         blocks, points = by_fields.shape[:2]
         groups, width = len(self._groups), self.columns
         inner = np.empty((blocks, points, groups, width, width, groups))
@@ -192,7 +192,7 @@ class FieldOperator:
         return self._to_nodes(inner)
 
     def _to_nodes(self, inner: Array) -> Array:
-        """Blocks by nodes of blocks by shape derivatives, (n_blocks, n_points, groups, columns, columns, groups)."""
+        """Nodal blocks from blocks by shape functions, (n_blocks, n_points, groups, columns, columns, groups)."""
         blocks, points, groups, width = inner.shape[:4]
         nodes = self._nodes.shape[1]
         right = np.matmul(inner.reshape(blocks, points, -1, groups), self._shape)

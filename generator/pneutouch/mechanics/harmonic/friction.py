@@ -1,7 +1,7 @@
-"""Coulomb friction of a wall that is no body of revolution: the solid's law with two directions along the surface.
+"""Coulomb friction of a wall without rotational symmetry: the solid's law with two directions along the surface.
 
 A spring holds each point in the tangent plane of the object; its traction is mapped back to the disc whose radius is
-the coefficient times the normal traction. Tractions and slips have two components, by `tangents`.
+the coefficient times the normal traction. Tractions and slips have two components along `tangents`.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from pneutouch.mechanics.solid.object_contact import ContactEvaluation
 
 
 def tangents(slope: Array) -> Array:
-    """Two perpendicular unit vectors along a surface of slopes (..., 2), the first in the plane of x and z;
-    (..., 2, 3)."""
+    """Two perpendicular unit tangents of a surface with slopes (..., 2), the first in the plane of x and z; (..., 2,
+    3)."""
     by_x, by_y = slope[..., X], slope[..., Y]
     first, secant, none = np.hypot(1.0, by_x), secants(slope), np.zeros_like(by_x)
     along = np.stack([1.0 / first, none, by_x / first], axis=-1)
@@ -30,7 +30,7 @@ def tangents(slope: Array) -> Array:
 
 
 def secants(slope: Array) -> Array:
-    """Area along a surface of slopes (..., 2) over that of its plan."""
+    """Ratio of surface area to projected area for slopes (..., 2)."""
     return np.asarray(np.sqrt(1.0 + np.einsum("...i,...i->...", slope, slope)))
 
 
@@ -40,7 +40,7 @@ def lengths(vectors: Array) -> Array:
 
 
 def directions(vectors: Array) -> Array:
-    """Unit vectors of vectors (..., 2); zero where they are."""
+    """Unit vectors along vectors (..., 2); zero for zero vectors."""
     size = lengths(vectors)[..., None]
     return np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0.0)
 
@@ -53,10 +53,10 @@ def clipped(trial: Array, cap: Array) -> Array:
 
 
 def springs(sticking: Flags, direction: Array, turn: Array) -> Array:
-    """Derivative of the traction by the slip, over the stiffness of a spring, (..., 2, 2), symmetric.
+    """Derivative of the traction by the slip over the spring's stiffness, (..., 2, 2), symmetric.
 
-    direction: of the traction of sliding points, else zero, (..., 2).  turn: their largest traction over that of a
-    spring without limit: what is left of the spring across the direction.
+    direction: traction direction of sliding points, else zero, (..., 2).  turn: traction limit of sliding points over
+    the traction of an unlimited spring, which is the share of the spring stiffness left across the direction.
     """
     kept = np.where(sticking, 1.0, np.where(direction.any(axis=-1), turn, 0.0))
     across = np.where(sticking, 0.0, turn)[..., None, None] * direction[..., :, None] * direction[..., None, :]
@@ -65,18 +65,18 @@ def springs(sticking: Flags, direction: Array, turn: Array) -> Array:
 
 @dataclass(frozen=True)
 class SurfacePoints(FrictionPoints):
-    """Friction at the points of the outer wall and angles: ``traction`` and ``slip`` (n_edges, n_points, n_angles, 2)
-    by `tangents`, positive where the spring pulls the wall back; ``slope`` alike by x and y; the others without the
-    last axis."""
+    """Friction at points and angles of the outer wall: ``traction`` and ``slip`` (n_edges, n_points, n_angles, 2) along
+    `tangents`, positive where the spring pulls the wall back; ``slope`` of the same shape by x and y; the other fields
+    without the last axis."""
 
     @property
     def secant(self) -> Array:
-        """Area along the surface over that of its plan."""
+        """Ratio of surface area to projected area."""
         return secants(self.slope)
 
     @property
     def pull(self) -> Array:
-        """Size of the traction."""
+        """Magnitude of the traction."""
         return lengths(self.traction)
 
     @property
@@ -90,7 +90,7 @@ class SurfacePoints(FrictionPoints):
 
     @property
     def direction(self) -> Array:
-        """Direction of the traction of sliding points; zero where a point does not slide."""
+        """Traction direction of sliding points; zero for other points."""
         return np.where(self.sliding[..., None], directions(self.slip), 0.0)
 
     @property
@@ -106,8 +106,8 @@ def in_space(vectors: Array, slope: Array) -> Array:
 
 @dataclass(frozen=True)
 class SurfaceFriction(FrictionStep):
-    """Friction while the object stands at one place: ``rest`` (n_edges, n_points, n_angles, 2) are the places (x, y)
-    at which the points rest or first touch, from the object that has moved by ``along`` in x.
+    """Friction for one position of the object, displaced by ``along`` in x: ``rest`` (n_edges, n_points, n_angles, 2)
+    are the places (x, y) relative to the object at which the points rest or first touch.
 
     drift: velocity of the object in space along its path, (3,).
     """
@@ -118,7 +118,7 @@ class SurfaceFriction(FrictionStep):
     drift: Array
 
     def slip(self, x: Array, slope: Array) -> Array:
-        """Distance of the points from their places of rest, by the tangents of given slopes."""
+        """Displacement of the points from their places of rest, along the tangents of given slopes."""
         at = self.rest + np.array([self.along, 0.0])
         height = self.plate.over(at[..., X], at[..., Y]).height
         gone = self.contact.points(x) - np.concatenate([at, height[..., None]], axis=-1)
@@ -141,7 +141,7 @@ class SurfaceFriction(FrictionStep):
         return SurfacePoints(clipped(trial, cap), cap, touch.slope, slip, touching & ~sliding, sliding)
 
     def turn(self, points: FrictionPoints) -> Array:
-        """Share of the springs of sliding points that is left across their slip."""
+        """Share of the spring stiffness of sliding points that is left across their slip; 0 for other points."""
         trial = self.stiffness * points.travel
         return np.divide(points.cap, trial, out=np.zeros_like(trial), where=points.sliding)
 
@@ -156,9 +156,9 @@ class SurfaceFriction(FrictionStep):
         return np.asarray(np.matmul(np.swapaxes(frame, -1, -2), np.matmul(held, frame)))
 
     def sliding_form(self, load: Array, touch: ContactEvaluation, direction: Array) -> Array | None:
-        """Unsymmetric part of the derivative, (..., 3, 3), or None: the traction of sliding points (their ``direction``
-        (..., 2) is not zero) follows the normal one, and that of all, ``load``, turns with the surface.
-        """
+        """Unsymmetric part of the derivative, (..., 3, 3), or None: the traction of sliding points (with nonzero
+        ``direction`` (..., 2)) follows the normal traction, and the friction traction ``load`` of all points turns with
+        the surface."""
         touching = touch.traction > 0.0
         bent = bool((touch.curve.any(axis=(-1, -2)) & touching).any())
         if not (direction.any() or bent):
@@ -174,11 +174,11 @@ class SurfaceFriction(FrictionStep):
         return form
 
     def held(self, solid: SolidModel, points: FrictionPoints) -> FrictionTerm:
-        """Friction with the largest tractions and the slopes of given points."""
+        """Friction term with the traction limits and slopes of given points held."""
         return SurfaceFrictionTerm(solid, self, points)
 
     def moved(self, x: Array, points: FrictionPoints) -> Array:
-        """Places at which the points rest after the step; NaN if a point does not touch."""
+        """Places (x, y) at which the points rest after the step, relative to the object; NaN without contact."""
         assert isinstance(points, SurfacePoints)
         place = self.contact.points(x)[..., :Z] - points.load[..., :Z] / self.stiffness - [self.along, 0.0]
         sliding, sticking = points.sliding[..., None], points.sticking[..., None]
@@ -186,12 +186,12 @@ class SurfaceFriction(FrictionStep):
 
 
 class SurfaceFrictionTerm(FrictionTerm):
-    """Friction with the largest tractions and the slopes held: the pseudo-potential of a step."""
+    """Friction with the traction limits and the slopes held: the pseudo-potential of a step."""
 
     step: SurfaceFriction
 
     def energy(self, x: Array) -> float:
-        """Energy stored in the springs, and traction times slip beyond their largest load."""
+        """Energy stored in the springs, plus the limited traction times the slip beyond the limit."""
         trial = self.step.stiffness * self.step.slip(x, self.held.slope)
         bears = clipped(trial, self.held.cap)
         work = np.einsum("...i,...i->...", bears, trial - 0.5 * bears)

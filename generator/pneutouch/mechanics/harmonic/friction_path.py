@@ -1,6 +1,6 @@
-"""Follows a branch of equilibria under an object in space that holds the wall by friction: down, then sideways.
+"""Path following of equilibria under an object in space with friction: down, then sideways.
 
-The object moves sideways at the height that it was pressed to, in the plane of symmetry, and friction takes the wall
+The object moves sideways at the height to which it was pressed, in the plane of symmetry, and friction drags the wall
 along.
 """
 
@@ -25,15 +25,15 @@ from pneutouch.mechanics.solid.friction_path import FrictionFollower, approach
 from pneutouch.mechanics.solid.newton import NewtonFailure
 
 MOST_FAILED = 600
-"""Newton steps of failed solves after which a path is not continued past another one: 25 solves without an end, each of
-which may cost more than the whole path; sound paths of random scenes needed up to 288."""
+"""Total Newton steps of failed solves after which a path is given up: 25 solves that do not converge, each of which may
+cost more than the whole path; sound paths of random scenes needed up to 288."""
 
 
 @dataclass(frozen=True)
 class SlidObject(Surface):
-    """A surface that has moved by ``travel`` along x, backwards where ``sense`` is -1, at its height.
+    """A surface displaced by ``travel`` along x at constant height, backwards if ``sense`` is -1.
 
-    Its `height` is the travel: what `PathFollower` follows a path by.
+    Its `height` is the travel, because `PathFollower` uses the height as path parameter.
     """
 
     body: Surface
@@ -42,7 +42,7 @@ class SlidObject(Surface):
 
     @property
     def along(self) -> float:
-        """Distance that it has moved in x."""
+        """Displacement in x."""
         return self.sense * self.travel
 
     @property
@@ -52,7 +52,7 @@ class SlidObject(Surface):
 
     @property
     def span(self) -> tuple[float, float]:
-        """Radii between which the underside is the body's own, see `RigidObject.span`."""
+        """Radii between which the underside belongs to the body itself, see `RigidObject.span`."""
         return self.body.span
 
     def at(self, height: float) -> SlidObject:
@@ -64,7 +64,7 @@ class SlidObject(Surface):
         return self.body.distance(x - self.along, y)
 
     def over(self, x: Array, y: Array) -> SurfaceHeight:
-        """The body's underside at points of any one shape."""
+        """Underside of the body at points x, y of one shape."""
         return self.body.over(x - self.along, y)
 
 
@@ -92,8 +92,8 @@ class SurfaceFrictionFollower(FrictionFollower):
         return np.array([self._plate.sense, 0.0, 0.0] if isinstance(self._plate, SlidObject) else [0.0, 0.0, 1.0])
 
     def slid(self, sense: float) -> Self:
-        """A follower of the object that moves sideways from the newest state on, towards x or, where ``sense`` is -1,
-        away from it; the path is by the travel, and all points stick at first."""
+        """Follower of the object's sideways motion from the last state on, towards +x, or -x if ``sense`` is -1; the
+        path parameter is the travel, and all points stick at first."""
         other, here = copy(self), self.here
         other._plate, other.down, other._failed = SlidObject(self._plate.at(here.height), sense), -1.0, 0
         other.path = [replace(here, height=0.0)]
@@ -108,7 +108,7 @@ class SurfaceFrictionFollower(FrictionFollower):
         return f"solves failed again and again, in {self._failed} Newton steps together"
 
     def solve(self, height: float) -> PlateState | NewtonFailure:
-        """State at a place of the path ahead; not kept."""
+        """State at a path parameter ahead, or the failure; the state is not added to the path."""
         solved = super().solve(height)
         if isinstance(solved, NewtonFailure):
             self._failed += solved.iterations
@@ -123,7 +123,7 @@ class SurfaceFrictionFollower(FrictionFollower):
         return SurfaceFrictionSolver(replace(self._bare, plate=plate), step, self._sides)
 
     def _towards(self, height: float) -> SurfaceFrictionSolver:
-        """The solver of the step to a place of the path, with the tractions that the path leads to."""
+        """Solver of the step to a path parameter, with the tractions predicted along the path."""
         solver = super()._towards(height)
         assert isinstance(solver, SurfaceFrictionSolver)
         if self.here.state.x.shape[1] > 2:
@@ -131,7 +131,7 @@ class SurfaceFrictionFollower(FrictionFollower):
         return solver
 
     def _foreseen(self, height: float) -> PointTractions | None:
-        """Tractions at a place of the path ahead, at the rates of the newest state; None from first contact on."""
+        """Tractions predicted at a path parameter with the rates of the last state; None at first contact."""
         here = self.here
         touch = here.state.touch
         assert touch is not None and here.friction is not None
@@ -147,16 +147,16 @@ class SurfaceFrictionFollower(FrictionFollower):
         return PointTractions(normal, np.where(touching[..., None], trial, 0.0))
 
     def _places(self, x: Array) -> Array:
-        """Positions of the points of the wall now, (x, y) from the object, (n_edges, n_points, n_angles, 2)."""
+        """Positions (x, y) of wall points from the object at the last state, (n_edges, n_points, n_angles, 2)."""
         along = self._plate.at(self.here.height).along if isinstance(self._plate, SlidObject) else 0.0
         return self._contact.points(x)[..., :Z] - [along, 0.0]
 
     def _signs(self) -> None:
-        """Forget the directions of slip: a point that comes to touch does not take its neighbour's."""
+        """Discard the directions of slip: a point that comes into contact does not inherit a neighbour's."""
         return
 
     def _ahead(self, height: float) -> Array:
-        """Positions at a place of the path ahead, or those at which points will touch before it, as in the solid."""
+        """Predicted (x, y) of wall points at a path parameter, or where they touch before it, as in the solid."""
         here, travel = self.here, height - self.here.height
         place = self._places(here.state.x)
         touch = here.state.touch
@@ -177,7 +177,7 @@ def held_back(state: PlateState) -> Array | float:
 
 
 STEPS = 10
-"""Equal steps of the travel at which states are returned."""
+"""Number of equal steps of the travel at which states are returned."""
 
 ENDED_BEFORE = "the press ended before its depth"
 
@@ -186,9 +186,9 @@ ENDED_BEFORE = "the press ended before its depth"
 class ShearState:
     """One equilibrium; mm, N, MPa.
 
-    travel: of the object along x.  force, sideways, moment: as of `press.OffAxisState`.  rise: of the pressure over the
-    driving one.  sliding: share of the vertical tractions at points that slid in the step to here; of the first state
-    in the last step of the press.  positions: coefficients, see `fields.Harmonics`.
+    travel: of the object along x.  force, sideways, moment: as in `press.OffAxisState`.  rise: pressure above the
+    driving pressure.  sliding: share of the vertical tractions at points that slid in the step to this state; for the
+    first state, in the last step of the press.  positions: coefficients, see `fields.Harmonics`.
     """
 
     travel: float
@@ -204,8 +204,8 @@ class ShearState:
 class ShearPath:
     """States at equal steps of the travel, from the end of the press on.
 
-    stiffness: initial slope of the force against the travel, with all points sticking, N/mm.  slips_from: travel of the
-    first solved state at which all points slide, or None.  ended: why the path ended before the whole travel, or None.
+    stiffness: initial slope of the force opposing the travel, with all points sticking, N/mm.  slips_from: travel of
+    the first solved state at which all points slide, or None.  ended: reason why the path ended early, or None.
     """
 
     states: list[ShearState]
@@ -215,7 +215,7 @@ class ShearPath:
 
     @property
     def peak(self) -> float | None:
-        """Sideways force where it is greatest against the travel, N; None without states."""
+        """Greatest sideways force opposing the travel, N, with its sign; None with fewer than two states."""
         if len(self.states) < 2:
             return None
         sense = np.sign(self.states[-1].travel)
@@ -232,7 +232,7 @@ def not_sheared() -> ShearPath:
 
 
 def shear(pressed: SurfaceFrictionFollower, travel: float, driving_pressure: float) -> ShearPath:
-    """Move the object of a press from its newest state by a travel along x (mm, not zero); pressure in MPa."""
+    """Shear from the last state of a press, by a travel of the object along x (mm, not zero); pressure in MPa."""
     length = pressed.here.scene.solid.length
     follower = pressed.slid(float(np.sign(travel)))
     recorder = _ShearRecorder(follower, driving_pressure)
@@ -257,14 +257,14 @@ def shear(pressed: SurfaceFrictionFollower, travel: float, driving_pressure: flo
 
 
 def _share(load: Array, points: FrictionPoints) -> float:
-    """Share of a load that sliding points bear, exactly 1 where none sticks."""
+    """Share of a load carried by sliding points, exactly 1 if none sticks."""
     if not points.sticking.any():
         return 1.0
     return float(load[points.sliding].sum()) / float(load.sum())
 
 
 class _ShearRecorder:
-    """Turns solver states into dimensional ones."""
+    """Converts solver states to states with dimensions."""
 
     def __init__(self, follower: SurfaceFrictionFollower, driving_pressure: float) -> None:
         self._solid, self._driving = follower.here.scene.solid, driving_pressure
@@ -294,7 +294,7 @@ class _ShearRecorder:
         )
 
     def beyond_edge(self, state: PlateState) -> bool:
-        """True if the contact has come to the edge of the object."""
+        """True if the contact has reached the edge of the object."""
         contact, touch = self._solid.contact, state.state.touch
         assert touch is not None and isinstance(contact, HarmonicContact)
         place = contact.points(state.state.x)[touch.traction > 0.0]

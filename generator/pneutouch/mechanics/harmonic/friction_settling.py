@@ -1,10 +1,10 @@
-"""Newton's steps with friction in space: what touches, sticks and slides is settled in a linear model, as in the solid.
+"""Newton's steps with friction in space: touching, sticking and sliding are settled in a linear model, as in the solid.
 
-A sliding point keeps the direction in which it was found to slide; across it, what is left of its spring acts. The
-directions turn from one Newton step to the next.
+A sliding point keeps the direction in which it was found to slide; across it, a share of its spring stiffness is left.
+The directions turn from one Newton step to the next.
 
-Tractions are carried from step to step as in `model`, friction's with those of the contact: at a guess that
-overshoots they have negative modes in the tangent and let points slide that stick.
+Tractions of contact and friction are carried from step to step as in `model`: tractions of a guess that overshoots
+would give the tangent negative modes and let points slide that stick.
 """
 
 from __future__ import annotations
@@ -34,26 +34,26 @@ from pneutouch.mechanics.solid.object_contact import ContactEvaluation
 
 @dataclass(frozen=True)
 class SurfaceStatus(PointStatus):
-    """The status of points in space: ``sign`` is the direction of sliding, (..., 2), zero for a point that does not
-    slide; turn: share of its spring that is left across that direction."""
+    """Status of points in space: ``sign`` is the direction of sliding, (..., 2), zero for a point that does not slide;
+    ``turn`` is the share of its spring stiffness left across that direction."""
 
     turn: Array
 
     @property
     def sliding(self) -> Flags:
-        """Points that slide."""
+        """Mask of the points that slide."""
         return np.asarray(self.sign.any(axis=-1))
 
     @property
     def sticking(self) -> Flags:
-        """Points that friction holds."""
+        """Mask of the points that stick."""
         return np.asarray(self.bearing & ~self.sliding)
 
     def _reversed(self, other: SurfaceStatus) -> Flags:
         return np.asarray(np.einsum("...i,...i->...", self.sign, other.sign) < 0.0)
 
     def then(self, new: PointStatus) -> SurfaceStatus:
-        """The status to try after this one led to a new one: directions are kept, but where they would be reversed."""
+        """Status to try after this one led to another: directions are kept unless they would be reversed."""
         assert isinstance(new, SurfaceStatus)
         both, back = self.sliding & new.sliding, self._reversed(new)
         sign = np.where(both[..., None], self.sign, new.sign) * ~back[..., None]
@@ -68,17 +68,17 @@ class SurfaceStatus(PointStatus):
 
 @dataclass(frozen=True)
 class SurfaceLinearContact(LinearContact):
-    """Contact and friction linear in a displacement of the coefficients; tractions along the surface (..., 2).
+    """Contact and friction, linear in a displacement of the coefficients; tractions along the surface (..., 2).
 
-    foreseen: tractions that act on the curvature of the object, and whose status is tried first; None for those of the
-    positions.
+    foreseen: tractions that act on the curvature of the object, and whose status is tried first; None for the tractions
+    at the current positions.
     """
 
     step: SurfaceFriction
     points: SurfacePoints
     foreseen: PointTractions | None = None
     unsettled: bool = False
-    #: A point in space that slides may turn.
+    #: False, because the direction of a sliding point in space may turn.
     IN_PIECES: ClassVar[bool] = False
 
     def at(self, move: Array) -> PointTractions:
@@ -96,17 +96,17 @@ class SurfaceLinearContact(LinearContact):
 
     @cached_property
     def _seen(self) -> PointTractions:
-        """The foreseen tractions as the points bear them."""
+        """Foreseen tractions, limited by contact and friction."""
         assert self.foreseen is not None
         normal = np.maximum(self.foreseen.normal, 0.0)
         return PointTractions(normal, clipped(self.foreseen.trial, self._grip * normal))
 
     def begins(self, still: PointTractions) -> SurfaceStatus:
-        """The status that is tried first."""
+        """Status to try first."""
         return self.status(still if self.foreseen is None or self.held else self.foreseen)
 
     def status(self, at: PointTractions) -> SurfaceStatus:
-        """State of the points: those that touch, stick and slide, and the directions in which they slide."""
+        """Status of the points at given tractions: touching, sticking or sliding, and the directions of sliding."""
         touching, cap, size = at.normal > 0.0, self._cap(at.normal), lengths(at.trial)
         bearing = cap > 0.0 if self.held else touching
         sliding = bearing & (size > cap)
@@ -114,7 +114,7 @@ class SurfaceLinearContact(LinearContact):
         return SurfaceStatus(touching, bearing, np.where(sliding[..., None], directions(at.trial), 0.0), turn)
 
     def under(self, status: PointStatus, at: PointTractions) -> PointTractions:
-        """Tractions of points that keep a status."""
+        """Tractions of points under a fixed status."""
         assert isinstance(status, SurfaceStatus)
         normal = np.where(status.touching, at.normal, 0.0)
         cap = self.points.cap if self.held else self._grip * normal
@@ -129,7 +129,7 @@ class SurfaceLinearContact(LinearContact):
         return self.solid.faces.push(self.step.contact.load_forces(load))
 
     def blocks(self, status: PointStatus, begun: PointTractions) -> tuple[Array, Array | None]:
-        """Stiffness of points that keep a status, symmetric and not; ``begun``: their tractions without a move."""
+        """Symmetric and unsymmetric stiffness under a fixed status; ``begun`` are the tractions before a move."""
         assert isinstance(status, SurfaceStatus)
         contact, touch = self.step.contact, self._bent
         held = self.step.spring_form(touch.slope, status.sticking, status.sign, status.turn)
@@ -141,12 +141,12 @@ class SurfaceLinearContact(LinearContact):
         return both, None if follows is None else contact.form_blocks(follows)
 
     def work(self, tractions: PointTractions, begun: PointTractions, ended: PointTractions) -> float:
-        """Work of tractions over the displacement between two others."""
+        """Work of tractions over the displacement from one pair of tractions to another."""
         across, along = self._travel(begun, ended)
         return float(np.vdot(tractions.normal, across) + np.vdot(tractions.trial, along))
 
     def works(self, begun: PointTractions, ended: PointTractions, shares: Array) -> Array:
-        """Work over the displacement between two tractions of those that the points bear at shares of it (n,), (n,)."""
+        """Work (n,), over the displacement between two tractions, of the limited tractions at shares (n,) of it."""
         across, along = self._travel(begun, ended)
         change = begun.towards(ended, shares)
         normal = np.maximum(change.normal, 0.0)
@@ -155,17 +155,17 @@ class SurfaceLinearContact(LinearContact):
         return np.asarray(normal.reshape(n, -1) @ across.ravel() + trial.reshape(n, -1) @ along.ravel())
 
     def _travel(self, begun: PointTractions, ended: PointTractions) -> tuple[Array, Array]:
-        """Displacement between two tractions, times the areas of the points."""
+        """Displacement between two tractions, times the areas of the points; normal and tangential."""
         weight = self.step.contact.weight
         across = weight * (ended.normal - begun.normal) / self.step.contact.stiffness
         return across, weight[..., None] * (ended.trial - begun.trial) / self.step.stiffness
 
 
 class SurfaceFrictionSolver(FrictionSolver):
-    """Solves the steps of a path of an object in space."""
+    """Solver of the steps of a path under an object in space."""
 
     step: SurfaceFriction
-    #: Tractions of the last linear model, or those that the path leads to; see `model`.
+    #: Tractions of the last linear model, or those predicted along the path; see `model`.
     foreseen: PointTractions | None = None
 
     def direction(self, here: HeldState, kept: Array | None = None) -> Array:
@@ -178,8 +178,8 @@ class SurfaceFrictionSolver(FrictionSolver):
         return step
 
     def _search(self, here: HeldState, step: Array, slope: float) -> HeldState | None:
-        """Search as in `FrictionSolver`; the foreseen tractions go as far towards those of the model as the
-        positions."""
+        """Line search as in `FrictionSolver`; the foreseen tractions advance towards those of the model by the same
+        share as the positions."""
         moved = super()._search(here, step, slope)
         if moved is not None and here.state.x.shape[1] > 2:
             move, gone = self.solid.expand(step), moved.state.x - here.state.x
@@ -196,9 +196,9 @@ class SurfaceFrictionSolver(FrictionSolver):
         )
 
     def by_height(self, held: HeldState, system: ContactSystem, down: float) -> tuple[Array, float, float]:
-        """Rate of the unknowns (size,), force on the object against its path and its rate, by the place on the path.
+        """Rate of the unknowns (size,), force on the object against its path, and its rate, by the path parameter.
 
-        Points that slid in the step slide on where that lengthens their path, else they stick.
+        Points that slid in the step keep sliding if that lengthens their slip path; else they stick.
         """
         step, touch, points = self.step, held.touch, held.points
         assert isinstance(points, SurfacePoints)

@@ -1,8 +1,8 @@
-"""The share of a wall's law, nodes and volume in the energy of a body that is no body of revolution, with derivatives.
+"""Energy of the wall's law and volume of the cavity for a body without rotational symmetry, with their derivatives.
 
 A law is an energy of a = |F|^2 and j = det F of a plane and of the stretch h across it (`laws.strain`). In the
-principal axes each pair of stretches with the third gives one such plane, and all derivatives by F follow: those by the
-stretches, and for the two shears of a pair 2 W_a for each alone and -W_j for both. Smooth where stretches coincide.
+principal axes each pair of stretches, with the third across, is such a plane, and all derivatives by F follow: those by
+the stretches, and for the two shears of a pair 2 W_a on the diagonal and -W_j off it. Smooth where stretches coincide.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ _PAIRS = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 
 
 class LawFields(Protocol):
-    """A law at deformation gradients (n, 3, 3), weighted."""
+    """Weighted energy of a law at deformation gradients (n, 3, 3), with derivatives."""
 
     @property
     def energy(self) -> float:
-        """Sum over the points."""
+        """Weighted energy, summed over the points."""
         ...
 
     def stress(self) -> Array:
@@ -48,19 +48,19 @@ class LawFields(Protocol):
         ...
 
     def moduli(self, pressure: Array) -> Array:
-        """Second derivative of the energy plus ``pressure`` (n,) times det F by F, (n, 9, 9), rows of F one by one."""
+        """Second derivative by F (row by row) of the energy plus ``pressure`` (n,) times det F, (n, 9, 9)."""
         ...
 
 
 class GradientLaw:
-    """A law for deformation gradients."""
+    """A law as a function of deformation gradients."""
 
     def __init__(self, law: Hyperelastic) -> None:
         self._law = law
         self._first_only = _of_first_invariant(law)
 
     def at(self, gradient: Array, cofactor: Array, volume: Array, weight: Array) -> LawFields:
-        """The law at gradients (n, 3, 3) with their cofactors and determinants (n,), all positive, and weights (n,)."""
+        """Energy at gradients (n, 3, 3) with their cofactors and determinants (n,), all positive, and weights (n,)."""
         if not self._first_only:
             return PrincipalFields(self._law, gradient, weight)
         flat = gradient.reshape(-1, 9)
@@ -80,7 +80,7 @@ class FirstInvariantFields:
 
     @property
     def energy(self) -> float:
-        """Sum over the points."""
+        """Weighted energy, summed over the points."""
         return float(self.jets[VALUE].sum())
 
     def stress(self) -> Array:
@@ -89,7 +89,7 @@ class FirstInvariantFields:
         return np.asarray(by_gradient.reshape(-1, 3, 3))
 
     def moduli(self, pressure: Array) -> Array:
-        """Second derivative of the energy plus ``pressure`` (n,) times det F by F, (n, 9, 9), rows of F one by one."""
+        """Second derivative by F (row by row) of the energy plus ``pressure`` (n,) times det F, (n, 9, 9)."""
         jets = self.jets
         left = np.stack([2.0 * self.gradient, self.cofactor], axis=1)
         form = np.ascontiguousarray(jets[[BY_AA, BY_AJ, BY_AJ, BY_JJ]].T).reshape(-1, 2, 2)
@@ -114,11 +114,11 @@ _BY_COFACTOR = _by_cofactor()
 
 
 class _OtherInvariantError(Exception):
-    """A law needs more than the first invariant."""
+    """Raised when a law needs more than the first invariant."""
 
 
 class _FirstInvariant(Strain):
-    """Strains that have the first invariant alone."""
+    """Strains that provide only the first invariant."""
 
     @property
     def second(self) -> Jet:
@@ -149,7 +149,7 @@ class PrincipalFields:
 
     @property
     def energy(self) -> float:
-        """Sum over the points."""
+        """Weighted energy, summed over the points."""
         return float(self._jets[VALUE, 0].sum())
 
     def stress(self) -> Array:
@@ -159,7 +159,7 @@ class PrincipalFields:
         return np.asarray(np.matmul(self._left * np.stack(along, axis=1)[:, None, :], self._right))
 
     def moduli(self, pressure: Array) -> Array:
-        """Second derivative of the energy plus ``pressure`` (n,) times det F by F, (n, 9, 9), rows of F one by one."""
+        """Second derivative by F (row by row) of the energy plus ``pressure`` (n,) times det F, (n, 9, 9)."""
         n, s, jets = pressure.size, self._stretch, self._jets
         form = np.zeros((n, 3, 3, 3, 3))
         _add_stretches(form, s, jets[:, 0], pressure)
@@ -173,7 +173,7 @@ class PrincipalFields:
 
 
 def _add_stretches(form: Array, s: Array, jet: Array, pressure: Array) -> None:
-    """Put the second derivatives by the principal stretches in their places."""
+    """Write the second derivatives by the principal stretches into ``form``."""
     both = jet[BY_J] + 4.0 * s[0] * s[1] * jet[BY_AA] + 2.0 * (s[0] ** 2 + s[1] ** 2) * jet[BY_AJ]
     both += s[0] * s[1] * jet[BY_JJ]
     second = {(2, 2): jet[BY_HH], (0, 1): both + pressure * s[2]}
@@ -185,13 +185,13 @@ def _add_stretches(form: Array, s: Array, jet: Array, pressure: Array) -> None:
 
 
 _FIELDS = 3
-"""Fields of a group: the components of a position or of one of its derivatives."""
+"""Number of fields of a group: components of a position or of one of its derivatives."""
 
 
 class NodePairOperator(FieldOperator):
-    """A `FieldOperator` of groups of three components whose stiffness comes by pairs of nodes a <= b of a block.
+    """A `FieldOperator` of groups of three components whose stiffness is stored by pairs of nodes a <= b of a block.
 
-    The coefficients of a node stand in the order of its components: all outwards, all along the axis, all around.
+    The coefficients of a node are ordered by component: all radial, all axial, all circumferential.
     """
 
     def __init__(self, groups: list[FieldGroup], nodes: Index, signs: Array, harmonics: Harmonics) -> None:
@@ -227,13 +227,13 @@ class NodePairOperator(FieldOperator):
         return BlockEntries(high.ravel(), low.ravel())
 
     def picked(self, blocks: Array) -> Array:
-        """Blocks (n_blocks, n, n) by pairs of nodes, as `stiffness` gives them."""
+        """Entries of blocks (n_blocks, n, n) by pairs of nodes, in the form of `stiffness`."""
         flat = blocks.reshape(blocks.shape[0], -1)
         return np.asarray(flat.take(self._picked.reshape(self.first.size, -1), axis=1))
 
     def stiffness(self, by_fields: Array) -> Array:
-        """Second derivative by the coefficients of pairs of nodes, (n_blocks, n_pairs, columns columns), of one by the
-        fields, (n_blocks, n_points, n_angles, n_fields, n_fields)."""
+        """Second derivative by the coefficients of pairs of nodes, (n_blocks, n_pairs, columns columns), from the
+        second derivative by the fields, (n_blocks, n_points, n_angles, n_fields, n_fields)."""
         blocks, points, angles = by_fields.shape[:3]
         n, width = len(self._groups), self.columns
         form = by_fields.reshape(blocks, points, angles, n, _FIELDS, n, _FIELDS)
@@ -259,7 +259,7 @@ def _columns(harmonics: Harmonics) -> list[Index]:
 
 
 def _separate(rows: Array, parts: list[Index]) -> bool:
-    """True if each component depends on the coefficients of that component alone."""
+    """True if each component depends only on the coefficients of that component."""
     alone = np.zeros(rows.shape[1:], dtype=bool)
     for component, part in enumerate(parts):
         alone[component, part] = True
@@ -268,7 +268,7 @@ def _separate(rows: Array, parts: list[Index]) -> bool:
 
 def _waves(left: Array, right: Array, parts: list[tuple[slice, slice]]) -> list[Array]:
     """Products of two rows of coefficients at the angles, (n_angles fields 3, columns of the part times all columns),
-    for each part of the left one."""
+    for each part of the left row."""
     out = []
     for fields, columns in parts:
         product = np.einsum("afc,agd->afgcd", left[:, fields, columns], right)
@@ -277,7 +277,7 @@ def _waves(left: Array, right: Array, parts: list[tuple[slice, slice]]) -> list[
 
 
 _R, _S, _TURN_R, _TURN_S, _TURN_Z, _ALONG_R, _ALONG_Z, _ALONG_S = range(8)
-"""Fields of the surface: position outwards and around, and its derivatives by the angle and along the meridian."""
+"""Fields of the surface: radial and circumferential position, and derivatives by the angle and along the meridian."""
 
 _PRODUCTS = (
     (0.5, _R, _TURN_S, _ALONG_Z),
@@ -285,8 +285,8 @@ _PRODUCTS = (
     (0.5, _S, _TURN_Z, _ALONG_R),
     (-0.5, _S, _TURN_R, _ALONG_Z),
 )
-"""Half the horizontal position times the normal of the surface: its flux is the volume above the first point's plane
-(divergence theorem). On a surface of revolution it is r^2 z'/2."""
+"""Terms of half the horizontal position times the surface normal, whose flux is the volume above the first point's
+plane (divergence theorem). On a surface of revolution it is r^2 z'/2."""
 
 
 class HarmonicCavity(Cavity):
@@ -304,7 +304,7 @@ class HarmonicCavity(Cavity):
         self._measure = (2.0 * np.pi / angles.size) * w[:, None]
 
     def volume(self, nodes: Array) -> float:
-        """Enclosed volume of coefficients (n_nodes, columns)."""
+        """Enclosed volume for coefficients (n_nodes, columns)."""
         return self._volume(self._operator.fields(nodes))
 
     def gradient(self, nodes: Array) -> tuple[float, Array]:

@@ -1,11 +1,11 @@
-"""The discrete body with harmonics, no body of revolution, and the Newton steps that settle it under an object.
+"""The discrete body with harmonics, without rotational symmetry, and its Newton steps under an object.
 
-Which points touch is carried from step to step, and tractions are unknowns of their own, as in primal-dual methods
-(Hintermüller, Ito and Kunisch 2002, SIAM J. Optim. 13(3), doi:10.1137/S1052623401383558): those of the last quadratic
-model are in the curvature, since along a round object a step overshoots by far more than the penetration in balance. A
-point that comes or goes changes the tangent by one rank, so it is factored for one set of touching points and solved
-for others by Woodbury's identity; the inertia of its small matrix shows whether the changed tangent is positive
-definite (Haynsworth 1968, Linear Algebra Appl. 1(1), doi:10.1016/0024-3795(68)90050-5).
+The set of touching points is carried from step to step, and tractions are unknowns of their own, as in primal-dual
+methods (Hintermüller, Ito and Kunisch 2002, SIAM J. Optim. 13(3), doi:10.1137/S1052623401383558). The curvature of the
+object acts on the tractions of the last quadratic model, since under a round object a step overshoots by far more than
+the penetration in equilibrium. A point that comes or goes is a rank-one change of the tangent, which is factored for
+one set of points and solved for others by Woodbury's identity; the inertia of the small matrix shows whether the
+changed tangent is positive definite (Haynsworth 1968, Linear Algebra Appl. 1(1), doi:10.1016/0024-3795(68)90050-5).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from pneutouch.mechanics.solid.object_contact import ContactEvaluation
 
 class HarmonicFace(BaseFace):
     """One face of the wall at the angles; arrays of points are (n_edges, n_points, n_angles), slopes of the base have
-    one axis more and curvatures two, by x and y."""
+    one more axis and curvatures two more, by x and y."""
 
     def __init__(self, face: BaseFace, harmonics: Harmonics, signs: Array) -> None:
         self._face, self.high, self.stiffness = face, face.high, face.stiffness
@@ -39,7 +39,7 @@ class HarmonicFace(BaseFace):
         self.weight = np.repeat(face.weight[..., None], angles, axis=2) / angles
 
     def meet(self, nodes: Array) -> BaseMeeting | None:
-        """Points below the surface of the base for coefficients (n_nodes, columns); None if there are none."""
+        """Contact of points below the surface of the base for coefficients (n_nodes, columns); None without any."""
         place = self._operator.fields(nodes)
         if place[..., Z].min() >= self.high:
             return None
@@ -63,8 +63,8 @@ class HarmonicFace(BaseFace):
 
 @dataclass(frozen=True)
 class HarmonicFields(PointFields):
-    """Fields at the integration points and angles: ``strains`` (n_points n_angles, 9) are the deformation gradient
-    transposed, by R, by Z and around; ``jets`` its determinant and ``basis`` its cofactors.
+    """Fields at the integration points and angles: ``strains`` (n_points n_angles, 9) are the transposed deformation
+    gradient by R, by Z and around the axis; ``jets`` its determinant, ``basis`` its cofactors.
 
     pressure: derivative of the averaged volume's energy by det F, (n_points n_angles,), weighted.
     """
@@ -74,8 +74,8 @@ class HarmonicFields(PointFields):
 
 
 class HarmonicModel(SolidModel):
-    """A solid whose nodes carry harmonics around the axis to an order. Positions are coefficients (n_nodes, columns) in
-    units of the solid's ``length``, see `fields.Harmonics`; with order 0 they and all results are the solid's.
+    """A solid whose nodes have harmonics around the axis to an order. Positions are coefficients (n_nodes, columns) in
+    units of the solid's ``length``, see `fields.Harmonics`; with order 0 positions and results equal the solid's.
     ``stride`` 2 is for scenes that are symmetric about two planes.
 
     The volume is averaged in the meridian as in the solid, and around the axis over the harmonics to the same order.
@@ -88,7 +88,7 @@ class HarmonicModel(SolidModel):
         super().__init__(solid.mesh, solid.material, solid.scheme, solid.grade)
 
     def _assemble(self, base: RigidBase | None) -> None:
-        """Number the unknowns, and build what acts on the faces at the angles; the base is the solid's."""
+        """Number the unknowns and build contact, cavity and base at the angles; the base is that of the solid."""
         solid, harmonics = self._solid, self.harmonics
         self.rest, self.meeting = harmonics.lifted(solid.rest), solid.meeting
         self.dofs, signs = _number(solid, harmonics)
@@ -105,7 +105,7 @@ class HarmonicModel(SolidModel):
         self.supports = () if self.base is None else (self.base,)
 
     def lowest(self, x: Array, edges: Index, above: float = -np.inf) -> float:
-        """Least height at the angles of the nodes of a face that are higher than ``above`` at rest, in R0."""
+        """Least height in R0, over the angles, of the nodes of a face that lie above ``above`` at rest."""
         nodes = np.unique(edges)
         nodes = nodes[self.rest[nodes, 1] > above]
         heights = self.harmonics.values(self.harmonics.angles)[:, AXIAL] @ x[nodes].T
@@ -133,7 +133,7 @@ class HarmonicModel(SolidModel):
         self._waves = [np.ascontiguousarray(w.transpose(1, 2, 0, 3).reshape(3 * angles.size, -1)) for w in waves]
 
     def expand(self, step: Array) -> Array:
-        """Displacement of the coefficients (n_nodes, columns) of a vector of free unknowns (size,)."""
+        """Displacement of the coefficients (n_nodes, columns) from a vector of free unknowns (size,)."""
         return np.asarray(np.where(self.dofs >= 0, step[self.dofs], 0.0) * self._sign)
 
     def local(self, x: Array) -> PointFields:
@@ -160,7 +160,7 @@ class HarmonicModel(SolidModel):
         return self._field.forces(by_gradient.reshape(*self._weight.shape, -1, 9))
 
     def stiffness(self, local: PointFields) -> Array:
-        """Second derivative of the stored energy by the coefficients of the cells, see `NodePairOperator`."""
+        """Second derivative of the energy by the coefficients of the cells, by node pairs: see `NodePairOperator`."""
         assert isinstance(local, HarmonicFields)
         form = local.law.moduli(local.pressure)
         blocks = self._field.stiffness(form.reshape(*self._weight.shape, -1, 9, 9))
@@ -182,16 +182,16 @@ class HarmonicModel(SolidModel):
 
 
 def _cofactors(f: Array) -> Array:
-    """Derivative of the determinant of matrices (n, 3, 3)."""
+    """Cofactors of matrices (n, 3, 3): the derivative of the determinant."""
     return np.stack([np.cross(f[:, (k + 1) % 3], f[:, (k + 2) % 3]) for k in range(3)], axis=1)
 
 
 def _number(solid: SolidModel, harmonics: Harmonics) -> tuple[Index, Array]:
-    """Unknown of each node and coefficient (n_nodes, columns), -1 where fixed, node by node in the solid's order; and
-    its sign.
+    """Number of the unknown of each node and coefficient (n_nodes, columns), -1 if fixed, node by node in the solid's
+    order; and its sign.
 
-    On the axis only z_0 moves, and across it r_1 = -s_1: one unknown; zero where there are two planes of
-    symmetry.
+    On the axis only z_0 is free, and as one unknown the motion across the axis, r_1 = -s_1, which is zero with two
+    planes of symmetry.
     """
     mesh, columns = solid.mesh, harmonics.columns
     free = np.ones((mesh.nodes.shape[0], columns), dtype=bool)
@@ -214,13 +214,13 @@ def _number(solid: SolidModel, harmonics: Harmonics) -> tuple[Index, Array]:
 
 
 _MOST = 24
-"""Points by which a set may differ from the factored one: their solutions cost as much as two factorisations."""
+"""Most points by which a set may differ from the factored set: solving for them costs two factorisations."""
 
 
 class PointSets:
-    """Newton steps of one state with sets of points in contact, of the shape of the points.
+    """Newton steps at one state for different sets of touching points, given as masks.
 
-    ``held`` has the tractions that act on the curvature of the object, ``start`` are those of the state, not clipped.
+    ``held`` has the tractions that act on the curvature of the object, ``start`` the unclipped tractions of the state.
     """
 
     def __init__(self, scene: SolidScene, state: SolverState, held: ContactEvaluation, start: Array, band: Array):
@@ -230,11 +230,11 @@ class PointSets:
         self._factor: Array | None = None
 
     def load(self, active: Flags) -> Array:
-        """Gradient of the energy with the tractions of a set alone (size,)."""
+        """Gradient (size,) of the energy with only the tractions of a set."""
         return self._state.inner + self._force(np.where(active, self._start, 0.0))
 
     def at(self, active: Flags) -> NewtonDirection:
-        """The step to the least of the model with a set of touching points."""
+        """Newton step to the minimum of the model for a set of touching points."""
         changed = None if self._factor is None else np.flatnonzero(active != self._base)
         if changed is None or changed.size > _MOST:
             changed = self._factored(active)
@@ -243,14 +243,14 @@ class PointSets:
             return newton
         newton = downhill(self._state, with_contact(self._scene, self._band, self._held, active), self.load(active))
         if newton.lift:
-            # What made this tangent definite is kept for the rest of the sets: fewer failed factorisations.
+            # The lift that made this tangent definite is kept for the other sets: fewer failed factorisations.
             self._band = self._band.copy(order="F")
             self._band[0] += newton.lift
             self._factor = None
         return newton
 
     def _factored(self, active: Flags) -> Index | None:
-        """Factor the tangent for a set; no changed points, or None if it is not positive definite."""
+        """Factor the tangent for a set; an empty array of changed points, or None if not positive definite."""
         factor, info = lapack.dpbtrf(with_contact(self._scene, self._band, self._held, active), lower=1)
         self._factor = None
         if info:
@@ -263,7 +263,7 @@ class PointSets:
         return np.empty(0, np.intp)
 
     def _changed(self, active: Flags, changed: Index) -> NewtonDirection | None:
-        """The step with some points of the factored set changed; None if the tangent is not positive definite."""
+        """Newton step with ``changed`` points of the factored set; None if the tangent is not positive definite."""
         solution = self._solution
         if changed.size:
             columns = self._known(changed)
@@ -283,7 +283,7 @@ class PointSets:
         return NewtonDirection(step, soft, denominator, True, True) if denominator > 0.0 else None
 
     def _known(self, points: Index) -> list[int]:
-        """Columns of points among the unit loads and their solutions, which are kept."""
+        """Columns of points among the unit loads and their solutions, computed at first use."""
         new = [int(p) for p in points if int(p) not in self._number]
         if new:
             loads = np.stack([self._unit(p) for p in new], axis=1)
@@ -303,10 +303,10 @@ class PointSets:
 
 
 _FREE = 5
-"""Rounds in which each set of touching points is the one that the last one brought about."""
+"""Rounds that take the set of touching points directly from the previous solution."""
 
 _ROUNDS = 12
-"""All rounds of one quadratic model; the later ones search along a line."""
+"""Total rounds of one quadratic model; the later ones use a line search."""
 
 
 @dataclass(frozen=True)
@@ -319,7 +319,7 @@ class Foreseen:
 
 
 class ContactNewton:
-    """Newton steps to one state, for `newton.minimise`, from a guess of its contact."""
+    """Newton steps to one state, for `newton.minimise`, from a guess of the contact at that state."""
 
     def __init__(self, foreseen: Foreseen | None = None) -> None:
         self._foreseen = foreseen
@@ -333,8 +333,8 @@ class ContactNewton:
 
 
 class _ContactModel:
-    """The quadratic model of wall, filling and contact at a state: convex, with a slope that bends where points come
-    and go. Tractions are not clipped."""
+    """Model of wall, filling and contact at a state: convex, piecewise quadratic, with a kink in the gradient where a
+    point comes or goes. Tractions are not clipped."""
 
     def __init__(self, scene: SolidScene, state: SolverState, touch: ContactEvaluation, foreseen: Foreseen | None):
         self._scene, self._state, self._touch = scene, state, touch
@@ -345,10 +345,10 @@ class _ContactModel:
         self._sets = PointSets(scene, state, held, self._here, tangent(scene, state))
 
     def least(self) -> tuple[NewtonDirection, Array]:
-        """The step to the least of the model, or to a lower point of it, and the tractions there.
+        """Step to the minimum of the model, or to a lower point of it, and the tractions there.
 
-        Each set of points brings about the next. Where sets come again, the rest of the rounds go from the last answer
-        to the least of the model before the next one.
+        The touching points of each solution are the next set. If a set recurs, the remaining rounds search on the line
+        from the last point to the next solution for the minimum of the model.
         """
         here, active = self._here, self._foreseen.touching
         step, pull, searching, seen = np.zeros_like(self._state.residual), self._state.inner, False, set[bytes]()
@@ -377,7 +377,7 @@ class _ContactModel:
         return replace(newton, step=step), here
 
     def _pull(self, active: Flags, traction: Array) -> Array:
-        """Forces by which wall and filling pull if the tractions of a set of points balance them (size,)."""
+        """Gradient (size,) of wall and filling that the tractions of a set of points balance."""
         return np.asarray(-self._push(self._contact.force(np.where(active, traction, 0.0), self._touch.slope)))
 
     def _lower(self, step: Array, ahead: Array, pull: Array) -> bool:

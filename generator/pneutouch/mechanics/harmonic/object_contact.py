@@ -1,4 +1,4 @@
-"""Contact of the outer wall with a rigid surface at equally spaced angles, and the wall that it presses.
+"""Contact of the outer wall with a rigid surface at equally spaced angles, and the resulting pressed wall.
 
 Contact is the solid's penalty at points in space; a pressed wall has positions, contact forces and pressures at nodes.
 """
@@ -19,23 +19,22 @@ from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.object_contact import Contact, ContactEvaluation
 
 _ROWS = 96
-"""Rows at which a wall is drawn, but for those added where the contact ends."""
+"""Number of rows at which a wall is drawn, apart from rows added at the edge of contact."""
 
 
 @dataclass(frozen=True, slots=True)
 class PressedFace:
     """A pressed outer wall, symmetric about the plane of angle 0 (mm, N); its nodes run from the base to the pole.
-
-    Forces are gathered at the ends of its edges: those in the middle of edges would alternate with them.
+    Forces are collected only at the ends of edges: with mid-edge nodes included, the values would alternate.
 
     Attributes:
-        indentation: Of the object.
+        indentation: Indentation by the object.
         travel: Distance that the object then moved sideways.
         harmonics: The Fourier sums of the positions.
         coefficients: Positions of the nodes, (n_nodes, columns), see `harmonic.fields.Harmonics`.
         forces: Contact forces of the wall on the object, normal to it, (n_ends, M + 1, 3), at the contact angles of the
-            half circle; each stands for its mirror image too, whose component in y is opposite.
-        areas: Areas of the deformed wall that belong to them, (n_ends, M + 1); of both images.
+            half circle; each also stands for its mirror image, with the opposite component in y.
+        areas: Areas of the deformed wall that belong to the forces, (n_ends, M + 1), with their mirror images.
         touching: Part of these areas that touches the object, (n_ends, M + 1).
         lines: Lines that outline the object, (k, 3) each.
     """
@@ -59,7 +58,7 @@ class PressedFace:
         return self if force == 1.0 else replace(self, forces=force * self.forces)
 
     def rows(self) -> Array:
-        """Places along the wall at which it is drawn, in edges from the base: closer where the contact ends."""
+        """Positions along the wall at which it is drawn, in edges from the base: closer at the edge of contact."""
         share = self.touching / self.areas
         low, high = np.minimum(share[:-1], share[1:]), np.maximum(share[:-1], share[1:])
         partly = ((high > 0.0) & (low < 1.0)).any(axis=1) | (np.ptp(share, axis=1)[1:] > 0.0)
@@ -69,7 +68,7 @@ class PressedFace:
         return np.asarray(every[::-stride][::-1])
 
     def positions(self, rows: Array, angles: Array) -> Array:
-        """Positions (x, y, z) at places along the wall and angles, (n_rows, n_angles, 3), mm."""
+        """Positions (x, y, z) for rows along the wall and angles, (n_rows, n_angles, 3), mm."""
         step = (len(self.coefficients) - 1) // self.edges
         edge = np.minimum(rows.astype(np.intp), self.edges - 1)
         nodes = step * edge[:, None] + [0, step, 1][: step + 1]
@@ -78,13 +77,13 @@ class PressedFace:
         return np.asarray(place)
 
     def pressure(self, rows: Array, angles: Array) -> Array:
-        """Contact pressure at places along the wall and angles, (n_rows, n_angles), MPa: force over touching area.
+        """Contact pressure for rows along the wall and angles, (n_rows, n_angles), MPa: force over touching area.
 
-        Without harmonics both are linear between the ends of edges. With them, between few contact angles, both are
-        means of the neighbourhood by a Gauss function, one edge wide along the wall and across it half as wide as
-        contact points are apart. The contact ends where half of the area touches; around that the pressure falls to 0.
-        Of a contact smaller than these distances the share of the area is taken over its greatest, and the pressure
-        times that.
+        Without harmonics, force and area are linear between the ends of edges. With harmonics, because contact angles
+        are few, both are averaged with a Gaussian, one edge wide along the wall and half the distance of contact points
+        wide across it. The contact ends where half of the area touches; around there the pressure falls to 0. For a
+        contact smaller than these distances the share of touching area is taken relative to its maximum, and the
+        pressure is multiplied by that.
         """
         force, harmonics = np.linalg.norm(self.forces, axis=2), self.harmonics
         if harmonics.order == 0:
@@ -111,7 +110,7 @@ class PressedFace:
 
 
 def _pressure(parts: Array) -> Array:
-    """Force over touching area of forces, touching areas and areas (3, ...), to zero where too little touches."""
+    """Force over touching area, from forces, touching areas and areas (3, ...); falls to 0 where too little touches."""
     force, touching, areas = parts
     share = touching / areas
     greatest = float(share.max())
@@ -122,18 +121,18 @@ def _pressure(parts: Array) -> Array:
 
 
 X, Y, Z = range(3)
-"""Cartesian fields of a point of a face."""
+"""Cartesian components of a point of a face."""
 
 
 def face_operator(edges: Index, points: int, harmonics: Harmonics, signs: Array) -> FieldOperator:
-    """Positions (x, y, z) at the Gauss points of edges and at the angles."""
+    """Operator for the positions (x, y, z) at the Gauss points of edges and at the angles."""
     shape, _ = line_shapes(np.polynomial.legendre.leggauss(points)[0], edges.shape[1])
     return FieldOperator([FieldGroup(shape, harmonics.cartesian(harmonics.contact_angles))], edges, signs)
 
 
 class HarmonicContact(Contact):
-    """The solid's contact with every quadrature point of the outer wall taken at each angle: arrays of points are
-    (n_edges, n_points, n_angles), slopes have one axis more and curvatures two, by x and y."""
+    """The solid's contact with every quadrature point of the outer wall evaluated at each angle: arrays of points are
+    (n_edges, n_points, n_angles), slopes have one more axis and curvatures two more, by x and y."""
 
     def __init__(self, solid: SolidModel, harmonics: Harmonics, signs: Array) -> None:
         super().__init__(solid.mesh, solid.mesh.nodes / solid.length, solid.contact.stiffness)
@@ -147,7 +146,7 @@ class HarmonicContact(Contact):
         return self._operator.fields(nodes)
 
     def touch(self, nodes: Array, plate: Indenter) -> ContactEvaluation:
-        """Energy and tractions against a surface for coefficients (n_nodes, columns)."""
+        """Contact energy and tractions under a surface, for coefficients (n_nodes, columns)."""
         place = self.points(nodes)
         assert isinstance(plate, Surface)
         under = plate.over(place[..., X], place[..., Y])
@@ -157,7 +156,7 @@ class HarmonicContact(Contact):
         return ContactEvaluation(energy, traction, gap, under.slope, under.curve)
 
     def opening(self, touch: ContactEvaluation, move: Array, lift: float | Array) -> Array:
-        """Gaps after a displacement of the nodes, taken as linear in it, where the surface was ``lift`` above."""
+        """Gaps after a displacement of the coefficients, linearised; ``lift`` is the gap before it."""
         place = self.points(move)
         along = touch.slope[..., 0] * place[..., X] + touch.slope[..., 1] * place[..., Y]
         return np.asarray(lift + along - place[..., Z])
@@ -167,7 +166,7 @@ class HarmonicContact(Contact):
         return self.load_forces(traction[..., None] * upward(slope))
 
     def hessian(self, touch: ContactEvaluation, active: Flags) -> Array:
-        """Second derivative with `active` points in contact, (n_edges, n columns, n columns)."""
+        """Second derivative of the energy with the `active` points in contact, (n_edges, n columns, n columns)."""
         return self.form_blocks(self.form(touch, active))
 
     def form(self, touch: ContactEvaluation, active: Flags) -> Array:
@@ -178,7 +177,7 @@ class HarmonicContact(Contact):
         return form
 
     def form_blocks(self, form: Array) -> Array:
-        """A derivative by the positions as one by the coefficients of the edges, (n_edges, n columns, n columns)."""
+        """Derivative by the coefficients of the edges, (n_edges, n columns, n columns), from ``form`` by positions."""
         return self._operator.stiffness(self.weight[..., None, None] * form)
 
     def load_forces(self, load: Array) -> Array:
@@ -188,10 +187,10 @@ class HarmonicContact(Contact):
     def resultant(self, nodes: Array, touch: ContactEvaluation, held: Array | float = 0.0) -> Array:
         """Force (x, y, z) on the object and its moment (x, y, z) about the origin; nondimensional, (2, 3).
 
-        held: tractions of friction in space, (n_edges, n_points, n_angles, 3).
+        held: friction tractions in space, (n_edges, n_points, n_angles, 3).
 
-        Each angle stands for its mirror images too, so the force in y and the moments about x and z are zero; with two
-        planes of symmetry the force is upright and has no moment.
+        Each angle also stands for its mirror images, so the force in y and the moments about x and z are zero; with two
+        planes of symmetry the force is vertical and has no moment.
         """
         place = self.points(nodes)
         load = self.weight[..., None] * (touch.traction[..., None] * upward(touch.slope) + held)
@@ -200,7 +199,7 @@ class HarmonicContact(Contact):
         return np.asarray(out * [[along, 0.0, 1.0], [0.0, along, 0.0]])
 
     def middle(self, nodes: Array, touch: ContactEvaluation) -> float:
-        """Middle of the normal tractions along x; 0 without any."""
+        """Centre of the normal tractions in x; 0 without contact or with two planes of symmetry."""
         load = self.weight * touch.traction
         if self._symmetric or not load.any():
             return 0.0
@@ -208,12 +207,12 @@ class HarmonicContact(Contact):
 
 
 def upward(slope: Array) -> Array:
-    """Direction upwards on a surface of a slope, of height 1: (-d/dx, -d/dy, 1)."""
+    """Upward normal of a surface with given slopes, with vertical component 1: (-d/dx, -d/dy, 1)."""
     return np.concatenate([-slope, np.ones((*slope.shape[:-1], 1))], axis=-1)
 
 
 _DRAWN = 1.3
-"""Distance over the outer radius of the dome to which an endless object is drawn."""
+"""Distance, over the outer radius of the dome, to which an unbounded object is drawn."""
 
 
 def pressed_face(
@@ -224,9 +223,9 @@ def pressed_face(
     indentation: float,
     travel: float = 0.0,
 ) -> PressedFace:
-    """The outer wall at positions (n_nodes, columns) in mm under an object in R0 that stands in its place.
+    """Pressed outer wall at positions (n_nodes, columns) in mm, under an object (in R0) at its final place.
 
-    With friction its tractions are left out: the pressure is that normal to the object.
+    Friction tractions are left out: the pressure is the one normal to the object.
     """
     contact = HarmonicContact(solid, harmonics, np.ones(positions.shape))
     x, length = positions / solid.length, solid.length
@@ -261,8 +260,8 @@ def face_areas(solid: SolidModel, x: Array, harmonics: Harmonics) -> Array:
 
 
 def _gathered(solid: SolidModel, load: Array) -> Array:
-    """Loads at the points of contact (n_edges, n_points, n_angles, k) at the ends of their edges, in shares by the
-    distance from them, (n_mesh_nodes, n_angles, k). No share is negative: no node is pulled."""
+    """Loads at the contact points (n_edges, n_points, n_angles, k) distributed to the ends of their edges linearly by
+    distance, (n_mesh_nodes, n_angles, k). All shares are non-negative, so no node is pulled."""
     ends = solid.mesh.outer[:, [START, END]]
     place, _ = np.polynomial.legendre.leggauss(solid.contact.shape.shape[0])
     shares = 0.5 + 0.5 * place[:, None] * np.array([-1.0, 1.0])
@@ -272,7 +271,7 @@ def _gathered(solid: SolidModel, load: Array) -> Array:
 
 
 def _along(solid: SolidModel) -> list[int]:
-    """Nodes of the outer wall from the base to the pole."""
+    """Node numbers of the outer wall from the base to the pole."""
     edges = solid.mesh.outer
     order = [START, 2] if edges.shape[1] == 3 else [START]
     return [*edges[:, order].ravel().tolist(), solid.mesh.outer_apex]

@@ -1,6 +1,6 @@
-"""An object comes straight down on an inflated dome, off its axis or leaning.
+"""Press by an object that comes straight down on an inflated dome, off its axis or leaning.
 
-The greatest stretch on the faces of a wall that is no body of revolution.
+Also the greatest stretch on the faces of a wall without rotational symmetry.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from pneutouch.mechanics.solid.stress import StrainProbe
 
 
 class HarmonicProbe:
-    """Stretches at the stations of a `StrainProbe` and at both sides of the plane of symmetry and between; where there
-    are two planes, from one to the other."""
+    """Stretches at the stations of a `StrainProbe` and at angles from one side of the plane of symmetry to the other,
+    or from one plane to the other if there are two."""
 
     def __init__(self, model: HarmonicModel, probe: StrainProbe) -> None:
         cells = model.mesh.cells
@@ -58,18 +58,18 @@ _ALONG = 33
 
 
 _UPPER = 0.5
-"""Height at rest in R0 above which the inner wall can come down on to the base plane."""
+"""Height at rest in R0 above which the inner wall is watched for reaching the base plane."""
 
 
 @dataclass(frozen=True)
 class OffAxisState:
     """One equilibrium; mm, N, MPa.
 
-    force: of the wall on the object, upwards.  sideways: the same along x, towards angle 0 of the plane of symmetry.
+    force: of the wall on the object, upwards.  sideways: of the wall on the object along x, the direction of angle 0.
     moment: of the wall on the object about the y axis through the centre of the base plane, N mm: the sum of z times
-    the force along x less x times the force upwards.
-    contact_radius: greatest horizontal distance of a touching point from the middle of the contact's forces.
-    stiffness, slope: see `indent.PressState`.  positions: coefficients, see `fields.Harmonics`.
+    the force along x minus x times the force upwards.
+    contact_radius: greatest horizontal distance of a touching point from the centre of the contact forces. stiffness,
+    slope: see `indent.PressState`.  positions: coefficients, see `fields.Harmonics`.
     """
 
     indentation: float
@@ -94,8 +94,8 @@ class OffAxisState:
 
 @dataclass(frozen=True)
 class OffAxisPath:
-    """States at the steps of the protocol, all solved states, and events, as `indent.IndentationPath` has them, with
-    harmonics to ``order``; ``shear``: the path of an object that moves sideways after the press."""
+    """States at the steps of the protocol, all solved states and events, as in `indent.IndentationPath`, with harmonics
+    to ``order``; ``shear``: path of an object that moves sideways after the press."""
 
     order: int
     states: list[OffAxisState]
@@ -110,7 +110,7 @@ class OffAxisPath:
 
 
 class OffAxisFollower(PathFollower):
-    """A follower that foresees from the last state which points touch."""
+    """A `PathFollower` that predicts the touching points from the last state."""
 
     def _least(self, scene: SolidScene, x: Array) -> NewtonResult | NewtonFailure:
         # Without harmonics the steps are the solid's, and with them the last digits of its figures.
@@ -119,7 +119,7 @@ class OffAxisFollower(PathFollower):
         return minimise(scene, x, find=ContactNewton(self._foreseen(scene)))
 
     def _foreseen(self, scene: SolidScene) -> Foreseen | None:
-        """Points that touch, and their tractions, at the rates of the last state."""
+        """Points that will touch, and their tractions, predicted with the rates of the last state."""
         here, contact = self.here, scene.solid.contact
         touch = here.state.touch
         assert touch is not None and scene.plate is not None
@@ -134,9 +134,9 @@ class OffAxisFollower(PathFollower):
 class OffAxisPress:
     """Presses of one dome from one free state by one object, with any number of harmonics.
 
-    ``surface`` is the object in R0 at any height; ``press`` as for the axisymmetric solid, its object left aside.
-    ``travel``: how far the object moves sideways after it, mm; only with friction. ``symmetric``: whether the scene is
-    symmetric about the plane across that of the offset too, so that harmonics of even order hold it.
+    ``surface`` is the object in R0 at any height; ``press`` is as for the axisymmetric solid, apart from its object.
+    ``travel``: sideways displacement of the object after the press, mm; only with friction. ``symmetric``: True if the
+    scene is also symmetric about the plane across that of the offset, so that harmonics of even order suffice.
     """
 
     def __init__(
@@ -158,9 +158,9 @@ class OffAxisPress:
         self.surface = surface.at(first_height(surface, outline))
 
     def run(self, order: int) -> OffAxisPath:
-        """The press with harmonics to an order.
+        """Press with harmonics to an order.
 
-        Raises NoConvergenceError if first contact has no equilibrium.
+        Raises NoConvergenceError if there is no equilibrium at first contact.
         """
         model, press, start = self._model(order), self._press, self.surface.height
         probe = HarmonicProbe(model, self._probe)
@@ -180,14 +180,14 @@ class OffAxisPress:
         return replace(pressed, shear=self._shear(follower, pressed)) if self._travel else pressed
 
     def _shear(self, follower: PathFollower, pressed: OffAxisPath) -> ShearPath:
-        """Path of the object moving sideways after a press."""
+        """Path of the object moving sideways after a complete press, else an empty one."""
         assert isinstance(follower, SurfaceFrictionFollower)
         return shear(follower, self._travel, self._free.pressure) if pressed.complete else not_sheared()
 
     def coarser(self, order: int, states: list[OffAxisState]) -> list[tuple[float, float]] | None:
         """Force (N) and pressure rise (MPa) near solved states with fewer harmonics; None if one has no equilibrium.
 
-        Without friction, with which a state follows from those before it.
+        Only valid without friction: with friction a state depends on those before it.
         """
         model, out = self._model(order), []
         for state in states:
@@ -225,7 +225,7 @@ class OffAxisPress:
         return OffAxisFollower(model, self._gas, self.surface, start)
 
     def _ended(self, events: list[SolidEvent]) -> bool:
-        """True if an event ends the press: the inner wall lies on a base that is not there."""
+        """True if an event ends the press: the inner wall reaches the base plane where the solid has no base."""
         return self._solid.base is None and any(e.kind == "floor" for e in events)
 
     def _finish(
@@ -272,7 +272,7 @@ class OffAxisPress:
         )
 
     def _events(self, a: OffAxisState, b: OffAxisState) -> list[SolidEvent]:
-        """Levels passed between two neighbouring states."""
+        """Events whose levels are crossed between two consecutive states."""
         press, wall = self._press, self._solid.mesh.wall
         levels = {
             "gauge_range": press.gauge_range,
@@ -288,7 +288,7 @@ class OffAxisPress:
 
 
 def _watched(s: OffAxisState) -> dict[str, PathPoint]:
-    """The quantities whose levels are events, at one state."""
+    """Quantities of one state whose levels define events."""
     rate = s.slope * s.stiffness if np.isfinite(s.slope) else None
     return {
         "gauge_range": PathPoint(s.indentation, s.pressure, rate),

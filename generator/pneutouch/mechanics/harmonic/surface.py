@@ -1,8 +1,7 @@
 """Undersides of rigid objects as functions of two horizontal coordinates, x in the plane of symmetry.
 
-Lines by which a rigid object is drawn over the dome: circles around its axis, or lines along a lying body.
-
-Placement of an object on the dome's axis or off it, and the point at which it first touches the dome.
+Also the lines by which an object is drawn over the dome (circles around its axis, or lines along a lying body), its
+placement on or off the axis, and its height at first contact with the dome.
 """
 
 from __future__ import annotations
@@ -28,39 +27,39 @@ class SurfaceHeight(NamedTuple):
 
 
 class Surface(ABC):
-    """A rigid body above the dome that need not be a body of revolution about the dome's axis; lengths in R0. As an
-    `Indenter` it is its section in the plane of symmetry, at negative x too."""
+    """A rigid body above the dome, not necessarily a body of revolution about the dome's axis; lengths in R0. As an
+    `Indenter` it is its section in the plane of symmetry, also for negative x."""
 
     @property
     @abstractmethod
     def height(self) -> float:
-        """Height of its reference point."""
+        """Height of the object's reference point."""
 
     @property
     @abstractmethod
     def span(self) -> tuple[float, float]:
-        """Distances from its own axis between which its underside is the object's own."""
+        """Distances from the object's own axis between which the underside is the object's own surface."""
 
     @abstractmethod
     def over(self, x: Array, y: Array) -> SurfaceHeight:
-        """Its underside at points of any one shape."""
+        """Underside of the object at points of any shape."""
 
     @abstractmethod
     def distance(self, x: Array, y: Array) -> Array:
-        """Distance from its own axis, at which `span` ends."""
+        """Distance of points from the object's own axis, to compare with `span`."""
 
     @abstractmethod
     def at(self, height: float) -> Surface:
         """This body at another height."""
 
     def underside(self, r: Array) -> tuple[Array, Array, Array]:
-        """Height of the section in the plane of symmetry at x = r and its first two derivatives."""
+        """Height of the section in the plane of symmetry at x = r, with its first two derivatives."""
         under = self.over(r, np.zeros_like(r))
         return under.height, under.slope[..., 0], under.curve[..., 0, 0]
 
 
 def revolved(profile: Callable[[Array], tuple[Array, Array, Array]], x: Array, y: Array) -> SurfaceHeight:
-    """A surface of revolution about the axis x = y = 0, given its height over the radius and two derivatives."""
+    """Surface of revolution about the axis x = y = 0 from its height over the radius and two derivatives."""
     radius = np.hypot(x, y)
     height, slope, curve = profile(radius)
     safe = np.maximum(radius, 1.0e-300)
@@ -75,19 +74,19 @@ def revolved(profile: Callable[[Array], tuple[Array, Array, Array]], x: Array, y
 
 @dataclass(frozen=True)
 class ProfiledObject(Surface):
-    """An object whose section is that of ``body``, its middle at x = ``offset``."""
+    """An object with the section of ``body``, centred at x = ``offset``."""
 
     body: Indenter
     offset: float = 0.0
 
     @property
     def height(self) -> float:
-        """Height of its lowest line or point, or of the middle of a plate, which it leans about."""
+        """Height of the lowest line or point, or of the centre of a plate, about which it leans."""
         return self.body.height
 
     @property
     def span(self) -> tuple[float, float]:
-        """Radii between which the underside is the section's own, see `RigidObject.span`."""
+        """Radii between which the underside is that of the section itself, see `RigidObject.span`."""
         return self.body.span
 
     def at(self, height: float) -> Self:
@@ -97,15 +96,15 @@ class ProfiledObject(Surface):
 
 @dataclass(frozen=True)
 class LyingObject(ProfiledObject):
-    """A straight body across the plane of symmetry, endless along y. Its section is that of ``body`` over the distance
-    from its middle at x = ``offset``."""
+    """A straight body across the plane of symmetry, endless along y. Its section is that of ``body``, as a function of
+    the distance from its middle at x = ``offset``."""
 
     def distance(self, x: Array, y: Array) -> Array:
-        """Distance from its plane of symmetry."""
+        """Distance of points from the body's plane of symmetry."""
         return np.asarray(np.abs(x - self.offset) + 0.0 * y)
 
     def over(self, x: Array, y: Array) -> SurfaceHeight:
-        """Its underside at points of any one shape."""
+        """Underside of the body at points of any shape."""
         along = x - self.offset + 0.0 * y
         height, slope, curve = self.body.underside(np.abs(along))
         by_xy, bend = np.zeros((*along.shape, 2)), np.zeros((*along.shape, 2, 2))
@@ -115,24 +114,24 @@ class LyingObject(ProfiledObject):
 
 @dataclass(frozen=True)
 class PlacedObject(ProfiledObject):
-    """A body of revolution whose axis stands at x = ``offset`` and leans by ``tilt`` (rad) about the y axis through its
-    lowest point, or through the middle of a plate: with a positive tilt it is lower at negative x. Only a body whose
-    underside is flat but for its rim leans exactly."""
+    """A body of revolution with its axis at x = ``offset``, tilted by ``tilt`` (rad) about the y axis through its
+    lowest point, or through the centre of a plate: with a positive tilt it is lower at negative x. The tilt is exact
+    only for a body whose underside is flat apart from its rim."""
 
     tilt: float = 0.0
 
     def distance(self, x: Array, y: Array) -> Array:
-        """Distance from its own axis."""
+        """Distance of points from the body's own axis."""
         return np.asarray(np.hypot((x - self.offset) / np.cos(self.tilt), y))
 
     def over(self, x: Array, y: Array) -> SurfaceHeight:
-        """Its underside at points of any one shape."""
+        """Underside of the body at points of any shape."""
         along = x - self.offset
         if not self.tilt:
             return revolved(self.body.underside, along, y)
         cos, slope = np.cos(self.tilt), np.tan(self.tilt)
         level = self.body.at(0.0)
-        # In the plane of the plate a horizontal length along x is longer by 1/cos, and so is a rise upright.
+        # A horizontal length along x is longer by 1/cos in the plane of the plate, and a normal rise is so upright.
         shape = revolved(level.underside, along / cos, y)
         stretch = np.array([1.0 / cos, 1.0])
         by_xy = shape.slope * stretch / cos
@@ -142,23 +141,23 @@ class PlacedObject(ProfiledObject):
 
 
 _PARTS = 6
-"""Equal parts of the length of a section between which its lines stand."""
+"""Number of equal parts of a section's length, between which lines are drawn."""
 
 _ROUND = 48
-"""Straight pieces of a circle."""
+"""Number of straight pieces of a circle."""
 
 _EVERY = 6
-"""Points of a section to one of a line along it."""
+"""Number of points of a section for each point of a line along it."""
 
 _THICK = 0.12
-"""Thickness of a plate as drawn, in R0: the model has its underside alone."""
+"""Thickness of a plate as drawn, in R0: the model has only its underside."""
 
 _NONE = 1e-6
-"""Radius in R0 below which a circle is a point."""
+"""Radius in R0 below which a circle is not drawn."""
 
 
 def object_lines(body: ProfiledObject, reach: float) -> tuple[Array, ...]:
-    """Lines (k, 3) of an object in its place, in R0; an endless one is drawn to a distance ``reach``."""
+    """Lines (k, 3) that draw an object in its place, in R0; an unbounded object is drawn to a distance ``reach``."""
     section = _section(body.body, reach)
     if isinstance(body, LyingObject):
         return _lying(section, body.offset, reach)
@@ -172,14 +171,14 @@ def object_lines(body: ProfiledObject, reach: float) -> tuple[Array, ...]:
 
 
 def _placed(body: PlacedObject, radius: float | Array, angle: float | Array, height: float | Array) -> Array:
-    """Points (k, 3) of a body of revolution, given about its own axis, in its place."""
+    """Points (k, 3), in space, of a body of revolution, from coordinates about its own axis."""
     cos, sin = np.cos(body.tilt), np.sin(body.tilt)
     x, y, z = np.broadcast_arrays(radius * np.cos(angle), radius * np.sin(angle), height - body.height)
     return np.stack([body.offset + cos * x - sin * z, y, body.height + sin * x + cos * z], axis=1)
 
 
 def _section(body: Indenter, reach: float) -> Array:
-    """Half its section, (k, 2) in distance from its middle and height."""
+    """Half of a body's section, (k, 2): distance from its middle, and height."""
     if isinstance(body, Plate):
         edge = body.radius + 0.5 * body.rim
         return np.array([[edge, body.height], [edge, body.height + _THICK]])
@@ -188,7 +187,7 @@ def _section(body: Indenter, reach: float) -> Array:
 
 
 def _spread(section: Array) -> Array:
-    """Points (k, 2) at equal steps along a section; of a section of two points these."""
+    """Points (k, 2) at equal steps along a section; a section of two points is returned as it is."""
     if len(section) == 2:
         return section
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(section, axis=0).T)))
@@ -210,11 +209,11 @@ def _lying(section: Array, offset: float, reach: float) -> tuple[Array, ...]:
 
 
 _ANGLES = 181
-"""Angles on the half circle at which an object may touch first."""
+"""Number of angles on the half circle at which an object may touch first."""
 
 
 def first_height(surface: Surface, outline: tuple[Array, Array]) -> float:
-    """Height of a surface where it first touches the outer wall of an inflated dome, given as points (r, z)."""
+    """Height of a surface at first contact with the outer wall of an inflated dome, given as points (r, z)."""
     r, z = outline
     angle = np.linspace(0.0, np.pi, _ANGLES)[:, None]
     under = surface.at(0.0).over(r * np.cos(angle), r * np.sin(angle)).height

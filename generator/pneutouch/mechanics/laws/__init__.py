@@ -1,4 +1,4 @@
-"""Hyperelastic laws: one file each, and one line here."""
+"""Hyperelastic laws: one file for each, and one line in `LAWS`."""
 
 from collections.abc import Callable
 
@@ -15,11 +15,11 @@ LAWS: dict[str, Callable[..., Hyperelastic]] = {
     "yeoh": yeoh,
     "ogden": lambda *flat, poisson_ratio: ogden(tuple(zip(flat[::2], flat[1::2], strict=True)), poisson_ratio),
 }
-"""Laws by name; called with their constants (MPa; Ogden: mu, alpha, mu, alpha ...) and ``poisson_ratio``."""
+"""Laws by name; called with constants (MPa; Ogden: mu, alpha, mu, alpha ...) and ``poisson_ratio``."""
 
 
 def hyperelastic(name: str, constants: tuple[float, ...], poisson_ratio: float) -> Hyperelastic:
-    """Build a law by name. Raises InputError for an unknown name or constants it cannot take."""
+    """Build a law by name. Raises InputError for an unknown name or unsuitable constants."""
     if name not in LAWS:
         raise InputError(f"unknown.{nearest(name, LAWS)}", key="law", value=name)
     try:

@@ -1,6 +1,6 @@
-"""A hyperelastic material: an isochoric energy with Poisson's ratio; its modulus is read off the energy.
+"""A hyperelastic material: an isochoric energy, from which the modulus is computed, and Poisson's ratio.
 
-Uniaxial tension: its first invariant, and the tension that has one, by which states of other kinds are compared.
+Also the first invariant of uniaxial tension and its inverse, by which other states are compared with tension.
 """
 
 from collections.abc import Callable
@@ -19,8 +19,8 @@ Energy = Callable[[Strain], Jet]
 class Hyperelastic:
     """An isochoric energy (MPa) and Poisson's ratio of the small-strain solid.
 
-    `convention` states the energy the parameters belong to; `mu` is read off the energy itself, so a wrong convention
-    shows as a wrong modulus.
+    `convention` states the form of the energy that the parameters belong to; `mu` is computed from the energy itself,
+    so a wrong convention shows as a wrong modulus.
     """
 
     energy: Energy
@@ -55,10 +55,10 @@ def first_invariant(stretch: Array | float) -> Array:
 
 
 def same_invariant(first: Array | float) -> Array:
-    """The stretch of uniaxial tension, at least 1, that has a first invariant (at least 3): l^3 - I1 l + 2 = 0.
+    """Stretch of uniaxial tension, at least 1, with a given first invariant (at least 3): l^3 - I1 l + 2 = 0.
 
-    It compares states of other kinds, such as the biaxial one of an inflated dome, with a tensile test: the laws in use
-    depend on the first invariant alone, or nearly.
+    It compares other states, such as the biaxial state of an inflated dome, with a tensile test: the laws in use depend
+    only, or nearly only, on the first invariant.
     """
     invariant = np.maximum(np.asarray(first, float), 3.0)
     # The largest of three real roots, by the cosine of a third of an angle.

@@ -7,7 +7,7 @@ from pneutouch.mechanics.laws.strain import Jet, Strain
 
 
 def energy(s: Strain, c10: float, c01: float) -> Jet:
-    """W in MPa."""
+    """Strain energy density W in MPa."""
     return c10 * (s.first - 3.0) + c01 * (s.second - 3.0)
 
 

@@ -1,4 +1,4 @@
-"""Neo-Hookean law, W = (mu/2)(I1 - 3): the paper's, eq. 7 with C1 = mu/2."""
+"""Neo-Hookean law, W = (mu/2)(I1 - 3): the law of the paper, eq. 7 with C1 = mu/2."""
 
 from functools import partial
 
@@ -7,7 +7,7 @@ from pneutouch.mechanics.laws.strain import Jet, Strain
 
 
 def energy(s: Strain, c1: float) -> Jet:
-    """W in MPa."""
+    """Strain energy density W in MPa."""
     return c1 * (s.first - 3.0)
 
 

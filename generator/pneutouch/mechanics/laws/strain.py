@@ -1,9 +1,9 @@
-"""Isochoric invariants of an axisymmetric deformation, and the one mechanism that differentiates an energy of them.
+"""Isochoric invariants of an axisymmetric deformation, and the derivatives of energies that are functions of them.
 
-An axisymmetric deformation has the in-plane gradient F (2 x 2) and the hoop stretch h = r/R.  Every isotropic energy
-is a function of a = |F|^2, j = det F and h, so a law is written once as energy and its first and second derivatives
-by (a, j, h) follow from second-order Taylor arithmetic (`Jet`).  Energies are isochoric: they see lambda_i J^(-1/3).
-The volumetric part is K/2 (J - 1)^2 and lives in the element, where J is averaged.
+An axisymmetric deformation has the in-plane gradient F (2 x 2) and the hoop stretch h = r/R.  Every isotropic energy is
+a function of a = |F|^2, j = det F and h.  A law is therefore written only as an energy; its first and second
+derivatives by (a, j, h) follow from second-order Taylor arithmetic (`Jet`).  Energies are isochoric: they depend on
+lambda_i J^(-1/3).  The volumetric part K/2 (J - 1)^2 belongs to the element, where J is averaged.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class Jet:
     __rmul__ = __mul__
 
     def chain(self, value: Array, first: Array, second: Array) -> Jet:
-        """f(self), given f, f' and f'' at the value of self; each of shape (n,)."""
+        """Jet of f(self), from f, f' and f'' at the value of self; each of shape (n,)."""
         out = first * self.data
         out[VALUE] = value
         for row, i, k in _PRODUCTS:
@@ -68,14 +68,14 @@ class Jet:
         return Jet(out)
 
     def power(self, exponent: float) -> Jet:
-        """Self ** exponent, for a positive value."""
+        """Jet of self ** exponent, for a positive value."""
         base = self.data[VALUE]
         value = base**exponent
         return self.chain(value, exponent * value / base, exponent * (exponent - 1.0) * value / base**2)
 
 
 def _monomial(a: Array, j: Array, h: Array, powers: tuple[int, float, float]) -> Jet:
-    """Jet of a^n j^p h^q with n 0 or 1; a, j, h of shape (n_points,)."""
+    """Jet of a^n j^p h^q with n = 0 or 1; a, j, h of shape (n_points,)."""
     n, p, q = powers
     out = np.zeros((10, a.size))
     plain = j**p * h**q
@@ -91,8 +91,8 @@ def _monomial(a: Array, j: Array, h: Array, powers: tuple[int, float, float]) ->
 def _even_power(x: Array, alpha: float) -> tuple[Array, Array, Array]:
     """E(x) = [(1+sqrt x)^alpha + (1-sqrt x)^alpha]/2 and its two derivatives, 0 <= x < 1.
 
-    E is analytic at x = 0 (equal stretches) though its two terms are not: below x = 0.1 its binomial series is used
-    (16 terms, truncation under 1e-14), above it the closed form and the hypergeometric equation E satisfies.
+    E is analytic at x = 0 (equal stretches) although its two terms are not: up to x = 0.1 its binomial series is used
+    (17 terms, truncation under 1e-14), above it the closed form and the hypergeometric equation that E satisfies.
     """
     x = np.maximum(x, 0.0)
     value, first, second = np.zeros_like(x), np.zeros_like(x), np.zeros_like(x)

@@ -7,7 +7,7 @@ from pneutouch.mechanics.laws.strain import Jet, Strain
 
 
 def energy(s: Strain, c10: float, c20: float, c30: float) -> Jet:
-    """W in MPa."""
+    """Strain energy density W in MPa."""
     x = s.first - 3.0
     return c10 * x + c20 * (x * x) + c30 * (x * (x * x))
 

@@ -1,15 +1,15 @@
 """A sensor's reading over frequency: wall, gas in the cavity and line, for small changes about a state.
 
-The wall answers a change v of the cavity volume and a force (or a travel) x with the pressure p = k (v/C) + b x, where
-C is the volume that it yields to a pressure at constant x, and k(s) the modulus over the relaxed one: 1 where the wall
-does not relax. The gas and the line take the volume up, v = -p (C_gas + Y/s). So
+A change v of the cavity volume and a force (or a travel) x give the pressure p = k (v/C) + b x at the wall; C is the
+wall's volume compliance at constant x, k(s) its modulus over the relaxed modulus: 1 for a wall that does not relax. The
+gas in cavity and line takes up the volume, v = -p (C_gas + Y/s). So
 
-    p/x = b / (1 + k (C_gas + Y/s)/C),
+    p/x = b / (1 + k (C_gas + Y/s)/C).
 
-and the gain is that times the line's transfer, over its value at s = 0, where the gas is isothermal: b, the model of
-the press, drops out. The mass of the wall and of what presses it is not part of this.
+The gain is this times the line's transfer, over the value at s = 0, where the gas is isothermal: b, which depends on
+the model of the press, cancels. The mass of the wall and of the pressing object is not included.
 
-A gas line: its elements in order from the cavity to the gauge, at one state of the air.
+`GasLine` holds the elements of a line from the cavity to the gauge, at one state of the air.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ LineElement = Duct | GasVolume
 
 @dataclass(frozen=True, slots=True)
 class GasLine:
-    """Ducts and volumes in series, the gauge behind the last one; closed there."""
+    """Ducts and volumes in series, closed at the gauge behind the last one."""
 
     elements: tuple[LineElement, ...]
     air: AirState
@@ -39,11 +39,11 @@ class GasLine:
 
     @property
     def length(self) -> float:
-        """Length of its ducts, mm."""
+        """Total length of the ducts, mm."""
         return sum(element.length for element in self.elements if isinstance(element, Duct))
 
     def seen(self, s: Complex) -> LineEnd:
-        """Admittance of the line at the cavity, and the pressure at the gauge over that in the cavity, at s (n,)."""
+        """Admittance of the line at the cavity, and pressure ratio of gauge to cavity, at s (n,)."""
         end = LineEnd(np.zeros_like(s), np.ones_like(s))
         ducts = [element for element in self.elements if isinstance(element, Duct)]
         rows = list(profiles(ducts, s, self.air))
@@ -61,13 +61,13 @@ class SensorDynamics:
 
     Attributes:
         cavity: The gas under the dome.
-        line: Gas line behind it.
-        wall_compliance: Change of the cavity volume over a pressure inside, mm3/MPa; infinite where the source sets the
+        line: Gas line behind the cavity.
+        wall_compliance: Cavity volume change over pressure change, mm3/MPa; infinite where the source sets the
             pressure, 0 where it sets the volume.
-        excess, times: Terms of the wall's modulus over the relaxed one and their times in s; none: an elastic wall.
-        stiffening: Factor on the wall's modulus: what it has, at once, over the relaxed one.
+        excess, times: Relaxing terms of the wall's modulus over the relaxed one, and their times in s; none if elastic.
+        stiffening: Constant term of the wall's modulus over the relaxed modulus; above 1 for the stiffness `at_once`.
         isothermal: True if the gas of the cavity keeps its temperature at any frequency.
-        lumped: True if the line is its isothermal volume alone.
+        lumped: True if the line is replaced by its isothermal volume.
     """
 
     cavity: GasVolume
@@ -81,16 +81,16 @@ class SensorDynamics:
 
     @property
     def gas_share(self) -> float:
-        """Compliance of all gas, isothermal, over that of the wall."""
+        """Isothermal compliance of all the gas divided by the compliance of the wall."""
         slow = self.stiffening * (self.cavity.volume + self.line.volume) / self.line.air.pressure
         return slow / self.wall_compliance if self.wall_compliance else np.inf
 
     def gain(self, s: Complex) -> Complex:
-        """Pressure at the gauge over that of a slow change, at s (n,) in 1/s with a real part of 0 or more, not 0."""
+        """Pressure at the gauge over that of a slow change, at nonzero s (n,) in 1/s with a real part of at least 0."""
         return self.both(s)[1]
 
     def both(self, s: Complex) -> tuple[Complex, Complex]:
-        """Pressure in the cavity and at the gauge over that of a slow change, (n,) each."""
+        """Pressures in the cavity and at the gauge, each over that of a slow change, (n,) each."""
         pressure = self.line.air.pressure
         gas = self.cavity.volume / pressure if self.isothermal else self.cavity.compliance(s, self.line.air)
         behind, transfer = self.line.volume / pressure + np.zeros_like(s), np.ones_like(s)
@@ -105,32 +105,32 @@ class SensorDynamics:
         return cavity, cavity * transfer
 
     def _modulus(self, s: Complex) -> Complex:
-        """The wall's modulus over the relaxed one."""
+        """Modulus of the wall over the relaxed modulus."""
         value = self.stiffening + np.zeros_like(s)
         for excess, time in zip(self.excess, self.times, strict=True):
             value = value + excess * s * time / (1.0 + s * time)
         return value
 
     def at_once(self) -> SensorDynamics:
-        """This sensor with a wall that does not relax, as stiff as this one is at first; its slow reading is its
-        own."""
+        """This sensor with an elastic wall of the instantaneous stiffness; its gain refers to the slow reading with
+        that wall."""
         stiff = self.stiffening + sum(self.excess)
         return replace(self, excess=(), times=(), stiffening=stiff)
 
     @property
     def fast_wall(self) -> float:
-        """The reading over the slow one for a change that is quick for the wall and slow for the gas."""
+        """Reading over the slow reading for a change that is fast for the wall and slow for the gas."""
         slow, fast = self.gas_share, self.at_once().gas_share
         return 1.0 if np.isinf(slow) else (1.0 + slow) / (1.0 + fast)
 
     @property
     def fast_gas(self) -> float:
-        """The reading with all gas adiabatic over that with isothermal gas, without the line's inertia and
-        resistance."""
+        """Reading with adiabatic gas over the reading with isothermal gas, without inertia and resistance of the
+        line."""
         share = self.gas_share
         return ADIABATIC if np.isinf(share) else (1.0 + share) / (1.0 + share / ADIABATIC)
 
 
 def on_axis(frequency: Array | Sequence[float]) -> Complex:
-    """The complex frequencies (1/s) of frequencies in Hz."""
+    """Imaginary frequencies s = 2 pi i f (1/s) for frequencies f in Hz."""
     return np.asarray(2j * np.pi * np.asarray(frequency, dtype=float))

@@ -7,12 +7,11 @@ which has the same Bessel functions. With x = a sqrt(s/nu), a the radius and nu 
     series impedance      Z = s rho/A * I0(x)/I2(x)
     shunt admittance      Y = s A/(gamma p) * (gamma - (gamma - 1) I2(y)/I0(y)),  y = x sqrt(Pr)
 
-of a length, so that narrow tubes have the resistance of Poiseuille and isothermal gas, and wide ones are free of loss
-and adiabatic. On the imaginary axis |x| is the shear wave number, and sqrt(Pr) its multiple for heat.
+per length. Narrow tubes have the Poiseuille resistance and isothermal gas; wide tubes are lossless and adiabatic. On
+the imaginary axis |x| is the shear wave number, and |y| its thermal counterpart.
 
-Properties of dry air over pressure and temperature, in mm, N, MPa and s: masses are in tonnes.
-
-The ratio I2(x)/I0(x) of modified Bessel functions, without `scipy.special`, which takes as long to load as NumPy.
+Also properties of dry air over pressure and temperature, in mm, N, MPa and s (masses in tonnes), and the Bessel ratio
+I2(x)/I0(x) without `scipy.special`, which takes as long to load as NumPy.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ ADIABATIC = 1.4
 """Heat capacity ratio of air, a diatomic gas with rigid molecules: 7/5."""
 
 REFERENCE_TEMPERATURE = 293.15
-"""K. An assumption: 20 C, within the 18 to 26 C of the paper's tests (Supplement C)."""
+"""Reference temperature, K. An assumption: 20 C, within the 18 to 26 C of the paper's tests (Supplement C)."""
 
 _GAS_CONSTANT = 8.31432 / 0.0289644
 """J/(kg K): R* and mean molar mass, U.S. Standard Atmosphere, 1976 (NOAA-S/T 76-1562), table 2 and section 1.3."""
@@ -49,7 +48,7 @@ _KG_PER_M3 = 1e-12
 """t/mm3 in one kg/m3."""
 
 _TEMPERATURES = (200.0, 400.0)
-"""K: between these the formulas of the source are used."""
+"""Temperature range in K in which the formulas of the source are used."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +67,7 @@ class AirState:
 
     @property
     def density(self) -> float:
-        """Ideal gas, t/mm3."""
+        """Density of the ideal gas, t/mm3."""
         return self.pressure / _PASCAL / (_GAS_CONSTANT * self.temperature) * _KG_PER_M3
 
     @property
@@ -79,7 +78,7 @@ class AirState:
 
     @property
     def prandtl(self) -> float:
-        """Viscosity times heat capacity over conductivity."""
+        """Prandtl number: viscosity times heat capacity over conductivity."""
         factor, first, second = _CONDUCTIVITY
         temperature = self.temperature
         conductivity = (
@@ -95,7 +94,7 @@ class AirState:
 
     @property
     def thermal_diffusivity(self) -> float:
-        """Conductivity over heat capacity of a volume, mm2/s."""
+        """Conductivity over heat capacity per volume, mm2/s."""
         return self.kinematic_viscosity / self.prandtl
 
     @property
@@ -105,20 +104,20 @@ class AirState:
 
 
 _FAR = 18.0
-"""Beyond this argument the asymptotic series is used, below it the continued fraction; both have 10 digits there."""
+"""Argument above which the asymptotic series is used, else the continued fraction; both have 10 digits there."""
 
 _DEPTH = 48
-"""Steps of the continued fraction."""
+"""Number of steps of the continued fraction."""
 
 _TERMS = 16
-"""Terms of the asymptotic series."""
+"""Number of terms of the asymptotic series."""
 
 
 def second_over_zeroth(x: Complex) -> Complex:
-    """I2(x)/I0(x) for arguments of any shape with a positive real part no smaller than the imaginary one.
+    """Ratio I2(x)/I0(x) for x of any shape, with a positive real part not smaller than the imaginary part.
 
     Continued fraction I_k/I_(k-1) = 1/(2 k/x + I_(k+1)/I_k): Abramowitz and Stegun (1964), 9.6.26; asymptotic series:
-    9.7.1. Without cancellation where x is small: x^2/8.
+    9.7.1. No cancellation for small x, where the ratio is x^2/8.
     """
     x = np.asarray(x, dtype=complex)
     far = np.abs(x) > _FAR
@@ -143,7 +142,7 @@ def _asymptotic(x: Complex) -> Complex:
 
 
 def _series(order: int, x: Complex) -> Complex:
-    """I_order(x) over exp(x)/sqrt(2 pi x)."""
+    """Asymptotic series of I_order(x), divided by exp(x)/sqrt(2 pi x)."""
     term = np.ones_like(x)
     total = np.ones_like(x)
     for k in range(1, _TERMS):
@@ -153,11 +152,11 @@ def _series(order: int, x: Complex) -> Complex:
 
 
 _SMALL = 0.05
-"""Below this argument the closed form of a ball has fewer digits than its series to the sixth power."""
+"""Argument below which the closed form for a ball has fewer digits than its series to the sixth power."""
 
 
 class LineEnd(NamedTuple):
-    """Rest of a line beyond a place: its admittance (mm3/(MPa s)), and the pressure at the far end over that here."""
+    """A line from a place to its end: admittance (mm3/(MPa s)), and pressure at the end over that at the place."""
 
     admittance: Complex
     transfer: Complex
@@ -176,18 +175,18 @@ class Duct:
         return math.pi * self.radius**2 * self.length
 
     def impedance(self, s: Complex, air: AirState) -> Complex:
-        """Series impedance of a length, MPa s/mm4; Poiseuille's 8 mu/(pi a^4) where s is small."""
+        """Series impedance per length, MPa s/mm4; Poiseuille's 8 mu/(pi a^4) for small s."""
         return self._impedance(s, air, profiles([self], s, air)[0, 0])
 
     def admittance(self, s: Complex, air: AirState) -> Complex:
-        """Shunt admittance of a length, mm2/(MPa s)."""
+        """Shunt admittance per length, mm2/(MPa s)."""
         return self._admittance(s, air, profiles([self], s, air)[0, 1])
 
     def before(self, end: LineEnd, s: Complex, air: AirState, profile: Complex) -> LineEnd:
-        """The end as it is felt through this duct; ``profile`` is its row of `profiles`."""
+        """The line end as seen through this duct; ``profile`` is the duct's row of `profiles`."""
         series, shunt = self._impedance(s, air, profile[0]), self._admittance(s, air, profile[1])
         angle, wave = np.sqrt(series * shunt) * self.length, np.sqrt(series / shunt)
-        # In decaying exponentials, so that a long line does not overflow.
+        # Written with decaying exponentials, so that a long line does not overflow.
         once = np.exp(-angle)
         twice, load = once**2, wave * end.admittance
         pressure = (1.0 + load) + (1.0 - load) * twice
@@ -211,10 +210,10 @@ def profiles(ducts: Sequence[Duct], s: Complex, air: AirState) -> Complex:
 
 @dataclass(frozen=True, slots=True)
 class GasVolume:
-    """A closed space at one pressure, mm3, that exchanges heat with its walls of an area in mm2.
+    """A closed space of a volume in mm3, at one pressure, that exchanges heat with walls of an area in mm2.
 
-    The heat is that of a ball of radius 3 V/S, exact for a ball and, whatever the shape, while the layer that exchanges
-    heat is thin. Without a surface given it is a ball of this volume.
+    The heat exchange is that of a ball of radius 3 V/S: exact for a ball, and for any shape while the thermal boundary
+    layer is thin. Without a surface the space is a ball of this volume.
     """
 
     volume: float
@@ -222,24 +221,24 @@ class GasVolume:
 
     @property
     def ball_radius(self) -> float:
-        """Radius of the ball that exchanges heat in its place, mm."""
+        """Radius of the ball with the equivalent heat exchange, mm."""
         if self.surface is None:
             return float(np.cbrt(3.0 * self.volume / (4.0 * math.pi)))
         return 3.0 * self.volume / self.surface
 
     def compliance(self, s: Complex, air: AirState) -> Complex:
-        """Change of volume over pressure, mm3/MPa: V/p while slow, V/(gamma p) while fast."""
+        """Volume change over pressure change, mm3/MPa: V/p for slow and V/(gamma p) for fast changes."""
         across = np.asarray(self.ball_radius * np.sqrt(s / air.thermal_diffusivity), dtype=np.complex128)
         share = _isothermal_share(across)
         return np.asarray(self.volume / (ADIABATIC * air.pressure) * (1.0 + (ADIABATIC - 1.0) * share))
 
     def before(self, end: LineEnd, s: Complex, air: AirState) -> LineEnd:
-        """The end with this volume open to it."""
+        """The line end as seen with this volume connected in front of it."""
         return LineEnd(end.admittance + s * self.compliance(s, air), end.transfer)
 
 
 def _isothermal_share(x: Complex) -> Complex:
-    """3 (x coth x - 1)/x^2 of a ball: the share of its gas that keeps the wall's temperature."""
+    """Share 3 (x coth x - 1)/x^2 of the gas in a ball that keeps the wall's temperature."""
     near = np.abs(x) < _SMALL
     safe = np.where(near, 1.0, x)
     decay = np.exp(-2.0 * safe)

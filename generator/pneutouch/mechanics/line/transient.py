@@ -1,10 +1,10 @@
-"""Signals through a gain, by its Laplace transform inverted on a line to the right of the imaginary axis.
+"""Signals through a gain, by inversion of its Laplace transform on a line to the right of the imaginary axis.
 
-With F the transform and a > 0, f(t) = exp(a t) times the inverse Fourier transform of F(a + i w) (Dubner and Abate,
-J. ACM 15(1), 115, 1968). Nothing wraps around the end of the record: what would is damped by exp(-a T). The last
-frequencies are faded by Lanczos' sigma factors, so that a sharp step does not ring at the sampling rate.
+With F the transform and a > 0, f(t) = exp(a t) times the inverse Fourier transform of F(a + i w) (Dubner and Abate, J.
+ACM 15(1), 115, 1968). The part that wraps around the end of the record is damped by exp(-a T). The last frequencies are
+faded by Lanczos' sigma factors, so that a sharp step does not ring at the sampling rate.
 
-Figures of a gain over frequency: first resonance, bandwidth, and the band within a tolerance.
+Also figures of a gain over frequency: first resonance, bandwidth, and the band within a tolerance.
 """
 
 from __future__ import annotations
@@ -18,29 +18,29 @@ from pneutouch.arrays import Array, Complex, Flags
 from pneutouch.mechanics.line.dynamics import SensorDynamics, on_axis
 
 HALF_POWER = 0.5**0.5
-"""The gain at -3 dB; its inverse is that at +3 dB."""
+"""Gain at -3 dB; its inverse is the gain at +3 dB."""
 
 TOLERANCE = 0.05
-"""Deviation of the gain from that of a slow change that limits the narrower band."""
+"""Deviation of the gain from its slow value that limits the narrower band."""
 
 LINE, GAS, WALL = "line", "heat exchange of the gas", "relaxation of the wall"
 """Effects that can end the narrower band."""
 
 _SLOWEST = 1.0e-4
-"""Hz: a change over some hours."""
+"""Lowest frequency considered, Hz: a change over some hours."""
 
 _BEYOND = 4.0
-"""The highest frequency looked at, in half-wave resonances of the ducts, which bound the first resonance."""
+"""Highest frequency considered, in half-wave resonances of the ducts, which bound the first resonance."""
 
 _NO_DUCT = 1.0e4
-"""Frequency in Hz up to which a line without any duct is looked at."""
+"""Highest frequency considered for a line without a duct, Hz."""
 
 _POINTS_A_DECADE = 60
 _ROUNDING = 1e-10
-"""Relative steps of the gain below this are rounding."""
+"""Relative change of the gain that counts as rounding."""
 
 _CLOSE = 1e-7
-"""Relative width to which a frequency is found."""
+"""Relative width to which a frequency is located."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,12 +48,12 @@ class BandFigures:
     """Frequencies in Hz; None if there is none up to ``highest``.
 
     Attributes:
-        resonance: The first maximum of the gain at the gauge, a wall as stiff as it is at once.
-        resonance_gain: The gain there, over that of the same wall when slow.
-        bandwidth: Up to where that gain is within 3 dB of the slow one: down in a damped line, up before a resonance.
-        within_tolerance: Up to where the gain, relaxation of the wall included, is within `TOLERANCE` of the slow one.
-        limited_by: Effect that ends that band: `LINE`, `GAS` or `WALL`.
-        highest: Up to where was looked.
+        resonance: First maximum of the gain at the gauge, with the wall at its instantaneous stiffness.
+        resonance_gain: Gain at the resonance, over the slow gain with the same wall.
+        bandwidth: Frequency up to which that gain is within 3 dB: it falls in a damped line, and rises to a resonance.
+        within_tolerance: Frequency up to which the gain, with relaxation of the wall, is within `TOLERANCE` of slow.
+        limited_by: Effect that ends the band ``within_tolerance``: `LINE`, `GAS` or `WALL`.
+        highest: Highest frequency considered.
     """
 
     resonance: float | None
@@ -65,7 +65,7 @@ class BandFigures:
 
 
 def band_figures(dynamics: SensorDynamics) -> BandFigures:
-    """The figures of a state."""
+    """Band figures of a state."""
     fast, top = dynamics.at_once(), highest_frequency(dynamics)
     grid = np.geomspace(_SLOWEST, top, int(_POINTS_A_DECADE * np.log10(top / _SLOWEST)))
     gain = gain_at(fast, grid)
@@ -79,7 +79,7 @@ def band_figures(dynamics: SensorDynamics) -> BandFigures:
 
 
 def highest_frequency(dynamics: SensorDynamics) -> float:
-    """Up to where the figures look, Hz."""
+    """Highest frequency that the figures consider, Hz."""
     length = dynamics.line.length
     return _BEYOND * dynamics.line.air.sound_speed / (2.0 * length) if length > 0.0 else _NO_DUCT
 
@@ -94,13 +94,13 @@ def _one(dynamics: SensorDynamics, frequency: float) -> float:
 
 
 def _first(where: Flags) -> int | None:
-    """The first index that holds; None if none does."""
+    """Index of the first True; None if there is none."""
     return int(np.argmax(where)) if where.any() else None
 
 
 def _first_peak(dynamics: SensorDynamics, grid: Array, gain: Array) -> float | None:
-    """The first maximum inside the grid, by ever closer points; they hold it however sharp it is."""
-    # Where the gain is 1 its rounding has maxima of its own.
+    """Frequency of the first maximum inside the grid, located by refinement however sharp it is; None without one."""
+    # Where the gain is 1, rounding produces maxima.
     at = _first((gain[1:-1] > (1.0 + _ROUNDING) * gain[:-2]) & (gain[1:-1] > gain[2:]))
     if at is None:
         return None
@@ -113,7 +113,7 @@ def _first_peak(dynamics: SensorDynamics, grid: Array, gain: Array) -> float | N
 
 
 def _leaves(dynamics: SensorDynamics, grid: Array, excess: Callable[[Array], Array]) -> float | None:
-    """The lowest frequency at which an excess of the gain turns positive, by halving; None if none does."""
+    """Lowest frequency at which ``excess`` of the gain turns positive, by interval refinement; None if none does."""
     at = _first(excess(gain_at(dynamics, grid)) > 0.0)
     if at is None:
         return None
@@ -126,7 +126,7 @@ def _leaves(dynamics: SensorDynamics, grid: Array, excess: Callable[[Array], Arr
 
 
 def _limit(dynamics: SensorDynamics, frequency: float) -> str:
-    """Name of the effect that by itself moves the gain most at a frequency."""
+    """Name of the effect that changes the gain most at a frequency when it acts by itself."""
     elastic = replace(dynamics, excess=(), times=())
     alone = {
         LINE: replace(elastic, isothermal=True),
@@ -137,25 +137,25 @@ def _limit(dynamics: SensorDynamics, frequency: float) -> str:
 
 
 _DAMPING = 14.0
-"""Damping of the inverse transform, a T: the part that wraps around has 1e-6 of its size, and rounding grows to
+"""Damping a T of the inverse transform: what wraps around is reduced to 1e-6 of its size, and rounding errors grow to
 1e-10."""
 
 _STEPS = 2048
-"""Samples of a step response."""
+"""Number of samples of a step response."""
 
 _PERIODS = 12.0
-"""Length of a step response, in periods of the frequency where the gain first leaves the slow one by a tenth."""
+"""Length of a step response, in periods of the frequency where the line first changes the gain by a tenth."""
 
 
 @dataclass(frozen=True, slots=True)
 class StepFigures:
-    """Figures of the pressure at the gauge after a step, the wall as stiff as it is at once.
+    """Figures of the pressure at the gauge after a step, with the wall at its instantaneous stiffness.
 
     Attributes:
-        delay: From the step to half of the final value, s.
-        rise_time: From 10 to 90 % of the final value, s: the first front.
-        overshoot: Greatest value over the final one, less 1; 0 if there is none.
-        time, reading: The response, s and over its final value.
+        delay: Time from the step to half of the final value, s.
+        rise_time: Time from 10 to 90 % of the final value, s: the first front.
+        overshoot: Greatest value over the final value, minus 1; 0 if there is none.
+        time, reading: The response: time in s, and reading over its final value.
     """
 
     delay: float
@@ -166,13 +166,13 @@ class StepFigures:
 
 
 def through(gain: Callable[[Complex], Complex], signal: Array, step: float, *, sharp: bool = True) -> Array:
-    """A signal (n,) of even steps (s), 0 before its first sample, after a gain over s.
+    """A signal (n,) at equal time steps (s), zero before its first sample, after it has passed a gain.
 
-    The gain is a function of s (m,), or gives several at once as (k, m): the result is (n,) or (k, n). ``sharp``
-    signals jump: their last frequencies are faded; a smooth one keeps all of its size.
+    The gain is a function of s (m,) that returns (m,), or (k, m) for several gains: the result is (n,) or (k, n). For a
+    ``sharp`` signal, which jumps, the last frequencies are faded; a smooth signal keeps its full amplitude.
     """
     kept = signal.size
-    # Where the record ends, its last value falls to 0 as sharply as a step: that lies behind what is kept.
+    # At the end of the record the value falls to 0 as sharply as a step: the padding puts this behind what is kept.
     signal = np.pad(signal, (0, kept // 8 + 64), mode="edge")
     count = signal.size
     time = step * np.arange(count)
@@ -187,18 +187,18 @@ def through(gain: Callable[[Complex], Complex], signal: Array, step: float, *, s
 
 
 def step_figures(dynamics: SensorDynamics) -> StepFigures:
-    """The step response of a state, its rise time and its overshoot."""
+    """Step response of a state with its delay, rise time and overshoot."""
     fast = dynamics.at_once()
     time, reading = step_response(fast, _PERIODS / _leaving(fast))
     overshoot = max(0.0, float(reading.max()) - 1.0)
-    # The first front is shorter than the record: once more over little more than it. What comes later does not count.
+    # The first front is shorter than the record: it is computed again on a shorter one. Later parts do not count.
     front = step_response(fast, 1.25 * _reaches(time, reading, 0.9) + 8.0 * (time[1] - time[0]))
     start, half, end = (_reaches(*front, share) for share in (0.1, 0.5, 0.9))
     return StepFigures(half, end - start, overshoot, time, reading)
 
 
 def step_response(dynamics: SensorDynamics, duration: float) -> tuple[Array, Array]:
-    """Time since the step (s), a little of it before, and the reading over its final value, (n,) each."""
+    """Time since the step (s), from slightly before it, and reading over its final value, (n,) each."""
     step, before = duration / _STEPS, _STEPS // 64
     signal = np.ones(_STEPS)
     signal[:before], signal[before] = 0.0, 0.5
@@ -207,7 +207,7 @@ def step_response(dynamics: SensorDynamics, duration: float) -> tuple[Array, Arr
 
 
 def _leaving(dynamics: SensorDynamics) -> float:
-    """Frequency in Hz at which the line changes the gain by a tenth from that of gas and wall alone."""
+    """Frequency in Hz at which the line changes the gain by a tenth against gas and wall without line effects."""
     top = highest_frequency(dynamics)
     grid = np.geomspace(1e-5 * top, top, 200)
     off = np.abs(gain_at(dynamics, grid) / gain_at(replace(dynamics, lumped=True), grid) - 1.0) > 0.1

@@ -1,26 +1,26 @@
-"""Errors that the models state, as measured (docs/background/accuracy.md), and assumptions of the finite elements."""
+"""Errors of the models, as measured (docs/background/accuracy.md), and assumptions of the finite elements."""
 
 from pneutouch.mechanics.sensor import IndentationProtocol, Sensor
 from pneutouch.results.prediction import ErrorEstimate
 
 HARMONICS_SETTLED = 0.01
-"""The last raise of the harmonics changes sensitivity, force and pressure by less than this share."""
+"""Share by which the last increase of the harmonics' order may change sensitivity, force and pressure."""
 
 SENSITIVITY_DISCRETISATION = 0.011
 LIMIT_DISCRETISATION = 0.002
 """Greatest relative errors of the solid at its default resolution against a refined mesh."""
 
 OBJECT_DISCRETISATION = 0.02
-"""Greatest relative error of the solid's sensitivity under an object that is no plate, at the resolution it takes,
-against a refined mesh (docs/background/contact.md): 0.002 where the range ends at the depth, more where an
-event ends it."""
+"""Greatest relative error of the solid's sensitivity under an object that is not a plate, at the resolution used for
+it, against a refined mesh (docs/background/contact.md): 0.002 where the range ends at the depth, more where an event
+ends it."""
 
 TABULATION = 0.0075
-"""Greatest relative error of the atlas's sensitivity against the solid where `auto` takes it: away from buckling,
-tearing and ranges below 0.2 R0 (docs/background/atlas.md); held by `make check-slow`."""
+"""Greatest relative error of the atlas's sensitivity against the solid where `auto` uses the atlas: away from buckling,
+tearing and ranges below 0.2 R0 (docs/background/atlas.md); checked by `make check-slow`."""
 
 _MEMBRANE = 17.0
-"""Greatest relative error of the membrane's sensitivity against the solid: no bending stiffness."""
+"""Greatest relative error of the membrane's sensitivity against the solid; the membrane has no bending stiffness."""
 
 NUMERICAL = {
     "membrane": _MEMBRANE,
@@ -28,8 +28,8 @@ NUMERICAL = {
     "solid": SENSITIVITY_DISCRETISATION,
     "harmonic": OBJECT_DISCRETISATION,
 }
-"""Relative error in sensitivity of each model as a numerical answer: its distance from the exact solution of its
-equations, or for the membrane from the solid's. Effects that the equations leave out come on top, for every model."""
+"""Relative numerical error in sensitivity of each model: its distance from the exact solution of its own equations, or
+for the membrane from the solid's. Effects that the equations leave out are additional, for every model."""
 
 
 BODY = "axisymmetric hyperelastic solid with the wall's full stiffness"
@@ -54,7 +54,7 @@ def discretised(
     sensitivity_relative: float = SENSITIVITY_DISCRETISATION,
     sensitivity_tabulation_relative: float | None = None,
 ) -> ErrorEstimate:
-    """The errors of finite elements; the atlas adds that of its table."""
+    """Error estimate of the finite elements; the atlas adds the error of its table."""
     return ErrorEstimate(
         sensitivity_relative=None,
         limit_pressure_relative=LIMIT_DISCRETISATION,
@@ -65,7 +65,7 @@ def discretised(
 
 
 def solid_assumptions(sensor: Sensor, body: str) -> tuple[str, ...]:
-    """Assumptions on a wall of full stiffness; ``body`` says what is solved."""
+    """Assumptions for a wall of full stiffness; ``body`` describes the solved problem."""
     largest = sensor.wall.largest_stretch
     fitted = "" if largest is None else f", fitted to tension up to a stretch of {largest:g}"
     law = f"law {sensor.wall.hyperelastic.convention}{fitted}, Poisson ratio {sensor.wall.poisson_ratio:g}"

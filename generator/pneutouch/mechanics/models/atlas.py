@@ -1,4 +1,4 @@
-"""The model ``atlas``: the solid's answers looked up for a sensor, in the form that every model returns."""
+"""The model ``atlas``: results of the solid, interpolated for a sensor and returned as by every model."""
 
 from collections.abc import Sequence
 from itertools import groupby
@@ -35,8 +35,8 @@ from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.units import KPA
 
 _BULGE, _RING_FROM, _RING_ROUND = 0.0107, 0.6, 0.04
-"""Bulge of a wall outwards next to its base in R0 times wall ratio, the depth from which it counts (R0), and the
-distance inside its edge at which the solid's ring begins (R0): `meets_ring`."""
+"""For `meets_ring`: outward bulge of the wall next to its base in R0 times wall ratio, depth from which it is counted
+(R0), and distance inside its edge at which the ring of the solid begins (R0)."""
 
 _BUCKLES = "the wall buckles inward under the plate, or its gas no longer holds it"
 _TABULATION_SUMMARY = (
@@ -44,15 +44,15 @@ _TABULATION_SUMMARY = (
     "of a refined mesh."
 )
 _TOGETHER = 500
-"""Sensors of one pass: more would hold more memory and take no less time."""
+"""Number of sensors in one pass: more would take more memory and no less time."""
 
 _DETAIL = {EDGE: DETAIL["plate_rim"], GAUGE: DETAIL["gauge_range"], BREAK: DETAIL["break"], BUCKLING: _BUCKLES}
 
 
 def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
-    """Reason why the atlas does not cover a sensor, or None if it does. Its box is in `atlas.recipe.Recipe`.
+    """Reason why the atlas does not cover a sensor, or None if it does. The box is in `atlas.recipe.AtlasRecipe`.
 
-    A ring that clamps the flange does not put a sensor outside: the atlas answers without it (`meets_ring`).
+    A ring that clamps the flange does not exclude a sensor: the atlas neglects the ring (`meets_ring`).
     """
     recipe = (atlas or shipped()).recipe
     dome, wall = sensor.dome, sensor.wall
@@ -89,11 +89,11 @@ def resin_outside_atlas(wall: WallMaterial, ambient_pressure: float) -> str | No
 
 
 def meets_ring(sensor: Sensor) -> bool:
-    """True if the wall can come to the ring that clamps its flange, which the solid has and the atlas has not.
+    """True if the wall can reach the ring that clamps its flange, which is part of the solid but not of the atlas.
 
-    The wall comes farthest outwards without driving pressure: next to its base by at most 0.0107 R0^2/t0 at the
-    atlas's greatest depth, by none at 0.6 R0 (solid, walls from 0.065 to 0.33 R0, ambient pressure 0.3 mu). The ring
-    of the solid is rounded over half a cell, 0.04 R0, before its edge.
+    The wall bulges farthest without driving pressure: next to its base by at most 0.0107 R0^2/t0 at the atlas's
+    greatest depth, not at all at 0.6 R0 (solid, walls from 0.065 to 0.33 R0, ambient pressure 0.3 mu). The ring of the
+    solid is rounded over half a cell, 0.04 R0, before its edge.
     """
     dome, base = sensor.dome, sensor.dome.base
     if base is None or base.ring_height == 0.0:
@@ -111,8 +111,8 @@ _MEETS_RING = Limitation(
 )
 
 SHALLOW = 0.2
-"""Range in R0 below which the table is not held to `TABULATION`: the sensitivities of 300 random domes are up to
-0.36 % off the solid's over 0.2 R0, 1.2 % over 0.1, 25 % over 0.01 (`tests/mechanics/atlas/test_short_ranges.py`)."""
+"""Range in R0 below which the table may exceed `TABULATION`: the sensitivities of 300 random domes are up to 0.36 % off
+the solid's over 0.2 R0, 1.2 % over 0.1, 25 % over 0.01 (`tests/mechanics/atlas/test_short_ranges.py`)."""
 
 _TOO_SHALLOW = Limitation(
     f"the range ends within {SHALLOW:g} R0 of first contact, where the table is less accurate", False, beyond_error=True
@@ -132,11 +132,11 @@ class AtlasTables(SensorModel):
     name = "atlas"
 
     def covers(self, sensor: Sensor) -> str | None:
-        """Reason why a sensor lies outside the box of the atlas."""
+        """Reason why a sensor lies outside the box of the atlas, or None."""
         return outside_atlas(sensor)
 
     def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
-        """Answers looked up in one pass for all sensors that are pressed in as many steps."""
+        """Answers from the tables, in one pass for all sensors with the same number of steps."""
         answers: list[Answered | None] = [None] * len(sensors)
         order = sorted(range(len(sensors)), key=lambda i: sensors[i].protocol.steps)
         for _, same in groupby(order, key=lambda i: sensors[i].protocol.steps):
@@ -149,7 +149,7 @@ class AtlasTables(SensorModel):
         return [answer for answer in answers if answer is not None]
 
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
-        """Errors of the solid's mesh and of the table."""
+        """Errors of the solid's mesh plus that of the table."""
         return discretised(_TABULATION_SUMMARY, sensitivity_tabulation_relative=TABULATION)
 
     def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
@@ -161,7 +161,7 @@ MODEL = AtlasTables()
 
 
 def _looked_up(sensors: list[Sensor], driving_pressures: list[Array]) -> list[Answered]:
-    """Answers for sensors of one number of steps, in one pass."""
+    """Answers for sensors with the same number of steps, in one pass."""
     batch = SensorBatch.join([batch_of(*pair) for pair in zip(sensors, driving_pressures, strict=True)])
     # Each pressure is a group of its own: its figures do not depend on the others.
     passed = run(batch, sensors[0].protocol.steps, shipped(), np.arange(len(batch)), FIELDS)
@@ -172,7 +172,7 @@ def _looked_up(sensors: list[Sensor], driving_pressures: list[Array]) -> list[An
 
 
 def _answer(sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: range) -> Answered:
-    """The answer for one sensor, whose driving pressures are some rows of a pass."""
+    """Answer for one sensor, whose driving pressures are the ``rows`` of a pass."""
     response, press = passed.response, passed.press
     limit = float(press.limit[rows[0]]) * sensor.wall.shear_modulus
     for pressure in press.batch.driving_pressure[rows].tolist():
@@ -196,7 +196,7 @@ def _answer(sensor: Sensor, passed: AtlasRun, fields: dict[str, Array], rows: ra
 def _state(
     sensor: Sensor, press: AtlasPress, whole: PressTrack, fields: dict[str, Array], response: AtlasResponse, i: int
 ) -> SensorState:
-    """The state of one driving pressure; ``fields`` are those of ``whole``, (n, m) each."""
+    """State at one driving pressure; ``fields`` are the fields along ``whole``, (n, m) each."""
     length, mu = sensor.dome.inner_radius, sensor.wall.shear_modulus
     ok = whole.ok[i]
     known = slice(0, ok.size if ok.all() else int(np.argmin(ok)))
@@ -222,7 +222,7 @@ def _state(
 
 
 def _events(depth: Array, field: dict[str, Array], end: int, range_end: float) -> list[Event]:
-    """Event that ends the range, and the warnings before it."""
+    """Event that ends the range, and a warning of creasing."""
     happened = [] if end == DEPTH else [Event(ENDS[end], range_end, True, _DETAIL.get(end, ENDS[end]))]
     points = [PathPoint(float(x), float(y)) for x, y in zip(depth, field["fold"], strict=True)]
     pairs = zip([points[0], *points], points, strict=False)
@@ -233,7 +233,7 @@ def _events(depth: Array, field: dict[str, Array], end: int, range_end: float) -
 
 
 def _inflation(sensor: Sensor, slices: AtlasSlices, wall: int) -> tuple[InflationCurve, LimitPoint, float | None]:
-    """Free inflation to a little past the limit point, that point, and the pressure at the break strain."""
+    """Curve of free inflation to slightly beyond the limit point, the limit point, and the pressure at break strain."""
     length, mu = sensor.dome.inner_radius, sensor.wall.shear_modulus
     nu = np.concatenate([np.linspace(0.0, 1.0, 91), np.linspace(1.0, shipped().recipe.highest_volume, 7)[1:]])
     k = np.full(nu.size, wall)

@@ -1,4 +1,4 @@
-"""The table of models, cheapest first, and the choice of the cheapest one that is good enough."""
+"""The table of models, cheapest first, and the choice of the cheapest model that is accurate enough."""
 
 from dataclasses import dataclass
 from importlib import import_module
@@ -15,23 +15,22 @@ MODELS = {
     "solid": "pneutouch.mechanics.models.solid",
     "harmonic": "pneutouch.mechanics.models.harmonic",
 }
-"""The modules of the models by name, cheapest first: each holds its model as ``MODEL`` and is loaded where it is asked
-for."""
+"""Modules of the models by name, cheapest first. Each holds its model as ``MODEL`` and is imported on first use."""
 
 MODEL_CHOICES = (*MODELS, "auto")
 
 CLOSURES = ("variational", "printed")
-"""The closures of the membrane's contact."""
+"""Closures of the contact in the membrane model."""
 
 USUAL = "usual"
-"""The model if none is named: harmonic for contact off the axis, else the solid."""
+"""Name for the model used if none is named: harmonic for contact off the axis, else the solid."""
 
 DEFAULT_TOLERANCE = 0.02
 
 
 @dataclass(frozen=True)
 class ModelSequence:
-    """Models to try, cheapest first, and why others were passed over."""
+    """Models to try, cheapest first, and the reasons why others were passed over."""
 
     models: tuple[str, ...]
     passed: tuple[str, ...]
@@ -55,7 +54,7 @@ def stated_error(name: str, sensor: Sensor) -> float:
 
 
 def usual_model(sensor: Sensor) -> str:
-    """The model of a sensor if none is named."""
+    """Name of the model for a sensor if none is named."""
     return "solid" if sensor.protocol.off_axis is None else "harmonic"
 
 
@@ -86,7 +85,7 @@ def models_for(sensor: Sensor, tolerance: float) -> ModelSequence:
 
 
 def remedy(sensor: Sensor) -> str:
-    """Advice in place of a model that has no answer for a sensor: another one, or a scene that one covers."""
+    """Advice for a sensor that a model cannot answer: another model, or a setting that a model covers."""
     usual = usual_model(sensor)
     return (
         f"take `model` auto or {usual}" if outside(usual, sensor) is None else "take `clamp` base, or central contact"
@@ -94,14 +93,14 @@ def remedy(sensor: Sensor) -> str:
 
 
 class ModelOptions(TypedDict):
-    """The model of a prediction and, where it is auto, the numerical error as a fraction that it must meet."""
+    """Name of the model of a prediction and, for auto, the numerical error as a fraction that it must meet."""
 
     model: str
     tolerance: float
 
 
 def model_options(model: str | None, tolerance: float | str | None) -> ModelOptions:
-    """The model and the tolerance of a prediction; a tolerance alone requires the cheapest model that meets it."""
+    """Model and tolerance of a prediction; with a tolerance the model is auto, and another raises InputError."""
     if tolerance is None:
         return {"model": model or USUAL, "tolerance": DEFAULT_TOLERANCE}
     if model not in (None, "auto"):
@@ -111,7 +110,7 @@ def model_options(model: str | None, tolerance: float | str | None) -> ModelOpti
 
 
 def parse_tolerance(text: str) -> float:
-    """A tolerance as a fraction from text: ``2%`` or ``0.02``. Raises InputError."""
+    """Tolerance as a fraction from a text such as ``2%`` or ``0.02``. Raises InputError."""
     number = text.strip().removesuffix("%")
     try:
         value = plain_number(number) / (100.0 if text.strip().endswith("%") else 1.0)

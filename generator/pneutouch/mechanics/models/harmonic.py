@@ -31,13 +31,13 @@ ORDERS = (4, 6, 8, 12)
 """Orders of the harmonics, raised until the figures settle."""
 
 EVEN_ORDERS = (*ORDERS, 16, 24)
-"""Orders of the harmonics if only even ones are not zero: they are half as many."""
+"""Orders if only even harmonics are nonzero, so that there are half as many harmonics."""
 
 _READ = 56
-"""Equal steps of a range at which its curve is read between the solved states."""
+"""Number of equal steps of a range at which its curve is interpolated between the solved states."""
 
 _COMPARED = 3
-"""States at which an answer is compared with fewer harmonics."""
+"""Number of states at which a result is compared with that of fewer harmonics."""
 
 _BODY = (
     "hyperelastic solid with Fourier sums around the axis and the wall's full stiffness; what is not symmetric about "
@@ -60,11 +60,11 @@ class HarmonicElements(SensorModel):
         return "the flange is held as printed, and the wall's contact with its top is axisymmetric" if held else None
 
     def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
-        """Answers of `harmonic_result`."""
+        """Answers by `harmonic_result`, one sensor at a time."""
         return one_by_one(lambda *one: ModelAnswer(harmonic_result(*one)), sensors, driving_pressures)
 
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
-        """Errors of the mesh and of the sums."""
+        """Errors of the mesh and of the Fourier sums."""
         return discretised(_SUMMARY, OBJECT_DISCRETISATION)
 
     def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
@@ -76,9 +76,9 @@ MODEL = HarmonicElements()
 
 
 def harmonic_result(sensor: Sensor, driving_pressures: Array) -> ModelResult:
-    """Inflate as the solid does, then press at every driving pressure (MPa, ascending) off the axis.
+    """Inflate with the solid, then press off the axis at every driving pressure (MPa, ascending).
 
-    Raises ComputationError if no equilibrium is found, or where the figures do not settle.
+    Raises ComputationError if no equilibrium is found, or if the figures do not settle.
     """
     return solid_result(sensor, driving_pressures, pressed_state=_state)
 
@@ -110,16 +110,16 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
 
 
 def off_axis_press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAxisPress:
-    """The sensor's test on one free state, with its object in place.
+    """Set up the sensor's test on one free state, with its object in place.
 
-    Raises InputError for an object that would come down to the connector within the depth.
+    Raises InputError for an object that would reach the connector within the depth.
     """
     _check_clearance(sensor, probe, free)
     return _press(sensor, probe, free)
 
 
 def _check_clearance(sensor: Sensor, probe: StrainProbe, free: FreeState) -> None:
-    """Raise InputError for an object that would come down to the connector within the depth."""
+    """Raise InputError if the object would reach the connector within the depth."""
     test = sensor.protocol
     travel = _free_travel(sensor, probe, free)
     if not (test.offset or test.tilt) or travel > test.depth:
@@ -159,13 +159,13 @@ class _Curve(NamedTuple):
 
     @property
     def sensitivity(self) -> float | None:
-        """Sensitivity (kPa/N), where the range has one."""
+        """Sensitivity (kPa/N); None if the range has none."""
         fit = figures(self.indentation, self.force, self.rise / KPA)
         return None if fit is None else fit.sensitivity
 
 
 def _curve(sensor: Sensor, pressed: OffAxisPath) -> _Curve:
-    """The curve of a press to the end of its range."""
+    """Curve of a press up to the end of its range."""
     grid = np.linspace(0.0, _range_end(sensor, pressed), sensor.protocol.steps + 1)
     return _Curve(grid, *curve_between(pressed.path, grid), None if pressed.shear is None else pressed.shear.peak)
 
@@ -186,8 +186,8 @@ def change(before: _Curve, after: _Curve) -> float:
 
 
 def _change_from(press: OffAxisPress, coarse: int, pressed: OffAxisPath, sensor: Sensor) -> float:
-    """The change from fewer harmonics, which are solved for at a few states of the range: between them the difference
-    of the curves is taken as linear. Infinite where they have no equilibrium there."""
+    """Change relative to a result with fewer harmonics, which is solved only at a few states of the range; the
+    difference of the curves is linear between them. Infinite if one of these states has no equilibrium."""
     after = _curve(sensor, pressed)
     inside = [s for s in pressed.path if s.indentation <= after.indentation[-1] * (1.0 + 1e-9)]
     chosen = [inside[round(k * (len(inside) - 1) / _COMPARED)] for k in range(1, _COMPARED + 1)]
@@ -201,7 +201,7 @@ def _change_from(press: OffAxisPress, coarse: int, pressed: OffAxisPath, sensor:
 
 
 def _press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAxisPress:
-    """The sensor's test with its object in place."""
+    """Set up the sensor's test with its object in place, without the check of clearance."""
     press, test, solid = press_settings(sensor), sensor.protocol, probe.solid
     body = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim).body
     offset = test.offset / solid.length
@@ -211,7 +211,7 @@ def _press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAxisPress:
 
 
 def _symmetric(sensor: Sensor) -> bool:
-    """True if a bar lies across the middle of the dome and stays there: two planes of symmetry."""
+    """True if the scene has two planes of symmetry: a bar lies across the middle of the dome and stays there."""
     test = sensor.protocol
     return test.body is not None and test.body.lying and not test.offset and not test.shear
 
@@ -224,7 +224,7 @@ def _range_end(sensor: Sensor, pressed: OffAxisPath) -> float:
 def _record(
     sensor: Sensor, pressure: float, free: FreeState, press: OffAxisPress, pressed: OffAxisPath, last_change: float
 ) -> SensorState:
-    """The state of a sensor as a prediction has it."""
+    """State of a sensor in the form of a prediction."""
     happened, end = reported_events(pressed.events), _range_end(sensor, pressed)
     return SensorState(
         driving_pressure=pressure,
@@ -252,7 +252,7 @@ def _record(
 
 
 def _to_end(pressed: OffAxisPath, end: float) -> RangeCurve:
-    """The curve between the solved states, to the end of the range."""
+    """Curve interpolated between the solved states, to the end of the range."""
     grid = np.linspace(0.0, end, _READ + 1)
     return RangeCurve(grid, *curve_between(pressed.path, grid))
 
@@ -273,7 +273,7 @@ def _shear_curve(path: ShearPath) -> ShearCurve:
 
 
 def _figures(pressed: OffAxisPath, end: float, steps: int) -> Figures[float] | None:
-    """Figures of the range, on the same equal steps of it as the solid's."""
+    """Figures on equal steps of the range, as many steps as for the solid."""
     grid = np.linspace(0.0, end, steps + 1)
     force, rise = curve_between(pressed.path, grid)
     return figures(grid, force, rise / KPA)

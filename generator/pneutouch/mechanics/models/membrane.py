@@ -47,16 +47,16 @@ class MembraneTheory(SensorModel):
     correctable = False
 
     def covers(self, sensor: Sensor) -> str | None:
-        """Reason why a sensor is none of the theory: another contact or shape, or a graded wall."""
+        """Reason why the theory does not cover a sensor (other contact or shape, graded wall), or None."""
         graded = None if sensor.wall.grade is None else "the wall is graded along its arc"
         return sensor.protocol.other_contact or no_hemisphere(sensor.dome.shape) or graded
 
     def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
-        """Answers in closed form; a fitted law and a flange are not part of it."""
+        """Answers in closed form; a fitted law and a flange are ignored, which is stated as a limitation."""
         return one_by_one(self._answer, sensors, driving_pressures)
 
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
-        """Errors of state I."""
+        """Errors of the inflated cap (state I) against the exact membrane."""
         return error_against_exact_membrane(sensor, driving_pressures)
 
     def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
@@ -78,7 +78,7 @@ MODEL = MembraneTheory()
 
 
 def error_against_exact_membrane(sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
-    """Error by the assumption of constant curvature in state I: relative errors, the greatest for the heights."""
+    """Errors due to constant curvature in state I, relative; for the heights the greatest."""
     limit_pressure, limit_height = limit_point_errors()
     scale = sensor.dome.inner_radius / (sensor.wall.shear_modulus * sensor.dome.wall_thickness)
     heights = height_errors(driving_pressures * scale)
@@ -96,11 +96,11 @@ def error_against_exact_membrane(sensor: Sensor, driving_pressures: Array) -> Er
 
 
 _FINE = 8
-"""Events are looked for on a grid this many times finer than the steps."""
+"""Factor by which the grid that events are searched on is finer than the steps."""
 
 
 def inflation_curve(sensor: Sensor) -> InflationCurve:
-    """Both branches of the closed form, to 1.8 times the height of the limit point."""
+    """Inflation curve on both branches of the closed form, to 1.8 times the height of the limit point."""
     x = np.concatenate([np.linspace(1.0, LIMIT_HEIGHT, 60), np.linspace(LIMIT_HEIGHT, 1.8 * LIMIT_HEIGHT, 60)[1:]])
     apex = x * sensor.dome.inner_radius
     outer = apex + thickness_stretch(x) * sensor.dome.wall_thickness
@@ -114,10 +114,10 @@ def cap_volume(apex: Array, radius: float) -> Array:
 
 
 def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> tuple[SensorState, ...]:
-    """Inflate to every driving pressure (MPa, ascending) and press in ``sensor.steps`` equal steps.
+    """States after inflation to every driving pressure (MPa, ascending) and a press in ``protocol.steps`` equal steps.
 
-    Figures are fitted on as many equal steps up to the first event that ends the range, so that they do not
-    jump when an event passes a step.
+    Figures are fitted on as many equal steps up to the first event that ends the range, so that they do not jump when
+    an event passes a step.
     """
     radius, thickness = sensor.dome.inner_radius, sensor.dome.wall_thickness
     x = relative_height(driving_pressures, radius, thickness, sensor.wall.shear_modulus)

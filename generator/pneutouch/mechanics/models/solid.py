@@ -1,6 +1,6 @@
 """The model ``solid``: the paper's finite element study (section 2-C and Supplement B) run for a sensor.
 
-Range of the law: stretches of the wall beyond those of its fit are a limit of the inflation and an event of the
+Stretches of the wall beyond the range that its law was fitted over are a limit of the inflation and an event of the
 press.
 """
 
@@ -58,15 +58,15 @@ class SolidElements(SensorModel):
     holds_flange = True
 
     def covers(self, sensor: Sensor) -> str | None:
-        """Deviation of the contact from the axis, or None."""
+        """Deviation of the contact from the axis, which the solid does not cover, or None."""
         return sensor.protocol.off_axis
 
     def answer(self, sensors: Sequence[Sensor], driving_pressures: Sequence[Array]) -> list[Answered]:
-        """Answers of `solid_result`."""
+        """Answers by `solid_result`, one sensor at a time."""
         return one_by_one(lambda *one: ModelAnswer(solid_result(*one)), sensors, driving_pressures)
 
     def stated_error(self, sensor: Sensor) -> float:
-        """The error of the mesh, which is greater under an object that is no plate."""
+        """Relative error of the mesh in sensitivity, which is greater under an object other than a plate."""
         return SENSITIVITY_DISCRETISATION if sensor.protocol.body is None else OBJECT_DISCRETISATION
 
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
@@ -76,7 +76,7 @@ class SolidElements(SensorModel):
         return discretised(_SUMMARY)
 
     def assumptions(self, sensor: Sensor) -> tuple[str, ...]:
-        """Assumptions of the solid, and the waves that it looks for."""
+        """Assumptions of the solid, including the numbers of waves checked for."""
         waves = sensor.protocol.waves
         checked = f"sway and lobes are looked for with up to {waves} waves around the axis" if waves else NOT_CHECKED
         return solid_assumptions(sensor, f"{BODY}; {checked}")
@@ -86,13 +86,13 @@ MODEL = SolidElements()
 
 
 def leaves_law(probe: StrainProbe, run: Inflation, largest: float | None) -> tuple[float, float] | None:
-    """Pressure (MPa) and outer apex height (mm) at which free inflation leaves the stretches of tension up to
-    ``largest``; None if it does not, or where they are not known."""
+    """Pressure (MPa) and outer apex height (mm) at which free inflation exceeds ``largest``, the stretch in tension up
+    to which the law was fitted; None if it does not, or if ``largest`` is None."""
     return None if largest is None else met(probe, run, probe.greatest_tension, largest)
 
 
 def beyond_law(probe: StrainProbe, pressed: IndentationPath, largest: float | None) -> list[Event]:
-    """The event of a wall pressed beyond the stretches that its law was fitted over; none where they are not known."""
+    """Event of a wall pressed beyond the stretches that its law was fitted over; empty if these are not known."""
     if largest is None:
         return []
     tension = [probe.greatest_tension(state.positions / probe.solid.length) for state in pressed.path]
@@ -111,7 +111,7 @@ _DRAWN = 3.0
 """Radius over R0 to which an object is drawn."""
 
 _PAST_LIMIT = 1.6
-"""Inflation goes on to this multiple of the limit volume: enough to show the falling branch."""
+"""Multiple of the limit volume to which inflation continues: enough to show the falling branch."""
 
 KINDS = {
     "unstable": ("loss of stability", True),
@@ -130,7 +130,7 @@ KINDS = {
     "sway": (SWAY, False),
     "lobes": (LOBES, False),
 }
-"""The solver's events as they are reported, and whether figures must not be fitted beyond them."""
+"""Names under which the solver's events are reported, and True if no figure may be fitted beyond them."""
 
 
 class _CurvePoint(Protocol):
@@ -175,7 +175,7 @@ def solid_result(
 
 
 def solid_states(sensor: Sensor, driving_pressures: Array) -> tuple[SensorState, ...]:
-    """The states of `solid_result` alone: inflation ends at the highest driving pressure (MPa), a stable state.
+    """The states of `solid_result` only: inflation ends at the highest driving pressure (MPa), in a stable state.
 
     The stability around the axis, which changes no figure, is not checked.
     """
@@ -186,14 +186,14 @@ def solid_states(sensor: Sensor, driving_pressures: Array) -> tuple[SensorState,
 
 
 def solid_probe(sensor: Sensor, cells: int | None = None) -> StrainProbe:
-    """The sensor's wall as the solid takes it, and the probe of its strains."""
+    """Model of the sensor's wall for the solid, with the probe of its strains."""
     shape, flange, cells = sensor.dome.shape, sensor.dome.flange, cells or object_cells(sensor)
     mesh = dome(shape, arc=cells) if flange is None else printed_dome(shape, *flange, arc=cells)
     return StrainProbe(SolidModel(mesh, sensor.wall.hyperelastic, grade=_grade(sensor), base=_base(sensor)))
 
 
 def _base(sensor: Sensor) -> RigidBase | None:
-    """The rigid base as the solid takes it: where the flange is held as printed, outside the flange alone."""
+    """Rigid base for the solid; if the flange is held as printed, only the part outside the flange."""
     dome = sensor.dome
     if dome.base is None or dome.flange is None:
         return dome.base
@@ -201,7 +201,7 @@ def _base(sensor: Sensor) -> RigidBase | None:
 
 
 def _grade(sensor: Sensor) -> Callable[[Array, Array], Array] | None:
-    """The modulus along the arc as the solid takes it."""
+    """Function of the relative modulus over position, for the solid; None for a homogeneous wall."""
     if sensor.wall.grade is None:
         return None
     arc, relative = np.array(sensor.wall.grade[0]), np.array(sensor.wall.grade[1])
@@ -216,7 +216,7 @@ def _limit_point(sensor: Sensor, run: Inflation) -> LimitPoint | None:
 
 
 def _inflation(solid: SolidModel, run: Inflation) -> InflationCurve:
-    """The curve between the solved states: Hermite cubics in the volume, with the solid's own slopes."""
+    """Inflation curve by Hermite cubics over the volume through the solved states, with the solver's slopes."""
     volume = run.volume
     grid = distinct(np.concatenate([np.linspace(volume[0], volume[-1], 90), volume]))
 
@@ -234,7 +234,7 @@ def _inflation(solid: SolidModel, run: Inflation) -> InflationCurve:
 
 
 def _limits(sensor: Sensor, probe: StrainProbe, run: Inflation) -> Limits:
-    """Driving pressures at which the limits are met on the rising branch, the one that can be driven to."""
+    """Driving pressures at which the limits are met on the rising branch, which pressure control can reach."""
     rupture = None if sensor.wall.break_stretch is None else burst(probe, run, sensor.wall.break_stretch - 1)
     broken, left = (_rising(run, place) for place in (rupture, leaves_law(probe, run, sensor.wall.largest_stretch)))
     return Limits(
@@ -246,14 +246,14 @@ def _limits(sensor: Sensor, probe: StrainProbe, run: Inflation) -> Limits:
 
 
 def _rising(run: Inflation, place: tuple[float, float] | None) -> float | None:
-    """The pressure of a place of the inflation, where that is before the limit point."""
+    """Pressure of a point (pressure, outer apex height) of the inflation, or None if beyond the limit point."""
     if place is None or (run.limit is not None and place[1] > run.limit.outer_apex):
         return None
     return place[0]
 
 
 def press_settings(sensor: Sensor) -> PressSettings:
-    """The test of a sensor as the solid takes it."""
+    """Settings of the sensor's test for the solid."""
     test, gas, stretch = sensor.protocol, sensor.gas, sensor.wall.break_stretch
     return PressSettings(
         depth=test.depth,
@@ -304,13 +304,13 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
 
 
 def reported_events(events: list[SolidEvent]) -> list[Event]:
-    """The solver's events as they are reported, in the order of the travel."""
+    """Solver events in their reported form, in the order of the travel."""
     reported = [Event(KINDS[e.kind][0], max(e.indentation, 0.0), KINDS[e.kind][1], e.detail) for e in events]
     return sorted(reported, key=lambda event: event.indentation)
 
 
 def curve_between(path: Sequence[_CurvePoint], grid: Array) -> tuple[Array, Array]:
-    """Force (N) and pressure rise (MPa) at indentations between the solved states, on their Hermite cubics."""
+    """Force (N) and pressure rise (MPa) at indentations ``grid`` (mm), by Hermite cubics through solved states."""
     x = np.array([s.indentation for s in path])
     keep = np.concatenate([[True], np.diff(x) > 1e-9])
     x, states = x[keep], [s for s, k in zip(path, keep, strict=True) if k]
@@ -326,9 +326,9 @@ def _last(pressed: IndentationPath, end: float) -> PressState:
 
 
 def _face(sensor: Sensor, mesh: SolidMesh, body: Indenter, positions: Array, indentation: float) -> PressedFace:
-    """The outer wall at positions (n_nodes, 2), mm, under an object at first contact that has gone on by an indentation
+    """Outer wall at positions (n_nodes, 2), mm, under an object given at first contact and lowered by an indentation
     (mm)."""
-    # In space the wall is drawn alone: the solid needs none of it.
+    # To draw in space, the wall is enough: nothing is solved here.
     from pneutouch.mechanics.harmonic.fields import Harmonics
     from pneutouch.mechanics.harmonic.object_contact import pressed_face
     from pneutouch.mechanics.harmonic.surface import PlacedObject
@@ -341,7 +341,7 @@ def _face(sensor: Sensor, mesh: SolidMesh, body: Indenter, positions: Array, ind
 def _shapes(
     probe: StrainProbe, free: FreeState, press: PressSettings, pressed: IndentationPath, end: float
 ) -> tuple[DeformedShape, ...]:
-    """The wall at rest, inflated, and pressed to the end of the range."""
+    """Shapes of the wall at rest, inflated, and pressed to the end of the range."""
     solid = probe.solid
     last = _last(pressed, end)
     positions = [(None, solid.rest * solid.length), (0.0, free.positions), (last.indentation, last.positions)]
@@ -367,7 +367,7 @@ def _walls(solid: SolidModel, free: FreeState, press: PressSettings, pressed: In
 
 
 def _section(press: PressSettings, start: Indenter | None, at: float | None, solid: SolidModel) -> Array | None:
-    """The object's section at an indentation (mm), to draw; None for a plate and before contact."""
+    """Section of the object at an indentation (mm), for drawing; None for a plate and before contact."""
     if press.body is None or start is None or at is None:
         return None
     return press.body.at(start.height * solid.length - at).outline(_DRAWN * solid.length)

@@ -20,7 +20,7 @@ from pneutouch.arrays import Array, Index
 
 
 def _wrappers() -> ModuleType:
-    """SciPy's extension module with the wrappers; through `scipy.linalg` where that is loaded or it lies elsewhere."""
+    """SciPy's extension module of LAPACK wrappers; through `scipy.linalg` if that is loaded, or if not found."""
     import scipy
 
     spec = None
@@ -37,8 +37,8 @@ lapack = _wrappers()
 
 
 class BlockEntries(NamedTuple):
-    """Row and column of every entry of a family of blocks of any form, in the order in which they lie; entries above
-    the diagonal, or with -1 in place of a fixed dof, are left out."""
+    """Row and column of every entry of a family of blocks of any form, in storage order; entries above the diagonal, or
+    with -1 for a fixed dof, are left out."""
 
     row: Index
     column: Index
@@ -46,10 +46,10 @@ class BlockEntries(NamedTuple):
 
 class AssemblyPattern:
     """Places of block entries in a band matrix: blocks (n_blocks, d, d) with dof tables (n_blocks, d), -1 for a fixed
-    dof, or other blocks for the vectors of which the table serves, with their ``forms``.
+    dof. A family with blocks of another form has it in ``forms``; its table is then used only for vectors.
 
-    Several block families share one flat vector, in the order given.  Entries of one place are summed by `bincount`:
-    as fast as a product with a sparse 0/1 matrix, whose package costs a tenth of SciPy's import.
+    Several block families share one flat vector, in the order given.  Entries of one place are summed by `bincount`: as
+    fast as a product with a sparse 0/1 matrix, whose package costs a tenth of SciPy's import.
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class AssemblyPattern:
         return flat.reshape(self.size, self.width + 1).T
 
     def added(self, band: Array, blocks: list[Array]) -> Array:
-        """A band, as `matrix` gives it, with the sum of blocks added; a new one."""
+        """Copy of a band in the form of `matrix`, with the sum of blocks added."""
         flat = band.T.flatten()
         flat[self._places] += np.bincount(self._number, _gathered(blocks, self._entries))
         return flat.reshape(self.size, self.width + 1).T
@@ -90,8 +90,8 @@ class AssemblyPattern:
 
 @dataclass(frozen=True)
 class FaceSums:
-    """Sums over the faces of a wall: patterns of the edges of the inner and of the outer wall, and of edges of the
-    outer wall with the flange's top, None without a flange."""
+    """Sums over the faces of a wall: patterns for the edges of the inner wall, of the outer wall, and of the pairs of
+    outer wall and flange top (None without a flange)."""
 
     inner: AssemblyPattern
     outer: AssemblyPattern
@@ -106,20 +106,20 @@ class FaceSums:
         return self.outer.vector([blocks])
 
     def folded(self, blocks: Array) -> Array:
-        """Sum (size,) of vectors on edges of the outer wall with the flange's top, (n_edges, 2 n)."""
+        """Sum (size,) of vectors on edge pairs of outer wall and flange top, (n_edges, 2 n)."""
         assert self.fold is not None
         return self.fold.vector([blocks])
 
 
 def _square(table: Index) -> BlockEntries:
-    """Entries of square blocks."""
+    """Row and column of every entry of square blocks with a dof table."""
     shape = (*table.shape, table.shape[1])
     row, column = (np.broadcast_to(t, shape).ravel() for t in (table[:, :, None], table[:, None, :]))
     return BlockEntries(row, column)
 
 
 def _gathered(blocks: Sequence[NDArray[Any]], rows: Sequence[Index]) -> NDArray[Any]:
-    """Entries of each family's blocks, one family after the other."""
+    """Selected entries of the blocks of all families, one family after the other."""
     parts = [block.ravel().take(row) for block, row in zip(blocks, rows, strict=True)]
     return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
@@ -129,16 +129,16 @@ _INVERSE_ITERATIONS = 12
 
 @dataclass(frozen=True)
 class BandedSolution:
-    """x with K x = b (size, n_rhs), and whether K is positive definite."""
+    """Solution x (size, n_rhs) of K x = b, and True if K is positive definite."""
 
     x: Array
     definite: bool
 
 
 def solve(band: Array, b: Array) -> BandedSolution:
-    """Solve by Cholesky, and by pivoted LU where the matrix is not positive definite; b (size, n_rhs).
+    """Solve by Cholesky, or by pivoted LU if the matrix is not positive definite; b (size, n_rhs).
 
-    A singular matrix returns non-finite x.
+    For a singular matrix x is not finite.
     """
     definite = solve_definite(band, b)
     if definite is not None:
@@ -164,7 +164,7 @@ def is_definite(band: Array) -> bool:
 
 @dataclass(frozen=True)
 class SoftestMode:
-    """The eigenvalue nearest zero, its unit eigenvector (size,), and whether the matrix is positive definite."""
+    """The eigenvalue nearest zero, its unit eigenvector (size,), and True if the matrix is positive definite."""
 
     value: float
     vector: Array
@@ -172,7 +172,7 @@ class SoftestMode:
 
 
 def softest(band: Array) -> SoftestMode:
-    """The eigenvalue nearest zero, by inverse iteration from one fixed vector; of a singular matrix zero."""
+    """Eigenvalue nearest zero, by inverse iteration from one fixed vector; zero for a singular matrix."""
     width = band.shape[0] - 1
     factor, info = lapack.dpbtrf(band, lower=1)
     definite, pivots = info == 0, None
@@ -200,7 +200,7 @@ def _general(band: Array) -> Array:
 
 
 def negative_pivots(band: Array) -> int:
-    """Negative eigenvalues of the matrix, by Sylvester's law on a block LDL^T; blocks as wide as the band."""
+    """Number of negative eigenvalues, by Sylvester's law on a block LDL^T with blocks as wide as the band."""
     width, n = band.shape[0] - 1, band.shape[1]
     step = max(width, 1)
     count = 0

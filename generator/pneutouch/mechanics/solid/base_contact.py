@@ -1,6 +1,6 @@
-"""The rigid base under the dome, met without friction: a stiff potential on both faces of the wall.
+"""Frictionless contact with the rigid base under the dome: a penalty potential on both faces of the wall.
 
-Contact of the outer wall with the free top of its own flange: both give, which couples their nodes.
+Also contact of the outer wall with the free top of its own flange: both deform, which couples their nodes.
 """
 
 from __future__ import annotations
@@ -17,30 +17,30 @@ from pneutouch.mechanics.solid.mesh import SolidMesh
 from pneutouch.mechanics.solid.object_contact import Contact
 
 _POINTS = 3
-"""Quadrature points of an edge, as many as against the plate."""
+"""Number of quadrature points of an edge, as many as for the contact with the plate."""
 
 
 @dataclass(frozen=True)
 class BaseLoad:
-    """Load of the outer wall on what it lies on: force along the axis (mu R0^2), greatest traction (mu, per area at
-    rest) and greatest penetration (R0); all 0 without contact."""
+    """Load of the outer wall on its support: force along the axis (mu R0^2), greatest traction (mu, per area at rest)
+    and greatest penetration (R0); all 0 without contact."""
 
     force: float = 0.0
     traction: float = 0.0
     penetration: float = 0.0
 
     def __add__(self, other: BaseLoad) -> BaseLoad:
-        """Both on different parts of the wall."""
+        """Total of two loads on different parts of the wall."""
         most = (max(a, b) for a, b in ((self.traction, other.traction), (self.penetration, other.penetration)))
         return BaseLoad(self.force + other.force, *most)
 
 
 class BaseContact:
-    """psi = (k/2) sum w <-g>^2 on both faces, g the height over the base; an `EnergyTerm`.
+    """Contact energy psi = (k/2) sum w <-g>^2 on both faces, g the height over the base; an `EnergyTerm`.
 
-    The stiffness is the plate's. A wall lies down on its base point by point from the clamp outward, so plain Newton
-    steps settle it: the stiff potential costs no iteration more than a soft one. Rounding of its gaps is no greater
-    than that of the plate's, which the residual allows for.
+    The stiffness is that of the contact with the plate. A wall lies down on its base point by point from the clamp
+    outward, so plain Newton steps converge, and the stiff potential needs no more iterations than a soft one. Rounding
+    of the gaps is no greater than for the plate, which the residual allows for.
     """
 
     noise = 0.0
@@ -67,7 +67,7 @@ class BaseContact:
 
     def waves(self, x: Array) -> list[tuple[Array, Array] | None]:
         """Second derivatives on the inner and the outer face at positions x: by edge positions (n_edges, 2 n, 2 n), and
-        by displacements around the axis (n_edges, n, n), by which a point moves outwards, too; None off the base."""
+        by displacements around the axis (n_edges, n, n), which also move a point outwards; None off the base."""
         meetings = [(face, face.meet(x)) for face in (self.inner, self.outer)]
         return [None if met is None else (face.hessian(met), face.around(met)) for face, met in meetings]
 
@@ -82,7 +82,7 @@ class BaseContact:
 
 @dataclass(frozen=True)
 class BaseMeeting:
-    """Radius and traction, slope and curvature of the base at the points of a face, (n_edges, n_points) each."""
+    """Radius and traction of the points of a face, and slope and curvature of the base, (n_edges, n_points) each."""
 
     radius: Array
     traction: Array
@@ -92,7 +92,7 @@ class BaseMeeting:
 
 class BaseFace:
     """The quadrature points of one face of the wall, and the base that they can meet: flat from ``start`` outward, with
-    a ``ring``: radius and height (R0)."""
+    a step up at the ``ring``, given as radius and height (R0)."""
 
     def __init__(
         self, edges: Index, rest: Array, contact: Contact, start: float, ring: tuple[float, float] = (0.0, 0.0)
@@ -109,7 +109,7 @@ class BaseFace:
         self._rim = contact.longest
 
     def meet(self, nodes: Array) -> BaseMeeting | None:
-        """Points below the surface of the base at positions (n_nodes, 2); None if there are none."""
+        """Contact of the points below the base's surface at positions (n_nodes, 2); None without any."""
         line = nodes[self.edges]
         z = line[..., 1] @ self.shape.T
         if z.min() >= self.high:
@@ -120,7 +120,7 @@ class BaseFace:
         return BaseMeeting(r, traction, slope, curve) if traction.any() else None
 
     def surface(self, r: Array) -> tuple[Array, Array, Array]:
-        """Height of the base at radii r and its first two derivatives."""
+        """Height of the base at radii r, with its first two derivatives."""
         rim, short = self._rim, np.maximum(self.start - r, 0.0)
         height, slope, curve = -0.5 * short**2 / rim, short / rim, np.where(short > 0.0, -1.0 / rim, 0.0)
         if self.high:
@@ -159,7 +159,7 @@ class BaseFace:
         return out
 
     def around(self, meeting: BaseMeeting) -> Array:
-        """Second derivative by displacements around the axis, (n_edges, n, n)."""
+        """Second derivative of the energy by displacements around the axis, (n_edges, n, n)."""
         load = self.weight * meeting.traction * meeting.slope / np.maximum(meeting.radius, 1.0e-300)
         n = self.edges.shape[1]
         return np.asarray((load @ self._pairs).reshape(-1, n, n))
@@ -171,15 +171,15 @@ _ROOT = 1.0e-14
 
 
 class _Touch(NamedTuple):
-    """Place on the top under each point of the wall, and the traction there, (n_edges, n_points) each."""
+    """Spline coordinate on the flange's top under each wall point, and the traction, (n_edges, n_points) each."""
 
     place: Array
     traction: Array
 
 
 def meeting_nodes(mesh: SolidMesh) -> Index:
-    """Nodes that the contact couples, (n_edges, 3 + n_top): of each edge of the outer wall that is no further from its
-    foot than the flange is wide, and those of the flange's top; no rows without a flange."""
+    """Nodes coupled by the contact, (n_edges, 3 + n_top): those of each edge of the outer wall within a flange width of
+    its foot, and those of the flange's top; no rows without a flange."""
     top = top_nodes(mesh)
     if top.size == 0:
         return np.zeros((0, 3), np.intp)
@@ -197,10 +197,10 @@ def top_nodes(mesh: SolidMesh) -> Index:
 
 
 class FlangeContact:
-    """psi = (k/2) sum w <-g>^2 on the outer wall near its foot; an `EnergyTerm`.
+    """Contact energy psi = (k/2) sum w <-g>^2 on the outer wall near its foot; an `EnergyTerm`.
 
     g is the height of a point of the wall over the top of the flange at the same radius. The top is the natural cubic
-    spline through its nodes: with a tangent that turns steadily, the energy is once continuously differentiable.
+    spline through its nodes: its tangent is continuous, and so the energy is once continuously differentiable.
     """
 
     noise = 0.0
@@ -242,7 +242,7 @@ class FlangeContact:
         return BaseLoad(float(np.vdot(self._weight, met.traction)), most, most / self._stiffness)
 
     def _meet(self, x: Array) -> _Touch | None:
-        """Points of the wall below the top of the flange at positions x (n_nodes, 2); None if there are none."""
+        """Contact of the wall points below the flange's top at positions x (n_nodes, 2); None without any."""
         line, top = x[self._edges], x[self._top]
         r, z = line[..., 0] @ self._shape.T, line[..., 1] @ self._shape.T
         # A spline rises over its highest node by less than its nodes differ.
@@ -261,15 +261,15 @@ class FlangeContact:
         return out
 
     def _curvature(self, tilt: Array, bend: Array, n: Array, turn: Array) -> Array:
-        """Second derivative of the gaps by the same, (n_edges, n_points, 2 m, 2 m); ``turn`` are slopes over speed.
+        """Second derivative of the gaps by positions, (n_edges, n_points, 2 m, 2 m); ``turn`` are slopes over speed.
 
         The place on the top follows from its radius: d place = (dr - n dR) / speed.
         """
         m = 2 * (3 + n.shape[-1])
-        # How the radius of a point against the top's changes: all that makes a gap nonlinear.
+        # Change of the radius of a point relative to the top: only this makes a gap nonlinear.
         slide = np.zeros((*tilt.shape, m))
         slide[..., 0:6:2], slide[..., 6::2] = self._shape, -n
-        # How the tilt of the top at a fixed place changes.
+        # Change of the tilt of the top at a fixed place.
         tip = np.zeros((*tilt.shape, m))
         tip[..., 6::2], tip[..., 7::2] = -tilt[..., None] * turn, turn
         cross = slide[..., :, None] * tip[..., None, :]
@@ -278,8 +278,8 @@ class FlangeContact:
 
 
 def cardinal_splines(count: int) -> Array:
-    """Coefficients (count - 1, 4, count) of the natural cubic splines that are 1 at one of the places 0, 1, 2, ... and
-    0 at the others: by interval, power of the distance from its start, and place of the 1."""
+    """Coefficients (count - 1, 4, count) of the natural cubic splines that are 1 at one of the knots 0, 1, 2, ... and 0
+    at the others, indexed by interval, power of the distance from the interval's start, and knot of the 1."""
     value = np.eye(count)
     system = 4.0 * np.eye(count) + np.eye(count, k=1) + np.eye(count, k=-1)
     right = np.zeros((count, count))
@@ -291,7 +291,7 @@ def cardinal_splines(count: int) -> Array:
 
 
 def evaluated(spline: Array, place: Array) -> tuple[Array, Array, Array]:
-    """Values and two derivatives (..., count) at places (...); straight on beyond the first and the last."""
+    """Values and first two derivatives (..., count) at places (...); linear beyond the ends."""
     last = spline.shape[0]
     held = np.clip(place, 0.0, last)
     beyond = (place - held)[..., None]
@@ -304,7 +304,7 @@ def evaluated(spline: Array, place: Array) -> tuple[Array, Array, Array]:
 
 
 def _located(spline: Array, radii: Array, r: Array) -> Array:
-    """Places where the top, with nodes at ``radii``, has the radii r."""
+    """Spline coordinates at which the top, with node radii ``radii``, has the radii r."""
     first = (r - radii[0]) / (radii[1] - radii[0])
     place = np.where(r < radii[0], first, np.interp(r, radii, np.arange(radii.size)))
     for _ in range(_ROOT_STEPS):

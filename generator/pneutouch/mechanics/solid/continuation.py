@@ -1,6 +1,6 @@
-"""Follows one branch of equilibria as the plate comes down: predictor, solution, stability, cutback.
+"""Path following of one branch of equilibria as the plate comes down: predictor, solution, stability, cutback.
 
-Bringing the plate down on one branch, and how the branch ends.
+Also the search for the end of a branch, and its kind.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 #: Longest plate travel in one solve, in R0: longer steps can land on another branch.
 LONGEST = 0.06
 _SHORTEST = 1.0e-4
-#: The work of the first step, where contact begins at a point, is only known to this share.
+#: Accuracy, as a share, of the work of the first step, where contact begins at a point.
 _FIRST_STEP = 0.06
-#: A step that loses more than this share of a full step's work has left the branch it started on.
+#: A step that loses more than this share of a full step's work has left its branch.
 DISSIPATION = 0.01
 
 
@@ -42,7 +42,7 @@ class PlateState:
     """A converged state under the plate at `height`; all nondimensional (R0, mu).
 
     force: on the plate.  stiffness: dF/dheight (negative).  by_height: dx/dheight, (n_nodes, 2).  pressure_rate:
-    dp/dheight.  stable: the total tangent is positive definite.  friction: None without.
+    dp/dheight.  stable: the total tangent is positive definite.  friction: None for contact without friction.
     """
 
     height: float
@@ -58,7 +58,7 @@ class PlateState:
 
 
 def plate_state(scene: SolidScene, state: SolverState, height: float, iterations: int) -> PlateState:
-    """Force and the tangent of the path at a converged state."""
+    """Converged state with its force and the tangent of the path."""
     solid, touch = scene.solid, state.touch
     if touch is None:
         raise ValueError("a state under the plate needs a plate")
@@ -83,11 +83,11 @@ def plate_state(scene: SolidScene, state: SolverState, height: float, iterations
 
 
 def lost_work(path: list[PlateState], after: PlateState) -> float:
-    """Energy unaccounted for from the end of a path to `after`, as a share of the plate's work in a full step.
+    """Energy lost between the end of a path and `after`, as a share of the plate's work in a full step.
 
-    Near zero along one branch, since dPi/dheight = -force there; what friction dissipates is accounted for.  The
-    trapezium is corrected by the curvature of the force through three states; the first step, whose force starts at
-    zero, by the slope at its end, which is coarser.
+    Near zero along one branch, where dPi/dheight = -force; the dissipation by friction is accounted for.  The trapezium
+    rule for the work is corrected by the curvature of the force through three states; in the first step, where the
+    force starts at zero, by the slope at its end, which is less accurate.
     """
     here = path[-1]
     travel = here.height - after.height
@@ -104,14 +104,13 @@ def lost_work(path: list[PlateState], after: PlateState) -> float:
         allowance = _FIRST_STEP
     spent = 0.0 if after.friction is None else after.friction.dissipated
     lost = abs(fixed - (after.state.energy - here.state.energy) - spent)
-    # A jump releases the same energy however short the step it falls in, so short steps are held to the work of a
-    # full one.
+    # A jump releases the same energy in a step of any length, so a short step is compared with the work of a full one.
     share = lost / (max(1.0, LONGEST / abs(travel)) * (abs(work) + floor))
     return max(0.0, share - allowance)
 
 
 class PathFollower:
-    """Keeps the states of a path and steps to new plate heights, from first contact down."""
+    """Keeps the states of a path and steps to further plate heights, from first contact on."""
 
     #: 1 while the plate comes down, -1 while it goes up.
     down = 1.0
@@ -121,7 +120,7 @@ class PathFollower:
         self.path = [self._first(SolidScene(solid, supply, plate), start)]
 
     def _first(self, scene: SolidScene, start: Array) -> PlateState:
-        """First contact, near positions `start`."""
+        """Solve for first contact, near positions `start`."""
         solved = minimise(scene, start)
         if isinstance(solved, NewtonFailure):
             raise NoConvergenceError("first contact", solved.why, "a finer mesh")
@@ -129,7 +128,7 @@ class PathFollower:
 
     @property
     def here(self) -> PlateState:
-        """The newest state."""
+        """The last state of the path."""
         return self.path[-1]
 
     @property
@@ -138,21 +137,21 @@ class PathFollower:
         return None
 
     def feed(self, supply: Supply) -> None:
-        """Fill the cavity by another supply from here on: the next state is solved with it."""
+        """Replace the supply of the cavity from the last state on: the next state is solved with the given one."""
         self.path[-1] = replace(self.here, scene=replace(self.here.scene, supply=supply))
 
     def left(self, height: float) -> float:
-        """Travel from the newest state to a height on the path ahead; negative beyond it."""
+        """Travel from the last state to a height; negative if the path is already past that height."""
         return self.down * (self.here.height - height)
 
     def turned(self) -> Self:
-        """A follower that starts at the newest state in the opposite direction."""
+        """A follower that starts at the last state in the opposite direction."""
         other = copy(self)
         other.path, other.down = [self.here], -self.down
         return other
 
     def step(self, height: float) -> PlateState:
-        """One state further along the path, at `height` or short of it where the step had to be cut; kept."""
+        """Add one state to the path, at `height` or before it if the step had to be cut, and return it."""
         travel = min(self.left(height), LONGEST)
         why = ""
         shortest = min(_SHORTEST, 0.5 * travel)
@@ -167,7 +166,7 @@ class PathFollower:
         raise NoConvergenceError(where, why, "a finer mesh or a smaller depth")
 
     def solve(self, height: float) -> PlateState | NewtonFailure:
-        """State at `height` from the extrapolated path; not kept."""
+        """Solve for the state at `height` from an extrapolated guess; the path is not changed."""
         scene = replace(self.here.scene, plate=self._plate.at(height))
         solved = self._least(scene, self._turning(height))
         if isinstance(solved, NewtonFailure):
@@ -177,19 +176,19 @@ class PathFollower:
         return plate_state(scene, solved.state, height, solved.iterations)
 
     def _least(self, scene: SolidScene, x: Array) -> NewtonResult | NewtonFailure:
-        """Least energy near positions x ahead."""
+        """State of least energy near positions x, or the failure."""
         return minimise(scene, x)
 
     def _extrapolate(self, height: float) -> Array:
-        """Positions ahead along the tangent; the present ones at first contact, without tangent."""
+        """Positions extrapolated along the tangent; the present ones at first contact, without tangent."""
         if len(self.path) < 2 and self.down > 0.0:
             return self.here.state.x
         return np.asarray(self.here.state.x + (height - self.here.height) * self.here.by_height)
 
     def _turning(self, height: float) -> Array:
-        """Positions ahead where the tangent turns on as it did in the last step, if that was half the next or longer.
+        """Positions extrapolated to second order, if the last step was at least half as long as the next.
 
-        With friction it does not: points stick or slide on as they last did.
+        Not used with friction, where points stick or slide on as they did last.
         """
         guess = self._extrapolate(height)
         if len(self.path) < 3 or height == self.here.height:
@@ -201,22 +200,22 @@ class PathFollower:
         return np.asarray(guess + 0.5 * ahead**2 / past * (self.here.by_height - before.by_height))
 
 
-#: Position of a jump, in R0.
+#: Accuracy to which a jump is located, in R0.
 JUMP_WITHIN = 5.0e-4
-#: How far past a stall a second equilibrium is first looked for, in R0.
+#: Distance beyond a stall at which a second equilibrium is first searched, in R0.
 _BEYOND_STALL = 3.5e-3
 _MOST_TRIES = 40
-#: How often, with friction, the end of a suspect step is tried again from half way: in most presses that is enough.
+#: Number of times that, with friction, the end of a suspect step is tried again from half way; mostly sufficient.
 _RETRIES = 2
-#: Two equilibria whose positions differ by more than this, in R0, are two.
+#: Two equilibria whose positions differ by more than this, in R0, are distinct.
 _APART = 1.0e-3
-#: How often the wall's speed grows at least over three states that run into a limit point.
+#: Least growth factor of the wall's speed over three states that approach a limit point.
 _GROWS = 2.0
 
 
 @dataclass(frozen=True)
 class PathJump:
-    """Plate height (R0) of the last state before the path breaks off, and why."""
+    """End of a path: its kind, the plate height (R0) of the last state before it, and the reason."""
 
     kind: str
     height: float
@@ -224,13 +223,13 @@ class PathJump:
 
 
 def descend(follower: PathFollower, height: float) -> PathJump | None:
-    """Continue the path to `height`: None, or the jump that ended it; the path then ends before the jump."""
+    """Continue the path to `height`; None, or the jump at which the path ends, its last state before the jump."""
     if not follower.here.stable:
         return PathJump("unstable", follower.here.height, "the state itself is unstable with its gas shut in")
     while follower.left(height) > 1.0e-12:
         before = follower.here
         if before.friction is not None:
-            # Cut steps that try the rest of the travel again and again cost far more than bisection.
+            # Cut steps that try the remaining travel again and again cost far more than bisection.
             end = before.height - follower.down * min(follower.left(height), LONGEST)
             ahead = follower.solve(end)
             if not isinstance(ahead, NewtonFailure) and _sound(follower.path, ahead):
@@ -256,7 +255,7 @@ def _sound(path: list[PlateState], after: PlateState) -> bool:
 
 
 def _close_in(follower: PathFollower, end: float) -> PathJump | None:
-    """Bisect between the last sound state and a height where the next one is not sound, or is not found; None if that
+    """Bisect between the last sound state and a height at which the next state is not sound or not found; None if that
     height is reached on one branch after all.
 
     A suspect height may prove sound when approached in shorter steps, so the last bracket is repeated in short steps.
@@ -289,10 +288,10 @@ def _close_in(follower: PathFollower, end: float) -> PathJump | None:
 
 
 def _past_a_stall(follower: PathFollower, end: float, stalled: NewtonFailure) -> PathJump | None:
-    """A solver that failed is no evidence of another branch: search a little further before naming the end; None if
-    the path goes on soundly there, as it may behind a height where friction lets go of a point.
+    """Search a little beyond a failed solve, which is no evidence of another branch, before naming the end; None if the
+    path continues soundly there, as it may after a height at which friction releases a point.
 
-    With friction the search is by no energy and often finds nothing: there the end is read from the path itself.
+    With friction the search has no energy to go by and often finds nothing: then the path itself shows the end.
     """
     here = follower.here
     if here.friction is not None and (turn := _limit_point(follower.path)) is not None:
@@ -311,7 +310,7 @@ def _past_a_stall(follower: PathFollower, end: float, stalled: NewtonFailure) ->
 
 
 def _limit_point(path: list[PlateState]) -> PathJump | None:
-    """The jump of a path whose newest states run into a limit point; None if they do not."""
+    """Jump of a path whose last states approach a limit point; None if they do not."""
     if not _turns_back(path):
         return None
     here = path[-1]
@@ -320,10 +319,10 @@ def _limit_point(path: list[PlateState]) -> PathJump | None:
 
 
 def _turns_back(path: list[PlateState]) -> bool:
-    """True if the last three states run into a limit point.
+    """True if the last three states approach a limit point.
 
-    Near one the wall's speed grows with the inverse root of the distance that is left: its inverse square falls evenly
-    to nothing (Seydel 2010, Practical Bifurcation and Stability Analysis, sec. 2.2, doi:10.1007/978-1-4419-1740-9).
+    Near it the wall's speed grows with the inverse square root of the distance left, so its inverse square falls
+    linearly to 0 (Seydel 2010, Practical Bifurcation and Stability Analysis, sec. 2.2, doi:10.1007/978-1-4419-1740-9).
     """
     if len(path) < 3:
         return False
@@ -336,12 +335,12 @@ def _turns_back(path: list[PlateState]) -> bool:
 
 
 def _speed(state: PlateState) -> float:
-    """Largest travel of the wall over that of the object."""
+    """Greatest speed of a wall node relative to that of the object."""
     return float(np.linalg.norm(state.by_height, axis=1).max())
 
 
 def _stays_away(here: PlateState, other: PlateState) -> bool:
-    """True if the wall stays in another equilibrium of lower energy once the plate is moved back: a jump."""
+    """True if the wall stays in another equilibrium of lower energy when the plate is moved back: a jump."""
     back = minimise(here.scene, other.state.x)
     if isinstance(back, NewtonFailure):
         return False
@@ -355,7 +354,7 @@ def _jump(path: list[PlateState], after: PlateState) -> PathJump:
 
 
 def _kind(here: PlateState, move: Array) -> str:
-    """clamp_fold where the wall moves most, by (n_nodes, 2), within a wall of its clamp, else snap."""
+    """Kind of a jump: clamp_fold if the wall moves most within a wall thickness of its clamp, else snap."""
     solid = here.scene.solid
     moved = solid.rest[np.linalg.norm(move, axis=1).argmax()]
     held = solid.rest[solid.mesh.clamped]

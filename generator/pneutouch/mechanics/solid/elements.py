@@ -14,12 +14,12 @@ import numpy as np
 from pneutouch.arrays import Array, Index
 
 F_RR, F_RZ, F_ZR, F_ZZ, HOOP = range(5)
-"""Strains of a point: the in-plane deformation gradient by (R, Z) and the hoop stretch r/R."""
+"""Strain components of a point: the in-plane deformation gradient by (R, Z) and the hoop stretch r/R."""
 
 IN_PLANE = slice(F_RR, HOOP)
 
 RADIAL, AXIAL = slice(0, None, 2), slice(1, None, 2)
-"""Unknowns of a cell or an edge in r and in z: the positions of its nodes, interleaved."""
+"""Slices of the unknowns of a cell or an edge in r and in z: the interleaved positions of its nodes."""
 
 
 def area_ratio(strains: Array) -> Array:
@@ -65,22 +65,22 @@ def cell_shapes(points: Array, nodes: int) -> tuple[Array, Array]:
 
 
 def gauss_square(n: int) -> tuple[Array, Array]:
-    """N x n Gauss points (n*n, 2) and weights on [-1, 1]^2."""
+    """Gauss points of the n x n rule, (n*n, 2), and their weights on [-1, 1]^2."""
     x, w = np.polynomial.legendre.leggauss(n)
     grid = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
     return grid, np.outer(w, w).ravel()
 
 
 def positions(nodes: Array, cells: Index, points: Array) -> Array:
-    """Positions (n_cells, n_points, 2) of local points of every cell."""
+    """Positions (n_cells, n_points, 2) of points with local coordinates ``points`` in every cell."""
     return np.asarray(np.einsum("qa,eai->eqi", cell_shapes(points, cells.shape[1])[0], nodes[cells]))
 
 
 def strain_operator(nodes: Array, cells: Index, points: Array) -> tuple[Array, Array, Array]:
-    """Constant map from nodal positions to strain at local points of every cell.
+    """Constant map from nodal positions to strains at local points of every cell.
 
-    Returns B (n_cells, n_points, 5, 2 n_nodes) so that B x are the five strains; the reference measure
-    2 pi R |dA/dxi| (n_cells, n_points) still to be weighted; and reference positions (n_cells, n_points, 2).
+    Returns B (n_cells, n_points, 5, 2 n_nodes) so that B x are the five strains; the reference measure 2 pi R |dA/dxi|
+    (n_cells, n_points), without quadrature weights; and reference positions (n_cells, n_points, 2).
     """
     value, local = cell_shapes(points, cells.shape[1])
     corners = nodes[cells]
@@ -99,7 +99,7 @@ def strain_operator(nodes: Array, cells: Index, points: Array) -> tuple[Array, A
 
 @dataclass(frozen=True)
 class IntegrationScheme:
-    """Integration of a cell: `gauss` points a side, and the modes on which J is averaged.
+    """Integration of a cell: `gauss` points per side, and number of modes on which J is averaged.
 
     pressure: 1 constant, 3 linear (1, xi, eta), 4 bilinear.  With 2 x 2 points and 4 modes J is taken point by point:
     uniformly reduced integration.
@@ -123,11 +123,11 @@ def pressure_modes(points: Array, measure: Array, count: int) -> Array:
 
 @dataclass(frozen=True)
 class TermState:
-    """A further part of the total energy at one set of positions: its energy, its gradient (size,), and its second
-    derivative as ``blocks`` of `SolidModel.faces.outer` (edges of the outer wall) and ``inner_blocks`` of
-    `SolidModel.faces.inner` (edges of the inner wall), (n_edges, 2 n, 2 n) each, and ``fold_blocks`` of
-    `SolidModel.faces.fold` (edges of the outer wall with the flange's top); ``around`` by displacements of the edges
-    of the outer wall around the axis, (n_edges, n, n). None if it has none."""
+    """An added part of the total energy at one set of positions: energy, gradient (size,), and second derivatives, None
+    where the part has none. ``blocks`` belong to `SolidModel.faces.outer` (edges of the outer wall), ``inner_blocks``
+    to `SolidModel.faces.inner` (edges of the inner wall), (n_edges, 2 n, 2 n) each, and ``fold_blocks`` to
+    `SolidModel.faces.fold` (edges of the outer wall with the flange's top); ``around`` is by displacements of the edges
+    of the outer wall around the axis, (n_edges, n, n)."""
 
     energy: float
     gradient: Array
@@ -138,10 +138,10 @@ class TermState:
 
 
 class EnergyTerm(Protocol):
-    """Interface of an addition to the total energy of wall, filling and plate: the base below the wall, friction of one
-    step.
+    """Interface of an added part of the total energy of wall, filling and plate: base below the wall, or friction in
+    one step.
 
-    ``noise`` is the force that rounding leaves in its gradient.
+    ``noise`` is the error that rounding leaves in the gradient, as a force.
     """
 
     noise: float
@@ -154,7 +154,7 @@ class EnergyTerm(Protocol):
 class Cavity:
     """V = pi int r^2 dz along the wetted wall from base to apex; r^2 z' is integrated exactly.
 
-    It is the volume above the plane through the line's first point; a flat floor below adds a constant only.
+    It is the volume above the plane through the first point of the line; a flat floor below adds only a constant.
     """
 
     def __init__(self, edges: Index) -> None:
@@ -166,7 +166,7 @@ class Cavity:
         self._form = np.pi * np.einsum("q,qi,qj,qk->ijk", w, value, value, slope).reshape(n * n, n)
 
     def _parts(self, nodes: Array) -> tuple[Array, Array, Array, Array]:
-        """r, z of the edges and the form contracted with z: (n_edges, n), (n_edges, n), (n_edges, n, n)."""
+        """Edge coordinates r and z, form contracted with z, and its product with r."""
         line = nodes[self.edges]
         r, z = line[..., 0], line[..., 1]
         by_z = (z @ self._form.T).reshape(-1, self._n, self._n)
@@ -178,7 +178,7 @@ class Cavity:
         return float(np.vdot(r, half))
 
     def gradient(self, nodes: Array) -> tuple[float, Array]:
-        """Volume and its derivative by edge positions, (n_edges, 2 n), interleaved r, z."""
+        """Volume and its derivative by edge positions, (n_edges, 2 n), r and z interleaved."""
         r, _, _, half = self._parts(nodes)
         out = np.empty((r.shape[0], 2 * self._n))
         out[:, RADIAL] = 2.0 * half
@@ -186,7 +186,7 @@ class Cavity:
         return float(np.vdot(r, half)), out
 
     def hessian(self, nodes: Array) -> Array:
-        """Second derivative by edge positions, symmetric; (n_edges, 2 n, 2 n)."""
+        """Second derivative of the volume by edge positions, symmetric; (n_edges, 2 n, 2 n)."""
         r, _, by_z, _ = self._parts(nodes)
         out = np.zeros((r.shape[0], 2 * self._n, 2 * self._n))
         mixed = 2.0 * (r @ self._form.reshape(self._n, -1)).reshape(-1, self._n, self._n)
@@ -197,7 +197,7 @@ class Cavity:
 
 
 class FillingState(NamedTuple):
-    """Potential, gauge pressure and -dp/dV at one volume."""
+    """Potential, gauge pressure and rate -dp/dV at one volume."""
 
     energy: float
     pressure: float
@@ -205,7 +205,7 @@ class FillingState(NamedTuple):
 
 
 class Supply(Protocol):
-    """Anything with a potential of the cavity volume."""
+    """A filling with a potential of the cavity volume."""
 
     def at(self, volume: float) -> FillingState | None:
         """Potential, pressure and rate, or None if the volume is impossible."""
@@ -227,8 +227,8 @@ class Regulator:
 class Liquid:
     """A nearly incompressible filling of rest volume `target`: volume control as an energy.
 
-    The pressure is what it takes, `stiffness` only sets how far V may fall short of the target; every (p, V) it
-    yields is an exact point of the pressure-volume curve.
+    The pressure follows from equilibrium; `stiffness` only sets how far V falls short of the target. Every resulting
+    (p, V) is an exact point of the pressure-volume curve.
     """
 
     target: float

@@ -1,7 +1,7 @@
-"""Coulomb friction between the outer wall and what presses it, by return mapping at the contact's quadrature points.
+"""Coulomb friction between outer wall and pressing object, by return mapping at the quadrature points of the contact.
 
-A point that touches is held by a stiff spring along the object's surface, from the place where it first touched; the
-spring's traction never exceeds the coefficient times the normal traction: beyond, its place of rest slides along.
+A touching point is held by a stiff spring along the object's surface, from the place where it first touched. The
+spring's traction is limited to the coefficient times the normal traction: beyond, the place of rest slides along.
 Tractions are per area at rest, in mu; lengths in R0.
 """
 
@@ -17,7 +17,7 @@ from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.object_contact import Contact, ContactEvaluation
 
-#: Stiffness along the surface over that of the contact.
+#: Stiffness of the friction springs over that of the normal contact.
 TANGENTIAL = 0.1
 
 
@@ -26,8 +26,8 @@ class FrictionPoints:
     """Friction at the quadrature points of the outer wall in one position of the wall, (n_edges, n_points) each.
 
     traction: along the object's surface, per area at rest, in mu; positive where it pulls the wall towards the axis.
-    cap: greatest size of the traction, 0 without contact. slope: of the object's surface, dz/dr. slip: distance along
-    the surface from the place of rest, in R0. sticking, sliding: True for points that touch and stick, or slide.
+    cap: greatest magnitude of the traction, 0 without contact. slope: dz/dr of the object's surface. slip: distance
+    along the surface from the place of rest, in R0. sticking, sliding: masks of touching points that stick, or slide.
     """
 
     traction: Array
@@ -39,12 +39,12 @@ class FrictionPoints:
 
     @property
     def secant(self) -> Array:
-        """Length along the surface over that along the radius."""
+        """Ratio of length along the surface to length along the radius."""
         return np.hypot(1.0, self.slope)
 
     @property
     def pull(self) -> Array:
-        """Size of the traction."""
+        """Magnitude of the traction."""
         return np.abs(self.traction)
 
     @property
@@ -59,8 +59,8 @@ class FrictionPoints:
 
 @dataclass(frozen=True)
 class FrictionStep:
-    """Friction while the object stands at one place: ``rest`` (n_edges, n_points) are the radii at which the points of
-    the wall rest or first touch; ``stiffness`` in mu/R0."""
+    """Friction for one position of the object: ``rest`` (n_edges, n_points) are the radii at which the points of the
+    wall rest or first touch; ``stiffness`` in mu/R0."""
 
     contact: Contact
     plate: Indenter
@@ -69,7 +69,7 @@ class FrictionStep:
     stiffness: float
 
     def slip(self, x: Array, slope: Array) -> Array:
-        """Distance of the points from their places of rest along tangents of given slopes."""
+        """Displacement of the points from their places of rest, along tangents of given slopes."""
         r, z = self.contact.positions(x)
         height = self.plate.underside(self.rest)[0]
         return np.asarray((r - self.rest + slope * (z - height)) / np.hypot(1.0, slope))
@@ -86,7 +86,7 @@ class FrictionStep:
         return out
 
     def rate(self, sign: Array, slope: Array) -> Array:
-        """Traction of sliding points, of which ``sign`` is not 0, by the vertical traction."""
+        """Traction of sliding points per vertical traction; ``sign``: direction of sliding, 0 for other points."""
         out = np.zeros_like(sign)
         np.multiply(self.coefficient, sign * np.hypot(1.0, slope), out=out, where=sign != 0.0)
         return out
@@ -119,14 +119,14 @@ class FrictionStep:
         )
 
     def around(self, sticking: Flags) -> Array:
-        """Stiffness of the sticking points around the axis, by edges (n_edges, n, n): the springs hold in all
-        directions of the surface. Points that slide are taken as free around the axis."""
+        """Stiffness of the sticking points around the axis, by edges (n_edges, n, n): the springs act in all directions
+        of the surface. Sliding points are taken as free around the axis."""
         share = np.where(sticking, self.stiffness, 0.0)
         return self.contact.blocks([(RADIAL, RADIAL, share)])[:, RADIAL, RADIAL]
 
     def slide(self, traction: Array, touch: ContactEvaluation, sign: Array) -> Array | None:
-        """Unsymmetric part of the stiffness, (n_edges, 2 n, 2 n), or None: the traction of sliding points (``sign``,
-        else 0) follows the normal one, and its direction follows the surface."""
+        """Unsymmetric part of the stiffness, (n_edges, 2 n, 2 n), or None: the traction of sliding points (nonzero
+        ``sign``) follows the normal traction, and its direction follows the surface."""
         slope = touch.slope
         if not slope.any():
             by_z = self.rate(sign, slope) * self.contact.stiffness
@@ -146,23 +146,23 @@ class FrictionStep:
         )
 
     def stored(self, points: FrictionPoints) -> float:
-        """Energy in the springs of the points that touch."""
+        """Energy stored in the springs."""
         return float(np.vdot(self.contact.weight, points.pull**2)) / (2.0 * self.stiffness)
 
     def held(self, solid: SolidModel, points: FrictionPoints) -> FrictionTerm:
-        """Friction with the largest tractions and the slopes of given points."""
+        """Friction term with the traction limits and slopes of given points held."""
         return FrictionTerm(solid, self, points)
 
     def moved(self, x: Array, points: FrictionPoints) -> Array:
-        """Radii at which the points rest after the step; NaN if a point does not touch."""
+        """Radii at which the points rest after the step; NaN without contact."""
         r, _ = self.contact.positions(x)
         slid = r - points.traction / self.stiffness / points.secant
         return np.where(points.sliding, slid, np.where(points.sticking, self.rest, np.nan))
 
 
 class FrictionTerm:
-    """Friction with the largest tractions (``cap``) and the slopes held: the pseudo-potential of a step, convex in
-    the slip; an `EnergyTerm`. Its gradient is that of friction where the held values are those of the positions."""
+    """Friction with the traction limits (``cap``) and the slopes held: the pseudo-potential of a step, convex in the
+    slip; an `EnergyTerm`. Its gradient is that of friction if the held values belong to the positions."""
 
     def __init__(self, solid: SolidModel, step: FrictionStep, held: FrictionPoints) -> None:
         self.solid, self.step, self.held = solid, step, held
@@ -170,7 +170,7 @@ class FrictionTerm:
         self.noise = solid.contact.noise * step.stiffness / solid.contact.stiffness
 
     def energy(self, x: Array) -> float:
-        """Energy stored in the springs, and traction times slip beyond their largest load."""
+        """Energy stored in the springs, plus the limited traction times the slip beyond the limit."""
         trial = self.step.stiffness * self.step.slip(x, self.held.slope)
         bears = np.clip(trial, -self.held.cap, self.held.cap)
         return float(np.vdot(self.solid.contact.weight, bears * (trial - 0.5 * bears))) / self.step.stiffness
@@ -187,8 +187,8 @@ class FrictionTerm:
 
 @dataclass(frozen=True)
 class FrictionState:
-    """Friction at an accepted state: its points, the radii (n_edges, n_points) at which they rest (NaN: not touching),
-    the stiffness of the springs in mu/R0, and what the step to here stored in them and dissipated, in mu R0^3."""
+    """Friction at an accepted state: its points, the radii (n_edges, n_points) at which they rest (NaN without
+    contact), spring stiffness in mu/R0, and the energy stored and dissipated in the step that led here, in mu R0^3."""
 
     points: FrictionPoints
     rest: Array
@@ -198,19 +198,19 @@ class FrictionState:
 
     @classmethod
     def after(cls, before: FrictionState | None, step: FrictionStep, x: Array, points: FrictionPoints) -> FrictionState:
-        """The state a step ends in at positions x (n_nodes, 2)."""
+        """Friction at the end of a step at positions x (n_nodes, 2)."""
         return cls(
             points, step.moved(x, points), step.stiffness, step.stored(points), _dissipated(before, step, points)
         )
 
 
 def _dissipated(before: FrictionState | None, step: FrictionStep, points: FrictionPoints) -> float:
-    """Work of the tractions over the sliding of a step, by the trapezium.
+    """Work of the tractions over the sliding of a step, by the trapezium rule.
 
-    A point that stuck slides from where its traction has risen, or the largest one has fallen, to the other. A point
-    that slid and is released does so in the middle of the step on average. A point that stuck and is released gives up
-    half its traction times its path from where it rested, as when a crack opens by that point (Rybicki & Kanninen 1977,
-    Eng. Fract. Mech. 9, 931, doi:10.1016/0013-7944(77)90013-3): what its spring held is part of that.
+    Sliding begins at the last traction, or at the lesser of last and present limit if that is more, and ends at the
+    present limit. A point that slid and is released is taken to leave in the middle of the step. A point that stuck and
+    is released loses half its traction times its path from its rest, as when a crack opens by that point (Rybicki &
+    Kanninen 1977, Eng. Fract. Mech. 9, 931, doi:10.1016/0013-7944(77)90013-3), with the energy of its spring included.
     """
     weight = step.contact.weight
     slid = points.sliding

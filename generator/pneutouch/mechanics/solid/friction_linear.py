@@ -1,15 +1,12 @@
-"""Contact and friction linear in a displacement: the model in which a Newton step is settled.
+"""Contact and friction, linear in a displacement: the model in which a Newton step is settled.
 
-State of the points (touching, sticking, sliding) in the linear model of a step with friction, found one point after
-another.
+It gives the status of the wall's points (touching, sticking, sliding) in the linear model of a step, and their
+tractions. `PiecewiseLine` finds the status one point after another.
 
-The tractions are continuous and linear in pieces. From the start the residual of the model shrinks evenly along a
+The tractions are continuous and piecewise linear. From the start the residual of the model shrinks linearly along a
 straight line in every piece; where the line leaves a piece, one point touches, leaves, sticks or slides, and the
-stiffness changes by one rank (Katzenelson 1965, Bell Syst. Tech. J. 44, 1605,
-doi:10.1002/j.1538-7305.1965.tb04195.x). All is kept by points: how their tractions follow from loads on them.
-
-State of the wall's points (touching, sticking, sliding) in the linear model of a step with friction, and their
-tractions.
+stiffness has a rank-one change (Katzenelson 1965, Bell Syst. Tech. J. 44, 1605,
+doi:10.1002/j.1538-7305.1965.tb04195.x). Only the points are stored: the response of their tractions to loads on them.
 """
 
 from __future__ import annotations
@@ -29,7 +26,7 @@ from pneutouch.mechanics.solid.object_contact import ContactEvaluation
 
 @dataclass(frozen=True)
 class PointStatus:
-    """touching: points in contact.  bearing: those that friction may hold.  sign: of the slip of those that slide."""
+    """Status of points: touching; bearing (friction may hold them); sign (of the slip of sliding points, else 0)."""
 
     touching: Flags
     bearing: Flags
@@ -37,7 +34,7 @@ class PointStatus:
 
     @property
     def sticking(self) -> Flags:
-        """Points that friction holds."""
+        """Mask of the points that stick."""
         return np.asarray(self.bearing & (self.sign == 0.0))
 
     @property
@@ -46,9 +43,9 @@ class PointStatus:
         return np.flatnonzero(self.touching.any(axis=tuple(range(1, self.touching.ndim))))
 
     def then(self, new: PointStatus) -> PointStatus:
-        """The status to try after this one led to a new one.
+        """Status to try after this one led to another.
 
-        A point that would slide in reverse sticks first: else points of one sign would turn over and back.
+        A point that would reverse its sliding sticks first: otherwise points of one sign would alternate for ever.
         """
         return replace(new, sign=np.where(new.sign == -self.sign, 0.0, new.sign))
 
@@ -60,13 +57,13 @@ class PointStatus:
 
 @dataclass(frozen=True)
 class PointTractions:
-    """Tractions that the linear model has before they are cut: normal, and along the surface; (n_edges, n_points)."""
+    """Tractions of the linear model before they are limited: normal, and along the surface; (n_edges, n_points)."""
 
     normal: Array
     trial: Array
 
     def towards(self, other: PointTractions, share: float | Array) -> PointTractions:
-        """Tractions at a share of the change to others, or at shares (n,), along a first axis."""
+        """Tractions at a share of the way to others, or at shares (n,), which become the first axis."""
         return PointTractions(_between(self.normal, other.normal, share), _between(self.trial, other.trial, share))
 
 
@@ -76,23 +73,23 @@ def _between(here: Array, there: Array, share: float | Array) -> Array:
 
 
 def touched(tractions: PointTractions, before: int | None = None) -> Index:
-    """Edges of the outer wall, of those before a number, with points in contact."""
+    """Edges of the outer wall with points in contact, among those before a number."""
     normal = tractions.normal[:before]
     return np.flatnonzero((normal > 0.0).any(axis=tuple(range(1, normal.ndim))))
 
 
-#: Changes of a point on average, beyond which the search is given up.
+#: Average number of changes per point beyond which the search is given up.
 _MOST = 3
-#: A change that leaves less of the stiffness than this share turns the line back.
+#: A change that leaves less than this share of the stiffness turns the line back.
 _FLAT = 1.0e-9
 
 
 class PiecewiseLine:
     """The line from the tractions ``begun`` towards ``ended``, those of the linear model of a status; points (n,) each.
 
-    response: (2 n, 2 n) how the tractions, normal first, follow from loads of unit tractions, that status kept; it is
-    overwritten.  areas: (2, n) of a point over the stiffness of its springs, along the normal and the surface.  grip:
-    (n,) the largest traction along the surface over the normal one, or that traction itself where ``held``.
+    response: (2 n, 2 n) change of the tractions, normal first, by loads of unit tractions under that status; it is
+    overwritten.  areas: (2, n) area of a point over the stiffness of its springs, normal and along the surface. grip:
+    (n,) limit of the traction along the surface over the normal traction, or the limit itself if ``held``.
     """
 
     def __init__(
@@ -110,14 +107,14 @@ class PiecewiseLine:
         self._move -= self._at
         n = grip.size
         self._touching, self._bearing, self._sign = status.touching.copy(), status.bearing.copy(), status.sign.copy()
-        # Three margins a point, each (by the normal traction, by the trial one, constant): the piece ends where one of
-        # them falls to nothing.
+        # Three margins for each point, given by coefficients of the normal and the trial traction and a constant: the
+        # piece ends where a margin falls to zero.
         self._by_normal, self._by_trial, self._free = np.zeros((3, n)), np.zeros((3, n)), np.full((3, n), np.inf)
         for j in range(n):
             self._bound(j)
 
     def status(self) -> PointStatus | None:
-        """The status at the end of the line; None if it turns back or goes through too many pieces."""
+        """Status at the end of the line; None if the line turns back or passes too many pieces."""
         n = self._grip.size
         for _ in range(_MOST * n):
             margin = self._by_normal * self._at[:n] + self._by_trial * self._at[n:] + self._free
@@ -135,7 +132,7 @@ class PiecewiseLine:
         return None
 
     def _cross(self, side: int, j: int) -> bool:
-        """Go into the piece beyond a margin of a point; False where the line turns back there."""
+        """Enter the piece beyond a margin of a point; False if the line turns back there."""
         n = self._grip.size
         trial, grip, held = float(self._at[n + j]), float(self._grip[j]), self._held
         across, along = self._areas[:, j]
@@ -172,7 +169,7 @@ class PiecewiseLine:
         return True
 
     def _bound(self, j: int) -> None:
-        """The margins of a point in its piece."""
+        """Set the margins of a point in its present piece."""
         grip, held, sign = float(self._grip[j]), self._held, float(self._sign[j])
         touching, bearing = bool(self._touching[j]), bool(self._bearing[j])
         sticks = bearing and sign == 0.0
@@ -191,11 +188,11 @@ class PiecewiseLine:
 
 @dataclass(frozen=True)
 class LinearContact:
-    """Contact and friction linear in a displacement from one set of positions.
+    """Contact and friction, linear in a displacement from one set of positions.
 
-    held: the largest tractions along the surface stay those of the points there; the model then has an energy.  kept:
-    signs of slip (n_edges, n_points), 0 for points that stick, which all points keep, however large their tractions.
-    unsettled: a step whose points are not settled will do, as the next one starts from the tractions that it leads to.
+    held: the limits of the tractions along the surface stay at their present values; the model then has an energy.
+    kept: signs of slip (n_edges, n_points), 0 for sticking points, that all points keep at any traction. unsettled: a
+    step with unsettled points is accepted, because the next step starts from the tractions it leads to.
     """
 
     solid: SolidModel
@@ -205,12 +202,12 @@ class LinearContact:
     held: bool = False
     kept: Array | None = None
     unsettled: bool = False
-    #: Whether the tractions are linear in pieces of the displacement.
+    #: True if the tractions are piecewise linear in the displacement.
     IN_PIECES: ClassVar[bool] = True
 
     @cached_property
     def _grip(self) -> Array:
-        """Largest traction along the surface over the normal one."""
+        """Limit of the traction along the surface over the normal traction."""
         return self.step.coefficient * self.points.secant
 
     def at(self, move: Array) -> PointTractions:
@@ -223,8 +220,8 @@ class LinearContact:
         )
 
     def rows(self, begin: int) -> Array:
-        """Rates of the tractions of the points of edges from one on, normal first, by the unknowns of these edges:
-        (2 n, n_edges, 2 n_nodes), each point with rates by its own edge alone."""
+        """Rates of the tractions, normal first, of the points of the edges from ``begin`` on, by the unknowns of these
+        edges: (2 n, n_edges, 2 n_nodes); each point depends only on its own edge."""
         contact, slope, secant = self.solid.contact, self.touch.slope[begin:], self.points.secant[begin:]
         n_edges, n_points = slope.shape
         out = np.zeros((2, n_edges, n_points, n_edges, 2 * contact.shape.shape[1]))
@@ -242,8 +239,8 @@ class LinearContact:
     def line(
         self, status: PointStatus, begun: PointTractions, ended: PointTractions, response: Array, edge: int
     ) -> PiecewiseLine:
-        """The line from tractions ``begun`` towards those ``ended`` that a status leads to, of the points of the edges
-        from one on; response: (2 n, 2 n) of their tractions to loads of `rows`, with that status."""
+        """Line from tractions ``begun`` towards the tractions ``ended`` that a status leads to, for the points of the
+        edges from ``edge`` on; response: (2 n, 2 n) of their tractions to loads of `rows`, with that status."""
         local = PointStatus(status.touching[edge:].ravel(), status.bearing[edge:].ravel(), status.sign[edge:].ravel())
         first, last = (PointTractions(at.normal[edge:].ravel(), at.trial[edge:].ravel()) for at in (begun, ended))
         areas = self._weight[edge:].ravel() / np.array([[self.solid.contact.stiffness], [self.step.stiffness]])
@@ -254,11 +251,11 @@ class LinearContact:
         return self.points.cap if self.held else self._grip * np.maximum(normal, 0.0)
 
     def begins(self, still: PointTractions) -> PointStatus:
-        """The status that is tried first, where a step begins with tractions ``still``."""
+        """Status to try first in a step that begins with tractions ``still``."""
         return self.status(still)
 
     def status(self, at: PointTractions) -> PointStatus:
-        """State of the points: those that touch, stick and slide."""
+        """Status of the points at given tractions: touching, sticking or sliding."""
         touching = at.normal > 0.0
         if self.kept is not None:
             return PointStatus(touching, touching, np.where(touching, self.kept, 0.0))
@@ -267,30 +264,30 @@ class LinearContact:
         return PointStatus(touching, bearing, np.where(bearing & (np.abs(at.trial) > cap), np.sign(at.trial), 0.0))
 
     def under(self, status: PointStatus, at: PointTractions) -> PointTractions:
-        """Tractions of points that keep a status."""
+        """Tractions of points under a fixed status."""
         normal = np.where(status.touching, at.normal, 0.0)
         slides = status.sign * (self.points.cap if self.held else self._grip * normal)
         return PointTractions(normal, np.where(status.sticking, at.trial, slides))
 
     def force(self, tractions: PointTractions) -> Array:
-        """Gradient (size,) of tractions."""
+        """Gradient (size,) of the energy for given tractions."""
         slope = self.touch.slope
         across, along = self.solid.contact.force(tractions.normal, slope), self.step.force(tractions.trial, slope)
         return self.solid.faces.push(across + along)
 
     def blocks(self, status: PointStatus, begun: PointTractions) -> tuple[Array, Array | None]:
-        """Stiffness of points that keep a status, symmetric and not; ``begun``: their tractions without a move."""
+        """Symmetric and unsymmetric stiffness under a fixed status; ``begun`` are the tractions before a move."""
         slope = self.touch.slope
         both = self.solid.contact.hessian(self.touch, status.touching) + self.step.stick(status.sticking, slope)
         return both, None if self.held else self.step.slide(begun.trial, self.touch, status.sign)
 
     def work(self, tractions: PointTractions, begun: PointTractions, ended: PointTractions) -> float:
-        """Work of tractions over the displacement between two others."""
+        """Work of tractions over the displacement from one pair of tractions to another."""
         normal = np.vdot(self._weight * tractions.normal, ended.normal - begun.normal) / self.solid.contact.stiffness
         return float(normal + np.vdot(self._weight * tractions.trial, ended.trial - begun.trial) / self.step.stiffness)
 
     def works(self, begun: PointTractions, ended: PointTractions, shares: Array) -> Array:
-        """Work over the displacement between two tractions of those that the points bear at shares of it (n,), (n,)."""
+        """Work (n,), over the displacement between two tractions, of the limited tractions at shares (n,) of it."""
         change = begun.towards(ended, shares)
         normal = np.maximum(change.normal, 0.0)
         cap = self._cap(normal)

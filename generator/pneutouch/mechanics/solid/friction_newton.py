@@ -1,23 +1,23 @@
 """Newton's method for one step of a contact with friction.
 
 The tangent is the consistent one, which is not symmetric where points slide: the paper's press at coefficient 0.3 takes
-59 Newton steps with it (61 without friction), and with the symmetric tangent of held normal tractions it has not come
-half way after 739. The line search goes by the energy with the largest tractions held as they are where it begins
+59 Newton steps with it (61 without friction); with the symmetric tangent for held normal tractions it is not half way
+after 739. The line search uses the energy with the traction limits held at their values at its start
 (`friction.FrictionTerm`), whose gradient there is the residual.
 
-One Newton step of a contact with friction: which points touch, stick and slide is settled inside the linear model.
+In each Newton step the status of the points (touching, sticking, sliding) is settled inside the linear model.
 
-Every round solves the linear model of one status of the points. Where that leads to another status, the round goes only
-so far as the work of the model's residual along its move falls (Matthies & Strang 1979, Int. J. Numer. Methods Eng. 14,
-1613, there for whole steps): without this, points at the edge of the contact come and go in turn for ever. The unknowns
-of the wall before the contact do not take part in it: they are eliminated once.
+Every round solves the linear model for one status. If that leads to another status, the round goes only as far as the
+work of the model's residual along its move falls (Matthies & Strang 1979, Int. J. Numer. Methods Eng. 14, 1613, there
+for whole steps): otherwise points at the edge of the contact would come and go in turn for ever. The unknowns of the
+wall away from the contact do not take part: they are eliminated once.
 
-Where a few rounds do not settle it, it is settled one point after another (`friction_pivots`). In thin walls, whose
-points between the centre and the edge of the contact bear next to nothing and come and go, that saves half the rounds.
+If a few rounds do not settle it, `friction_linear.PiecewiseLine` settles it one point after another. In thin walls,
+whose points between centre and edge of the contact bear almost nothing and come and go, that saves half the rounds.
 
-The first step from an extrapolated state has its points stick and slide as they did at the state before: only which
-points touch is settled. The tractions at extrapolated positions do not show what slides, and points that were
-settled by them turned over again in the next step: in 120 random presses this saves a third of the rounds.
+In the first step from an extrapolated state the points stick and slide as they did at the state before: only touching
+is settled. The tractions at extrapolated positions do not show which points slide, and points settled by them changed
+again in the next step: in 120 random presses this saves a third of the rounds.
 """
 
 from __future__ import annotations
@@ -45,25 +45,25 @@ from pneutouch.mechanics.solid.newton import (
 )
 from pneutouch.mechanics.solid.object_contact import ContactEvaluation
 
-#: Rounds in which the status of the points is settled.
+#: Greatest number of rounds in which the status of the points is settled.
 ROUNDS = 30
-#: Rounds after which the rest is settled one point after another.
+#: Number of rounds after which the status is settled one point after another.
 _BEFORE_PIVOTS = 3
-#: Rounds in which it is settled only which points touch; the next step goes on from there.
+#: Number of rounds in which only touching is settled; the next step goes on from there.
 _KEPT_ROUNDS = 10
-#: Edges next to the contact that the eliminated part keeps away from.
+#: Number of edges between the contact and the eliminated part.
 _MARGIN = 2
-#: A round goes to its end where the work of the residual at its end is no more than this share of that it begins with.
+#: A round is taken whole if the work of the residual at its end is at most this share of that at its start.
 _SEARCHED = 0.1
-#: Shares of a round at which it is looked at.
+#: Shares of a round at which the work is evaluated.
 _SHARES = np.concatenate([[0.0], np.geomspace(1.0e-3, 0.1, 9), np.linspace(0.15, 1.0, 18)])
 _WHOLE = np.array([0.0, 1.0])
 
 
 @dataclass(frozen=True)
 class _Place:
-    """Current place of the rounds: trailing unknowns and tractions there. The residual but for the contact's is a share
-    of that without a move, less the force of ``balanced``."""
+    """Present point of the rounds: trailing unknowns, and tractions. The residual without contact is the share
+    ``begun`` of its value before a move, less the force of ``balanced``."""
 
     unknowns: Array
     at: PointTractions
@@ -72,7 +72,7 @@ class _Place:
 
 
 class StepSettling:
-    """Settles one Newton step from a state; ``band``: the stiffness without contact, which this may raise."""
+    """Settles one Newton step from a state; ``band``: stiffness without contact, whose diagonal may be raised."""
 
     def __init__(self, sides: OneSidedBlocks, state: SolverState, band: Array, contact: LinearContact) -> None:
         self._sides, self._state, self._band, self._contact = sides, state, band, contact
@@ -83,8 +83,8 @@ class StepSettling:
     def step(self) -> Array | None:
         """Newton step (size,); None if the linear model is not definite or its points do not settle.
 
-        With held tractions there always is one: the diagonal is raised until the model is definite, and a step that is
-        not settled lowers its energy all the same. Where the contact allows it, one that is not settled will do.
+        With held limits there always is a step: the diagonal is raised until the model is definite, and even an
+        unsettled step lowers the energy. If the contact has ``unsettled``, an unsettled step is accepted, too.
         """
         touching = np.concatenate([touched(self._still), self._first.edges])
         edge = int(touching.min()) if touching.size else self._still.normal.shape[0] - 1
@@ -101,7 +101,7 @@ class StepSettling:
             edge = int(met[0])
 
     def _settle(self, edge: int) -> Array | None:
-        """A step with the edges before one free of contact; None also where the band was raised."""
+        """Step with the edges before ``edge`` free of contact; None also if the band was raised."""
         first = self._sides.first_unknown(edge)
         contact, system = self._contact, ContactSystem(self._sides, self._band, self._state, self._state.inner, first)
         none = PointTractions(np.zeros_like(self._still.normal), np.zeros_like(self._still.trial))
@@ -137,8 +137,8 @@ class StepSettling:
     def _settled(
         self, system: ContactSystem, edge: int, status: PointStatus, after: PointTractions
     ) -> PointStatus | None:
-        """The status that is settled one point after another from the start, where a status led to tractions ``after``;
-        None if none is settled."""
+        """Status settled one point after another from the start of the step, given a status that led to tractions
+        ``after``; None if that fails."""
         contact = self._contact
         both, one_sided = contact.blocks(status, contact.under(status, self._still))
         response = system.response(both if one_sided is None else both + one_sided, contact.rows(edge))
@@ -155,7 +155,7 @@ class StepSettling:
         return whole
 
     def _solve(self, system: ContactSystem, status: PointStatus, first_round: bool) -> Array | None:
-        """The linear model of one status; None if it is not definite, the band then raised for another try."""
+        """Solution of the linear model for one status; None, with the band raised for another try, if not definite."""
         begun = self._contact.under(status, self._still)
         both, one_sided = self._contact.blocks(status, begun)
         push = self._contact.force(begun)
@@ -173,7 +173,7 @@ class StepSettling:
         return system.solve(push, both if one_sided is None else both + one_sided)
 
     def _advanced(self, system: ContactSystem, here: _Place, there: _Place) -> tuple[_Place, bool]:
-        """Place towards the end of a round up to which the work of the residual falls, and whether that is its end."""
+        """Point towards the end of a round up to which the work of the residual falls, and True if that is the end."""
         contact, move = self._contact, there.unknowns - here.unknowns
         begun = here.begun * float(move @ system.begun) - contact.work(here.balanced, here.at, there.at)
         ended = -contact.work(there.balanced, here.at, there.at)
@@ -191,23 +191,23 @@ class StepSettling:
         ), False
 
     def _trailing(self, unknowns: Array) -> Array:
-        """Nodal displacement (n_nodes, 2) of trailing unknowns, the others at rest."""
+        """Nodal displacement (n_nodes, 2) of the trailing unknowns, with all others fixed."""
         whole = np.zeros(self._solid.size)
         whole[-unknowns.size :] = unknowns
         return self._solid.expand(whole)
 
 
 _MOST = 24
-#: A full step that leaves no more than this share of the residual is taken without a search. The energy with the
-#: largest tractions held is not that of points that slide: by it alone, steps next to a solution were cut by half.
+#: A full step that leaves at most this share of the residual is taken without a search. The energy with held traction
+#: limits is not that of sliding points: searching by it alone halved steps close to a solution.
 _BALANCES = 0.5
-#: Rounds in which is settled which points slide on.
+#: Number of rounds in which it is settled which points keep sliding.
 SETTLING = 6
 
 
 @dataclass(frozen=True)
 class HeldState:
-    """A state of the scene with friction at its points; residual: of both (size,); scale: of the forces in it."""
+    """A state of the scene with friction at its points; residual: of both together (size,); scale: of its forces."""
 
     state: SolverState
     touch: ContactEvaluation
@@ -221,14 +221,14 @@ class HeldState:
 
 @dataclass(frozen=True)
 class SlidingResult:
-    """A converged state."""
+    """A converged state with friction, and the number of Newton steps."""
 
     held: HeldState
     iterations: int
 
 
 class FrictionSolver:
-    """Solves the steps of one scene's path; ``scene`` without friction."""
+    """Solver of the steps along the path of one scene; ``scene`` is without friction."""
 
     def __init__(self, scene: SolidScene, step: FrictionStep, sides: OneSidedBlocks) -> None:
         self.scene, self.step, self.sides = scene, step, sides
@@ -237,11 +237,11 @@ class FrictionSolver:
     def minimise(
         self, x: Array, kept: Array | None = None, max_iterations: int = _MOST
     ) -> SlidingResult | NewtonFailure:
-        """Equilibrium near x (n_nodes, 2). Returns the state, or why there is none; never an unconverged state.
+        """Equilibrium near x (n_nodes, 2): the converged state, or the failure with its reason.
 
-        More than ``max_iterations`` steps are taken only where each of them halves the residual.
+        More than ``max_iterations`` steps are taken only while each of them halves the residual.
 
-        kept: signs of slip (n_edges, n_points) of the points in the first step, see `friction_settling`.
+        kept: signs of slip (n_edges, n_points) of the points in the first step, see `LinearContact`.
         """
         state = evaluate(self.scene, x)
         if state is None:
@@ -268,7 +268,7 @@ class FrictionSolver:
             iteration += 1
 
     def hold(self, state: SolverState) -> HeldState:
-        """Friction at an evaluated state."""
+        """State with friction from an evaluated state."""
         assert state.touch is not None
         points = self.step.at(state.x, state.touch)
         term = self.step.held(self.solid, points)
@@ -295,14 +295,14 @@ class FrictionSolver:
         return LinearContact(self.solid, self.step, here.touch, here.points, held)
 
     def _held_step(self, here: HeldState) -> Array:
-        """Newton step (size,) of the energy with the largest tractions held: downhill always."""
+        """Newton step (size,) of the energy with the traction limits held: always a descent direction."""
         stick = here.term.at(here.state.x).blocks
         assert stick is not None
         band = self.solid.faces.outer.added(full_tangent(self.scene, here.state), [stick])
         return downhill(here.state, band, here.residual).step
 
     def reached(self, held: HeldState) -> ContactSystem:
-        """Wall, filling and the points that touch, without friction; unknowns that the contact does not reach are
+        """System of wall, filling and touching points, without friction; unknowns that the contact does not reach are
         eliminated."""
         touching = touched(PointTractions(held.touch.traction, held.points.traction))
         first = self.sides.first_unknown(int(touching[0])) if touching.size else 0
@@ -310,10 +310,10 @@ class FrictionSolver:
         return ContactSystem(self.sides, band, held.state, np.zeros(self.solid.size), first)
 
     def by_height(self, held: HeldState, system: ContactSystem, down: float) -> tuple[Array, float, float]:
-        """Rate of the unknowns (size,), force on the plate and its rate, by the plate's height where it goes on;
-        system: `reached` there; down: 1 while the plate comes down, -1 while it goes up.
+        """Rate of the unknowns (size,), force on the plate and its rate, by the plate's height along the path; system:
+        from `reached` at this state; down: 1 while the plate comes down, -1 while it goes up.
 
-        Points that slid in the step slide on where that lengthens their path, else they stick.
+        Points that slid in the step keep sliding if that lengthens their slip path; else they stick.
         """
         solid, step, touch, points = self.solid, self.step, held.touch, held.points
         contact, slope, secant = solid.contact, held.touch.slope, held.points.secant
@@ -342,8 +342,8 @@ class FrictionSolver:
         return move, force, float(np.vdot(contact.weight, pressing + along * slope / secant + turned))
 
     def _search(self, here: HeldState, step: Array, slope: float) -> HeldState | None:
-        """The state at the end of a step that balances the forces better, else of a line search by the energy with
-        friction held; None if no step lowers it."""
+        """State at the end of a full step if it balances the forces better, else from a line search by the energy with
+        friction held; None if no step lowers that energy."""
         move = self.solid.expand(step)
         state = here.state
         noise = 1.0e-13 * (abs(here.energy) + state.local.energy + self.solid.wall)

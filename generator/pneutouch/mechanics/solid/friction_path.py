@@ -1,5 +1,5 @@
-"""Follows a branch of equilibria while the plate comes down or goes up with friction: each accepted state keeps where
-its points stick, and every step, also one that is cut or repeated, starts from there."""
+"""Path following with friction while the plate comes down or goes up: each accepted state stores where its points
+stick, and every step, including a cut or repeated one, starts from there."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, NoConvergenceError, SolidScene, evaluate, stability
 
-#: Coefficient of a surface that grips. A point that is about to leave, with a hundredth of its tangential traction left
-#: as normal one, is let go evenly: under a boundless coefficient it would neither stay nor leave. The sensitivities of
-#: the paper's presses are those of a boundless one to five digits.
+#: Coefficient used for a surface that grips. A point about to leave, with a normal traction a hundredth of the
+#: tangential one, is released gradually: with an infinite coefficient it would neither stay nor leave. The paper's
+#: presses have the same sensitivities as with an infinite coefficient to five digits.
 GRIP = 100.0
 #: Share of its present speed that a free point keeps on average until it is held: next to the edge of a held zone the
-#: speed grows with the square root of the distance, as at the tip of a crack, and the distance closes evenly.
+#: speed grows with the square root of the distance, as at a crack tip, and the distance closes linearly.
 _KEPT_SPEED = 2.0 / 3.0
 
 
 class FrictionFollower(PathFollower):
-    """A `PathFollower` whose plate holds the wall by friction; ``coefficient`` inf for one that grips."""
+    """A `PathFollower` with friction between plate and wall; ``coefficient`` is inf for a surface that grips."""
 
     def __init__(self, solid: SolidModel, supply: Supply, plate: Indenter, start: Array, coefficient: float) -> None:
         self._sides = OneSidedBlocks(solid)
@@ -45,7 +45,7 @@ class FrictionFollower(PathFollower):
         return friction_plate_state(solver, solved, None)
 
     def feed(self, supply: Supply) -> None:
-        """Fill the cavity by another supply as `PathFollower` does; the points stay where they stick."""
+        """Replace the supply of the cavity as in `PathFollower`; the places of rest are unchanged."""
         super().feed(supply)
         self._bare = replace(self._bare, supply=supply)
 
@@ -55,13 +55,13 @@ class FrictionFollower(PathFollower):
         return FrictionSolver(replace(self._bare, plate=plate), step, self._sides)
 
     def turned(self) -> Self:
-        """A follower that starts at the newest state in the opposite direction, in which all points stick at first."""
+        """A follower that starts at the last state in the opposite direction, with all points sticking at first."""
         other = super().turned()
         other.path = [other._stuck()]
         return other
 
     def _stuck(self) -> PlateState:
-        """The newest state with the rates of a path on which all points that touch stick."""
+        """The last state with the rates of a path on which all touching points stick."""
         here = self.here
         assert here.friction is not None
         solver = self._solver(here.height, _known(here.friction.rest, self._places(here.state.x)))
@@ -76,16 +76,16 @@ class FrictionFollower(PathFollower):
         return replace(here, force=force, by_height=by_height, stiffness=stiffness, pressure_rate=rate)
 
     def _places(self, x: Array) -> Array:
-        """Radii at which the points of the wall now are, (n_edges, n_points)."""
+        """Radii of the points of the wall at positions x, (n_edges, n_points)."""
         return self._solid.contact.positions(x)[0]
 
     def solve(self, height: float) -> PlateState | NewtonFailure:
-        """State at `height` from the extrapolated path; not kept."""
+        """Solve for the state at `height` from the extrapolated path; the path is not changed."""
         solver = self._towards(height)
         kept = self._signs() if len(self.path) > 1 else None
         guess = self._extrapolate(height)
         solved = solver.minimise(guess, kept)
-        # From the newest state a step that failed otherwise fails too, in twice the time.
+        # If a step fails for another reason, it also fails from the last state, in twice the time.
         if isinstance(solved, NewtonFailure) and evaluate(solver.scene, guess) is None:
             solved = solver.minimise(self.here.state.x, kept)
         if isinstance(solved, NewtonFailure):
@@ -98,8 +98,8 @@ class FrictionFollower(PathFollower):
         return self._solver(height, _known(self.here.friction.rest, self._ahead(height)))
 
     def _signs(self) -> Array | None:
-        """Signs of slip (n_edges, n_points) of the newest state; points that do not touch have that of the next one
-        towards the clamp, and beyond the contact that of its edge."""
+        """Signs of slip (n_edges, n_points) at the last state; a point without contact takes the sign of the next
+        touching one towards the clamp, and beyond the contact that of its edge."""
         assert self.here.friction is not None
         points = self.here.friction.points
         sign = np.where(points.sliding, np.sign(points.slip), 0.0)
@@ -110,8 +110,8 @@ class FrictionFollower(PathFollower):
         return np.asarray(sign.ravel()[touching[np.maximum(last, 0)]].reshape(sign.shape))
 
     def _ahead(self, height: float) -> Array:
-        """Radii at which points are, or will touch: the gap before the contact's edge opens with the square of the
-        distance, so its root closes evenly, and the wall slows down evenly to where it is held."""
+        """Radii at which points are, or will touch. Before the contact's edge the gap opens with the square of the
+        distance, so its root closes linearly, and the wall slows down linearly to where it is held."""
         here = self.here
         assert here.state.touch is not None
         contact, touch = self._solid.contact, here.state.touch
@@ -125,22 +125,22 @@ class FrictionFollower(PathFollower):
 
 
 def approach(gap: Array, closing: Array) -> Array:
-    """Share of its present speed that a point keeps on average over a step, until it is held where its gap, which
-    changes by ``closing`` at its present speed, is closed before."""
+    """Share of its present speed that a point keeps on average over a step, in which it is held once its gap is closed;
+    ``closing`` is the change of the gap at its present speed."""
     closes = closing < 0.0
     share = np.where(closes, np.clip(-2.0 * gap / np.where(closes, closing, -1.0), 0.0, 1.0), 1.0)
     return np.asarray(_KEPT_SPEED * share)
 
 
 def _known(rest: Array, place: Array) -> Array:
-    """Places of points at rest; for points that have none, their places now."""
+    """Places of rest of the points; their given places where they have none."""
     return np.where(np.isnan(rest), place, rest)
 
 
 def friction_plate_state(
     solver: FrictionSolver, solved: SlidingResult, before: PlateState | None, down: float = 1.0
 ) -> PlateState:
-    """Force and the consistent tangent of the path at a converged state with friction."""
+    """Converged state with friction, its force, and the consistent tangent of the path."""
     held, step, points = solved.held, solver.step, solved.held.points
     past = None if before is None else before.friction
     friction = FrictionState.after(past, step, held.state.x, points)

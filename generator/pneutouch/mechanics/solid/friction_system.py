@@ -1,8 +1,8 @@
 """The wall and its filling without the contact, as a system of the unknowns that the contact can reach.
 
-Banded systems whose matrix is symmetric but for blocks of the outer wall.
+Its banded matrix is symmetric apart from blocks of the outer wall.
 
-A banded system whose leading unknowns are eliminated once, while blocks of the trailing ones change.
+The leading unknowns are eliminated once, while the blocks of the trailing unknowns change.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from pneutouch.mechanics.solid.newton import SolverState
 
 
 class OneSidedBlocks:
-    """Places of blocks (n_edges, 2 n, 2 n) of the outer wall in LAPACK's layouts for general banded matrices and for
-    symmetric ones, of all unknowns or of those from ``first`` on, where the blocks before are zero."""
+    """Places of blocks (n_edges, 2 n, 2 n) of the outer wall in LAPACK's layouts of general and of symmetric band
+    matrices, for all unknowns or for those from ``first`` on, if the blocks before are zero."""
 
     def __init__(self, solid: SolidModel) -> None:
         self._table = table = solid.dofs[solid.mesh.outer].reshape(len(solid.mesh.outer), -1)
@@ -36,12 +36,12 @@ class OneSidedBlocks:
         self._lower_places, self._lower_number = np.unique((i - j + j * (width + 1))[self._lower], return_inverse=True)
 
     def first_unknown(self, edge: int) -> int:
-        """First unknown of an edge of the outer wall and of those after it, towards the axis."""
+        """First unknown of an edge of the outer wall and of all edges after it, towards the axis."""
         rest = self._table[edge:]
         return int(rest[rest >= 0].min())
 
     def widened(self, band: Array) -> Array:
-        """A symmetric band in the layout for general ones, (size, 3 width + 1), with space for fill-in."""
+        """Symmetric band in the layout of general ones, (size, 3 width + 1), with space for fill-in."""
         width, n = self._width, band.shape[1]
         full = np.zeros((n, 3 * width + 1))
         full[:, 2 * width :] = band.T
@@ -50,11 +50,11 @@ class OneSidedBlocks:
         return full
 
     def solve(self, band: Array, blocks: Array, b: Array) -> Array:
-        """X of (symmetric band + blocks) x = b (size, n_rhs) by LU; not finite where the matrix is singular."""
+        """Solution x of (symmetric band + blocks) x = b (size, n_rhs) by LU; not finite if the matrix is singular."""
         return self.solve_widened(self.widened(band), blocks, b)
 
     def solve_widened(self, wide: Array, blocks: Array, b: Array, first: int = 0) -> Array:
-        """`solve` with a band as `widened` gives it, of the unknowns from ``first`` on."""
+        """`solve` with a band in the form of `widened`, for the unknowns from ``first`` on."""
         width = self._width
         full = self._with_blocks(wide, blocks, first)
         _, _, x, info = lapack.dgbsv(width, width, full.T, b, overwrite_ab=1)
@@ -67,8 +67,8 @@ class OneSidedBlocks:
         return full
 
     def response(self, wide: Array, blocks: Array, rows: Array, first: int) -> Array:
-        """R X^-1 R' (n, n) with X = symmetric band + blocks by LU, the band as `widened` gives it, of the unknowns from
-        ``first`` on; rows: R, (n, size). Not finite where X is singular."""
+        """Matrix R X^-1 R' (n, n) with X = symmetric band + blocks by LU, the band in the form of `widened`, for the
+        unknowns from ``first`` on; rows: R, (n, size). Not finite if X is singular."""
         width = self._width
         factor, pivots, info = lapack.dgbtrf(self._with_blocks(wide, blocks, first).T, width, width, overwrite_ab=1)
         if info:
@@ -76,17 +76,17 @@ class OneSidedBlocks:
         return np.asarray(rows @ lapack.dgbtrs(factor, width, width, rows.T, pivots)[0])
 
     def spread(self, rows: Array, first: int, size: int) -> Array:
-        """Rows (n, size) of the unknowns from ``first`` on, from rows by the unknowns of the last edges,
-        (n, n_edges, 2 n_nodes)."""
+        """Rows (n, size) for the unknowns from ``first`` on, from rows for the unknowns of the last edges, (n, n_edges,
+        2 n_nodes)."""
         table = self._table[-rows.shape[1] :]
         out = np.zeros((rows.shape[0], size + 1))
-        # The unknowns that are fixed, with number -1, have the last column, which is left out.
+        # Fixed unknowns, with number -1, are written to an extra last column, which is left out.
         for k, places in enumerate(np.where(table >= 0, table - first, size)):
             out[:, places] += rows[:, k]
         return out[:, :size]
 
     def solve_definite(self, band: Array, blocks: Array, b: Array, first: int = 0) -> Array | None:
-        """X of (band + symmetric blocks) x = b by Cholesky; None if the matrix is not positive definite."""
+        """Solution x of (band + symmetric blocks) x = b by Cholesky; None if the matrix is not positive definite."""
         full = band.T.copy()
         _add(
             full,
@@ -97,17 +97,17 @@ class OneSidedBlocks:
 
 
 def _add(matrix: Array, places: Index, values: Array) -> None:
-    """Add values at ascending places of the flat matrix, those before its beginning left out."""
+    """Add values at ascending places of the flat matrix; places before its start are skipped."""
     begin = int(np.searchsorted(places, 0))
     matrix.reshape(-1)[places[begin:]] += values[begin:]
 
 
 @dataclass(frozen=True)
 class LeadingElimination:
-    """Symmetric band [[A, B'], [B, D]] with its first unknowns, of which A is positive definite, eliminated.
+    """Symmetric band [[A, B'], [B, D]] with its first unknowns, whose A is positive definite, eliminated.
 
-    first: how many.  factor: of A, (width + 1, first).  across: what B holds, (width, width), between the last leading
-    and the first trailing unknowns.  rest: the trailing band D - B A^-1 B', (width + 1, size - first).
+    first: number of eliminated unknowns.  factor: of A, (width + 1, first).  across: nonzero part of B, (width, width),
+    between the last leading and first trailing unknowns.  rest: trailing band D - B A^-1 B', (width + 1, size - first).
     """
 
     first: int
@@ -117,7 +117,7 @@ class LeadingElimination:
 
     @classmethod
     def of(cls, band: Array, first: int) -> LeadingElimination:
-        """Eliminate ``first`` unknowns or fewer: none where they are too few to matter or A is not definite."""
+        """Eliminate at most ``first`` unknowns; none if they are too few to matter or A is not definite."""
         width, size = band.shape[0] - 1, band.shape[1]
         first = min(first, size - width)
         whole = cls(0, band[:, :0], np.zeros((width, width)), band)
@@ -137,12 +137,12 @@ class LeadingElimination:
         return cls(first, factor, across, rest)
 
     def leading(self, b: Array) -> Array:
-        """A^-1 b, (first, n_rhs)."""
+        """Product A^-1 b, (first, n_rhs)."""
         x: Array = lapack.dpbtrs(self.factor, b, lower=1)[0] if self.first else b
         return x
 
     def onto_rest(self, x: Array) -> Array:
-        """B x, (size - first, n_rhs), of leading unknowns x (first, n_rhs)."""
+        """Product B x, (size - first, n_rhs), for leading unknowns x (first, n_rhs)."""
         out = np.zeros((self.rest.shape[1], x.shape[1]))
         if self.first:
             width = self.across.shape[0]
@@ -150,7 +150,7 @@ class LeadingElimination:
         return out
 
     def onto_leading(self, x: Array) -> Array:
-        """B' x, (first, n_rhs), of trailing unknowns x (size - first, n_rhs)."""
+        """Product B' x, (first, n_rhs), for trailing unknowns x (size - first, n_rhs)."""
         out = np.zeros((self.first, x.shape[1]))
         if self.first:
             width = self.across.shape[0]
@@ -159,8 +159,8 @@ class LeadingElimination:
 
 
 class ContactSystem:
-    """K + c g g', K a band, g the gradient of the volume and c the stiffness of the filling, the unknowns before
-    ``first`` eliminated once; ``load`` (size,) are all forces but those of the contact."""
+    """System K + c g g' with a band K, the gradient g of the volume and the stiffness c of the filling; the unknowns
+    before ``first`` are eliminated once; ``load`` (size,) is the sum of all forces except those of the contact."""
 
     def __init__(self, sides: OneSidedBlocks, band: Array, state: SolverState, load: Array, first: int) -> None:
         self.sides, self.state = sides, state
@@ -180,7 +180,7 @@ class ContactSystem:
 
     @property
     def begun(self) -> Array:
-        """Residual of the trailing unknowns without a move, the leading ones in balance."""
+        """Residual of the trailing unknowns before a move, with the leading ones in equilibrium."""
         return self._rest[:, 0]
 
     def solve(self, push: Array, blocks: Array) -> Array:
@@ -188,12 +188,12 @@ class ContactSystem:
         return self._filled(self.sides.solve_widened(self._wide, blocks, self._load(push), self.first))
 
     def solve_definite(self, push: Array, blocks: Array) -> Array | None:
-        """Solution by Cholesky for symmetric blocks; None if the matrix is not positive definite."""
+        """Trailing unknowns by Cholesky, for symmetric blocks; None if the matrix is not positive definite."""
         solved = self.sides.solve_definite(self.fore.rest, blocks, self._load(push), self.first)
         return None if solved is None else self._filled(solved)
 
     def response(self, blocks: Array, rows: Array) -> Array:
-        """R M^-1 R' (n, n) with M the system and blocks; rows: R as `OneSidedBlocks.spread` takes them."""
+        """Matrix R M^-1 R' (n, n) with M the system plus blocks; rows: R in the form for `OneSidedBlocks.spread`."""
         g = self._rest[:, 1]
         both = np.concatenate([self.sides.spread(rows, self.first, g.size), g[None]])
         out = self.sides.response(self._wide, blocks, both, self.first)
@@ -201,7 +201,7 @@ class ContactSystem:
         return np.asarray(out[:-1, :-1] - gas * np.multiply.outer(out[:-1, -1], out[-1, :-1]))
 
     def definite(self, blocks: Array) -> bool:
-        """True if K with symmetric blocks is positive definite; False also if that is not known."""
+        """True if K with symmetric blocks is positive definite; False also if that is unknown."""
         # Leading unknowns were eliminated only where their own part is definite.
         return self.sides.solve_definite(self.fore.rest, blocks, self._rest, self.first) is not None
 
@@ -214,7 +214,7 @@ class ContactSystem:
         return np.asarray(plain - soft * (self._share * float(g @ plain) / (1.0 + self._share * float(g @ soft))))
 
     def whole(self, trailing: Array) -> Array:
-        """All unknowns (size,) where the trailing ones are given."""
+        """All unknowns (size,) from the trailing ones."""
         first = self.first
         if not first:
             return trailing

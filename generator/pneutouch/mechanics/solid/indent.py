@@ -1,4 +1,4 @@
-"""Study 2: a plate or another rigid object comes down on an inflated dome with its gas shut in."""
+"""Study 2: a plate or another rigid object presses an inflated dome with a fixed amount of gas."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.mechanics.solid.sway import axisymmetry_losses
 from pneutouch.units import KPA
 
-#: A pressure this far below absolute vacuum, in mu, is rounding.
+#: A pressure below absolute vacuum by less than this, in mu, is due to rounding.
 _ROUNDING = 1.0e-9
 
 
@@ -41,12 +41,12 @@ _ROUNDING = 1.0e-9
 class PressSettings:
     """Settings of a press: depth and plate diameter in mm (None: endless), ambient in MPa, dead volume in mm^3.
 
-    steps:       equal plate steps at which states are returned.
+    steps:       number of equal plate steps at which states are returned.
     gauge_range: gauge pressure (MPa) beyond which the pressure sensor clips.
-    break_strain: largest principal strain (stretch - 1) the material bears.
+    break_strain: largest principal strain (stretch - 1) that the material bears.
     waves: greatest number of waves around the axis for which the path's stability is checked (`sway`); 0: no check.
     plate_rim:   radius of curvature of the plate's rim; None: a thirtieth of the plate's radius.
-    body:        the object in mm, in place of the plate (its height does not count).
+    body:        the object in mm that replaces the plate (its height is ignored).
     friction:    Coulomb's coefficient between wall and plate; inf for a plate that grips.
     """
 
@@ -79,13 +79,13 @@ class PressState:
     """One equilibrium under the plate or another object; mm, N, MPa.
 
     indentation, force, pressure (gauge), rise (over the driving pressure), volume (mm^3).
-    contact_radius: outer edge of the contact.  contact_inner: inner edge, 0 where the wall touches on the axis.
-    contact_pressure: largest, per area at rest.  inside_gap: positive where the wall has left the object within the
-    contact.  penetration: what the contact's stiffness lets through.
-    stiffness: dF/d(indentation), N/mm.  slope: dp/dF at shut-in gas, MPa/N.
+    contact_radius: outer edge of the contact.  contact_inner: inner edge, 0 if the wall touches on the axis.
+    contact_pressure: largest, per area at rest.  inside_gap: largest gap to the object inside the contact, positive
+    where the wall has left it.  penetration: largest overlap due to the finite contact stiffness.
+    stiffness: dF/d(indentation), N/mm.  slope: dp/dF with the gas shut in, MPa/N.
     stretch, von_mises: largest on the faces away from the clamp; fold: see `stress.WallExtremes`.
-    inner_apex: height.  overhang: how far the wall hangs below its base plane.  base_force, base_pressure (per area at
-    rest): what the outer wall puts on its base and flange where the solid has one.  positions: (n_nodes, 2).
+    inner_apex: height.  overhang: depth to which the wall hangs below its base plane.  base_force, base_pressure (per
+    area at rest): load of the outer wall on base and flange, if the solid has one.  positions: (n_nodes, 2).
     """
 
     indentation: float
@@ -114,7 +114,7 @@ class PressState:
 class IndentationPath:
     """States at the plate steps (the first at first contact) up to the depth, or to the event that ended the path.
 
-    ``path`` has every solved state, also those between the steps and at located events.
+    ``path`` has every solved state, including those between the steps and at located events.
     """
 
     states: list[PressState]
@@ -127,7 +127,7 @@ class IndentationPath:
         return np.array([getattr(s, name) for s in self.states])
 
     def figures(self) -> Figures[float] | None:
-        """Figures of the curve before the first event that breaks it; None with too few states."""
+        """Figures of the curve before the first event that breaks it; None if too few states are left."""
         ends = [e.indentation for e in self.events if e.kind in BREAKS_CURVE]
         keep = self.column("indentation") < min(ends, default=np.inf)
         indentation, force, rise = (self.column(name)[keep] for name in ("indentation", "force", "rise"))
@@ -137,10 +137,10 @@ class IndentationPath:
 def indent(
     solid: SolidModel, free: FreeState, press: PressSettings, probe: StrainProbe | None = None
 ) -> IndentationPath:
-    """Shut the gas in at a free state and bring the plate down; many presses of one solid share its ``probe``.
+    """Shut in the gas at a free state and lower the plate; many presses of one solid share its ``probe``.
 
-    Returns every state found and typed events; `complete` is False where an event ended the path before the depth.
-    Raises NoConvergenceError only if not even first contact has an equilibrium.
+    Returns every state found and typed events; `complete` is False if an event ended the path before the depth. Raises
+    NoConvergenceError only if there is no equilibrium even at first contact.
     """
     touch = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim)
     follower, length, plate = follower_of(solid, free, press, touch), solid.length, touch.body
@@ -162,10 +162,10 @@ def indent(
 
 
 def follower_of(solid: SolidModel, free: FreeState, press: PressSettings, touch: FirstTouch) -> PathFollower:
-    """The follower of a press with its gas shut in, at first contact."""
+    """Path follower of a press at first contact, with the gas shut in."""
     gas = shut_in(solid, free, press)
     if press.friction:
-        # Most presses have none: its thousand lines load where they are used.
+        # Most presses have no friction: its modules are loaded only here.
         from pneutouch.mechanics.solid.friction_path import FrictionFollower
 
         return FrictionFollower(solid, gas, touch.body, free.unit.x, press.friction)
@@ -173,7 +173,7 @@ def follower_of(solid: SolidModel, free: FreeState, press: PressSettings, touch:
 
 
 def shut_in(solid: SolidModel, free: FreeState, press: PressSettings) -> Gas:
-    """The gas of a free state, shut in. Raises UnreachableLoadError below absolute vacuum."""
+    """Gas of a free state with its amount fixed. Raises UnreachableLoadError below absolute vacuum."""
     length, mu = solid.length, solid.mu
     if free.pressure + press.ambient < -_ROUNDING * mu:
         raise UnreachableLoadError(free.pressure, -press.ambient, "it lies below absolute vacuum")
@@ -181,14 +181,14 @@ def shut_in(solid: SolidModel, free: FreeState, press: PressSettings) -> Gas:
 
 
 def _ended(events: list[SolidEvent], solid: SolidModel) -> bool:
-    """True if an event ends the press: the inner wall lies on a base that is not there."""
+    """True if an event ends the press: the inner wall reaches the base plane where the solid has no base."""
     return solid.base is None and any(e.kind == "floor" for e in events)
 
 
 def _finish(
     states: list[PressState], events: list[SolidEvent], jump: PathJump | None, recorder: _Recorder, press: PressSettings
 ) -> IndentationPath:
-    """Keep the states at the steps of the protocol, and add the event that ended the path."""
+    """Path with the states at the steps of the protocol, and with the event that ended it."""
     if jump is not None:
         events = [*events, SolidEvent(jump.kind, recorder.indentation(jump.height), jump.why)]
     step = press.depth / press.steps
@@ -197,12 +197,12 @@ def _finish(
 
 
 class _Recorder:
-    """Turns solver states into dimensional ones and compares neighbours for events."""
+    """Converts solver states to states with dimensions and compares consecutive ones for events."""
 
     def __init__(self, solid: SolidModel, free: FreeState, touch: FirstTouch, probe: StrainProbe) -> None:
         self._solid, self._free, self._probe = solid, free, probe
         self._plate, self._first = touch
-        # Within the length of an edge of the axis the wall is touched at the axis.
+        # A first contact within an edge length of the axis counts as contact on the axis.
         self._annular = touch.radius > solid.contact.longest
         self._edge = PLATE_RIM if isinstance(self._plate, Plate) else OBJECT_EDGE
 
@@ -244,7 +244,7 @@ class _Recorder:
         )
 
     def events(self, a: PressState, b: PressState, press: PressSettings) -> list[SolidEvent]:
-        """Levels passed between two neighbouring states."""
+        """Events whose levels are crossed between two consecutive states."""
         wall = self._solid.mesh.wall
         inner, outer = (edge * self._solid.length for edge in self._plate.span)
         levels = {
@@ -266,7 +266,7 @@ class _Recorder:
         return [SolidEvent(kind, where, detail[kind]) for kind, where in places.items() if where is not None]
 
     def losses(self, path: list[PlateState], waves: int) -> list[SolidEvent]:
-        """Events in which the axisymmetric path loses stability to displacements of up to so many waves around the
+        """Events in which the axisymmetric path loses stability to displacements of up to ``waves`` waves around the
         axis."""
         lost = axisymmetry_losses(self._solid, path, waves) if waves else []
         kinds = ["sway" if loss.waves == 1 else "lobes" for loss in lost]
@@ -277,7 +277,7 @@ class _Recorder:
 
 
 def _watched(s: PressState, edge: str) -> dict[str, PathPoint]:
-    """The quantities whose levels are events, at one state."""
+    """Quantities of one state whose levels define events."""
     rate = s.slope * s.stiffness if np.isfinite(s.slope) else None
     return {
         "gauge_range": PathPoint(s.indentation, s.pressure, rate),

@@ -1,6 +1,6 @@
 """Rigid axisymmetric objects other than the plate: undersides of arcs and lines with a continuous slope.
 
-The rigid base under the dome. A file of its own: a sensor names it, and the solver would load SciPy with it.
+Also the rigid base under the dome. A sensor record refers to both, so this file does not load the solver and SciPy.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ import numpy as np
 from pneutouch.arrays import Array
 
 STEEPEST = float(np.sqrt(3.0))
-"""Steepest slope of an underside, that of a flank at 60 degrees to the plate. Contact is measured vertically: the
-stiffness of the contact normal to a flank grows with 1 + slope^2, and on a vertical flank there is no gap to measure.
-Up to here the force does not depend on it (`tests/mechanics/solid/test_indenter.py`)."""
+"""Steepest slope of an underside: that of a flank at 60 degrees to the plate. Contact is measured vertically: the
+normal contact stiffness on a flank grows with 1 + slope^2, and a vertical flank has no gap to measure. Up to this slope
+the force does not depend on it (`tests/mechanics/solid/test_indenter.py`)."""
 
 
 CELLS_PER_RADIUS = 4
-"""Cells of the outer wall that the least radius of an object spans. With fewer the wall appears to leave a ball at its
-lowest point; with these the force is within 1 % of that on a refined mesh (docs/background/contact.md)."""
+"""Cells of the outer wall over a length equal to the least radius of an object. With fewer the wall appears to leave a
+ball at its lowest point; with these the force is within 1 % of a refined mesh (docs/background/contact.md)."""
 
 _PER_EDGE = 4.0
 
@@ -36,12 +36,12 @@ class Indenter(Protocol):
 
     @property
     def height(self) -> float:
-        """Height of its lowest point."""
+        """Height of the body's lowest point."""
         ...
 
     @property
     def span(self) -> tuple[float, float]:
-        """Radii between which its underside is the object's own; beyond them it turns up as a parabola."""
+        """Radii between which the underside is the object's own; beyond them it turns up as a parabola."""
         ...
 
     def underside(self, r: Array) -> tuple[Array, Array, Array]:
@@ -54,10 +54,10 @@ class Indenter(Protocol):
 
 
 class UndersidePiece(NamedTuple):
-    """A piece of an underside from ``start`` outwards.
+    """A piece of an underside, from the radius ``start`` outwards.
 
     With ``radius`` 0 a parabola: height ``z`` at ``r``, ``slope`` and ``curve`` (second derivative). Else an arc about
-    (``r``, ``z``), below its centre for a positive radius and above it for a negative one.
+    (``r``, ``z``): its lower side for a positive radius, its upper side for a negative one.
     """
 
     start: float
@@ -82,7 +82,7 @@ class ProfileVertex(NamedTuple):
 
 
 class ObjectShapeError(ValueError):
-    """A meridian that is no underside; ``index`` of the vertex at fault."""
+    """Error for a meridian that cannot be an underside; ``index`` is the vertex at fault."""
 
     def __init__(self, problem: str, index: int) -> None:
         super().__init__(problem)
@@ -91,14 +91,14 @@ class ObjectShapeError(ValueError):
 
 @dataclass(frozen=True)
 class RigidObject:
-    """A rigid body of revolution, its lowest point at ``height``.
+    """A rigid body of revolution with its lowest point at ``height``.
 
-    label:  what it is, in words.
+    label:  name of the object in words.
     pieces: the underside from the axis outwards, with its lowest point at 0; the slope is continuous.
-    span:   see `Indenter`.  smallest: least radius of curvature that the mesh must follow.
-    circle: radius about the axis of the centre of a round section and its radius; None for another section.
-    lying:  a straight body across the plane of symmetry, with distances from its middle in place of radii.
-    flanks: height above the centre of a round section from which a bar's vertical sides come down.
+    span:   see `Indenter`.  smallest: least radius of curvature that the mesh must resolve.
+    circle: distance of the centre of a round section from the axis, and its radius; None for another section.
+    lying:  True for a straight body across the plane of symmetry; radii are then distances from its middle.
+    flanks: height, above the centre of a round section, up to which a bar's vertical sides are drawn.
     """
 
     label: str
@@ -130,7 +130,7 @@ class RigidObject:
         return self.height + height, first, second
 
     def outline(self, reach: float, count: int = 181) -> Array:
-        """Its section to draw, r from 0 to ``reach``, (n, 2): a whole circle where it is round, else the underside."""
+        """Section for drawing, r from 0 to ``reach``, (n, 2): a full circle for a round section, else the underside."""
         if self.flanks:
             angle = np.linspace(-0.5, 0.0, count) * np.pi
             r, z = self.smallest * np.cos(angle), self.smallest * (1.0 + np.sin(angle))
@@ -167,12 +167,12 @@ def ball(radius: float) -> RigidObject:
 
 
 def cylinder(radius: float) -> RigidObject:
-    """A lying cylinder of a radius (mm), endless across the plane of symmetry; its section is a ball's."""
+    """A lying cylinder of a radius (mm), endless across the plane of symmetry; its section is that of a ball."""
     return replace(ball(radius), label="cylinder", lying=True)
 
 
 def edge(radius: float) -> RigidObject:
-    """An endless bar with vertical sides, its edge a half circle of a radius (mm): to 60 degrees it is a cylinder."""
+    """An endless bar with vertical sides and a half-round edge of a radius (mm): a cylinder up to 60 degrees."""
     return replace(cylinder(radius), label="edge", flanks=_FLANKS * radius)
 
 
@@ -194,7 +194,7 @@ def profile(vertices: Sequence[ProfileVertex]) -> RigidObject:
     """A body whose underside is the line through corners (r, z), each rounded to its radius (mm).
 
     The first corner may lie on the axis. The ends turn up with their own radii. Raises ObjectShapeError for a sharp
-    corner, for an arc without space and for lines that turn back or are steeper than `STEEPEST`.
+    corner, an arc that does not fit, and lines that go back inwards or are steeper than `STEEPEST`.
     """
     slopes = _slopes(vertices)
     first, last, on_axis = vertices[0], vertices[-1], vertices[0].r == 0.0
@@ -210,21 +210,21 @@ def profile(vertices: Sequence[ProfileVertex]) -> RigidObject:
     _check_space(vertices, reaches)
     inner = None if on_axis else _turned_up(first.r, first.z, slopes[0], first.radius)
     outer = _turned_up(last.r, last.z, slopes[-1], last.radius)
-    # The range ends where the contact reaches an edge, for which a quarter of the cells is enough.
+    # The range ends where the contact reaches an edge, for which a quarter of the cell density is enough.
     followed = [_PER_EDGE * edge.radius for edge in (last, *([] if on_axis else [first]))]
     followed += [vertex.radius for vertex, reach in zip(vertices, reaches, strict=True) if reach > 0.0]
     return _body("profile", pieces, inner, outer, min(followed))
 
 
 def _check_space(vertices: Sequence[ProfileVertex], reaches: Sequence[float]) -> None:
-    """Raise ObjectShapeError where the lengths that arcs take of a line are more than it has."""
+    """Raise ObjectShapeError if the arcs at both ends of a line need more length than it has."""
     for i, (a, b) in enumerate(pairwise(vertices)):
         if reaches[i] + reaches[i + 1] > (1.0 + 1e-9) * np.hypot(b.r - a.r, b.z - a.z):
             raise ObjectShapeError("its arc and that of its neighbour overlap; give smaller radii", i + 1)
 
 
 def first_contact(body: Indenter, r: Array, z: Array) -> tuple[float, float]:
-    """Height of the body where it first touches points (r, z) from above, and the radius where it does."""
+    """Height of the body at its first contact from above with points (r, z), and the radius of the contact."""
     height = z - body.at(0.0).underside(r)[0]
     first = int(height.argmax())
     return float(height[first]), float(r[first])
@@ -237,7 +237,7 @@ def _body(
     outer: UndersidePiece | None,
     smallest: float,
 ) -> RigidObject:
-    """The object of its own pieces and what turns up beyond them, its lowest point at 0."""
+    """Object from its own pieces and the parabolas beyond them, shifted so that its lowest point is at 0."""
     inward = [] if inner is None else [inner._replace(start=0.0)]
     outward = [] if outer is None else [outer]
     span = (0.0 if inner is None else inner.r, np.inf if outer is None else outer.r)
@@ -248,28 +248,28 @@ def _body(
 
 
 def _arc(r: float, radius: float, start: float) -> UndersidePiece:
-    """A rounding about (r, radius) whose lowest point is at height 0."""
+    """Arc about (r, radius), whose lowest point is at height 0."""
     return UndersidePiece(start, r, radius, radius=radius)
 
 
 def _on_arc(r: float, radius: float, slope: float) -> tuple[float, float]:
-    """The point of `_arc` with a slope."""
+    """Point (r, z) of `_arc` that has a given slope."""
     lean = np.hypot(1.0, slope)
     return float(r + radius * slope / lean), float(radius - radius / lean)
 
 
 def _end(r: float, radius: float, slope: float) -> UndersidePiece:
-    """Piece of the underside at the end of `_arc`, from where it has a given slope and turns up."""
+    """Parabola at the end of `_arc`, which turns up from the point with a given slope."""
     return _turned_up(*_on_arc(r, radius, slope), slope, radius)
 
 
 def _turned_up(r: float, z: float, slope: float, radius: float) -> UndersidePiece:
-    """A parabola from (r, z) with a slope and a radius of curvature there."""
+    """Parabola that turns up from (r, z), with a given slope and radius of curvature there."""
     return UndersidePiece(r, r, z, slope, float((1.0 + slope**2) ** 1.5 / abs(radius)))
 
 
 def _slopes(vertices: Sequence[ProfileVertex]) -> list[float]:
-    """Slopes of the lines between corners."""
+    """Slopes of the lines between corners. Raises ObjectShapeError for lines that are not allowed."""
     if len(vertices) < 2:
         raise ObjectShapeError("an underside has two points at least", 0)
     slopes = []
@@ -287,7 +287,7 @@ def _slopes(vertices: Sequence[ProfileVertex]) -> list[float]:
 
 
 def _corner(vertex: ProfileVertex, before: float, after: float) -> tuple[list[UndersidePiece], float]:
-    """The arc in a corner between lines of two slopes with the line after it, and the length it takes of each line."""
+    """Arc in a corner between lines of two slopes, with the line after it, and the length it takes of each line."""
     if before == after:
         return [UndersidePiece(vertex.r, vertex.r, vertex.z, after)], 0.0
     low, high = float(np.arctan(before)), float(np.arctan(after))
@@ -305,8 +305,8 @@ def _corner(vertex: ProfileVertex, before: float, after: float) -> tuple[list[Un
 class RigidBase:
     """The plane z = 0 on which the dome stands, and a ring around it that opens upwards at 45 degrees; in mm.
 
-    opening: radius of the hole in it inside the dome.  flange: outer radius of a flange that is part of the solid and
-    on which the outer wall therefore does not meet this base; 0 where the wall itself is clamped at z = 0.
+    opening: radius of the hole in the plane inside the dome.  flange: outer radius of a flange that belongs to the
+    solid, within which the outer wall does not meet this base; 0 if the wall itself is clamped at z = 0.
     ring, ring_height: radius of the ring's inner edge at z = 0, and its height; no ring at height 0.
     """
 

@@ -1,6 +1,6 @@
-"""Study 1: free inflation by volume, through and past the limit point, and the state at a driving pressure.
+"""Study 1: free inflation by volume, through and beyond the limit point, and the state at a driving pressure.
 
-First point of contact of a plate or another rigid object with an inflated dome.
+Also the first contact of a plate or another rigid object with an inflated dome.
 """
 
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ from pneutouch.mechanics.solid.newton import (
 )
 from pneutouch.mechanics.solid.object_contact import Plate, flat_radius, rim_radius
 
-#: Volume control is this stiff, in mu/R0^3: far above -dp/dV of any dome, so the total tangent stays definite.
+#: Stiffness of volume control, in mu/R0^3: far above -dp/dV of any dome, so that the total tangent is definite.
 _LIQUID = 30.0
 _FIRST_GROWTH, _LARGEST_GROWTH, _SMALLEST_GROWTH = 0.10, 0.25, 1.0e-4
 _EMPTYING = 0.02
@@ -37,7 +37,7 @@ class FreeState:
     """An inflated state without contact.
 
     positions: (n_nodes, 2) in mm.  pressure: gauge, MPa.  volume: cavity, mm^3.  stiffness: dp/dV, MPa/mm^3 (zero at
-    the limit point).  stable: whether it holds under a regulated pressure.  inner_apex, outer_apex: heights in mm.
+    the limit point).  stable: True if stable under a regulated pressure.  inner_apex, outer_apex: heights in mm.
     """
 
     positions: Array
@@ -94,7 +94,7 @@ def _scene(solid: SolidModel, target: float) -> SolidScene:
 
 
 def rest_state(solid: SolidModel) -> FreeState:
-    """The unloaded dome, with its first slope dp/dV."""
+    """The unloaded dome, with its initial slope dp/dV."""
     scene = _scene(solid, solid.cavity.volume(solid.rest))
     outcome = minimise(scene, solid.rest)
     if isinstance(outcome, NewtonFailure):
@@ -103,7 +103,7 @@ def rest_state(solid: SolidModel) -> FreeState:
 
 
 def _guess(solid: SolidModel, path: list[FreeState], volume: float) -> Array:
-    """Positions at a volume by the tangent of the last state, or the Hermite cubic through the last two."""
+    """Guess of the positions at a volume: tangent of the last state, or Hermite cubic through the last two."""
     last = path[-1].unit
     ahead = volume - last.volume
     if len(path) < 2:
@@ -112,7 +112,7 @@ def _guess(solid: SolidModel, path: list[FreeState], volume: float) -> Array:
 
 
 def between(a: FreeState, b: FreeState, volume: float) -> Array:
-    """Hermite cubic in V through positions and dx/dV of two states, at a volume inside or beyond them."""
+    """Positions at a volume by the Hermite cubic in V through positions and dx/dV of two states; may extrapolate."""
     span = b.unit.volume - a.unit.volume
     s = (volume - a.unit.volume) / span
     bend = b.unit.x - a.unit.x
@@ -131,7 +131,7 @@ def pressure_between(a: FreeState, b: FreeState, share: float) -> float:
 def at_volume(
     solid: SolidModel, path: list[FreeState], volume: float, guess: Array | None = None
 ) -> FreeState | NewtonFailure:
-    """State at a nondimensional volume, reached from the end of a path."""
+    """State at a nondimensional volume, continued from the end of a path, or the failure."""
     last = path[-1]
     slope = last.stiffness * solid.length**3 / solid.mu
     pressure = last.unit.filling.pressure + slope * (volume - last.unit.volume)
@@ -145,9 +145,9 @@ def inflate(
 ) -> Inflation:
     """Fill (or, for a negative pressure, empty) the cavity by volume from rest.
 
-    to_pressure: stop once this gauge pressure (MPa) is bracketed; None goes on to the limit point.
-    past_limit:  go on to this multiple of the limit volume.  largest: give up on a limit at this multiple of V0.
-    Raises NoConvergenceError if volume steps shrink to nothing.
+    to_pressure: stop once this gauge pressure (MPa) is bracketed; None continues to the limit point. past_limit:
+    continue to this multiple of the limit volume.  largest: multiple of V0 at which the search for a limit ends. Raises
+    NoConvergenceError if the volume steps become too small.
     """
     path = [rest_state(solid)]
     rest = path[0].unit.volume
@@ -191,7 +191,7 @@ def _ended(
 
 
 def find_limit(solid: SolidModel, before: FreeState, after: FreeState, tolerance: float = 1.0e-7) -> FreeState:
-    """The state of zero dp/dV between two states of opposite slope; volume to `tolerance` of itself."""
+    """State with dp/dV = 0 between two states with slopes of opposite sign; volume to a relative `tolerance`."""
     middle = before
     for _ in range(30):
         a, b = before.unit.volume, after.unit.volume
@@ -204,7 +204,7 @@ def find_limit(solid: SolidModel, before: FreeState, after: FreeState, tolerance
 
 
 def _towards(solid: SolidModel, before: FreeState, after: FreeState, volume: float) -> FreeState:
-    """The state at a volume between two, or nearer to the first where the cubic through both is too far from it."""
+    """State at a volume between two states, or closer to the first if that fails to converge."""
     start, share = before.unit.volume, 1.0
     while True:
         at = start + share * (volume - start)
@@ -217,7 +217,7 @@ def _towards(solid: SolidModel, before: FreeState, after: FreeState, volume: flo
 
 
 def _slope_root(before: FreeState, after: FreeState) -> float:
-    """Volume where the Hermite cubic p(V) of two states has its maximum; nondimensional."""
+    """Volume at which the Hermite cubic p(V) of two states has its maximum; nondimensional."""
     a, b = before.unit.volume, after.unit.volume
     scale = after.volume - before.volume
     rise, first, last = after.pressure - before.pressure, before.stiffness * scale, after.stiffness * scale
@@ -247,7 +247,7 @@ def state_at(solid: SolidModel, pressure: float, inflation: Inflation | None = N
 
 
 def _between(solid: SolidModel, a: FreeState, b: FreeState, pressure: float) -> FreeState:
-    """Newton at a regulated pressure, from the Hermite cubic between two states that bracket it."""
+    """State at a regulated pressure by Newton's method, from the Hermite cubic between two states around it."""
     share = np.linspace(0.0, 1.0, 201)
     curve = np.array([pressure_between(a, b, float(s)) for s in share])
     up = 1.0 if b.pressure > a.pressure else -1.0
@@ -263,7 +263,7 @@ def _between(solid: SolidModel, a: FreeState, b: FreeState, pressure: float) -> 
 
 
 class FirstTouch(NamedTuple):
-    """An object where it first touches the free dome, and the radius at which it does, in R0; 0 for a plate."""
+    """An object at its first contact with the free dome, and the radius of that contact, in R0; 0 for a plate."""
 
     body: Indenter
     radius: float = 0.0
@@ -276,7 +276,7 @@ def first_touch(
     plate_diameter: float | None,
     plate_rim: float | None = None,
 ) -> FirstTouch:
-    """A body, or without one a plate, on a free state; lengths in mm, see `indent.PressSettings`."""
+    """First contact of a body, or of a plate if None, with a free state; lengths in mm, see `indent.PressSettings`."""
     length, longest = solid.length, np.array(solid.contact.longest)
     if body is None:
         radius = np.array(np.inf if plate_diameter is None else 0.5 * plate_diameter / length)

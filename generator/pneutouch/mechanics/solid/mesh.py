@@ -1,8 +1,8 @@
 """Meridian meshes: quadrilaterals in the (r, z) half plane with named boundaries.
 
-The mesh of the meridian that is printed: the dome on its flange, held where the connector holds it.
+Also the mesh of the dome on its printed flange, held where the connector holds it.
 
-Cells of the solid that follow the object that presses a sensor.
+Also the number of cells that resolve the object that presses a sensor.
 """
 
 from dataclasses import dataclass, field, replace
@@ -14,8 +14,8 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS
 from pneutouch.shape.dome import DomeShape
 
-#: Walls up to this share of R0 need one cell across (S within 0.2 % of a refined mesh), thicker ones two. The
-#: atlas begins above it, so that one family of meshes serves all of its box.
+#: Walls up to this share of R0 need one cell across (S within 0.2 % of a refined mesh), thicker ones two. The atlas
+#: begins above it, so that one family of meshes covers its whole box.
 _THIN = 0.055
 _TO_BENDING_LENGTH = 3.0
 _ARC_CELLS = (24, 48)
@@ -27,19 +27,18 @@ START, END, MIDDLE = range(3)
 
 @dataclass(frozen=True)
 class SolidMesh:
-    """A meridian cut of the wall, in mm; quadratic (8 or 9 nodes) or linear (4 nodes) quadrilaterals.
+    """A meridian section of the wall, in mm; quadratic (8 or 9 nodes) or linear (4 nodes) quadrilaterals.
 
     nodes:   (n_nodes, 2), columns r and z.
     cells:   (n_cells, 4 | 8 | 9): corners counter-clockwise in (xi, eta), then the mid-sides of eta=-1, xi=+1, eta=+1,
-             xi=-1, then the centre.
-    inner, outer: (n_edges, 2 | 3) edges of the wetted wall and of the wall the plate can meet: start, end, (mid);
-    both run
-             from the base to the apex, which is the end of the last edge.
+      xi=-1, then the centre.
+    inner, outer: (n_edges, 2 | 3) edges of the wetted wall and of the wall that the plate can meet: start, end, (mid);
+      both run from the base to the apex, which is the end of the last edge.
     clamped: nodes with both displacements zero.
     axis:    nodes on r = 0, whose radial displacement is zero.
-    sliding: nodes whose vertical displacement alone is zero (a symmetry plane).
+    sliding: nodes with only the vertical displacement zero (a symmetry plane).
     length, wall: scale of the shape and wall thickness, the scales of lengths and of contact.
-    flange: (n_edges, 3) edges of a flange's free top, from the foot of the outer wall to the rim; none without one.
+    flange: (n_edges, 3) edges of a flange's free top, from the foot of the outer wall to the rim; empty without one.
     """
 
     nodes: Array
@@ -113,36 +112,36 @@ def _from_grid(grid: Array, n_columns: int, n_rows: int, order: int, scales: tup
 
 
 def graded(n: int, ratio: float) -> Array:
-    """N + 1 points over [0, 1] in geometric progression; the first interval is `ratio` times the last."""
+    """Points over [0, 1] (n + 1,) in geometric progression; the first interval is `ratio` times the last."""
     steps = np.geomspace(ratio, 1.0, n) if n > 1 else np.ones(1)
     return np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
 
 
 def with_middles(points: Array) -> Array:
-    """Insert the middle of every interval; (n,) to (2 n - 1,)."""
+    """Points with the middle of every interval inserted; (n,) to (2 n - 1,)."""
     out = np.empty(2 * points.size - 1)
     out[::2], out[1::2] = points, 0.5 * (points[1:] + points[:-1])
     return out
 
 
 def arc_cells(arc: float, wall_ratio: Array) -> Array:
-    """Cells along an arc that keep S within half a per cent: three to the bending length, 24 to 48.
+    """Number of cells along an arc that keeps S within half a per cent: three per bending length, 24 to 48.
 
-    ``arc`` is the length of the inner face over the shape's scale, ``wall_ratio``, of any shape, the wall over it; the
-    bending length is the root of the ratio.
+    ``arc`` is the length of the inner face and ``wall_ratio`` (of any shape) the wall thickness, both over the scale of
+    the dome; the bending length is the square root of the ratio.
     """
     return np.asarray(np.clip(np.ceil(_TO_BENDING_LENGTH * arc / np.sqrt(wall_ratio)), *_ARC_CELLS))
 
 
 def _cells(shape: DomeShape, arc: int | None, through: int | None) -> tuple[int, int]:
-    """Cells along the arc and across the wall: those asked for, else the default of a shape."""
+    """Numbers of cells along the arc and across the wall: as requested, else the default of a shape."""
     ratio = shape.wall_thickness / shape.scale
     along = int(arc_cells(shape.arcs[0] / shape.scale, np.array(ratio)))
     return arc or along, through or cells_across(ratio)
 
 
 def cells_across(wall_ratio: float) -> int:
-    """Cells through a wall of a ratio to the shape's scale: one to 0.055, else two."""
+    """Number of cells across a wall of a given ratio to the shape's scale: one to 0.055, else two."""
     return 1 if wall_ratio <= _THIN else 2
 
 
@@ -154,12 +153,12 @@ def dome(
     base_ratio: float = 1.0,
     slides: bool = False,
 ) -> SolidMesh:
-    """Wall of a shape on the plane z = 0, `arc` cells from base to apex and `through` across the wall.
+    """Mesh of the wall of a shape on the plane z = 0, `arc` cells from base to apex and `through` across the wall.
 
-    Its nodes lie on both faces of the shape and, within, on the straight lines that lead from face to face.
-    arc None takes `arc_cells`; through None takes one cell for walls to 0.055 of the scale, else two.  order: 2 for
-    nine-node, 8 for eight-node, 1 for four-node cells.  base_ratio < 1 makes cells shorter towards the base.
-    slides: the base face moves freely in r (a symmetry plane), for tests against the sphere.
+    Nodes lie on both faces of the shape and, between them, on the straight lines from face to face. arc None uses
+    `arc_cells`; through None uses one cell for walls to 0.055 of the scale, else two.  order: 2 for nine-node, 8 for
+    eight-node, 1 for four-node cells.  base_ratio < 1 makes cells shorter towards the base. slides: the base face moves
+    freely in r (a symmetry plane), for tests against the sphere.
     """
     size = shape.inner_radius, shape.wall_thickness
     if not (np.isfinite(size).all() and min(size) > 0.0):
@@ -173,23 +172,23 @@ def dome(
 
 
 def nodes_along(edges: Index) -> Index:
-    """Nodes of a face from end to end, (n_nodes,), of its edges (n_edges, 2 | 3)."""
+    """Nodes of a face from end to end, (n_nodes,), from its edges (n_edges, 2 | 3)."""
     inward = edges[:, [START, MIDDLE]] if edges.shape[1] > MIDDLE else edges[:, [START]]
     return np.append(inward.ravel(), edges[-1, END])
 
 
 _CELLS_PER_WALL = 2
 _COINCIDE = 1e-9
-"""Nodes nearer than this share of the wall are one."""
+"""Nodes closer than this share of the wall coincide."""
 
 
 def printed_dome(
     shape: DomeShape, flange_width: float, flange_thickness: float, arc: int | None = None, through: int | None = None
 ) -> SolidMesh:
-    """A dome whose rim goes on below z = 0 as a flange (mm), clamped on its inside, underside and outside.
+    """Mesh of a dome whose rim continues below z = 0 as a flange (mm), clamped on its inside, underside and outside.
 
-    The flange's top stays free, as in the connector's groove, so the foot of the wall gives a little. Nine-node
-    cells; ``arc`` and ``through`` as for ``dome``.
+    The flange's top is free, as in the connector's groove, so the foot of the wall yields slightly. Nine-node cells;
+    ``arc`` and ``through`` as for ``dome``.
     """
     n, m = _cells(shape, arc, through)
     wall, outer = shape.wall_thickness, shape.outer_radius
@@ -228,7 +227,7 @@ def _rectangle(r: Array, z: Array) -> Array:
 
 
 def _merge(blocks: list[Array], gap: float) -> tuple[Array, Index, Index]:
-    """Join blocks whose points coincide within ``gap``: nodes (n, 2), cells (m, 9), and the first block's numbers."""
+    """Join blocks whose points coincide within ``gap``: nodes (n, 2), cells (m, 9), node numbers of the first block."""
     points = np.concatenate([block.reshape(-1, 2) for block in blocks])
     _, kept, number = np.unique(np.round(points / gap), axis=0, return_index=True, return_inverse=True)
     number = number.reshape(-1)
@@ -241,11 +240,11 @@ def _merge(blocks: list[Array], gap: float) -> tuple[Array, Index, Index]:
 
 
 MOST_CELLS = 192
-"""Most cells along the arc for the sake of an object; beyond, a prediction takes minutes."""
+"""Greatest number of cells along the arc to resolve an object; with more, a prediction takes minutes."""
 
 
 def object_cells(sensor: Sensor) -> int | None:
-    """Cells along the arc that follow the object pressing a sensor; None if the default does, as for a plate."""
+    """Number of cells along the arc that resolves the pressing object; None if the default is enough."""
     if sensor.protocol.body is None:
         return None
     shape, smallest = sensor.dome.shape, sensor.protocol.body.smallest

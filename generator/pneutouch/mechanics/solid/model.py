@@ -1,4 +1,4 @@
-"""The discrete body: energy, forces and stiffness of a wall, in lengths of R0 and stresses of mu."""
+"""The discrete body: energy, forces and stiffness of a wall, with lengths in R0 and stresses in mu."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -43,8 +43,8 @@ CONTACT_STIFFNESS = 3.0e4
 class PointFields:
     """Fields at the integration points at one set of positions.
 
-    energy:   stored energy / (mu R0^3); inf where a point is inverted.
-    strains:  (n_points, 5), see `kinematics`.
+    energy:   stored energy / (mu R0^3); inf if a point is inverted.
+    strains:  (n_points, 5), see `elements`.
     jets:     (10, n_points) weighted energy derivatives, see `Jet`; the averaged pressure is included.
     basis:    (n_points, 3, 5) derivatives of (a, j, h) by the strains.
     """
@@ -56,11 +56,11 @@ class PointFields:
 
 
 class SolidModel:
-    """A wall on one mesh, of one law whose modulus may vary along the arc.  Positions are (n_nodes, 2) arrays in units
-    of the mesh's ``length``, the scale of its shape.
+    """A wall on one mesh with one law, whose modulus may vary along the arc.  Positions are (n_nodes, 2) arrays in
+    units of the mesh's ``length``, the scale of its shape.
 
-    ``grade`` gives the modulus over the material's own at reference points (r, z), in the same unit, arrays of any one
-    shape.  ``base`` is what both faces of the wall lie down on; None lets them pass through.
+    ``grade`` returns the modulus over that of the material at reference points (r, z), in the same unit, arrays of one
+    shape.  ``base`` supports both faces of the wall; with None they pass through.
     """
 
     def __init__(
@@ -83,7 +83,7 @@ class SolidModel:
         self.noise = float(np.linalg.norm(self.pattern.vector([idle, np.zeros((len(edges), edges[0].size))])))
 
     def _assemble(self, base: RigidBase | None) -> None:
-        """Number the unknowns, and build what acts on the faces."""
+        """Number the unknowns, and build contact, cavity and supports on the faces."""
         mesh = self.mesh
         meeting = self.meeting = meeting_nodes(mesh) if base is not None else np.zeros((0, 0), np.intp)
         self.dofs = _number_dofs(mesh, meeting)
@@ -104,8 +104,8 @@ class SolidModel:
     def _patterns(
         self, width: int = 0, folding: Index | None = None, forms: Mapping[int, BlockEntries] = MappingProxyType({})
     ) -> None:
-        """Patterns of the cells with the edges of the inner wall, and of the faces; ``folding`` are the unknowns that
-        the contact with a flange couples."""
+        """Assembly patterns of the cells with the edges of the inner wall, and of the faces; ``folding`` are the
+        unknowns coupled by the contact with a flange."""
         mesh = self.mesh
         tables = [self.dofs[x].reshape(x.shape[0], -1) for x in (mesh.cells, mesh.inner, mesh.outer)]
         self.pattern = AssemblyPattern(tables[:2], self.size, width, forms)
@@ -116,7 +116,7 @@ class SolidModel:
         self.faces = FaceSums(inner, outer, fold)
 
     def _base_faces(self, base: RigidBase) -> tuple[BaseFace, BaseFace]:
-        """The outer and the inner face over a base."""
+        """Contact of the outer and the inner face with a base."""
         flange, opening, *ring = (x / self.length for x in (base.flange, base.opening, base.ring, base.ring_height))
         outer = BaseFace(self.mesh.outer, self.rest, self.contact, flange, (ring[0], ring[1]))
         return outer, BaseFace(self.mesh.inner, self.rest, self.contact, opening)
@@ -143,7 +143,7 @@ class SolidModel:
         self._kappa = (self.material.bulk_ratio * mean)[:, None, None]
 
     def expand(self, step: Array) -> Array:
-        """Nodal displacement (n_nodes, 2) of a vector of free unknowns (size,)."""
+        """Nodal displacement (n_nodes, 2) from a vector of free unknowns (size,)."""
         out = np.zeros(self.rest.size)
         out[self._order] = step
         return out.reshape(-1, 2)
@@ -182,7 +182,7 @@ class SolidModel:
         """Second derivative of the stored energy by cell positions, (n_cells, 2 n_nodes, 2 n_nodes)."""
         n_cells, n_points = self._weight.shape
         jets, basis = local.jets, local.basis
-        # Small products are twice as fast where their factors lie in one piece.
+        # Small products are twice as fast if their factors are contiguous.
         hessian = np.ascontiguousarray(jets[np.ravel(HESSIAN)].T).reshape(-1, 3, 3)
         d = np.matmul(np.ascontiguousarray(np.swapaxes(basis, 1, 2)), np.matmul(hessian, basis))
         twice = 2.0 * jets[BY_A]
@@ -212,14 +212,14 @@ def _even(radius: Array, height: Array) -> Array:
 
 
 def _half_width(table: Index) -> int:
-    """Greatest distance between two unknowns of one row; -1 stands for none."""
+    """Greatest distance between two unknowns of one row, where -1 stands for a fixed one."""
     if not table.size:
         return 0
     return int((table.max(axis=1) - np.where(table < 0, table.max(), table).min(axis=1)).max())
 
 
 def _number_dofs(mesh: SolidMesh, meeting: Index) -> Index:
-    """Unknown of each node and direction (n_nodes, 2), -1 where fixed; renumbered if that narrows the band."""
+    """Number of the unknown per node and direction (n_nodes, 2), -1 if fixed; reordered if that narrows the band."""
     n = mesh.nodes.shape[0]
     native = np.arange(n)
     # Two columns of nodes span a cell of a dome numbered down each column: no order is narrower.
@@ -237,7 +237,7 @@ def _number_dofs(mesh: SolidMesh, meeting: Index) -> Index:
 
 
 def _narrower(groups: list[Index], n: int) -> Index:
-    """Rank of each of n nodes by reverse Cuthill-McKee where that spans less in a row of nodes that are coupled."""
+    """Ranks of n nodes by reverse Cuthill-McKee if that narrows the span of coupled nodes, else their own order."""
     # Only a flange needs these, which take a tenth of SciPy's import.
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import reverse_cuthill_mckee

@@ -1,8 +1,8 @@
 """Newton's method on the total energy of wall, filling and contact, with an energy line search.
 
-The line search on an energy of Newton's methods with and without friction.
+The line search also serves Newton's method with friction.
 
-Failures of a solve that callers handle; users see a ComputationError.
+Failures of a solve are handled by callers; users see a ComputationError.
 """
 
 from __future__ import annotations
@@ -40,12 +40,11 @@ State = TypeVar("State", bound=_Balanced)
 def line_search(
     trial: Callable[[float], tuple[float, Callable[[], State]] | None], step: Array, slope: float, noise: float
 ) -> State | None:
-    """Backtrack from the full step until the energy falls by Armijo's condition; None if it never does.
+    """Backtrack from the full step until the energy satisfies Armijo's condition; None if it never does.
 
-    trial: at a share of the step the change of the energy and what completes the state there; None if there is none.
-    slope: derivative of the energy along the step (size,), negative.
-
-    Near convergence the change drowns in rounding, ``noise``: there a step is also taken when it lowers the slope.
+    trial: for a share of the step, the change of the energy and a function that returns the state, or None without
+    state. slope: derivative of the energy along the step (size,), negative. Near convergence the change is below the
+    rounding error ``noise``: there a step that lowers the slope is accepted, too.
     """
     share = 1.0
     while share > _SHORTEST:
@@ -65,18 +64,18 @@ def line_search(
     return None
 
 
-#: Converged: unbalanced force below this share of the forces that balance (wall, gas, plate).
+#: Converged if the unbalanced force is below this share of the forces that balance (wall, gas, plate)
 RESIDUAL = 1.0e-9
-#: and the energy still to be gained, estimated from the last step, below this share of the energy scale.
+#: and the energy still to be gained, estimated from the last step, is below this share of the energy scale.
 GAIN = 1.0e-14
 MAX_ITERATIONS = 40
-#: Rounds in which the set of touching points is settled inside one quadratic model.
+#: Number of rounds in which the set of touching points is settled inside one quadratic model.
 SETTLING = 10
 
 
 @dataclass(frozen=True)
 class SolidScene:
-    """A body, what fills it, the plate above it (None: not there) and what else touches it; nondimensional."""
+    """A body, its filling, the plate above it (None without plate) and further energy terms; nondimensional."""
 
     solid: SolidModel
     supply: Supply
@@ -85,16 +84,16 @@ class SolidScene:
 
     @property
     def acting(self) -> tuple[EnergyTerm, ...]:
-        """The terms, after the one for the body's own supports."""
+        """All energy terms: the body's own supports first, then those of the scene."""
         return (*self.solid.supports, *self.terms)
 
 
 @dataclass(frozen=True)
 class SolverState:
-    """Positions x (n_nodes, 2) with all that was evaluated there.
+    """Positions x (n_nodes, 2) with all quantities evaluated there.
 
-    residual: gradient of the total energy (size,); inner: its part without the plate; scale: size of the forces that
-    balance in it; by_volume: gradient of the cavity volume (size,); terms: what acts in the scene.
+    residual: gradient of the total energy (size,); inner: its part without the plate; scale: magnitude of the balancing
+    forces; by_volume: gradient of the cavity volume (size,); terms: states of the scene's terms.
     """
 
     x: Array
@@ -114,8 +113,8 @@ class SolverState:
 class NewtonDirection:
     """Solution of one tangent system K + c g g', g the gradient of the volume and c the stiffness of the filling.
 
-    step: the answer (size,); soft: K^-1 g; denominator: 1 + c g.K^-1 g; stable: the whole is positive definite;
-    wall_stable: K alone is; lift: what was added to the diagonal to go downhill.
+    step: the solution (size,); soft: K^-1 g; denominator: 1 + c g.K^-1 g; stable: the whole is positive definite;
+    wall_stable: K is, by itself; lift: amount added to the diagonal for a descent direction.
     """
 
     step: Array
@@ -128,7 +127,7 @@ class NewtonDirection:
 
 @dataclass(frozen=True)
 class NewtonResult:
-    """A converged state."""
+    """A converged state, and the number of iterations."""
 
     state: SolverState
     iterations: int
@@ -136,14 +135,14 @@ class NewtonResult:
 
 @dataclass(frozen=True)
 class NewtonFailure:
-    """Newton did not converge: why, in words; iterations: steps that it took, where they are counted."""
+    """Newton's method did not converge: reason in words, and number of steps, if counted."""
 
     why: str
     iterations: int = 0
 
 
 def evaluate(scene: SolidScene, x: Array) -> SolverState | None:
-    """Energy and residual at x; None if a point of the wall is inverted or the cavity is gone."""
+    """State with energy and residual at x; None if a point of the wall is inverted or the volume is impossible."""
     solid = scene.solid
     local = solid.local(x)
     if not np.isfinite(local.energy):
@@ -198,7 +197,7 @@ def tangent(scene: SolidScene, state: SolverState) -> Array:
 
 
 def full_tangent(scene: SolidScene, state: SolverState) -> Array:
-    """`tangent` with the contact stiffness at the state's own active points."""
+    """`tangent` with the contact stiffness at the state's touching points."""
     band = tangent(scene, state)
     return band if state.touch is None else with_contact(scene, band, state.touch, state.touch.traction > 0.0)
 
@@ -209,12 +208,12 @@ def with_contact(scene: SolidScene, band: Array, touch: ContactEvaluation, activ
 
 
 def direction(scene: SolidScene, state: SolverState) -> NewtonDirection:
-    """Newton step: the least of the quadratic model of wall and filling with the plate met exactly in it.
+    """Newton step: minimum of the quadratic model of wall and filling, with the contact of the plate settled in it.
 
-    Which points touch is settled inside the model, where a change costs one banded solve and no assembly; the outer
-    steps then converge as without contact, and full steps survive the line search. The model is convex, with a slope
-    that bends where points come and go: each round goes to the least of one set of touching points, and where another
-    set holds there, only to the least of the model before it, so that no two sets take turns for ever.
+    The touching points are settled inside the model, where a change costs one banded solve and no assembly; the outer
+    steps then converge as without contact, and full steps pass the line search. The model is convex, with a kink in the
+    slope where a point comes or goes: each round goes to the minimum for one set of touching points or, if another set
+    holds there, only to the minimum of the model on the way, so that no two sets alternate for ever.
     """
     band = tangent(scene, state)
     if state.touch is None:
@@ -227,14 +226,14 @@ def direction(scene: SolidScene, state: SolverState) -> NewtonDirection:
         load = state.inner + push(contact.force(np.where(active, start, 0.0), touch.slope))
         newton = downhill(state, with_contact(scene, band, touch, active), load)
         if newton.lift:
-            # Keep what made this tangent definite for the rest of the settling: fewer failed factorisations.
+            # The lift that made this tangent definite is kept for the other rounds: fewer failed factorisations.
             band = band.copy(order="F")
             band[0] += newton.lift
             pull = pull + newton.lift * step
         ahead = contact.linear(touch, scene.solid.expand(newton.step))
         if ((ahead > 0.0) == active).all():
             return newton
-        # At the answer the points in contact balance what wall and filling pull.
+        # At the solution the tractions of the touching points balance the forces of wall and filling.
         pull_ahead = -push(contact.force(np.where(active, ahead, 0.0), touch.slope))
         move = newton.step - step
         share = contact.least_share(linear, ahead, float(move @ pull), float(move @ pull_ahead))
@@ -249,12 +248,12 @@ DirectionFinder = Callable[[SolidScene, SolverState], NewtonDirection]
 def stability(
     scene: SolidScene, state: SolverState, load: Array | None = None, band: Array | None = None
 ) -> NewtonDirection:
-    """The tangent at a converged state, its negative pivots counted where there are any; `step` answers `load` (size,).
+    """Solve the tangent system at a converged state for `load` (size,), with negative pivots counted if there are any.
 
-    ``band``: the full tangent, where it is known already.
+    ``band``: the full tangent, if it is known already.
 
-    An indefinite band can still belong to a stable total, since the filling stiffens one mode:
-    negatives(K + c g g') = negatives(K) - [1 + c g'K^-1 g < 0], from the inertia of the bordered matrix.
+    An indefinite band can still belong to a stable total, since the filling stiffens one mode: negatives(K + c g g') =
+    negatives(K) - [1 + c g'K^-1 g < 0], from the inertia of the bordered matrix.
     """
     band = full_tangent(scene, state) if band is None else band
     newton = rank_one(state, band, state.residual if load is None else load)
@@ -264,7 +263,7 @@ def stability(
 
 
 def rank_one(state: SolverState, band: Array, load: Array) -> NewtonDirection:
-    """-(band + c g g')^-1 load by Sherman-Morrison; one negative pivot is presumed where the band is not definite."""
+    """Step -(band + c g g')^-1 load by Sherman-Morrison; an indefinite band is taken to have one negative pivot."""
     solved = solve(band, np.stack([-load, state.by_volume], axis=1))
     plain, soft = solved.x[:, 0], solved.x[:, 1]
     rate = state.filling.rate
@@ -275,7 +274,7 @@ def rank_one(state: SolverState, band: Array, load: Array) -> NewtonDirection:
 
 
 def downhill(state: SolverState, band: Array, residual: Array) -> NewtonDirection:
-    """The Newton step if the tangent is positive definite, else one of a lifted tangent."""
+    """The Newton step if the tangent is positive definite, else the step of a tangent with raised diagonal."""
     newton = rank_one(state, band, residual)
     if newton.stable and float(newton.step @ residual) <= 0.0:
         return newton
@@ -284,7 +283,7 @@ def downhill(state: SolverState, band: Array, residual: Array) -> NewtonDirectio
 
 
 def _safe_step(state: SolverState, band: Array, residual: Array) -> tuple[Array, float]:
-    """A descent direction where the tangent has negative modes: the diagonal is raised until it has none."""
+    """Descent direction and lift for a tangent with negative modes: the diagonal is raised until it has none."""
     lift = float(np.abs(band[0]).mean()) * 1.0e-4
     rhs = np.stack([-residual, state.by_volume], axis=1)
     for _ in range(12):
@@ -303,9 +302,9 @@ def _safe_step(state: SolverState, band: Array, residual: Array) -> tuple[Array,
 def minimise(
     scene: SolidScene, x: Array, max_iterations: int = MAX_ITERATIONS, find: DirectionFinder = direction
 ) -> NewtonResult | NewtonFailure:
-    """Least total energy near x.  Returns the state, or why there is none; never an unconverged state.
+    """Minimum of the total energy near x: the converged state, or the failure with its reason.
 
-    ``find`` gives the step at a state.
+    ``find`` returns the step at a state.
     """
     state = evaluate(scene, x)
     if state is None:
@@ -325,7 +324,7 @@ def minimise(
         moved = _search(scene, state, newton.step, slope)
         if moved is None:
             return NewtonFailure("no step along the Newton direction lowers the energy")
-        # The gain of a Newton step goes with the square of the residual it starts from.
+        # The gain of a Newton step is proportional to the square of the residual at its start.
         state, left = moved, -slope * (float(np.linalg.norm(moved.residual)) / max(size, 1.0e-300)) ** 2
     return NewtonFailure(
         f"residual {np.linalg.norm(state.residual) / state.scale:.1e} after {max_iterations} iterations"
@@ -352,8 +351,8 @@ class NoConvergenceError(ComputationError):
     """No equilibrium met the tolerances, even after every cutback.
 
     load:   the load that could not be reached, in words with its unit.
-    why:    what the last attempt did.
-    advice: what to change.
+    why:    behaviour of the last attempt.
+    advice: advised change.
     """
 
     def __init__(self, load: str, why: str, advice: str) -> None:
@@ -362,9 +361,9 @@ class NoConvergenceError(ComputationError):
 
 
 class UnreachableLoadError(BeyondLimitError):
-    """A driving pressure beyond the one that the dome can carry.
+    """A driving pressure beyond the pressure that the dome can carry.
 
-    pressure: the requested one.  limit: the largest pressure that has an equilibrium; both gauge, MPa.
+    pressure: the requested pressure.  limit: the largest pressure with an equilibrium; both gauge, MPa.
     """
 
     def __init__(self, pressure: float, limit: float, why: str) -> None:

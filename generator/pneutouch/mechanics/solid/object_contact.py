@@ -1,4 +1,4 @@
-"""Contact with a rigid object, by default a flat plate with a rounded rim: a stiff potential on the outer wall."""
+"""Contact with a rigid object, by default a flat plate with a rounded rim: a penalty potential on the outer wall."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.mesh import END, START, SolidMesh
 
 #: Curvature radius of the plate's rim over the plate's radius (0.5 mm at 30 mm diameter, assumed: the paper has none).
-#: A mesh whose outer edges are longer rounds it to their length.
+#: On a mesh with longer outer edges the rim is rounded to their length.
 RIM = 1.0 / 30.0
 
 
 def rim_radius(radius: Array, longest: Array, rim: float | None = None) -> Array:
-    """Curvature radius of the rim of plates on meshes whose longest outer edges are given; ``rim``: a stated one."""
+    """Curvature radius of the rim of plates, at least the longest outer edge of the mesh; ``rim``: a stated one."""
     if rim is not None:
         return np.maximum(rim, longest)
     return np.maximum(np.where(np.isfinite(radius), RIM * radius, 0.0), longest)
 
 
 def flat_radius(radius: Array, rim: Array) -> Array:
-    """Radius over which a plate is flat: its rim begins half the rim's radius inside its edge."""
+    """Radius up to which a plate is flat: its rim begins half the rim's radius inside its edge."""
     return np.maximum(radius - 0.5 * rim, 0.5 * radius)
 
 
@@ -38,7 +38,7 @@ class Plate:
 
     @property
     def span(self) -> tuple[float, float]:
-        """Radii between which it is flat."""
+        """Radii between which the plate is flat."""
         return 0.0, self.radius
 
     def underside(self, r: Array) -> tuple[Array, Array, Array]:
@@ -63,11 +63,11 @@ class ContactEvaluation:
 
 
 class Contact:
-    """psi = (k/2) sum w <-g>^2, g the vertical gap and w the reference area of a point.
+    """Contact energy psi = (k/2) sum w <-g>^2, g the vertical gap and w the reference area of a point.
 
-    A stiff penalty: the Newton step meets the plate inside its quadratic model (`newton.direction`), which makes the
-    cost independent of k, so k is simply taken large enough that the penetration traction/k cannot be measured.  The
-    energy is once continuously differentiable: the line search sees no jump where points come and go.
+    A stiff penalty: the Newton step settles the contact inside its quadratic model (`newton.direction`), so the cost
+    does not depend on k, and k is large enough for the penetration traction/k to be negligible.  The energy is once
+    continuously differentiable: the line search meets no jump where points come and go.
     """
 
     def __init__(self, mesh: SolidMesh, nodes: Array, stiffness: float, points: int = 3) -> None:
@@ -79,7 +79,7 @@ class Contact:
         line = nodes[mesh.outer]
         radius = line[..., 0] @ self.shape.T
         self.weight = 2.0 * np.pi * radius * np.hypot(line[..., 0] @ slope.T, line[..., 1] @ slope.T) * w
-        # Force that rounding of the gap leaves; no residual can fall below it.
+        # Force due to rounding of the gap; no residual can fall below it.
         self.noise = float(np.finfo(np.float64).eps * stiffness * np.linalg.norm(self.weight))
         self.longest = float(np.hypot(*(line[:, END] - line[:, START]).T).max())
         n = 2 * mesh.outer.shape[1]
@@ -88,18 +88,18 @@ class Contact:
         self._pairs = pairs.reshape(points, -1)
 
     def positions(self, nodes: Array) -> tuple[Array, Array]:
-        """R and z of the points, (n_edges, n_points) each."""
+        """Coordinates r and z of the points, (n_edges, n_points) each."""
         line = nodes[self.edges]
         return line[..., 0] @ self.shape.T, line[..., 1] @ self.shape.T
 
     def outline(self, nodes: Array, points: int = 9) -> tuple[Array, Array]:
-        """R and z along the outer wall, at ``points`` of every edge with its ends, (n_edges * points,) each."""
+        """Coordinates r and z at ``points`` of every outer edge, ends included, (n_edges * points,) each."""
         shape, _ = line_shapes(np.linspace(-1.0, 1.0, points), self.edges.shape[1])
         line = nodes[self.edges]
         return (line[..., 0] @ shape.T).ravel(), (line[..., 1] @ shape.T).ravel()
 
     def touch(self, nodes: Array, plate: Indenter) -> ContactEvaluation:
-        """Energy and tractions against the plate for positions (n_nodes, 2)."""
+        """Contact energy and tractions under the plate, for positions (n_nodes, 2)."""
         r, z = self.positions(nodes)
         under, slope, curve = plate.underside(r)
         gap = under - z
@@ -108,19 +108,19 @@ class Contact:
         return ContactEvaluation(energy, traction, gap, slope, curve)
 
     def linear(self, touch: ContactEvaluation, move: Array) -> Array:
-        """Tractions (unclipped) after a nodal displacement `move` (n_nodes, 2), the gap taken as linear in it."""
+        """Tractions (unclipped) after a nodal displacement `move` (n_nodes, 2), with the gap linearised."""
         return np.asarray(-self.stiffness * self.opening(touch, move, touch.gap))
 
     def opening(self, touch: ContactEvaluation, move: Array, lift: float | Array) -> Array:
-        """Gaps after a nodal displacement `move` (n_nodes, 2), taken as linear in it, where they were ``lift``."""
+        """Gaps after a nodal displacement `move` (n_nodes, 2), linearised; ``lift`` is the gap before it."""
         r, z = self.positions(move)
         return np.asarray(lift + touch.slope * r - z)
 
     def least_share(self, here: Array, there: Array, slope_here: float, slope_there: float) -> float:
-        """Share in (0, 1] of a move at which the energy of contact and the rest of a quadratic model is least.
+        """Share in (0, 1] of a move at which the energy of contact plus the rest of a quadratic model is minimal.
 
         The tractions (unclipped) go from ``here`` to ``there`` (n_edges, n_points), the slope of the rest along the
-        move from ``slope_here`` to ``slope_there``; 1 where the whole still falls there.
+        move from ``slope_here`` to ``slope_there``; 1 if the total still falls at the end.
         """
         begun, change = here.ravel(), (there - here).ravel()
         turning = begun * (begun + change) < 0.0
@@ -134,7 +134,7 @@ class Contact:
         return float(at[before] - slope[before] * (at[past] - at[before]) / (slope[past] - slope[before]))
 
     def force(self, traction: Array, slope: Array) -> Array:
-        """Derivative of the energy by edge positions under given tractions, (n_edges, 2 n)."""
+        """Derivative of the contact energy by edge positions for given tractions, (n_edges, 2 n)."""
         load = self.weight * traction
         out = np.empty((load.shape[0], self._n))
         out[:, AXIAL] = load @ self.shape
@@ -142,7 +142,7 @@ class Contact:
         return out
 
     def hessian(self, touch: ContactEvaluation, active: Flags) -> Array:
-        """Second derivative with `active` points (n_edges, n_points) in contact, (n_edges, 2 n, 2 n)."""
+        """Second derivative with the `active` points (n_edges, n_points) touching, (n_edges, 2 n, 2 n)."""
         stiff = np.where(active, self.stiffness, 0.0) * self.weight
         n = self._n // 2
         out = np.zeros((stiff.shape[0], self._n, self._n))
@@ -155,8 +155,8 @@ class Contact:
         return out
 
     def blocks(self, parts: list[tuple[slice, slice, Array]]) -> Array:
-        """Stiffness of the edges (n_edges, 2 n, 2 n) of stiffnesses per area at rest at the points (n_edges, n_points),
-        by direction of the traction and of the displacement; zero where not given."""
+        """Stiffness of the edges (n_edges, 2 n, 2 n) from stiffnesses of the points per area at rest (n_edges,
+        n_points), given by direction of the traction and of the displacement; zero for other directions."""
         n = self._n // 2
         out = np.zeros((self.weight.shape[0], self._n, self._n))
         for rows, columns, value in parts:
@@ -164,18 +164,18 @@ class Contact:
         return out
 
     def footprint(self, nodes: Array, touch: ContactEvaluation, annular: bool = False) -> Footprint:
-        """Edges of the contact, largest pressure, and how far the wall has left the object between them.
+        """Edges of the contact, largest pressure, and largest gap between wall and object inside the contact.
 
         ``annular``: the object meets the wall around the axis, not on it, so that a gap on the axis is no separation.
         """
         r, _ = self.positions(nodes)
-        # Edges run from base to apex: reversed, the points go outward from the axis.
+        # Edges run from base to apex: in reverse order the points go outwards from the axis.
         out, gap, load = r.ravel()[::-1], touch.gap.ravel()[::-1], touch.traction.ravel()[::-1]
         meeting = np.flatnonzero(load > 0.0)
         if meeting.size == 0:
             return Footprint(0.0, 0.0, 0.0)
         last, first = int(meeting[-1]), int(meeting[0]) if annular else 0
-        # The cell an edge runs through cannot resolve it: gaps count from the next cell inside the contact.
+        # The cell that contains an edge of contact cannot resolve it: gaps count from the next cell inside the contact.
         cell = 2 * self.shape.shape[0]
         begin, end = (min(first + cell, last), max(first + 1, last + 1 - cell)) if annular else (0, last + 1 - cell)
         inside = float(gap[begin : max(begin + 1, end)].max())
@@ -185,8 +185,8 @@ class Contact:
 
 @dataclass(frozen=True)
 class Footprint:
-    """radius of the contact's outer edge, the largest gap inside it (positive: the centre is off), largest traction,
-    radius of the inner edge (0 where the wall touches on the axis)."""
+    """radius of the contact's outer edge; largest gap inside it (positive: the wall has left the object there); largest
+    traction; radius of the inner edge (0 if the wall touches on the axis)."""
 
     radius: float
     inside_gap: float
@@ -195,10 +195,10 @@ class Footprint:
 
 
 def _edge(r: Array, gap: Array) -> float:
-    """Edge between the last point in contact r[0] and the first free one r[1], where the root of the gap extrapolates
-    to zero.
+    """Edge of contact between the last touching point r[0] and the first free one r[1], where the extrapolated square
+    root of the gap is zero.
 
-    The gap of a smooth wall opens with the square of the distance from the edge.
+    The gap of a smooth wall grows with the square of the distance from the edge.
     """
     if gap.size < 2:
         return float(r[0])

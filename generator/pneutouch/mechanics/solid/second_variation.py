@@ -1,10 +1,10 @@
 """The second variation of the total energy around the axis, for displacements of n waves on an axisymmetric state.
 
-A displacement is u_r = a cos(n t), u_z = b cos(n t), u_theta = c sin(n t) of the angle t around the axis, with nodal
-a, b, c on the mesh of the meridian. Integrals over the angle are taken over half their value for n = 0, where the
-second variation is then that of the axisymmetric solid. It is a polynomial K0 + n K1 + n^2 K2, of the wall, whose law
-has second derivatives by the shears that an axisymmetric deformation does not have, and of what acts on its faces:
-gas, contact, friction and base.
+A displacement is u_r = a cos(n t), u_z = b cos(n t), u_theta = c sin(n t), with t the angle around the axis and nodal
+a, b, c on the mesh of the meridian. Integrals over the angle have half their value for n = 0, where the second
+variation equals that of the axisymmetric solid. It is a polynomial K0 + n K1 + n^2 K2. The wall contributes with the
+law's second derivatives by the shears that vanish in an axisymmetric deformation, and gas, contact, friction and base
+contribute on its faces.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ from pneutouch.mechanics.solid.model import PointFields, SolidModel
 from pneutouch.mechanics.solid.newton import SolverState
 
 IN_R, IN_Z, AROUND = range(3)
-"""Displacements of a node: a and b in the meridian, c around the axis."""
+"""Displacements of a node: radial a and axial b in the meridian, c around the axis."""
 
 
 @dataclass(frozen=True)
 class HarmonicBlocks:
-    """Coefficients of 1, n and n^2 of one family of blocks, each (n_blocks, 3 n, 3 n): a, b, c node by node."""
+    """Coefficients of 1, n and n^2 of one family of blocks, each (n_blocks, 3 n_nodes, 3 n_nodes): a, b, c by node."""
 
     constant: Array
     linear: Array
@@ -53,19 +53,19 @@ class HarmonicBlocks:
 
 
 def empty_blocks(blocks: int, nodes: int) -> Array:
-    """Zeros, indexed by block, node, displacement, node, displacement."""
+    """Zero array indexed by block, node, displacement, node, displacement."""
     return np.zeros((blocks, nodes, 3, nodes, 3))
 
 
 def block_family(parts: tuple[Array, Array, Array]) -> HarmonicBlocks:
-    """Coefficients indexed as those of `empty_blocks`."""
+    """Block family from coefficients indexed as in `empty_blocks`."""
     size = 3 * parts[0].shape[1]
     return HarmonicBlocks(*(part.reshape(-1, size, size) for part in parts))
 
 
 def with_around(meridian: Array, around: Array | None = None) -> Array:
-    """Blocks of the axisymmetric solid (n_blocks, 2 n, 2 n) with those of displacements around the axis, (n_blocks, n,
-    n), or with space for them."""
+    """Blocks of the axisymmetric solid (n_blocks, 2 n, 2 n), extended by those of displacements around the axis,
+    (n_blocks, n, n), or by zeros."""
     nodes = meridian.shape[1] // 2
     out = empty_blocks(meridian.shape[0], nodes)
     out[:, :, :AROUND, :, :AROUND] = meridian.reshape(-1, nodes, 2, nodes, 2)
@@ -75,8 +75,8 @@ def with_around(meridian: Array, around: Array | None = None) -> Array:
 
 
 def face_blocks(solid: SolidModel, state: SolverState) -> list[HarmonicBlocks]:
-    """Families of the edges of the inner and of the outer wall, and where the wall can meet a flange of those edges
-    with its top: there without the work of sliding around the axis."""
+    """Families of the edges of the inner wall, of the outer wall and, if the wall can meet a flange, of outer edges
+    with the flange's top; the last without the work of sliding around the axis."""
     inner, outer = _gas(solid, state), _contact(solid, state)
     if solid.base is not None:
         inner, outer = (
@@ -98,7 +98,7 @@ def _with(face: HarmonicBlocks, meridian: Array, around: Array | None) -> Harmon
 
 
 def _contact(solid: SolidModel, state: SolverState) -> HarmonicBlocks:
-    """Second variation of the contact's energy: a point that moves around the axis moves outwards, too."""
+    """Second variation of the contact energy: a point that moves around the axis also moves outwards."""
     contact, touch = solid.contact, state.touch
     empty = empty_blocks(*solid.mesh.outer.shape)
     if touch is None:
@@ -113,10 +113,10 @@ def _contact(solid: SolidModel, state: SolverState) -> HarmonicBlocks:
 
 
 def _gas(solid: SolidModel, state: SolverState) -> HarmonicBlocks:
-    """Second variation of the cavity volume by edges of the inner wall, times the pressure.
+    """Second variation of the gas potential, minus pressure times volume, by edges of the inner wall.
 
-    V = (1/2) integral of z_s [h, h_t] - z_t [h, h_s] over the surface, h the horizontal position: to second order
-    pi integral of z'(a^2 + 2 n a c + c^2) + r b'(2 a + n c) + n b (r c' - r' c) along the meridian.
+    V = (1/2) integral of z_s [h, h_t] - z_t [h, h_s] over the surface, h the horizontal position: to second order pi
+    integral of z'(a^2 + 2 n a c + c^2) + r b'(2 a + n c) + n b (r c' - r' c) along the meridian.
     """
     edges, pressure = solid.mesh.inner, state.filling.pressure
     n = edges.shape[1]
@@ -139,16 +139,16 @@ def _gas(solid: SolidModel, state: SolverState) -> HarmonicBlocks:
 
 
 R_T, Z_T, T_R, T_Z = range(4)
-"""The shears of a point: F_(r theta), F_(z theta), F_(theta R) and F_(theta Z)."""
+"""Shear components of a point: F_(r theta), F_(z theta), F_(theta R) and F_(theta Z)."""
 
 
 def shear_moduli(law: Hyperelastic, strains: Array, pressure: Array) -> Array:
     """Hessian (n_points, 4, 4) by the shears, in MPa, of the law's energy plus ``pressure`` (n_points,), MPa, times J.
 
-    ``strains`` (n_points, 5) as in `kinematics`. The deformation gradient is block diagonal, so its principal axes are
-    two in the plane and the hoop. A shear between one of the first two and the hoop leaves the third alone: there the
-    energy is that of a plane deformation, a function of a = |F|^2 and j = det F of this pair, with the Hessian 2 W_a
-    for each shear alone and -W_j for both. It is smooth where stretches coincide.
+    ``strains`` (n_points, 5) as in `elements`. The deformation gradient is block diagonal, so two of its principal axes
+    are in the plane and the third is the hoop. A shear between one of the first two and the hoop leaves the other
+    alone: the energy then is that of a plane deformation, a function of a = |F|^2 and j = det F of this pair, with 2
+    W_a on the diagonal of the Hessian and -W_j off it. It is smooth where stretches coincide.
     """
     e, d = 0.5 * (strains[:, F_RR] + strains[:, F_ZZ]), 0.5 * (strains[:, F_RR] - strains[:, F_ZZ])
     k, g = 0.5 * (strains[:, F_ZR] - strains[:, F_RZ]), 0.5 * (strains[:, F_ZR] + strains[:, F_RZ])
@@ -177,12 +177,12 @@ def shear_moduli(law: Hyperelastic, strains: Array, pressure: Array) -> Array:
     return out
 
 
-#: Gradients of a scalar: by R, by Z, over R.
+#: Gradient components of a scalar: by R, by Z, and the scalar over R.
 _BY_R, _BY_Z, _OVER_R = range(3)
 
 
 class HarmonicSolid:
-    """The operators of a solid that do not depend on its state, and the second variation at a state."""
+    """Operators of a solid that do not depend on its state, and its second variation at a state."""
 
     def __init__(self, solid: SolidModel) -> None:
         self.solid = solid
@@ -215,7 +215,7 @@ class HarmonicSolid:
         self._on_axis = self.unknowns[mesh.axis, IN_R]
 
     def expand(self, n: int, vector: Array) -> Array:
-        """Nodal displacements a, b, c (n_nodes, 3) of the unknowns of n waves."""
+        """Nodal displacements a, b, c (n_nodes, 3) from the unknowns for n waves."""
         out = np.where(self.unknowns >= 0, vector[self.unknowns], 0.0)
         out[self.solid.mesh.axis, AROUND] *= -1.0
         if n > 1:
@@ -223,10 +223,10 @@ class HarmonicSolid:
         return np.asarray(out)
 
     def bands(self, state: SolverState, numbers: tuple[int, ...]) -> dict[int, Array]:
-        """Lower bands of the second variation for numbers of waves of at least one, by number.
+        """Lower bands of the second variation, by number of waves (at least one).
 
-        On the axis b is zero; c is -a for one wave, a displacement across the axis, and for more waves all are zero:
-        their rows and columns hold a large diagonal alone. The trapped gas adds nothing: such displacements keep the
+        On the axis b is zero; c is -a for one wave, a displacement across the axis; for more waves all three are zero,
+        and their rows and columns have only a large diagonal. The trapped gas adds nothing: such displacements keep the
         volume to first order.
         """
         families, constant = self.blocks(state), None
@@ -244,18 +244,18 @@ class HarmonicSolid:
         return out
 
     def _assembled(self, blocks: list[Array]) -> Array:
-        """Band of a sum of blocks, whose signs of c on the axis are turned in place."""
+        """Band of a sum of blocks; the blocks' signs for c on the axis are reversed in place."""
         for block, turned, sign in zip(blocks, self._turned, self._signs, strict=True):
             block[turned] *= sign
         return self._pattern.matrix(blocks)
 
     def blocks(self, state: SolverState) -> list[HarmonicBlocks]:
-        """The second variation by cells, by edges of the inner and of the outer wall, and where the wall can meet a
-        flange by those edges with its top: there without the work of sliding around the axis."""
+        """Second variation by cells, by edges of the inner wall, of the outer wall and, if the wall can meet a flange,
+        of outer edges with the flange's top; the last without the work of sliding around the axis."""
         return [self.wall(state.local), *face_blocks(self.solid, state)]
 
     def wall(self, local: PointFields) -> HarmonicBlocks:
-        """Second variation of the stored energy by cells."""
+        """Second variation of the wall's stored energy by cells."""
         d, n_cells = self._shears(local), self._weight.shape[0]
         constant = with_around(self.solid.stiffness(local))
         nodes = constant.shape[1]
@@ -278,7 +278,7 @@ class HarmonicSolid:
         return block_family((constant, linear, square))
 
     def _product(self, form: Array) -> Array:
-        """Blocks (n_cells, n, n) of a form of the gradients of two displacements, (n_points, 3, 3)."""
+        """Blocks (n_cells, n, n) from a bilinear form of the gradients of two displacements, (n_points, 3, 3)."""
         n_cells, n_points = self._weight.shape
         moved = np.matmul(form.reshape(n_cells, n_points, 3, 3), self._gradient)
         return np.asarray(np.matmul(self._wide, moved.reshape(n_cells, 3 * n_points, -1)))
@@ -294,7 +294,7 @@ class HarmonicSolid:
         return np.asarray(moduli * scale[:, None, None])
 
     def _mixed(self, local: PointFields, d: Array) -> tuple[Array, Array]:
-        """Blocks between a and c, and between b and c: the part in n."""
+        """Blocks between a and c and between b and c: coefficients of n."""
         by_hoop = local.jets[BY_AH][:, None] * local.basis[:, 0, IN_PLANE]
         by_hoop += local.jets[BY_JH][:, None] * local.basis[:, 1, IN_PLANE]
         forms = []
@@ -308,7 +308,7 @@ class HarmonicSolid:
         return self._product(forms[0]), self._product(forms[1])
 
     def _add_swelling(self, local: PointFields, linear: Array, square: Array) -> None:
-        """Add the contribution of the averaged volume's stiffness with c, in place."""
+        """Add, in place, the part of the averaged volume's stiffness that involves c."""
         n_cells, n_points = self._weight.shape
         nodes = linear.shape[1]
         area = area_ratio(local.strains)
@@ -336,7 +336,7 @@ class HarmonicSolid:
 
 
 def _around(d: Array) -> Array:
-    """The form of c with itself: its strains are -c/R in r theta, and its gradients in theta R and theta Z."""
+    """Bilinear form of c with itself: its r theta strain is -c/R, and its gradients are in theta R and theta Z."""
     form = np.empty((d.shape[0], 3, 3))
     places = ((_BY_R, T_R, 1.0), (_BY_Z, T_Z, 1.0), (_OVER_R, R_T, -1.0))
     for i, row, sign in places:
@@ -346,7 +346,7 @@ def _around(d: Array) -> Array:
 
 
 def _number(solid: SolidModel) -> Index:
-    """Unknowns (n_nodes, 3) in the order of the axisymmetric solid's, -1 where fixed; on the axis a and c are one."""
+    """Unknowns (n_nodes, 3) in the axisymmetric solid's order, -1 where fixed; on the axis a and c share one."""
     mesh: SolidMesh = solid.mesh
     free = np.ones((mesh.nodes.shape[0], 3), dtype=bool)
     free[mesh.axis] = True, False, False
@@ -361,7 +361,7 @@ def _number(solid: SolidModel) -> Index:
 
 
 def _fix(band: Array, unknowns: Index) -> None:
-    """Uncouple unknowns of a lower band, in place: their diagonal becomes the largest of all."""
+    """Uncouple unknowns of a lower band, in place, and set their diagonal to the largest absolute diagonal entry."""
     width, largest = band.shape[0] - 1, float(np.abs(band[0]).max())
     for unknown in unknowns[unknowns >= 0]:
         back = np.arange(1, min(width, int(unknown)) + 1)

@@ -1,4 +1,4 @@
-"""Stretch and stress on the two faces of the wall, where bending puts the largest."""
+"""Stretch and stress on the two faces of the wall, where bending makes them largest."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from pneutouch.mechanics.solid.elements import HOOP, IN_PLANE, area_ratio, posit
 from pneutouch.mechanics.solid.inflate import Inflation, between, pressure_between
 from pneutouch.mechanics.solid.model import SolidModel
 
-#: Within this many wall thicknesses of a clamped node the elastic stress is singular and means nothing; left out.
+#: Distance from a clamped node, in wall thicknesses, within which the singular elastic stress is left out.
 CLAMP_REACH = 0.5
 _TURNED_OVER = 1.0e-4
 _SEARCH = 41
@@ -22,8 +22,8 @@ _SEARCH = 41
 class WallExtremes:
     """Extremes over both faces of the wall away from the clamp.
 
-    stretch, von_mises (Cauchy, MPa): the largest.  fold: largest ratio of the stretch across a face to the least
-    along it.
+    stretch, von_mises (Cauchy, MPa): the largest values.  fold: largest ratio of the stretch across a face to the least
+    stretch along it.
     """
 
     stretch: float
@@ -33,10 +33,10 @@ class WallExtremes:
 
 class StrainProbe:
     """Evaluates strains on the faces eta = +-1 of every cell: at Gauss stations along the arc that are far enough from
-    the clamp, and exactly where far enough begins, so that no station comes and goes with the wall.
+    the clamp, and exactly at the limit of that distance, so that no station comes or goes as the wall changes.
 
-    operator (n_cells, 5 n_stations, 2 n_nodes): strains at the stations; ``far`` picks those that count.
-    edge_operator (n_edges, 5, 2 n_nodes): strains where far enough begins, in the cells ``edge_cells``.
+    operator (n_cells, 5 n_stations, 2 n_nodes): strains at the stations; ``far`` selects those far enough.
+    edge_operator (n_edges, 5, 2 n_nodes): strains at the limit distance, in the cells ``edge_cells``.
     """
 
     def __init__(self, solid: SolidModel) -> None:
@@ -67,7 +67,7 @@ class StrainProbe:
         return np.asarray(np.hypot(*(points[:, None, :] - held[None, :, :]).T).min(axis=0))
 
     def _edges(self) -> list[tuple[int, Array]]:
-        """Cells and local points on their faces where the distance from the clamp passes the reach."""
+        """Cells, and local points on their faces, at which the distance from the clamp equals the limit."""
         along = np.linspace(-1.0, 1.0, _SEARCH)
         reach = CLAMP_REACH * self.solid.wall
         edges = []
@@ -81,11 +81,11 @@ class StrainProbe:
         return edges
 
     def _strains(self, x: Array) -> tuple[Array, Array, Array, Array]:
-        """Squared norm and area ratio in plane, hoop stretch (n_points,); principal stretches (3, n_points)."""
+        """In-plane squared norm and area ratio, hoop stretch (n_points,) each; principal stretches (3, n_points)."""
         nodes = x[self.solid.mesh.cells].reshape(self.solid.mesh.cells.shape[0], -1, 1)
         f = np.matmul(self.operator, nodes).reshape(-1, 5)[self.far]
         f = np.concatenate([f, np.matmul(self.edge_operator, nodes[self.edge_cells])[..., 0]])
-        # At the tip of a crease a face can turn over between sound integration points: shown as an immense fold.
+        # At a crease's tip a face can turn over between sound integration points: this gives a very large fold.
         j = np.maximum(area_ratio(f), _TURNED_OVER)
         a, h = np.maximum((f[:, IN_PLANE] ** 2).sum(axis=1), 2.0 * j), np.maximum(f[:, HOOP], _TURNED_OVER)
         plus, minus = np.sqrt(a + 2.0 * j), np.sqrt(np.maximum(a - 2.0 * j, 0.0))
@@ -96,7 +96,7 @@ class StrainProbe:
         return float(self._strains(x)[3].max())
 
     def greatest_tension(self, x: Array) -> float:
-        """Stretch of uniaxial tension with the greatest first invariant over both faces at positions x (n_nodes, 2)."""
+        """Uniaxial stretch with the same greatest first invariant as on both faces, at positions x (n_nodes, 2)."""
         _, j, h, stretch = self._strains(x)
         return float(same_invariant(((stretch**2).sum(axis=0) * (j * h) ** (-2.0 / 3.0)).max()))
 
@@ -132,7 +132,7 @@ class StrainProbe:
         return np.asarray(positions[cells[:, around]])
 
     def peak(self, x: Array) -> WallExtremes:
-        """Largest values for nondimensional positions x (n_nodes, 2)."""
+        """Extremes for nondimensional positions x (n_nodes, 2)."""
         stretch, stress = self.principal(x)
         apart = stress - np.roll(stress, 1, axis=0)
         mises = np.sqrt(0.5 * (apart**2).sum(axis=0))

@@ -1,4 +1,4 @@
-"""Loss of stability of the axisymmetric path under the plate: sway (one wave around the axis) and lobes (more)."""
+"""Loss of stability of the axisymmetric path under the plate: sway (one wave around the axis) and lobes (several)."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from pneutouch.mechanics.solid.second_variation import HarmonicSolid
 
 #: Greatest number of waves around the axis that is checked.
 MOST_WAVES = 8
-#: Plate travel between checked states, in R0: what is lost between two is searched for in the states between them.
+#: Plate travel between checked states, in R0; a loss between two of them is searched in the states between.
 _TRAVEL = 0.25
-#: Position of a loss, in R0.
+#: Accuracy of the height of a loss, in R0.
 _WITHIN = 5.0e-4
-#: Position of a loss between two states of a free dome, as a share of the path between them.
+#: Accuracy of a loss between two states of a free dome, as a share of the path between them.
 _FREE_WITHIN = 2.0e-3
 _SETTLED = 6.0
 _MOST_SOLVES = 12
@@ -44,7 +44,7 @@ class FreeLoss:
 
 
 def unstable_waves(harmonic: HarmonicSolid, state: SolverState, numbers: tuple[int, ...]) -> tuple[int, ...]:
-    """Those of the given numbers of waves for which the second variation at a state is not positive definite."""
+    """Numbers of waves, among those given, for which the second variation at a state is not positive definite."""
     return tuple(n for n, band in harmonic.bands(state, numbers).items() if not is_definite(band))
 
 
@@ -57,8 +57,8 @@ def softest_mode(harmonic: HarmonicSolid, state: SolverState, n: int) -> tuple[f
 def axisymmetry_losses(solid: SolidModel, path: list[PlateState], most: int = MOST_WAVES) -> list[AxisymmetryLoss]:
     """Losses of stability of a path, from first contact down: to one wave around the axis, and to 2 to ``most`` waves.
 
-    States are checked at every quarter of R0 of plate travel, and the last. Where stability is lost between two of
-    them, the states between are searched by halves, and the place is located by solving for states between neighbours.
+    States are checked at every quarter of R0 of plate travel, and the last one. A loss between two of these is
+    bracketed by bisection over the states in between, and located by solving for states between neighbours.
     """
     harmonic = HarmonicSolid(solid)
     losses: list[AxisymmetryLoss] = []
@@ -79,7 +79,7 @@ def axisymmetry_losses(solid: SolidModel, path: list[PlateState], most: int = MO
 
 
 def _onset(harmonic: HarmonicSolid, path: list[PlateState], n: int) -> AxisymmetryLoss:
-    """The loss for n waves within a part of a path whose last state shows it."""
+    """Loss for n waves within a part of a path whose last state is unstable."""
     stable, unstable = 0, len(path) - 1
     if unstable_waves(harmonic, path[0].state, (n,)):
         return AxisymmetryLoss(n, path[0].height)
@@ -105,7 +105,7 @@ def _located(harmonic: HarmonicSolid, n: int, path: list[PlateState]) -> float:
 
 
 def free_loss(solid: SolidModel, run: Inflation, most: int = MOST_WAVES) -> FreeLoss | None:
-    """First instability, with 1 to ``most`` waves, of a dome filled or emptied without contact; None without one."""
+    """First instability, with 1 to ``most`` waves, of a dome filled or emptied without contact; None if stable."""
     harmonic, waves = HarmonicSolid(solid), tuple(range(1, most + 1))
     for before, after in zip(run.states, run.states[1:], strict=False):
         lost = unstable_waves(harmonic, after.unit, waves)
@@ -140,7 +140,7 @@ def _root(
 ) -> float:
     """Share of the path from a stable state (0) to an unstable one (1) at which the lowest eigenvalue is zero.
 
-    By inverse quadratic interpolation of the ``values`` at known shares, and by halves where that leaves the bracket.
+    By inverse quadratic interpolation of the ``values`` at known shares, or bisection if that leaves the bracket.
     """
     known, low, high, guess = len(values), 0.0, 1.0, 1.0
     for _ in range(_MOST_SOLVES):
@@ -160,8 +160,7 @@ def _root(
 
 
 def _zero(values: dict[float, float]) -> float:
-    """Place at which a quantity is zero, from the three places at which it is nearest zero; nan if two of its values
-    are equal."""
+    """Zero of a quantity by inverse interpolation of its three values nearest to zero; nan if two of them are equal."""
     near = sorted(values.items(), key=lambda pair: abs(pair[1]))[:3]
     places, at = np.array([pair[0] for pair in near]), np.array([pair[1] for pair in near])
     total = 0.0
@@ -174,7 +173,7 @@ def _zero(values: dict[float, float]) -> float:
 
 
 def _between(before: PlateState, after: PlateState, height: float) -> SolverState | None:
-    """The state at a plate height between two neighbours on the path."""
+    """State at a plate height between two neighbours on the path, or None if no equilibrium is found."""
     plate = after.scene.plate
     assert plate is not None
     span = before.height - after.height

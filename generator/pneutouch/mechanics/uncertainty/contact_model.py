@@ -1,8 +1,7 @@
-"""The uncertainty of a sensor under another contact than the atlas's plate without friction.
+"""The uncertainty of a sensor under another contact than the frictionless plate of the atlas.
 
-The atlas gives the derivatives by wall, radius, gas and driving pressure. The derivative by the modulus, which is
-uncertain by far the most, and that by the friction are the solid's, with the contact itself
-(docs/background/contact.md).
+The atlas gives the derivatives by wall, radius, gas and driving pressure. The solid gives the derivatives by the
+friction and by the modulus, by far the most uncertain input, under the contact itself (docs/background/contact.md).
 """
 
 from dataclasses import dataclass
@@ -17,21 +16,21 @@ from pneutouch.mechanics.corrected.figures import GRIPS, CorrectedAtlas, between
 from pneutouch.mechanics.sensor import Sensor
 
 SPREAD = 2.0
-"""A stated coefficient may be this factor off in either direction, even in its logarithm: an assumption. Dry rubber on
-plastic has a coefficient near 1, which dust, speed and load move by as much."""
+"""Factor by which a stated coefficient may be off in either direction, uniform in its logarithm: an assumption. Dry
+rubber on plastic has a coefficient near 1; dust, speed and load change it by that much."""
 
 LEAST_GRIP = 1.0
-"""Least coefficient of a surface that is stated to grip: an assumption, that of dry rubber on plastic."""
+"""Least coefficient of a surface that is stated to grip: an assumption, the value of dry rubber on plastic."""
 
 _KURTOSIS = 1.8
 """Kurtosis of a rectangular distribution."""
 
 _LEAST_STEP = 0.1
-"""Least half step in ln modulus: below it the noise of the ends of ranges shows in a difference."""
+"""Least half step in ln modulus: for smaller steps the noise of the range ends shows in a difference."""
 
 _RANGE = CONTACT_FIGURES[-1]
 _SAME_END = 1e-6
-"""Ends of ranges nearer to each other than this, in the logarithm, are one."""
+"""Difference of ln range end below which two range ends are the same."""
 
 
 @dataclass(frozen=True)
@@ -39,10 +38,10 @@ class FrictionSpread:
     """Effect of an unknown coefficient of friction on n sensors.
 
     Attributes:
-        standard: Standard uncertainties of the logarithm of the figures, (figures, n); NaN if no equilibrium was
-            found at another coefficient.
+        standard: Standard uncertainties of the logarithm of the figures, (figures, n); NaN if no equilibrium was found
+            at another coefficient.
         elasticities: d ln figure / d ln coefficient, (figures, n); None for a surface that grips.
-        origin: Assumed distribution of the coefficient.
+        origin: Assumed or fitted distribution of the coefficient, in words.
     """
 
     standard: Array
@@ -52,18 +51,18 @@ class FrictionSpread:
 
 @dataclass(frozen=True)
 class ContactShift:
-    """Logarithms of the figures under the contact, by the solid, less those under the plate, by the atlas.
+    """Logarithms of the figures under the contact, by the solid, minus those under the plate, by the atlas.
 
     Attributes:
         half: Distance of the nodes in ln modulus.
-        nodes: At moduli exp(-half), 1 and exp(half) times that of the sensor, (3, figures, n).
+        nodes: Values at the sensor's modulus times exp(-half), 1 and exp(half), (3, figures, n).
     """
 
     half: float
     nodes: Array
 
     def at(self, by: Array) -> Array:
-        """Shift at ln modulus over that of the sensor (k, n), (figures, k, n): a parabola, constant beyond its
+        """Shift (figures, k, n) at ln of the modulus over that of the sensor (k, n): a parabola, constant beyond the
         nodes."""
         t = np.clip(by / self.half, -1.0, 1.0)
         less, here, more = self.nodes[:, :, None]
@@ -76,16 +75,16 @@ class ContactShift:
 
 @dataclass(frozen=True)
 class ContactModel(CorrectedAtlas):
-    """One sensor under its contact, and what another modulus or friction changes.
+    """One sensor under its contact, and the changes by another modulus or friction.
 
-    That is solved at the lowest and the highest pressure and is straight between, unless an event ends the range.
-    ``fitted_spread`` is the standard uncertainty of the coefficient where a calibration fitted it.
+    The changes are solved at the lowest and the highest pressure and linear in between, unless an event ends the range.
+    ``fitted_spread`` is the standard uncertainty of a coefficient that a calibration fitted.
     """
 
     fitted_spread: float | None = None
 
     def shift(self, half: float) -> ContactShift:
-        """The shift over a spread of the modulus; a side that the solid cannot solve is as the middle."""
+        """Shift over a spread of the modulus; on a side that the solid cannot solve it has the middle value."""
         half = max(half, _LEAST_STEP)
         here = self.logs - self.plate(self.pressures)
         modulus = self.sensor.wall.shear_modulus
@@ -97,7 +96,7 @@ class ContactModel(CorrectedAtlas):
 
     @cached_property
     def friction(self) -> FrictionSpread | None:
-        """Effect of the unknown coefficient; None without friction."""
+        """Effect of the uncertain coefficient; None without friction."""
         stated = self.sensor.protocol.friction
         if self.fitted_spread is not None:
             return self._fitted(min(stated, GRIPS), self.fitted_spread)
@@ -124,7 +123,7 @@ class ContactModel(CorrectedAtlas):
         return FrictionSpread(np.sqrt(variance), slope / far, origin)
 
     def _fitted(self, value: float, spread: float) -> FrictionSpread:
-        """Spread by a fitted coefficient: the difference over its standard uncertainty, within 0 and grip."""
+        """Effect of a fitted coefficient: change per standard uncertainty, between 0 and grip."""
         ends = max(value - spread, 0.0), min(value + spread, GRIPS)
         down, up = (self._change(self.sensor.replace(friction=np.inf if x >= GRIPS else x)) for x in ends)
         slope = (up - down) / max(ends[1] - ends[0], 1e-9)
@@ -132,8 +131,8 @@ class ContactModel(CorrectedAtlas):
         return FrictionSpread(np.abs(slope) * spread, value * slope, origin)
 
     def _change(self, sensor: Sensor) -> Array:
-        """Change of the logarithms of another sensor's figures under its contact, less the change under the plate,
-        (figures, n); NaN beyond the highest driving pressure at which the solid can solve it."""
+        """Change of the logarithms of the figures under the contact if the sensor is replaced by ``sensor``, minus the
+        change under the plate, (figures, n); NaN above the highest driving pressure that the solid can solve."""
         at, solved = self.solved
         for count in range(at.size, 0, -1):
             rows = np.unique([0, count - 1])
@@ -150,6 +149,6 @@ class ContactModel(CorrectedAtlas):
         return between(np.array(self.pressures), at[rows], changes)
 
     def _to_the_depth(self, solved: Array, changes: Array) -> bool:
-        """True if no event ends the range: an event does so at a travel that jumps from pressure to pressure."""
+        """True if no event ends the range: the travel at an event would change from pressure to pressure."""
         ends = np.abs([*(solved[_RANGE] - np.log(self.sensor.protocol.depth)), *changes[_RANGE]])
         return bool((ends < _SAME_END).all())

@@ -1,6 +1,6 @@
-"""The sources of a budget through the atlas (JCGM 101), the document of one sensor, and sentences for its datasheet.
+"""Monte Carlo propagation of a budget through the atlas (JCGM 101), the document of one sensor, and datasheet texts.
 
-Effects of the air on a sealed sensor, temperature and speed of the press, are computed at the sensor's own states.
+Also the effects of the air on a sealed sensor, by temperature and by the speed of the press, at the sensor's states.
 """
 
 from __future__ import annotations
@@ -32,15 +32,15 @@ if TYPE_CHECKING:
 
 
 def budget(batch: SensorBatch, material: Material, printer: Printer, **facts: Any) -> Budget:
-    """The uncertainty of the figures of n sensors of one resin and printer; ``facts`` are those of `sources`."""
+    """Uncertainty budget of the figures of n sensors of one resin and printer; ``facts`` are arguments of `sources`."""
     return propagate(batch, sources(batch, material, printer, **facts), facts.get("contact"))
 
 
 _COVERED = 0.9545
-"""Share of a normal distribution within two standard deviations."""
+"""Share of a normal distribution within two standard deviations of the mean."""
 
 _GRAIN = 5e-4
-"""Wall ratios are rounded to this, relative: the atlas is cut once a ratio; no wall is known to a hundred times it."""
+"""Relative rounding of wall ratios: the atlas is cut once per ratio; no wall is known to a hundred times this."""
 
 
 @dataclass(frozen=True)
@@ -50,8 +50,8 @@ class SampledFigures:
     Attributes:
         standard: Standard deviation of ln figure, (figures,).
         half_width: Half of the probabilistically symmetric 95.45 % interval of ln figure, (figures,).
-        low: Its lower end, in the figure's unit, (figures,).
-        high: Its upper end, (figures,).
+        low: Lower end of the interval, in the figure's unit, (figures,).
+        high: Upper end of the interval, in the figure's unit, (figures,).
         lost: Share of samples without the figure (beyond the limit point or outside the atlas), (figures,).
     """
 
@@ -72,7 +72,7 @@ def monte_carlo(
 ) -> SampledFigures:
     """Sample the sources of sensor ``row``; the same seed gives the same samples. ``shift`` is that of the budget.
 
-    Figures that the same sources count for are read off the same samples.
+    Figures for which the same sources count use the same samples.
     """
     logs = np.empty((len(FIGURES), count))
     groups: dict[tuple[bool, ...], list[int]] = {}
@@ -98,9 +98,9 @@ def _through_model(
     figure: int,
     shift: ContactShift | None,
 ) -> Array:
-    """Logarithms of all figures, (figures, count), under the sources on inputs that count for one figure.
+    """Logarithms of all figures, (figures, count), under those sources on inputs that count for one figure.
 
-    ``drawn`` is the row of the sensor, how many samples, and their seed.
+    ``drawn`` holds the row of the sensor, the number of samples, and the seed.
     """
     row, count, seed = drawn
     many = batch.take(np.full(count, row))
@@ -130,7 +130,7 @@ def _summary(logs: Array) -> SampledFigures:
 
 
 _TRAVEL = 0.98
-"""Share of the range compared: its end may be the last stable state, which one rounding more would lose."""
+"""Share of the range used for the comparison: its end may be the last stable state, lost by a rounding error."""
 
 _NEWTON, _LONGEST, _CLOSE = 20, 0.05, 1.0e-10
 
@@ -138,10 +138,9 @@ _NEWTON, _LONGEST, _CLOSE = 20, 0.05, 1.0e-10
 class GasNotes(NamedTuple):
     """Effects of the air on n sensors, (n,) each; NaN if the atlas has no state.
 
-    by_temperature_kPa_per_K: Pressure rise of the sealed, untouched sensor, kPa/K.
-    force_by_temperature: The contact force that would read the same, N/K.
-    wall_give: Share of the rise in a rigid cavity that the wall leaves: k_wall / (k_wall + k_gas).
-    fast_over_slow: Sensitivity with adiabatic gas over that with isothermal gas, over one and the same travel.
+    by_temperature_kPa_per_K: Pressure change of the sealed, untouched sensor, kPa/K. force_by_temperature: The contact
+    force with the same reading, N/K. wall_give: Pressure change over that in a rigid cavity: k_wall / (k_wall + k_gas).
+    fast_over_slow: Sensitivity with adiabatic gas over that with isothermal gas, over the same travel.
     """
 
     by_temperature_kPa_per_K: Array
@@ -151,10 +150,10 @@ class GasNotes(NamedTuple):
 
 
 def gas_notes(batch: SensorBatch, temperature: float = REFERENCE_TEMPERATURE) -> GasNotes:
-    """Temperature effect at ``temperature`` (K) and gas law effect of n sensors.
+    """Effects of the temperature, at ``temperature`` (K), and of the gas law on n sensors.
 
-    Ideal gas: dp = (p + p_a) dT/T - k_gas dV with k_gas = (p + p_a)/(V + V_d), and the wall gives dp = k_wall dV, so
-    dp/dT = (p + p_a)/T * k_wall / (k_wall + k_gas). All the gas, the dead volume's too, has one temperature.
+    Ideal gas: dp = (p + p_a) dT/T - k_gas dV with k_gas = (p + p_a)/(V + V_d), and for the wall dp = k_wall dV, so
+    dp/dT = (p + p_a)/T * k_wall / (k_wall + k_gas). All the gas, including the dead volume, has one temperature.
     """
     atlas = neighbourhood()
     response = respond(batch, atlas=atlas)
@@ -172,7 +171,7 @@ def gas_notes(batch: SensorBatch, temperature: float = REFERENCE_TEMPERATURE) ->
 
 
 def _wall_stiffness(press: AtlasPress, k: Index) -> Array:
-    """dp/dV of the free inflated wall, in mu/R0^3."""
+    """Slope dp/dV of the wall in free inflation, in mu/R0^3."""
     slices, nu = press.slices, press.free
     apex = slices.free_apex(k, nu)
     point = slices.point(k, nu, apex[:, 0])
@@ -181,7 +180,7 @@ def _wall_stiffness(press: AtlasPress, k: Index) -> Array:
 
 
 def _sensitivity(press: AtlasPress, indentation: Array, exponent: float) -> Array:
-    """Slope of pressure over force, kPa/N, at plate travels (n, m) in mm; NaN if one of them has no state."""
+    """Slope of pressure over force, kPa/N, over plate travels (n, m) in mm; NaN if a travel has no state."""
     mu, radius = press.batch.shear_modulus[:, None], press.batch.inner_radius[:, None]
     pressure, force, converged = _pressed(press, np.nan_to_num(indentation) / radius, exponent)
     rise_kPa = (pressure - press.pressure[:, None]) * mu / KPA
@@ -190,7 +189,7 @@ def _sensitivity(press: AtlasPress, indentation: Array, exponent: float) -> Arra
 
 
 def _pressed(press: AtlasPress, indentation: Array, exponent: float) -> tuple[Array, Array, Flags]:
-    """Pressure and force (n, m) at plate travels in R0 with constant p V^exponent, and where all were found (n,)."""
+    """Pressure and force (n, m) at plate travels in R0 for constant p V^exponent, and flags (n,): all states found."""
     nu, good = press.free, np.ones(press.free.size, dtype=bool)
     start = press.volume(press.free) + press.dead
     columns = []
@@ -212,7 +211,7 @@ def _pressed(press: AtlasPress, indentation: Array, exponent: float) -> tuple[Ar
 
 
 _FEW = 10.0
-"""Below as many degrees of freedom k = 2 covers clearly less than 95 % (JCGM 100, G.6.4)."""
+"""Degrees of freedom below which k = 2 covers clearly less than 95 % (JCGM 100, G.6.4)."""
 
 _LEAST_SHARE = 5e-4
 
@@ -230,18 +229,18 @@ def document(
     *,
     calibrated: bool = False,
 ) -> UncertaintyRecord:
-    """Figures, sources and notes of sensor ``row``.
+    """Document with figures, sources and notes of sensor ``row``.
 
     Args:
         budget: Result of `budget`.
         row: Index of the sensor.
-        values: The figures by another model, by name, with the budget's relative uncertainty; the atlas's else. Those
-            that it does not compute are left out.
-        notes: More notes, such as `gas_text`.
-        calibrated: True if to add to each figure ``at_calibration``, its interval without the ageing since then.
+        values: Figures by another model, by name, to be given with the budget's relative uncertainty; other figures are
+            left out. None: the atlas's figures.
+        notes: Further notes, such as those of `gas_text`.
+        calibrated: True adds ``at_calibration`` to each figure: its interval without the ageing since then.
 
     Returns:
-        A figure that the atlas does not have is left out; without any the notes state it.
+        The document; it omits a figure that the atlas does not have, and if there is none the notes state this.
     """
     known = [i for i in range(len(FIGURES)) if np.isfinite(budget.standard[i, row])]
     given = values or {}
@@ -259,7 +258,7 @@ def document(
 
 
 def _fresh_width(budget: Budget, figure: int, row: int) -> float:
-    """Expanded uncertainty of the logarithm of a figure without the ageing ahead."""
+    """Expanded uncertainty of the logarithm of a figure without future ageing."""
     kept = [source.name not in AGEING for source in budget.sources]
     return COVERAGE * float(np.sqrt(budget.variances[kept, figure, row].sum()))
 
@@ -286,7 +285,7 @@ def _interval(value: float, width: float) -> IntervalRecord:
 
 
 def shares(budget: Budget, figure: str, row: int = 0) -> dict[str, float]:
-    """Shares of the variance of a figure by source, greatest first; sources of one name added, tiny ones left out."""
+    """Shares of a figure's variance by source, greatest first; sources of one name are added, tiny ones left out."""
     by_name: dict[str, float] = {}
     for source, share in zip(budget.sources, budget.shares[:, FIGURES.index(figure), row], strict=True):
         by_name[source.name] = by_name.get(source.name, 0.0) + float(share)

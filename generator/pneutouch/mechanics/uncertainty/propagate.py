@@ -1,9 +1,9 @@
 """Propagation of sources by derivatives to combined uncertainties and the share of each source (JCGM 100, 5.1).
 
-Sensitivity of the figures of many sensors to their inputs: local derivatives, and the effect of the inputs' whole
+Also the sensitivity of the figures of many sensors to their inputs, as local derivatives and over the inputs' whole
 spread.
 
-The uncertainty of the limit pressure alone: without a press, so that thousands of candidates cost little.
+Also the uncertainty of only the limit pressure, without a press, so that thousands of candidates cost little.
 """
 
 from __future__ import annotations
@@ -29,29 +29,29 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.uncertainty.contact_model import ContactModel, ContactShift
 
 STEP = 0.015
-"""Half of the central difference, relative. Below it the noise of tabulated ends of ranges grows (the buckling edge is
-kept in straight pieces), above it curvature, most of it where a wall lies down on its base: half and twice the step
-move a derivative of the sensitivity by less than 0.04 and the combined uncertainty by less than 1.5 %, in most sensors
-by less than 0.1 % (`tests/mechanics/uncertainty/test_derivatives.py`; 0.01 and 0.02 keep neither bound)."""
+"""Half of the central difference, relative. For smaller steps the noise of tabulated range ends grows (the edge of
+buckling is piecewise linear), for larger ones curvature, mostly where a wall lies down on its base. Half and twice the
+step change a derivative of the sensitivity by less than 0.04 and the combined uncertainty by less than 1.5 %, mostly by
+less than 0.1 % (`tests/mechanics/uncertainty/test_derivatives.py`; 0.01 and 0.02 keep neither bound)."""
 
 _BENT_SHARE = 0.05
-"""Share by which the whole spread may differ from the derivative before it takes its place."""
+"""Relative difference above which the effect of the whole spread replaces the derivative."""
 
 _WIDE = 0.5
-"""A figure for which less than this share of an input's spread counts keeps the derivative."""
+"""Share of an input's spread that must count for a figure for the derivative to be replaced."""
 
 
 @dataclass(frozen=True)
 class Derivatives:
-    """Figures of n sensors and how they move.
+    """Figures of n sensors and their derivatives.
 
     Attributes:
         logs: ln of the figures, (figures, n).
         elasticities: d ln figure / d ln input, (inputs, figures, n); 0 for the dead volume if there is none.
         local: Derivatives of ln figure by the input in its unit of uncertainty (relative; dead volume mm3), same shape.
-        slopes: The same, or root mean square change over the input's spread per standard uncertainty where it is bent.
-        one_sided: True where a sensor could not be evaluated on one side: beyond its limit point or the atlas,
-            (inputs, n).
+        slopes: As ``local``, but for a bent response the root mean square change per standard uncertainty.
+        one_sided: True where a sensor could not be evaluated on one side: beyond its limit point or the atlas, (inputs,
+            n).
     """
 
     logs: Array
@@ -61,7 +61,7 @@ class Derivatives:
     one_sided: Flags
 
     def part(self, rows: slice) -> Derivatives:
-        """The derivatives of some of the sensors."""
+        """Derivatives of the selected sensors."""
         return Derivatives(*(getattr(self, each.name)[..., rows] for each in fields(self)))
 
 
@@ -73,15 +73,15 @@ def derivatives(
     shift: ContactShift | None = None,
     groups: Index | None = None,
 ) -> Derivatives:
-    """Move every input of n sensors by a small step and over its spread.
+    """Derivatives of the figures of n sensors by a small step in every input, and over its spread.
 
     Args:
         batch: The sensors.
         standard: Standard uncertainties of the inputs as they count for each figure, (inputs, figures, n).
         kurtosis: Fourth moment over squared variance of each input's deviation, (inputs, n).
         step: Half of the central difference, relative.
-        shift: Of the figures from the plate's to those of another contact.
-        groups: Numbers from 0 on, (n,), of what several calls would compute; see `respond`.
+        shift: Change of the figures from the plate to another contact.
+        groups: Group numbers from 0 on, (n,), of calls joined in one; see `respond`.
     """
     unit = unit_step(batch)
     widest = standard.max(axis=1)
@@ -110,16 +110,16 @@ def derivatives(
 
 
 def _slope(up: Array, down: Array) -> Array:
-    """Half the difference of both sides; one side alone at an edge, 0 with neither."""
+    """Half the difference of both sides; the one-sided difference at an edge, 0 with neither side."""
     both = np.where(np.isnan(down), up, np.where(np.isnan(up), -down, 0.5 * (up - down)))
     return np.where(np.isnan(both), 0.0, both)
 
 
 def _over_spread(up: Array, down: Array, kurtosis: Array) -> tuple[Array, Flags]:
-    """Standard deviation of ln figure over an input's spread, and where it is known.
+    """Standard deviation of ln figure over an input's spread, and flags: known.
 
-    By the three-point rule at sqrt(kurtosis) standard uncertainties, weights 1/(2 kurtosis), which has the first five
-    moments of the deviation: Gauss-Hermite's for a normal one, Gauss-Legendre's for a rectangular one.
+    Three-point rule at sqrt(kurtosis) standard uncertainties with weights 1/(2 kurtosis), which reproduces the first
+    five moments of the deviation: Gauss-Hermite for a normal, Gauss-Legendre for a rectangular distribution.
     """
     known = np.isfinite(up) & np.isfinite(down)
     high, low = np.where(known, up, 0.0), np.where(known, down, 0.0)
@@ -128,7 +128,7 @@ def _over_spread(up: Array, down: Array, kurtosis: Array) -> tuple[Array, Flags]
 
 
 COVERAGE = 2.0
-"""k: about 95 % where many sources of one size add up."""
+"""Coverage factor k: about 95 % if many sources of similar size add up."""
 
 _NORMAL = 3.0
 """Kurtosis of a normal distribution."""
@@ -136,22 +136,22 @@ _NORMAL = 3.0
 _BENT = 0.05
 
 _NOTHING = 1e-6
-"""Relative standard uncertainties below this are rounding: the figure is exact under the sources given."""
+"""Relative standard uncertainty below which a figure is exact under the given sources, up to rounding."""
 
 
 @dataclass(frozen=True)
 class Budget:
     """Uncertainties of the figures of n sensors.
 
-    Everything is computed in natural logarithms: a figure lies between value / exp(k u) and value * exp(k u). For
-    small u that is value +- k u value; for wide ones it keeps positive quantities positive.
+    Everything is computed in natural logarithms: a figure lies between value / exp(k u) and value * exp(k u). For small
+    u this is value +- k u value; for large u it keeps positive quantities positive.
 
     Attributes:
         sources: The sources, in the order of the first axis of ``variances``.
         derivatives: Figures, elasticities, nonlinearities.
-        variances: Of the logarithm, by source, (sources, figures, n).
-        linear: Combined standard uncertainty by the derivatives alone, (figures, n).
-        shift: Of the figures from the plate's to those of another contact; None under a plate without friction.
+        variances: Variances of the logarithm of the figures, by source, (sources, figures, n).
+        linear: Combined standard uncertainty by the local derivatives only, (figures, n).
+        shift: Change of the figures from the plate to another contact; None under a frictionless plate.
         freedom: Effective degrees of freedom (Welch-Satterthwaite, JCGM 100, G.4.1), (figures, n).
     """
 
@@ -164,7 +164,7 @@ class Budget:
 
     @property
     def values(self) -> Array:
-        """The figures as the atlas has them, (figures, n), in the units of `FIGURES`; NaN if it has none."""
+        """Figures of the atlas, (figures, n), in the units of `FIGURES`; NaN if it has none."""
         return np.asarray(np.exp(self.derivatives.logs))
 
     @property
@@ -187,10 +187,10 @@ class Budget:
 
     @property
     def nonlinear(self) -> Flags:
-        """Figures whose uncertainty differs from the derivatives' alone by more than 5 %, (figures, n).
+        """True for figures whose uncertainty differs from that of the local derivatives by more than 5 %, (figures, n).
 
-        There the response bends within the spread of an input, mostly because another event ends the range; the
-        figure's distribution is not normal, and k = 2 need not cover 95 %.
+        The response then bends within the spread of an input, mostly because another event ends the range; the figure's
+        distribution is not normal, and k = 2 need not cover 95 %.
         """
         combined = self.standard
         with np.errstate(invalid="ignore"):
@@ -198,14 +198,14 @@ class Budget:
 
     @property
     def doubtful(self) -> Flags:
-        """Sensors that within their uncertainty leave the atlas or pass their limit point, (n,)."""
+        """Mask (n,) of the sensors that leave the atlas or pass their limit point within their uncertainty."""
         return np.asarray(self.derivatives.one_sided.any(axis=0))
 
 
 def propagate(batch: SensorBatch, sources: list[UncertaintySource], contact: ContactModel | None = None) -> Budget:
-    """Combine the sources of n sensors through the atlas; they are taken as independent of one another.
+    """Combine the sources of n sensors through the atlas; the sources are taken as mutually independent.
 
-    Inputs that are correlated belong to one joint source.
+    Correlated inputs belong to one joint source.
     """
     standard, kurtosis = _by_input(batch, sources)
     shift = None
@@ -216,7 +216,7 @@ def propagate(batch: SensorBatch, sources: list[UncertaintySource], contact: Con
 
 
 def propagate_groups(groups: Sequence[tuple[SensorBatch, list[UncertaintySource]]]) -> list[Budget]:
-    """`propagate` of groups of sensors, each with its sources: one pass through the atlas, as its calls cost most."""
+    """`propagate` for groups of sensors with their own sources: one pass through the atlas, since calls are costly."""
     batches = [batch for batch, _ in groups]
     spreads = [_by_input(batch, sources) for batch, sources in groups]
     standard, kurtosis = (np.concatenate(part, axis=-1) for part in zip(*spreads, strict=True))
@@ -242,12 +242,12 @@ def _combined(sources: list[UncertaintySource], slopes_of: Derivatives, shift: C
 
 
 def variances(sources: list[UncertaintySource], slopes: Array) -> Array:
-    """Variances of the logarithms of the figures, (sources, figures, n), by their slopes, (inputs, figures, n)."""
+    """Variances of the logarithms of the figures, (sources, figures, n), from their slopes, (inputs, figures, n)."""
     return np.stack([source.variance(slopes) for source in sources])
 
 
 def _by_input(batch: SensorBatch, sources: list[UncertaintySource]) -> tuple[Array, Array]:
-    """Standard uncertainty of each input as each figure counts it (inputs, figures, n), and kurtosis (inputs, n)."""
+    """Standard uncertainty of each input by figure (inputs, figures, n), and kurtosis (inputs, n)."""
     size = len(batch)
     second = np.zeros((len(INPUTS), len(FIGURES), size))
     every, fourth = np.zeros((len(INPUTS), size)), np.zeros((len(INPUTS), size))
@@ -264,16 +264,16 @@ def _by_input(batch: SensorBatch, sources: list[UncertaintySource]) -> tuple[Arr
 LIMIT = FIGURES.index("limit_pressure_kPa")
 
 COUPON = 0.03
-"""Relative standard deviation of a modulus from tensile coupons of the same print: our choice."""
+"""Relative standard deviation of a modulus measured on tensile coupons of the same print: our choice."""
 
 _RATIOS = 200
-"""Wall ratios of the table of slopes: 1 % apart, half a step of the derivatives of the budget."""
+"""Number of wall ratios in the table of slopes: 1 % apart, within half a step of the budget's derivatives."""
 
 
 class LimitSpread(NamedTuple):
     """Relative standard uncertainties of the limit pressure of n sensors, (n,) each.
 
-    standard: As the resin's modulus is known. measured: With the modulus measured on coupons, to `COUPON`.
+    standard: with the resin's modulus as it is known. measured: with the modulus measured on coupons, to `COUPON`.
     """
 
     standard: Array
@@ -287,9 +287,9 @@ def limit_spread(
     numerical: float,
     calibration: SensorCalibration | None = None,
 ) -> LimitSpread:
-    """The uncertainty that `budget` states for the limit pressure, of n sensors of one resin and printer.
+    """Uncertainty of the limit pressure as stated by `budget`, for n sensors of one resin and printer.
 
-    ``numerical`` is the greatest relative error of the limit pressure as a numerical answer.
+    ``numerical`` is the greatest relative numerical error of the limit pressure.
     """
     modulus = material.shear_modulus_MPa
     assert modulus is not None
@@ -308,9 +308,9 @@ def limit_spread(
 
 
 def _standard(batch: SensorBatch, source_list: list[UncertaintySource]) -> Array:
-    """Combined as `propagate` does, with the slopes of ln limit pressure known beforehand.
+    """Combined standard uncertainty as in `propagate`, with the known slopes of ln limit pressure.
 
-    It is the modulus times a function of the wall ratio, and depends on nothing else.
+    The limit pressure is the modulus times a function of the wall ratio only.
     """
     by_ratio = wall_slope(batch.wall_ratio)
     slopes = np.zeros((len(INPUTS), len(FIGURES), len(batch)))
@@ -321,16 +321,16 @@ def _standard(batch: SensorBatch, source_list: list[UncertaintySource]) -> Array
 
 
 def wall_slope(wall_ratio: Array) -> Array:
-    """Slope of the logarithm of the limit pressure by that of the wall ratio, (n,); beyond the atlas its edge's."""
+    """Slope d ln limit pressure / d ln wall ratio, (n,); beyond the atlas the slope at its edge."""
     at, slope = _slopes()
     return np.asarray(np.interp(np.log(wall_ratio), at, slope))
 
 
 @cache
 def _slopes() -> tuple[Array, Array]:
-    """Logarithms of wall ratios, and the slopes there."""
+    """Logarithms of wall ratios, and the slopes of ln limit pressure at them."""
     walls = neighbourhood().recipe.wall_ratios
     at = np.linspace(np.log(walls[0]), np.log(walls[-1]), _RATIOS)
-    # Powers of e round: the ends stay inside the table.
+    # The exponential is rounded: this keeps the ends inside the table.
     pressure = neighbourhood().slices(np.clip(np.exp(at), walls[0], walls[-1]), ()).limit_pressure
     return at, np.gradient(np.log(pressure), at)

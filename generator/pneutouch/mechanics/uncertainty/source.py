@@ -1,4 +1,4 @@
-"""One source of uncertainty: its effect, its spread, and the source of its number."""
+"""One source of uncertainty: its effect, its spread, and the origin of its number."""
 
 from __future__ import annotations
 
@@ -13,29 +13,29 @@ from pneutouch.mechanics.atlas.figures import DEAD, FIGURES, INPUTS
 from pneutouch.results.uncertainty import SourceRecord
 
 FIGURE = "figure"
-"""Acts on the predicted figure itself, as a relative error."""
+"""Value of ``acts_on`` for a relative error of the predicted figure itself."""
 
 JOINT = "parameters"
-"""Acts on several inputs together, whose deviations are correlated."""
+"""Value of ``acts_on`` for several inputs with correlated deviations."""
 
 Distribution = Literal["normal", "rectangular", "lognormal", "log-rectangular"]
 
 
 @dataclass(frozen=True)
 class UncertaintySource:
-    """A named source for n sensors.
+    """A named source of uncertainty for n sensors.
 
     Attributes:
         name: Short name, the key of its share.
         acts_on: One of `INPUTS`, `FIGURE`, or `JOINT`.
-        standard: Standard uncertainty (n,), relative; of the dead volume absolute, mm3, because it may be zero.
+        standard: Standard uncertainty (n,), relative; for the dead volume absolute, mm3, because that may be zero.
         distribution: Of the relative deviation (normal, rectangular) or of its logarithm (lognormal, log-rectangular).
-        counts: Figures and sensors that it counts for, (figures, n).
-        origin: Source of the number.
+        counts: Figures and sensors for which the source counts, (figures, n).
+        origin: Origin of the number.
         known: True if it is a published or measured number; False for an assumption.
         freedom: Degrees of freedom of ``standard``; infinite for a bound or an assumption (JCGM 100, G.4.3).
-        loads: Of a joint source, by input its root of the covariance: how far each of independent deviations of unit
-            variance moves it, in its unit; rows of one length. ``standard`` is not read then.
+        loads: For a joint source, by input, a row of the root of the covariance: changes, in the input's unit, by
+            independent deviations of unit variance; rows of one length. The values of ``standard`` are not read then.
     """
 
     name: str
@@ -50,13 +50,13 @@ class UncertaintySource:
 
     @property
     def moves(self) -> dict[str, Array]:
-        """Standard uncertainties (n,) by the inputs that it acts on; none for one on the figure."""
+        """Standard uncertainties (n,) by the inputs that the source acts on; empty for one on the figure."""
         if self.acts_on == JOINT:
             return {name: np.full(self.standard.shape, np.linalg.norm(row)) for name, row in self.loads.items()}
         return {} if self.acts_on == FIGURE else {self.acts_on: self.standard}
 
     def variance(self, slopes: Array) -> Array:
-        """Variance of the logarithm of the figures, (figures, n), by their slopes (inputs, figures, n)."""
+        """Variance of the logarithm of the figures, (figures, n), from their slopes (inputs, figures, n)."""
         if self.acts_on == FIGURE:
             whole = np.broadcast_to(self.standard**2, self.counts.shape)
         elif self.acts_on == JOINT:
@@ -67,7 +67,7 @@ class UncertaintySource:
         return np.where(self.counts, whole, 0.0)
 
     def deviations(self, row: int, count: int, draw: np.random.Generator) -> dict[str, Array]:
-        """Sampled moves of the inputs as `moved` takes them, (count,): of the logarithm, of the dead volume mm3."""
+        """Sampled changes of the inputs, (count,), in the form for `moved`: logarithmic, or mm3 for the dead volume."""
         if self.acts_on == JOINT:
             rows = np.array([*self.loads.values()])
             return dict(zip(self.loads, rows @ draw.standard_normal((rows.shape[1], count)), strict=True))
@@ -80,7 +80,7 @@ class UncertaintySource:
         return 1.8 if self.distribution.endswith("rectangular") else 3.0
 
     def sample(self, row: int, count: int, draw: np.random.Generator) -> Array:
-        """Deviations of sensor ``row``, (count,): a factor, or mm3 to be added for the dead volume."""
+        """Sampled deviations of sensor ``row``, (count,): factors, or mm3 to be added to the dead volume."""
         flat = self.distribution.endswith("rectangular")
         unit = draw.uniform(-np.sqrt(3.0), np.sqrt(3.0), count) if flat else draw.standard_normal(count)
         deviation = self.standard[row] * unit
@@ -89,7 +89,7 @@ class UncertaintySource:
         return np.asarray(np.exp(deviation) if self.distribution.startswith("log") else 1.0 + deviation)
 
     def documents(self, row: int) -> list[SourceRecord]:
-        """The source as it leaves the program, for sensor ``row``; a joint one as an entry an input."""
+        """Records of the source for sensor ``row``; a joint source has one record for each input."""
         if self.acts_on == FIGURE:
             return [self._document(row, FIGURE, float(self.standard[row]))]
         return [self._document(row, name, float(standard[row])) for name, standard in self.moves.items()]
@@ -109,7 +109,7 @@ class UncertaintySource:
 
 
 def counting(size: int, *, only: tuple[int, ...] = (), without: tuple[int, ...] = ()) -> Flags:
-    """Figures that count, (figures, size): all, or ``only`` these, or all ``without`` these."""
+    """Mask (figures, size) of the figures that count: all, ``only`` these, or all ``without`` these."""
     flags = np.full((len(FIGURES), size), not only)
     flags[list(only)] = True
     flags[list(without)] = False

@@ -1,11 +1,11 @@
-"""Figures of a press, a hold and a loop of every state.
+"""Press, hold and loop of every state of a sensor in each relaxation series of its resin.
 
-A press followed in time by the solid, for a contact that the atlas does not cover.
+For a contact that the atlas does not cover, the press is followed in time by the solid.
 
 The model is that of `follow`: p = p_I + int k(t - s) dP(s), F = int k(t - s) dF(s), with the wall pressure P and the
-force F of the elastic dome. At each time what the past still adds is known, so that the elastic dome is filled by a
-supply of pressure (p_gas(V) - past)/stiffness. It is one solid along the whole history of the plate: friction sticks,
-slips and turns back where it does.
+force F of the elastic dome. At each time the contribution of the past is known, so the elastic dome has a supply of
+pressure (p_gas(V) - past)/stiffness. It is one solid along the whole history of the plate: friction sticks, slips and
+reverses as it would.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ from pneutouch.mechanics.viscous.runs import HOLD_TIMES, LoopRun, Memory, Relaxa
 from pneutouch.spec.material import Material
 
 _RAMP_STEPS, _LOOP_STEPS = 20, 24
-"""Steps of a ramp and of half a loop, half of those on the atlas or more: losses, widths and areas hold to 0.3
-percentage points, with friction too (`tests/mechanics/viscous/test_by_solid.py`)."""
+"""Numbers of steps of a ramp and of half a loop, at least half of those on the atlas: losses, widths and areas are
+accurate to 0.3 percentage points, also with friction (`tests/mechanics/viscous/test_by_solid.py`)."""
 
 _CUTS = 5
 """Number of times that a step without an equilibrium is halved."""
@@ -42,15 +42,15 @@ _CUTS = 5
 
 @dataclass(frozen=True)
 class RelaxingGas:
-    """Trapped gas as the elastic dome feels it: pressure less the remaining contribution of the past, over the
-    stiffness now."""
+    """Trapped gas as a supply of the elastic dome: its pressure minus the contribution of the past, over the present
+    stiffness of the wall relative to the relaxed one."""
 
     gas: Gas
     past: float
     stiffness: float
 
     def at(self, volume: float) -> FillingState | None:
-        """Potential, pressure and rate of the gas with the past taken off, over the stiffness."""
+        """Potential, pressure and rate of the gas without the contribution of the past, over the stiffness."""
         known = self.gas.at(volume)
         if known is None:
             return None
@@ -61,7 +61,7 @@ class RelaxingGas:
 
 
 class _Dome(NamedTuple):
-    """A sensor with its relaxed modulus, inflated and at first contact; nondimensional but ``start`` in MPa."""
+    """A sensor with its relaxed modulus, inflated and at first contact; nondimensional except ``start`` in MPa."""
 
     solid: SolidModel
     follower: PathFollower
@@ -92,7 +92,7 @@ def relaxation_by_solid(
 def loop_by_solid(
     sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], depth: float, speed: float
 ) -> list[list[LoopRun]]:
-    """Loop as `runs.loop` has it, under the sensor's own contact."""
+    """Press and retract by the solid as in `runs.loop`, under the sensor's own contact."""
     return [[_loop_pressed(sensor, one, pressure, depth, speed) for one in series] for pressure in driving_pressures]
 
 
@@ -120,19 +120,19 @@ def _loop_pressed(sensor: Sensor, series: Prony, pressure: float, depth: float, 
 
 
 class _Run:
-    """One dome with memory along a history of the plate."""
+    """One dome with memory, followed along a history of the plate."""
 
     def __init__(self, sensor: Sensor, series: Prony, pressure: float) -> None:
         self._dome = _dome(sensor, pressure)
         self._memory = Memory(series.excess[None, :], np.array([series.times]))
         self._limit = sensor.gas.gauge_limit
         start = self._dome.follower.here
-        # At first contact the force is nothing: what the contact's stiffness has of it is rounding.
+        # At first contact the force is zero: the small value from the contact stiffness is rounding.
         self._before = np.array([[start.state.filling.pressure], [0.0]])
         self._now, self._down = _Point(0.0, 0.0, 0.0, 0.0), True
 
     def along(self, clock: Array, travel: Array) -> tuple[list[_Point], str | None]:
-        """Points at times (s) and travels (mm), the first at first contact, and why there are no more."""
+        """Points at times (s) and travels (mm), beginning at first contact, and the reason if they end early."""
         points = [self._now]
         for time, to in zip(clock.tolist(), travel.tolist(), strict=True):
             ended = self._reach(time, to)
@@ -140,12 +140,12 @@ class _Run:
                 return points, ended
             points.append(self._now)
             if self._now.force <= 0.0:
-                # The plate would pull: contact is lost, and no equilibrium under it is looked for.
+                # The plate would pull: contact is lost, and no equilibrium under the plate is searched.
                 return points, None
         return points, None
 
     def _reach(self, time: float, travel: float, cuts: int = 0) -> str | None:
-        """Go to a time and travel, in shorter steps where the whole one finds no equilibrium; why that failed."""
+        """Go to a time and travel, in shorter steps if the whole step finds no equilibrium; the reason if it fails."""
         here, dome = self._now, self._dome
         height = dome.top - travel / dome.solid.length
         if abs(travel - here.travel) > LONGEST * dome.solid.length * (1.0 + 1e-9):
@@ -191,14 +191,14 @@ def _dome(sensor: Sensor, pressure: float) -> _Dome:
 
 
 RAMP_SPEED = 5.0
-"""mm/s, of the press before the hold: our choice, the paper gives none."""
+"""Speed of the press before the hold, mm/s: our choice, the paper gives none."""
 
 LOOP_SPEEDS = (0.5, 5.0)
-"""mm/s: our choice, a slow and a quick hand."""
+"""Speeds of the loops, mm/s: our choice, a slow and a fast hand."""
 
 DEPTH_SHARE = 0.5
-"""Depth over the dome's height inside: our choice, the paper's relaxation test gives none. Deeper, stiff resins pressed
-fast buckle."""
+"""Depth over the inner height of the dome: our choice, the paper's relaxation test gives none. At greater depth, stiff
+resins pressed fast buckle."""
 
 _KERNEL = "one relaxation for all stresses of the resin, that of small strain; no temperature dependence"
 
@@ -213,14 +213,14 @@ SOLID_BASIS = (
     "isothermal and sealed; the inflated dome has relaxed before contact",
     _KERNEL,
 )
-"""Under a contact that the atlas does not cover."""
+"""Model, in words, under a contact that the atlas does not cover."""
 
 
 @dataclass(frozen=True)
 class ViscousRuns:
-    """Runs of one sensor: ``held[i][j]``, ``loops[speed][i][j]`` of state i in series j; MPa, depth in mm.
+    """Runs of one sensor: ``held[i][j]``, ``loops[speed][i][j]`` for state i in series j; MPa, depth in mm.
 
-    ``basis`` states the model, `BASIS` or `SOLID_BASIS`.
+    ``basis`` describes the model: `BASIS` or `SOLID_BASIS`.
     """
 
     sources: tuple[str, ...]
@@ -234,8 +234,8 @@ class ViscousRuns:
 def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[float], depth: float) -> ViscousRuns:
     """Press a sensor at driving pressures (MPa) to a depth (mm) in every series of its resin.
 
-    The sensor and its resin must be such that `known.unknown` returns None. A series whose relaxed modulus leaves the
-    atlas, where the file gives the instantaneous one, is left out. The solid follows a contact that is not the atlas's.
+    `prony.unknown` must return None for the sensor and its resin. A series whose relaxed modulus is outside the atlas
+    is left out if the file gives the instantaneous modulus. The solid follows a contact that the atlas does not cover.
     """
     kept, held, loops = [], [], []
     by_solid = sensor.protocol.other_contact is not None
@@ -259,12 +259,12 @@ def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[flo
 
 
 def chosen_depth(sensor: Sensor, range_ends: Sequence[float]) -> float:
-    """Depth of the runs in mm: a share of the height, within the range of every state."""
+    """Depth of the runs in mm: a share of the dome's height, within the range of every state."""
     return float(min(DEPTH_SHARE * sensor.dome.shape.height, sensor.protocol.depth, *range_ends))
 
 
 def ageing_shift(sensor: Sensor, material: Material, driving_pressures: Sequence[float]) -> tuple[float, Array]:
-    """Ratio of the modulus after a year by hardness, and the relative change of the sensitivity from it, (n,).
+    """Ratio of the modulus after a year, by hardness, and the resulting relative change of the sensitivity, (n,).
 
     Raises InputError if the resin's hardness after a year is not known.
     """

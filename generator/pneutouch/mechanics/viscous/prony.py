@@ -1,6 +1,6 @@
 """Linear relaxation of a resin as a Prony series.
 
-Check that a resin's relaxation and its ageing are known.
+Also the checks that a resin's relaxation and ageing are known.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from pneutouch.spec.material import Material
 
 @dataclass(frozen=True)
 class Prony:
-    """G(t)/G_0 = 1 - sum of ``shares`` (1 - exp(-t/``times``)), times in s; ``source`` names its origin."""
+    """Relaxation G(t)/G_0 = 1 - sum of ``shares`` (1 - exp(-t/``times``)), times in s; ``source`` names its origin."""
 
     shares: tuple[float, ...]
     times: tuple[float, ...]
@@ -23,7 +23,7 @@ class Prony:
 
     @property
     def relaxed_share(self) -> float:
-        """Relaxed over instantaneous modulus."""
+        """Ratio of the relaxed to the instantaneous modulus."""
         return 1.0 - sum(self.shares)
 
     @property
@@ -32,13 +32,13 @@ class Prony:
         return np.array(self.shares) / self.relaxed_share
 
     def modulus(self, time: Array) -> Array:
-        """Modulus after a step of strain, over the relaxed one; any shape, s."""
+        """Modulus at times (s, any shape) after a step of strain, over the relaxed modulus."""
         decay = np.exp(-np.asarray(time)[..., None] / np.array(self.times))
         return np.asarray(1.0 + decay @ self.excess)
 
 
 def prony_series(material: Material) -> tuple[Prony, ...]:
-    """The relaxation data of a resin, one series a source; empty if there are none."""
+    """Relaxation data of a resin, one series per source; empty if there are none."""
     return tuple(
         Prony(tuple(t.share for t in data.terms), tuple(t.time_s for t in data.terms), data.source)
         for data in material.relaxation
@@ -46,7 +46,7 @@ def prony_series(material: Material) -> tuple[Prony, ...]:
 
 
 def relaxed(sensor: Sensor, material: Material, series: Prony) -> Sensor:
-    """A sensor with its relaxed modulus; that of its resin's file is relaxed or instantaneous as the file says."""
+    """Sensor with its relaxed modulus; the material file states whether its modulus is relaxed or instantaneous."""
     share = series.relaxed_share if material.shear_modulus_is == "instantaneous" else 1.0
     return sensor.replace(shear_modulus=share * sensor.wall.shear_modulus)
 
@@ -59,7 +59,7 @@ AGED = (
     "Shore A 80, where the scale is compressed, it grows steep. Hardness is read in seconds and is applied to the "
     "relaxed modulus; what light and air harden may be a skin, and is taken as the whole wall"
 )
-"""Assumption of the step from hardness to modulus."""
+"""Assumptions of the conversion from hardness to modulus, in words."""
 
 
 def unknown(sensor: Sensor, material: Material, model: str) -> str | None:
@@ -82,7 +82,7 @@ def unknown(sensor: Sensor, material: Material, model: str) -> str | None:
 
 
 def ageing_unknown(material: Material) -> str | None:
-    """Reason why a year's change of the modulus is not known, or None if it is."""
+    """Reason why the change of the modulus in a year is not known, or None if it is."""
     if material.shore_a is None or material.shore_a_one_year is None:
         return f"the hardness of {material.title} after a year is not known"
     if material.law is not None:
@@ -91,9 +91,9 @@ def ageing_unknown(material: Material) -> str | None:
 
 
 def ageing_ratio(material: Material) -> float:
-    """Shear modulus after a year in light and air over the fresh one, by hardness; `AGED` states the assumptions.
+    """Shear modulus after a year in light and air over the fresh modulus, by hardness; `AGED` states the assumptions.
 
-    Raises InputError for a resin of which it is not known.
+    Raises InputError for a resin without known ageing.
     """
     why = ageing_unknown(material)
     if why is not None:

@@ -1,16 +1,15 @@
-"""The two runs of a viscous sensor: pressed and held, and pressed and let go; in mm, N, MPa and s.
+"""The two runs of a viscous sensor, press and hold, and press and retract; in mm, N, MPa and s.
 
-A press followed in time: wall forces with memory, trapped gas, plate travel given.
+Each follows a press in time: wall forces with memory, trapped gas, prescribed plate travel.
 
 Quasi-linear viscoelasticity (Fung 1993, Biomechanics, section 7.6) in two coordinates, cavity volume V and plate height
-h. The elastic dome answers them with the wall pressure P(V, h) and the plate force F(V, h) of the atlas; the viscous
-one with
+h. The elastic dome has the wall pressure P(V, h) and the plate force F(V, h) of the atlas; the viscous dome has
 
     p = p_I + int k(t - s) dP(s),  F = int k(t - s) dF(s),  k(t) = G(t)/G_inf
 
-from an inflated state in which everything has relaxed. At every time the volume is the one at which p is the gas's
-pressure. It is exact for small strains, for the first moment (the elastic dome of the instantaneous modulus, built up
-on the relaxed inflated state) and in the end (the elastic dome of the relaxed one).
+from an inflated state in which everything has relaxed. At every time V is the volume at which p equals the pressure of
+the gas. The model is exact for small strains, at the first instant (the elastic dome of the instantaneous modulus, on
+top of the relaxed inflated state) and in the end (the elastic dome of the relaxed modulus).
 """
 
 from collections.abc import Sequence
@@ -27,7 +26,7 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.viscous.prony import Prony
 
 _NEWTON = 10
-"""Iterations of a solution: two more than for the elastic dome."""
+"""Greatest number of iterations of a solution: two more than for the elastic dome."""
 
 _NO_TRAVEL = 1.0e-9
 
@@ -35,9 +34,9 @@ _NO_TRAVEL = 1.0e-9
 class ViscousPath(NamedTuple):
     """Paths of n domes, (n, m) each; nondimensional by the relaxed modulus.
 
-    elastic_force, elastic_pressure: of the relaxed dome at the same volume and plate height. known: the state and all
-    before it were found. folded: the wall buckled, or its gas no longer held it; what is lost otherwise lies outside
-    the atlas.
+    elastic_force, elastic_pressure: of the relaxed dome at the same volume and plate height. known: True if the state
+    and all states before it were found. folded: True if the wall buckled, or the gas does not hold it; other lost
+    states are outside the atlas.
     """
 
     nu: Array
@@ -50,14 +49,14 @@ class ViscousPath(NamedTuple):
 
 
 class Memory:
-    """The convolution of a quantity with k(t) less 1, its history even within each step; (n, terms)."""
+    """Convolution of pressure and force of n domes with k(t) - 1, linear in time within each step; terms (n, terms)."""
 
     def __init__(self, excess: Array, times: Array) -> None:
         self._excess, self._times = excess, times
         self._held = np.zeros((2, *excess.shape))
 
     def step(self, seconds: Array) -> tuple[Array, Array, Array]:
-        """Over a step (n,) s: decay and weight of each term, and the sum of the weights, (n,)."""
+        """Decay and weight of each term over a step of (n,) s, and the sum of the weights, (n,)."""
         share = seconds[:, None] / self._times
         decay = np.exp(-share)
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -69,14 +68,14 @@ class Memory:
         return np.asarray((self._held * decay).sum(axis=2))
 
     def add(self, decay: Array, weight: Array, change: Array) -> None:
-        """Keep a step in which pressure and force changed, (2, n)."""
+        """Store a step with changes (2, n) of pressure and force."""
         self._held = self._held * decay + weight * change[..., None]
 
 
 def follow(press: AtlasPress, excess: Array, times: Array, clock: Array, travel: Array) -> ViscousPath:
-    """Follow n domes along plate travels (n, m), in R0, at times (n, m) s, both from first contact at 0.
+    """Follow n domes along plate travels (n, m), in R0, at times (n, m) s; both begin with 0 at first contact.
 
-    excess, times: Prony terms over the relaxed modulus and their times in s, (n, terms); a term of excess 0 is none.
+    excess, times: Prony terms over the relaxed modulus and their times in s, (n, terms); an excess of 0 means no term.
     """
     memory = Memory(excess, times)
     nu, known = press.free, np.ones(press.free.size, dtype=bool)
@@ -103,17 +102,17 @@ def follow(press: AtlasPress, excess: Array, times: Array, clock: Array, travel:
 _Run = TypeVar("_Run")
 
 HOLD_TIMES = np.concatenate([np.geomspace(1e-2, 1.0, 13)[:-1], np.geomspace(1.0, 600.0, 28)])
-"""Seconds after the ramp: to the paper's 600 s (Supplement D), even in the logarithm, 1 s among them."""
+"""Times after the ramp, s: up to the paper's 600 s (Supplement D), logarithmically spaced, with 1 s among them."""
 
 _RAMP_STEPS, _LOOP_STEPS = 30, 48
-"""Equal steps of travel in a ramp and half a loop: losses hold to 0.1, hysteresis to 0.2 percentage points (tests)."""
+"""Equal steps in a ramp and half a loop: losses within 0.1, hysteresis within 0.2 percentage points (tests)."""
 
 
 @dataclass(frozen=True)
 class RelaxationRun:
-    """A sensor pressed evenly to a depth and held: force (N), pressure rise (MPa) over times (s) since the ramp's end.
+    """A sensor pressed at constant speed and held: force (N) and pressure rise (MPa) at times (s) after the ramp.
 
-    ``ended`` states where the run could not be followed further, with what is known before; None if it was followed.
+    ``ended`` gives the reason if the run could not be followed further, with the results before it; else None.
     """
 
     times: Array
@@ -127,19 +126,19 @@ class RelaxationRun:
 
     @property
     def holds(self) -> bool:
-        """True if the run reaches from 1 s onwards."""
+        """True if the run continues beyond 1 s."""
         return self._late.size > 1
 
     def percent(self, values: Array) -> Array:
-        """Values of a run that `holds` in percent of that at 1 s."""
+        """Values of a run that `holds`, in percent of the value at 1 s."""
         shares: Array = 100 * values / values[self._late[0]]
         return shares
 
     def drop(self, values: Array) -> tuple[float, float]:
-        """Loss of a value from 1 s to the end, and loss per decade (least squares over log10 t from 1 s), over the
-        value at 1 s.
+        """Loss of a value from 1 s to the end, and loss per decade (least squares over log10 t from 1 s), both relative
+        to the value at 1 s.
 
-        Raises ValueError if the run does not reach from 1 s onwards.
+        Raises ValueError if the run does not continue beyond 1 s.
         """
         late = self._late
         if not self.holds:
@@ -151,11 +150,11 @@ class RelaxationRun:
 
 @dataclass(frozen=True)
 class LoopRun:
-    """A sensor pressed evenly to a depth and let go: indentation (mm), force (N), pressure rise (MPa) in and out.
+    """A sensor pressed to a depth and retracted at one speed: indentation (mm), force (N), rise (MPa), in and out.
 
-    ``contact_lost`` is the plate travel (mm) at which the dome no longer follows the plate while it retracts, where the
-    loop ends; None if it follows to the end. ``ended`` states where the run could not be followed further, or None;
-    one that does not reach its depth has no retraction.
+    ``contact_lost`` is the plate travel (mm) during retraction at which the dome stops following the plate and the loop
+    ends; None if it follows to the end. ``ended`` gives the reason if the run could not be followed further, else None;
+    a run that does not reach its depth has no retraction.
     """
 
     indentation_in: Array
@@ -168,7 +167,7 @@ class LoopRun:
     ended: str | None = None
 
     def hysteresis(self) -> tuple[float, float] | None:
-        """Both usual measures, see `response.hysteresis`; None if there is no retraction."""
+        """Hysteresis by both usual measures, see `response.hysteresis`; None without a retraction."""
         if self.force_out.size < 2:
             return None
         return hysteresis(self.force_in, self.rise_in, self.force_out, self.rise_out)
@@ -186,10 +185,10 @@ def relaxation(
 ) -> list[list[RelaxationRun]]:
     """Press to ``depth`` mm at ``speed`` mm/s and hold for ``times`` (ascending, s, > 0); lists by pressure, series.
 
-    The sensor's modulus is the relaxed one and the sensor lies inside the atlas (`models.atlas.outside_atlas`).
+    The sensor's modulus must be the relaxed one, and the sensor inside the atlas (`models.atlas.outside_atlas`).
     """
     share = np.linspace(0.0, 1.0, steps + 1)
-    # The history is taken as even between times: those between the requested ones must not be left out.
+    # The history is linear between times: intermediate times must be added to the requested ones.
     between = (
         HOLD_TIMES
         if times[-1] <= HOLD_TIMES[-1]
@@ -219,7 +218,7 @@ def loop(
     steps: int = _LOOP_STEPS,
     atlas: Atlas | None = None,
 ) -> list[list[LoopRun]]:
-    """Press to ``depth`` mm and back at ``speed`` mm/s; one list a driving pressure (MPa), one run a series."""
+    """Press to ``depth`` mm and retract at ``speed`` mm/s; one list per driving pressure (MPa), one run per series."""
     share = np.linspace(0.0, 1.0, steps + 1)
     travel = np.concatenate([share, share[-2::-1]]) * depth
     clock = np.linspace(0.0, 2.0 * depth / speed, 2 * steps + 1)
@@ -230,7 +229,7 @@ def loop(
 
 
 def loop_run(travel: Array, force: Array, rise: Array, known: int, ended: str | None) -> LoopRun:
-    """One run of 2 n + 1 points, the first ``known`` of them known; cut where the plate would pull the dome."""
+    """One run of 2 n + 1 points, of which the first ``known`` are valid; cut where the plate would pull the dome."""
     turn, last = travel.size // 2, travel.size - 1
     where = None if ended is None else f"{ended} at {travel[known]:.2f} mm"
     there = slice(0, min(known, turn + 1))
@@ -261,7 +260,7 @@ def _followed(
     travel: Array,
     atlas: Atlas | None,
 ) -> tuple[AtlasPress, ViscousPath]:
-    """Every state with every series, series running fastest."""
+    """Press and path of every state in every series, with the series index fastest."""
     batch = batch_of(sensor, np.repeat(np.asarray(driving_pressures, dtype=float), len(series)))
     terms = max(len(one.shares) for one in series)
     excess, times = np.zeros((len(series), terms)), np.ones((len(series), terms))
@@ -288,7 +287,7 @@ def _with_units(press: AtlasPress, path: ViscousPath) -> tuple[Array, Array]:
 
 
 def _sound(press: AtlasPress, path: ViscousPath, i: int) -> tuple[int, str | None]:
-    """Number of states of a run that are known and within the gauge's range, and the reason why there are no more."""
+    """Number of states of a run that are known and within the gauge's range, and the reason if there are no more."""
     clipped = path.pressure[i] > press.batch.gauge_limit[i] / press.batch.shear_modulus[i]
     sound = path.known[i] & ~clipped
     if sound.all():

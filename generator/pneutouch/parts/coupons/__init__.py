@@ -1,4 +1,4 @@
-"""Coupons: small prints on which a lab measures what its own machine and resins do."""
+"""Coupons: small prints on which a lab measures its own machine and resins."""
 
 from pneutouch.parts.coupons.coupon import Coupon, CouponContext, Nominal
 from pneutouch.parts.coupons.dumbbell import DUMBBELL
@@ -8,6 +8,6 @@ from pneutouch.parts.coupons.puck import PUCK
 from pneutouch.parts.coupons.volume_plug import VOLUME_PLUG
 
 COUPONS: dict[str, Coupon] = {coupon.name: coupon for coupon in (PUCK, DUMBBELL, GAUGE, LEAK_CAP, VOLUME_PLUG)}
-"""Every family by name, in the order of the sheet."""
+"""All coupon families by name, in the order of the sheet."""
 
 __all__ = ["COUPONS", "Coupon", "CouponContext", "Nominal"]

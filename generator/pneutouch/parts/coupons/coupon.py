@@ -1,4 +1,4 @@
-"""The declaration of a coupon family: its subject, its drawing, its measurement and the instrument."""
+"""The declaration of a coupon family: its subject, its drawing, its measurements and their instruments."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,8 +21,8 @@ class Nominal:
     """A feature to be measured.
 
     Attributes:
-        feature: Feature that it is a size of, such as hole; features of one name make one table.
-        value: As drawn, in ``unit``; None if nothing is drawn and the reading alone counts.
+        feature: Feature whose size is measured, such as hole; features of one name form one table.
+        value: Value as drawn, in ``unit``; None if nothing is drawn and only the reading counts.
         unit: mm, g, mL, kPa ... or Shore A.
         instrument: Instrument that measures it.
         readings: Number of readings on each copy.
@@ -47,7 +47,7 @@ class CouponContext:
         return lay_out(self.design())
 
     def design(self) -> ResolvedDesign:
-        """The scene. Raises TypeError if the coupon belongs to no design."""
+        """Scene of the design. Raises TypeError if the coupon does not belong to a design."""
         if self.scene is None:
             raise TypeError("this coupon belongs to a design; give its scene")
         return self.scene
@@ -58,17 +58,17 @@ class Coupon:
     """A family of coupons.
 
     Attributes:
-        name: As the command line and the results file call it.
-        title: The name in text.
-        belongs: Material: one set a material; printer: one a printer and material; design: one a design.
-        copies: Number that are printed by default.
-        draw: The exact solids, in mm; those of a design in its frame.
-        nominals: Sizes to measure, in the order of the sheet.
+        name: Name on the command line and in the results file.
+        title: Name in text.
+        belongs: material: one set per material; printer: one per printer and material; design: one per design.
+        copies: Number of copies printed by default.
+        draw: Returns the exact solids, in mm; for a coupon of a design, in the frame of the design.
+        nominals: Returns the sizes to measure, in the order of the sheet.
         steps: Steps of printing and measuring, for the sheet.
         formulas: Formulas for the readings, for the sheet.
-        each: Name of the table that every copy has of its own in the results file; empty: one table for all.
-        kinds: Kinds of material it is made for.
-        turned_over: Printed upside down: what seals or is filled then faces up and needs no support.
+        each: Name of the separate table of every copy in the results file; empty: one table for all.
+        kinds: Kinds of material that it is made for.
+        turned_over: True if printed upside down: the sealing or filled side then faces up and needs no support.
     """
 
     name: str

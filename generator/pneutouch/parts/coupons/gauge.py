@@ -1,10 +1,8 @@
-"""The wall and hole gauge and the step block: they show how the machine makes small features and how true its lengths
-are.
+"""The wall and hole gauge and the step block, which show the printer's small features and its accuracy of length.
 
-The gauge is a plate with four rows, each in rising order away from the cut corner: walls, pins, holes, slots. The
-block is
-a staircase: four lengths along x, four along z and one along y, each measured between flat faces. The sizes run from
-half of the least that vendors state to above what they recommend; they are our own choice.
+The gauge is a plate with four rows of walls, pins, holes and slots, each in ascending order away from the cut corner.
+The block is a staircase: four lengths along x, four along z and one along y, each measured between flat faces. The
+sizes run from half of the least size that vendors state to above the size that they recommend; they are our own choice.
 """
 
 from dataclasses import dataclass
@@ -18,32 +16,32 @@ WALLS = (0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.2, 1.6, 2.0)
 PINS = HOLES = (0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0, 2.5, 3.0)
 SLOTS = (0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0)
 STEPS = (5.0, 10.0, 15.0, 20.0)
-"""mm: walls and slots by thickness, pins and holes by diameter, steps of the block along x and z."""
+"""Sizes in mm: thickness of walls and slots, diameter of pins and holes, steps of the block along x and z."""
 
 BLOCK = 20.0
 PLATE, WALL_HEIGHT, PIN_HEIGHT, LENGTH = 3.0, 5.0, 4.0, 10.0
-"""Sizes in mm: of the plate, of the walls and pins on it, and the length of walls and slots."""
+"""Sizes in mm: thickness of the plate, height of the walls and pins on it, and length of walls and slots."""
 
 _GAP, _MARGIN, _ROOT, _CORNER = 4.0, 4.0, 1.0, 4.0
-"""mm: between features, around them, how deep a standing feature reaches into the plate, and the cut corner."""
+"""Sizes in mm: distance between features, margin around them, depth of their root in the plate, and the cut corner."""
 
 
 @dataclass(frozen=True, slots=True)
 class GaugeRow:
-    """One row of the gauge: its feature, the sizes and the height of its middle, mm."""
+    """One row of the gauge: its feature, the sizes, and the position of its middle along y, mm."""
 
     feature: str
     sizes: tuple[float, ...]
     middle: float
 
     def places(self) -> list[tuple[float, float]]:
-        """Middle along x and size of every feature."""
+        """Position of the middle along x, and size, of every feature."""
         steps = [_MARGIN + 0.5 * self.sizes[0], *(0.5 * (a + b) + _GAP for a, b in pairwise(self.sizes))]
         return list(zip(accumulate(steps), self.sizes, strict=True))
 
     @property
     def end(self) -> float:
-        """End of the last feature, mm."""
+        """Position along x of the end of the last feature, mm."""
         place, size = self.places()[-1]
         return place + 0.5 * size
 
@@ -77,7 +75,7 @@ def draw(context: CouponContext) -> tuple[Solid, ...]:
 
 
 def block() -> Prism:
-    """The staircase, its steps rising against x."""
+    """Staircase with its steps rising against x."""
     rise = list(zip(STEPS, reversed(STEPS), strict=True))
     corners: list[Point] = [(0.0, 0.0), (STEPS[-1], 0.0)]
     for x, z in reversed(rise):
@@ -87,7 +85,7 @@ def block() -> Prism:
 
 
 def nominals(context: CouponContext) -> tuple[Nominal, ...]:
-    """The block's lengths, then the rows of the gauge."""
+    """Sizes to measure: the lengths of the block, then the rows of the gauge."""
     lengths = [("x", STEPS), ("y", (BLOCK,)), ("z", STEPS)]
     instruments = {"wall": CALIPER, "pin": CALIPER, "hole": GAUGE_PINS, "slot": "feeler gauge, or a microscope"}
     return (
@@ -110,7 +108,7 @@ def _wall(x: float, thickness: float, middle: float) -> Feature:
 
 
 def _slot(x: float, width: float, middle: float) -> Feature:
-    # It reaches past both faces, so that no two coincide.
+    # It extends past both faces, so that no two coincide.
     return Feature(_strip(x, width, middle, -1.0, PLATE + 1.0), width * LENGTH * PLATE)
 
 

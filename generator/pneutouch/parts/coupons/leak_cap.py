@@ -1,7 +1,7 @@
 """The leak-test cap: closes the connector in place of the membrane, and leaves no cavity.
 
-It has the membrane's flange and sits in the same seat; a rigid disc stands in for the dome, its underside level with
-the base plane. What gas is left is the dead volume alone, and what leaks is not the membrane.
+It has the membrane's flange and sits in the same seat; a rigid disc replaces the dome, its underside level with the
+base plane. The remaining gas is only the dead volume, and a leak cannot be in the membrane.
 """
 
 from pneutouch.body import Solid
@@ -11,22 +11,22 @@ from pneutouch.shape.meridian import Meridian, TracedPath, trace
 from pneutouch.spec.part import ClampedFlange
 
 TEST_PRESSURE = 20.0
-"""kPa, near the highest driving pressure of the paper's sensor."""
+"""Test pressure, kPa, near the highest driving pressure of the paper's sensor."""
 
 _LEAST_DISC, _DISC_SHARE = 3.0, 1 / 3
-"""The disc in mm, and over R0: a clamped ABS disc then takes up less than 1e-4 of a hemisphere's volume at 100 kPa
-(Kirchhoff plate, E = 2.4 GPa)."""
+"""Thickness of the disc: least value in mm, and share of R0. A clamped ABS disc then takes up less than 1e-4 of the
+volume of a hemisphere at 100 kPa (Kirchhoff plate, E = 2.4 GPa)."""
 
 
 def draw(context: CouponContext) -> tuple[Solid, ...]:
-    """The cap in the frame of its design. Raises InputError if a part of the design has no space."""
+    """The cap in the frame of its design. Raises InputError if a part of the design does not fit."""
     return (Solid("leak-cap", ROLE, context.design().connector_material, cap(context, [], 0.0)),)
 
 
 def cap(context: CouponContext, hollow: TracedPath, top: float) -> Meridian:
-    """A flange and a disc above ``top`` (mm); ``hollow`` leads from the axis at that height to the base plane."""
+    """Meridian of a flange and a disc above ``top`` (mm); ``hollow`` leads from the axis there to the base plane."""
     scene, layout = context.design(), context.layout()
-    # A membrane grown onto its connector leaves no gap for a part that is glued in its place.
+    # A membrane grown onto its connector leaves no gap for a part that is glued in instead.
     slack = scene.fit_clearance - layout.clearance
     inner, flange, low = layout.inner_radius + slack, layout.held_radius - slack, -layout.flange_thickness
     rim, high = rim_radius(context, layout), top + disc_thickness(layout)
@@ -46,7 +46,7 @@ def cap(context: CouponContext, hollow: TracedPath, top: float) -> Meridian:
 
 
 def rim_radius(context: CouponContext, layout: Layout) -> float:
-    """Radius of the disc: over the whole flange, or inside the ring that clamps it."""
+    """Radius of the disc: over the whole flange, or inside the ring that clamps the flange."""
     scene = context.design()
     if isinstance(scene.seat, ClampedFlange):
         return layout.outer_radius
@@ -59,7 +59,7 @@ def disc_thickness(layout: Layout) -> float:
 
 
 def nominals(context: CouponContext) -> tuple[Nominal, ...]:
-    """The leak, then the pressure after a known push of air."""
+    """Values to measure: the leak, then the pressure after a known push of air."""
     return (
         Nominal("start_kPa", TEST_PRESSURE, "kPa", PRESSURE),
         Nominal("end_kPa", None, "kPa", PRESSURE),

@@ -1,7 +1,7 @@
-"""The hardness puck: a plain disc as the paper's, and with its mass the density.
+"""The hardness puck: a plain disc as in the paper; with its mass it also gives the density.
 
-20 mm x 3 mm, four of them, five readings each: the paper's 20 trials (Supplement A, Table 1). ISO 868 and ASTM D2240
-require 6 mm under the durometer, so two pucks are laid on one another for that; the paper does not state that it did.
+20 mm x 3 mm, four pucks, five readings each: the paper's 20 trials (Supplement A, Table 1). ISO 868 and ASTM D2240
+require 6 mm under the durometer, for which two pucks are stacked; the paper does not state whether it did so.
 """
 
 from pneutouch.body import Solid
@@ -10,7 +10,7 @@ from pneutouch.shape.meridian import cylinder
 from pneutouch.units import grams
 
 DIAMETER, THICKNESS = 20.0, 3.0
-"""mm; paper, Supplement A."""
+"""Sizes in mm; paper, Supplement A."""
 
 
 def draw(context: CouponContext) -> tuple[Solid, ...]:
@@ -19,7 +19,7 @@ def draw(context: CouponContext) -> tuple[Solid, ...]:
 
 
 def nominals(context: CouponContext) -> tuple[Nominal, ...]:
-    """Hardness on the scale of the material's kind, then the sizes that the density needs."""
+    """Values to measure: hardness on the scale of the material's kind, then the sizes for the density."""
     material = context.material
     soft = material.kind == "elastomer"
     known = material.shore_a if soft else material.shore_d

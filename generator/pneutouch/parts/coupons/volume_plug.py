@@ -1,7 +1,7 @@
-"""The dead-volume plug: as the leak-test cap, but with a cavity of a known volume.
+"""The dead-volume plug: like the leak-test cap, but with a cavity of a known volume.
 
-The same push of air raises the pressure over the cap by one amount and over the plug by a smaller one; with the plug's
-volume known, the two give the dead volume behind them, and neither the syringe nor the weather enters (Boyle).
+The same push of air raises the pressure more over the cap than over the plug. With the plug's volume known, the two
+pressures give the dead volume behind them, independent of syringe and weather (Boyle).
 """
 
 import math
@@ -17,23 +17,23 @@ WATER = 0.9982
 """Density of water at 20 °C, g/mL (CRC Handbook of Chemistry and Physics)."""
 
 _LEDGE, _LEDGE_SHARE = 1.0, 0.15
-"""Width in mm, and most over R0, of the ledge at the base plane: it rests on the connector and shows the fill line."""
+"""Width in mm, and greatest share of R0, of the ledge at the base plane: it rests on the connector as fill mark."""
 
 _SERIES = (5.0, 2.0, 1.0)
-"""Round volumes within a decade."""
+"""Round volumes in one decade, descending."""
 
 
 def cavity_volume(shape: DomeShape) -> float:
-    """The greatest volume of the series 1, 2, 5 that the unloaded dome of a shape also holds, mm3.
+    """Greatest volume of the series 1, 2, 5 that does not exceed the unloaded cavity of the dome, mm3.
 
-    A volume near the sensor's own makes the two pressures differ clearly; 1 mL for the paper's sensor.
+    A volume near the sensor's own makes the two pressures clearly different; 1 mL for the paper's sensor.
     """
     decade = 10.0 ** math.floor(math.log10(shape.cavity_volume))
     return next(step * decade for step in _SERIES if step * decade <= shape.cavity_volume)
 
 
 def cavity_size(context: CouponContext) -> tuple[float, float]:
-    """Radius and height of the cavity, mm. Raises InputError for a dome too small to leave a wall around it."""
+    """Radius and height of the cavity, mm. Raises InputError for a dome too small to leave a wall around the cavity."""
     scene, layout = context.design(), context.layout()
     wall = scene.connector_printer.smallest.wall(scene.connector_material.kind).recommended
     ledge = min(_LEDGE, _LEDGE_SHARE * layout.inner_radius)
@@ -56,7 +56,7 @@ def draw(context: CouponContext) -> tuple[Solid, ...]:
 
 
 def nominals(context: CouponContext) -> tuple[Nominal, ...]:
-    """The pressure after the same push of air as over the cap, and the cavity's volume by weighed water."""
+    """Values to measure: pressure after the same push of air as over the cap, and cavity volume by weighed water."""
     volume_mL = cavity_volume(context.design().design.membrane.dome) / ML
     return (Nominal("pressure_kPa", None, "kPa", PRESSURE), Nominal("water_g", WATER * volume_mL, "g", BALANCE))
 

@@ -1,1 +1,1 @@
-"""Labels on bodies: glyphs, the faces that take them, tally grooves, and the marked body."""
+"""Labels on bodies: glyphs, the faces that can carry labels, tally grooves, and the marked body."""

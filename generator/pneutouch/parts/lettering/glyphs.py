@@ -1,4 +1,4 @@
-"""Short labels as flat shapes whose strokes and gaps a printer can make, and how narrow a flat shape is."""
+"""Short labels as flat shapes whose strokes and gaps a printer can make, and the least width of a flat shape."""
 
 from functools import lru_cache
 from pathlib import Path
@@ -12,25 +12,25 @@ FONTS = Path(__file__).with_name("fonts")
 """Inter, the typeface of labels, sheets and charts."""
 
 _EM = 100.0
-"""Size at which outlines are taken: matplotlib flattens curves to a fixed length."""
+"""Font size at which outlines are taken: matplotlib flattens curves to a fixed length."""
 
 _SMOOTH = 0.004
-"""Detail in mm left out of outlines: a quarter of the finest layer of any shipped printer."""
+"""Size of detail in mm removed from outlines: a quarter of the finest layer of any shipped printer."""
 
 _SEGMENTS = 32
-"""Corners of the disc that widths are measured with."""
+"""Number of corners of the disc with which widths are measured."""
 
 _SCAN = 0.02
-"""Steps in mm of radius in which the first change is looked for."""
+"""Radius step in mm of the search for the first change."""
 
 _FINEST = 1e-3
-"""To which a width is measured, mm."""
+"""Accuracy of a measured width, mm."""
 
 
 def lettering(text: str, height: float, least: float) -> Any:
-    """A manifold3d CrossSection of ``text``, centred, capitals ``height`` mm tall, in Inter SemiBold.
+    """CrossSection (manifold3d) of ``text``, centred, capitals ``height`` mm tall, in Inter SemiBold.
 
-    Strokes thinner than ``least`` mm are widened to it, and glyphs stand at least ``least`` apart.
+    Strokes thinner than ``least`` mm are widened to it, and glyphs are at least ``least`` apart.
     """
     from manifold3d import CrossSection
 
@@ -46,9 +46,9 @@ def lettering(text: str, height: float, least: float) -> Any:
 
 
 def narrowest(shape: Any) -> float:
-    """Least width in mm of a CrossSection: the widest disc before which no part vanishes, splits or opens.
+    """Least width in mm of a CrossSection: diameter of the largest disc whose erosion leaves all parts and holes.
 
-    Looked for in steps from thin to thick: past the first change, parts that split may vanish and seem whole again.
+    Searched in steps from thin to thick: beyond the first change, parts that split may vanish and seem whole again.
     """
     parts, contours = len(shape.decompose()), shape.num_contour()
 
@@ -66,7 +66,7 @@ def narrowest(shape: Any) -> float:
 
 
 def is_clear(characters: str, height: float, least: float) -> bool:
-    """True if the strokes of glyphs, and the spaces that they enclose, are nowhere narrower than ``least`` mm."""
+    """True if neither the strokes of the glyphs nor the spaces enclosed by them are narrower than ``least`` mm."""
     return all(
         narrowest(shape) >= least - _FINEST
         for character in sorted(set(characters))
@@ -77,7 +77,7 @@ def is_clear(characters: str, height: float, least: float) -> bool:
 
 
 def rounded(shape: Any) -> Any:
-    """The shape with its corners on a grid of 0.1 um, so that a reader in float32 merges none of them."""
+    """Shape with its corners on a grid of 0.1 um, so that a reader in float32 does not merge any of them."""
     from manifold3d import CrossSection, FillRule
 
     return CrossSection([np.round(polygon, 4) for polygon in shape.to_polygons()], FillRule.EvenOdd)
@@ -85,7 +85,7 @@ def rounded(shape: Any) -> Any:
 
 @lru_cache
 def _glyph(character: str, height: float, least: float) -> Any:
-    """One glyph on its own baseline, its thin strokes widened."""
+    """One glyph on its baseline, with thin strokes widened."""
     from manifold3d import CrossSection, FillRule
 
     outlines = [polygon * (height / _capital()) for polygon in _outlines(character)]
@@ -95,10 +95,10 @@ def _glyph(character: str, height: float, least: float) -> Any:
 
 
 def _enclosed(glyph: Any) -> Any:
-    """The islands in a glyph, such as the inside of an A."""
+    """Spaces enclosed by a glyph, such as the inside of an A."""
     from manifold3d import CrossSection
 
-    # Outlines run counter-clockwise, holes clockwise: by the positive rule the outlines alone fill all.
+    # Outlines run counter-clockwise, holes clockwise: with the outlines only, the positive rule fills everything.
     return CrossSection([line for line in glyph.to_polygons() if _area(line) > 0]) - glyph
 
 
@@ -112,7 +112,7 @@ def _outlines(character: str) -> tuple[Array, ...]:
 
 
 def _capital() -> float:
-    """Height of an H."""
+    """Height of a capital H."""
     return float(np.ptp(np.concatenate(_outlines("H"))[:, 1]))
 
 

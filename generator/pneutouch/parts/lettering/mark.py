@@ -1,11 +1,11 @@
-"""Part marks: lettering on rigid bodies, a tally on the membrane's flange, cut in or raised in one batch.
+"""Part marks: lettering on rigid bodies and a tally on the membrane's flange, engraved or raised in one batch.
 
-A part mark for a narrow ring: grooves along the flange, counted like strokes on a slate.
+A tally is a part mark for a narrow ring: grooves along the flange, counted like strokes on a slate.
 
-Read counter-clockwise, looking onto the dome. A long groove is the start; then a group of grooves for the value, a
-wider gap, and a group for the copy. A narrow groove counts one, a middle one five. A is 1, B is 2 and so on.
+It is read counter-clockwise, looking onto the dome. A long groove is the start; then follow a group of grooves for the
+value, a wider gap, and a group for the copy. A narrow groove counts one, a middle one five. A is 1, B is 2 and so on.
 
-Flat faces that may carry a part mark: away from seals, glue, screw heads and the dome, with solid behind them.
+Also the flat faces that may carry a mark: away from seals, glue, screw heads and the dome, with solid behind them.
 """
 
 import math
@@ -25,10 +25,10 @@ from pneutouch.spec.printer import Printer
 from pneutouch.spec.tray import Marks
 
 FIVE, START = 3.0, 6.0
-"""Widths of the groove for five and of the start over that of the groove for one."""
+"""Widths of the groove for five and of the start groove, over the width of the groove for one."""
 
 _BETWEEN, _APART = 1.3, 4.0
-"""Land between grooves, and between groups, over the width of the groove for one."""
+"""Distances between grooves and between groups, over the width of the groove for one."""
 
 _ASIDE = 0.0137
 """Angle in rad of the start: off the x axis, where every mesh has vertices."""
@@ -49,7 +49,7 @@ class TallyRing:
 
     @property
     def narrowest(self) -> float:
-        """Width in mm of the narrowest groove, straight across its inner end; or its length, where that is less."""
+        """Width in mm of the narrowest groove, straight across its inner end, or its length if that is less."""
         angle = min(last - first for first, last in self.sectors)
         return min(2 * self.inner * math.sin(0.5 * angle), self.outer - self.inner)
 
@@ -65,9 +65,9 @@ class TallyRing:
 
 
 def tally(index: int, copy: int, inner: float, outer: float, width: float) -> TallyRing | None:
-    """Grooves for a value's ``index`` and a ``copy``, both from 1; ``width`` mm is the narrowest, at ``inner``.
+    """Grooves for a value's ``index`` and a ``copy``, both from 1; ``width`` mm is the least width, at ``inner``.
 
-    None if they do not go round the ring with a gap before the start comes again.
+    None if the ring is too short for them with a gap before the start.
     """
     sectors, at = [(0.0, START * width)], START * width
     for number in (index, copy):
@@ -82,7 +82,7 @@ def tally(index: int, copy: int, inner: float, outer: float, width: float) -> Ta
 
 
 def read(sectors: list[tuple[float, float]]) -> tuple[int, int]:
-    """Index and copy from the angles (rad) of grooves in any order, anywhere round the ring."""
+    """Read index and copy from the angles (rad) of the grooves, in any order and any position on the ring."""
     start = max(range(len(sectors)), key=lambda k: sectors[k][1] - sectors[k][0])
     unit = (sectors[start][1] - sectors[start][0]) / START
     rest = sorted(((a - sectors[start][1]) % (2 * math.pi), b - a) for k, (a, b) in enumerate(sectors) if k != start)
@@ -97,24 +97,24 @@ def read(sectors: list[tuple[float, float]]) -> tuple[int, int]:
 
 
 def _strokes(number: int) -> list[float]:
-    """Widths of the grooves that count a number: fives first."""
+    """Widths of the grooves that represent a number, fives first."""
     fives, ones = divmod(number, 5)
     return [FIVE] * fives + [1.0] * ones
 
 
 _STEP = 0.01
-"""Distance in mm from a face at which its section is taken."""
+"""Distance in mm from a face at which its sections are taken."""
 
 _TURNS = 24
-"""Angles round a face at which a label is tried."""
+"""Number of angles around a face at which a label is tried."""
 
 HEIGHTS = (5.0, 4.5, 4.0, 3.5, 3.0)
-"""Heights of capitals in mm that are tried; below 3 mm they are not legible."""
+"""Heights of capitals in mm, in the order tried; below 3 mm they are not legible."""
 
 
 @dataclass(frozen=True, slots=True)
 class RingFace:
-    """A ring of a horizontal face between two radii (mm) at height ``z``; ``mates``: it must lie flat on something."""
+    """A ring of a horizontal face between two radii (mm) at height ``z``; ``mates``: it must lie flat on a surface."""
 
     name: str
     z: float
@@ -135,10 +135,10 @@ class LabelPosition:
 
 
 def lettered_faces(assembly: Assembly, solid: Solid) -> list[RingFace]:
-    """Faces of a rigid body in the order they are preferred: faces that can be read once mounted come first."""
+    """Faces of a rigid body in order of preference: those that are visible after mounting come first."""
     layout, seat = assembly.layout, assembly.scene.seat
     if solid.role == "ring":
-        # The other ring, that a flange is cast around, is in the mould: its faces close on the cavity.
+        # The other ring, around which a flange is cast, is in the mould: its faces close on the cavity.
         if not isinstance(seat, ClampedFlange):
             return []
         return [RingFace("ring top", seat.ring_thickness, True, 0.0, layout.ring_radius, False)]
@@ -156,9 +156,9 @@ def lettered_faces(assembly: Assembly, solid: Solid) -> list[RingFace]:
 
 
 def free_area(face: RingFace, solid: Solid, body: Body, depth: float, edge: float) -> Any:
-    """CrossSection of a face that is bare, has ``depth`` mm of solid behind it and lies ``edge`` mm from any edge.
+    """CrossSection of the part of a face that is bare, has ``depth`` mm of solid behind it and ``edge`` mm to any edge.
 
-    Around a bore there is space for a screw head, which is less than twice as wide (ISO 4762).
+    Around a bore it leaves space for a screw head, which is less than twice as wide (ISO 4762).
     """
     from manifold3d import CrossSection
 
@@ -190,41 +190,41 @@ def spot(face: RingFace, area: Any, box: tuple[float, float], heights: Sequence[
 
 
 def placed(shape: Any, at: LabelPosition) -> Any:
-    """A CrossSection drawn about the origin, put on its spot; mirrored on a face that is read from below."""
+    """CrossSection drawn about the origin, moved to its position; mirrored on a face that is read from below."""
     turn = math.degrees(at.angle) - 90.0 if at.radius else 0.0
     turned = (shape if at.face.up else shape.mirror((1.0, 0.0))).rotate(turn)
     return turned.translate((at.radius * math.cos(at.angle), at.radius * math.sin(at.angle)))
 
 
 def _radii(reach: float, height: float) -> list[float]:
-    """Distances from the axis that are tried: from the rim inwards by a quarter millimetre, then the middle."""
+    """Distances from the axis to try: from the rim inwards in steps of a quarter millimetre, then the centre."""
     outermost = reach - 0.5 * height
     count = max(0, int((outermost - 0.5 * height) / 0.25) + 1)
     return [*(outermost - 0.25 * k for k in range(count)), 0.0]
 
 
 _SAFETY = 1.2
-"""Marks are drawn larger than the printer's recommended detail by this factor."""
+"""Factor by which marks are larger than the printer's recommended detail."""
 
 _PAST = 0.25
-"""Distance in mm by which a tool reaches past the face it cuts or grows from, so that no two faces coincide."""
+"""Distance in mm by which a tool extends past the face it cuts or adds to, so that no two faces coincide."""
 
 _LEAST_LAND = 0.6
-"""Wall in mm kept next to a groove: the vendor's smallest feature (objet.com Tips and Tricks)."""
+"""Material in mm left next to a groove: the vendor's smallest feature (objet.com Tips and Tricks)."""
 
 
 @dataclass(frozen=True)
 class Mark:
-    """Label or tally that was put on a body.
+    """Label or tally applied to a body.
 
     Attributes:
         kind: text, tally or none.
-        face: The face it is on.
-        raised: Raised, not engraved.
-        depth: Of the engraving, or height of the raising, mm.
-        stroke: Its narrowest line, measured, mm.
-        height: Of capitals, mm; 0 for a tally.
-        note: Reason why there is none, or another than asked for.
+        face: Name of the face that carries it.
+        raised: True if raised, False if engraved.
+        depth: Depth of the engraving or height of the raised mark, mm.
+        stroke: Width of the narrowest line, as measured, mm.
+        height: Height of capitals, mm; 0 for a tally.
+        note: Reason if there is no mark, or not the requested kind.
     """
 
     kind: str
@@ -237,11 +237,11 @@ class Mark:
 
 
 Tool = tuple[Any, float, float]
-"""A CrossSection and the heights between which it stands, mm."""
+"""A CrossSection, and the lower and upper height of its extrusion, mm."""
 
 
 class Marker:
-    """Puts marks on the bodies of one printer; remembers where labels go on each geometry."""
+    """Puts marks on the bodies of one printer; caches the label position of each geometry."""
 
     def __init__(self, printer: Printer, marks: Marks, labels: list[str]) -> None:
         self._printer, self._marks = printer, marks
@@ -253,7 +253,7 @@ class Marker:
     def marked(
         self, assembly: Assembly, solid: Solid, body: Body, label: str, number: tuple[int, int]
     ) -> tuple[Body, Mark]:
-        """A body (design frame) with its mark: ``label`` in letters, or ``number`` (value, copy) as a tally."""
+        """Body (in the design frame) with its mark: ``label`` as lettering, or ``number`` (value, copy) as a tally."""
         if self._marks == "none":
             return body, Mark("none")
         if solid.role == "membrane":
@@ -279,7 +279,7 @@ class Marker:
         return _combined(body, (shape, ends[0], ends[1]), raised), mark
 
     def _spot(self, assembly: Assembly, solid: Solid, body: Body) -> LabelPosition | None:
-        """Position at which the widest label of the tray fits on a geometry: all copies carry theirs at one place."""
+        """Position at which the widest label of the tray fits on a geometry, so that all copies have theirs there."""
         key = (shape_of(solid), assembly.layout)
         if key not in self._spots:
             wall = self._printer.smallest.wall(solid.material.kind).recommended
@@ -305,7 +305,7 @@ class Marker:
         return [height for height in HEIGHTS if is_clear("".join(self._labels), height, self._limit)]
 
     def _tallied(self, assembly: Assembly, solid: Solid, body: Body, number: tuple[int, int]) -> tuple[Body, Mark]:
-        """On the flange's top; in its edge where a ring seals on the top."""
+        """Body with a tally on the flange's top, or in its edge if a ring seals on the top."""
         clamped = isinstance(assembly.scene.seat, ClampedFlange)
         layout, width = assembly.layout, self._depth
         inner, outer = self._band(assembly, solid)
@@ -327,7 +327,7 @@ class Marker:
         return _combined(body, (shape, *ends), raised), mark
 
     def _band(self, assembly: Assembly, solid: Solid) -> tuple[float, float]:
-        """Radii of the grooves on the flange's top: by its edge, clear of the root of the dome."""
+        """Radii of the grooves on the flange's top: near its edge, away from the root of the dome."""
         layout = assembly.layout
         land = max(_LEAST_LAND, self._printer.smallest.wall(solid.material.kind).least or 0.0)
         outer = layout.flange_radius - land
@@ -335,7 +335,7 @@ class Marker:
 
 
 def shape_of(solid: Solid) -> Any:
-    """Key of the mesh of a solid, its resin apart: equal keys, equal geometry."""
+    """Key of a solid's geometry, without its resin: equal keys mean equal geometry."""
     return solid.name, solid.base, solid.bores, solid.adds, solid.cuts
 
 
@@ -346,7 +346,7 @@ def _grooves(ring: TallyRing) -> Any:
 
 
 def _combined(body: Body, tool: Tool, raised: bool) -> Body:
-    """Cut the tool's parts from a body, or join them, in one batch."""
+    """Cut the tool's parts from a body, or join them to it, in one batch."""
     from manifold3d import Manifold, OpType
 
     shape, low, high = tool

@@ -1,8 +1,8 @@
-"""The mould of a cast membrane: its parts, how often each is made, and its bodies closed and as printed.
+"""The mould of a cast membrane: its parts, their numbers, and its bodies as closed and as printed.
 
-Mass of silicone in a batch, and its division into the parts that are mixed.
+Also the mass of silicone in a batch, and its division into the parts to be mixed.
 
-Check that a mould has space for its details: channels within the flange, fillets within its thickness.
+Also the check that a mould has space for its details: channels within the flange, fillets within its thickness.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ from pneutouch.spec.printer import Mode, Printer
 from pneutouch.units import ML, grams
 
 _EDGE = 0.05
-"""Flange in mm that must be left at both sides of a channel: less would cut ring or core."""
+"""Width in mm of the flange that must be left on both sides of a channel: less would cut ring or core."""
 
 _LEAST_HOLE = 0.3
-"""Least diameter in mm of a channel where it is narrowest: own choice."""
+"""Least diameter in mm of a channel at its narrowest point: own choice."""
 
 _LEAST_GAP = 0.5
-"""Least silicone in mm between core and ring: own choice."""
+"""Least thickness in mm of silicone between core and ring: own choice."""
 
 
 def check_mould_space(where: str, size: MouldSize) -> None:
-    """Raise InputError that names the key of the design file ``where`` which leaves a detail no space."""
+    """Raise InputError with the key of the design file ``where`` that leaves too little space for a detail."""
     _check_insert(where, size)
     shape, faces = size.shape, size.faces
     width = faces.edge.start[0] - faces.rim.end[0] - 2 * _EDGE
@@ -73,7 +73,7 @@ def check_mould_space(where: str, size: MouldSize) -> None:
 
 
 def _check_insert(where: str, size: MouldSize) -> None:
-    """Silicone must pass between the core and the ring that it is cast around: the mould grows, the ring does not."""
+    """Raise InputError if silicone cannot pass between the core and the ring: the mould is enlarged, not the ring."""
     if size.insert is None:
         return
     gap = size.insert.web_inner - max(size.faces.rim.start[0], size.faces.rim.end[0])
@@ -89,16 +89,16 @@ def _check_insert(where: str, size: MouldSize) -> None:
 
 
 def _slope(size: MouldSize) -> float:
-    """Radius lost by a channel over height."""
+    """Decrease in a channel's radius per height."""
     return math.tan(size.shape.draft)
 
 
 @dataclass(frozen=True)
 class MouldAssembly:
-    """The mould of a scene in the design frame, the first cavity about the z axis; every length is compensated.
+    """The mould of a scene in the design frame, with the first cavity about the z axis; shrinkage is compensated.
 
-    ``solids`` are cap, ring, core and base, the ring and the core once; ``counts`` states how many of each are made.
-    ``insert`` is the ring of the sensor that the flange is cast around, no part of the mould; None without one.
+    ``solids`` are cap, ring, core and base, with ring and core once; ``counts`` has the number of each to make.
+    ``insert`` is the sensor's ring that the flange is cast around, not a part of the mould; None without one.
     """
 
     scene: ResolvedDesign
@@ -119,7 +119,7 @@ class MouldAssembly:
 
     @property
     def tolerance(self) -> float:
-        """Chord tolerance of the meshes, mm: that of the membrane, which the mould forms."""
+        """Chord tolerance of the meshes, mm: that of the membrane, whose faces the mould forms."""
         return self.scene.mesh_tolerance
 
     @property
@@ -130,12 +130,12 @@ class MouldAssembly:
 
     @cached_property
     def bodies(self) -> tuple[Body, ...]:
-        """Meshes of the four parts as they stand in the closed mould, ring and core of the first cavity."""
+        """Meshes of the four parts in their positions in the closed mould, with ring and core of the first cavity."""
         return tuple(solid.mesh(self.tolerance) for solid in self.solids)
 
     @cached_property
     def closed(self) -> tuple[Body, ...]:
-        """Every body of the closed mould, ring, core and insert in each cavity; later ones are numbered."""
+        """All bodies of the closed mould, with ring, core and insert in each cavity; later ones are numbered."""
         every = []
         inserts = () if self.insert is None else (self.insert.mesh(self.tolerance),)
         for body in (*self.bodies, *inserts):
@@ -147,7 +147,7 @@ class MouldAssembly:
 
     @cached_property
     def printed(self) -> tuple[Body, ...]:
-        """The four parts as they are printed: on the plane z = 0, coordinates positive, the cap's pockets up."""
+        """Meshes of the four parts as printed: on z = 0, with positive coordinates, the cap's pockets up."""
         turned = (body.turned_over() if body.name == "mould-cap" else body for body in self.bodies)
         return tuple(body.moved(-body.bounds[0]) for body in turned)
 
@@ -165,15 +165,15 @@ class MouldAssembly:
 
 
 def repeated(part: Solid | Body) -> bool:
-    """True if every cavity has such a part of its own."""
+    """True if every cavity has a part of this kind."""
     return part.name in ("mould-ring", "mould-core", RING)
 
 
 def mould_of(scene: ResolvedDesign, layout: Layout | None = None) -> MouldAssembly:
-    """Draw the mould of a scene whose membrane is cast.
+    """Draw the mould of a scene with a cast membrane.
 
-    Raises InputError that names file and key where a part of the mould has no space, and TypeError for a scene whose
-    membrane is printed.
+    Raises InputError with file and key if a part of the mould does not fit, and TypeError for a scene with a printed
+    membrane.
     """
     if scene.mould_printer is None or scene.mould_material is None:
         raise TypeError("the membrane of this scene is printed, not cast")
@@ -189,7 +189,7 @@ def mould_of(scene: ResolvedDesign, layout: Layout | None = None) -> MouldAssemb
 
 
 def shape_of(scene: ResolvedDesign) -> MouldShape:
-    """Shape of the mould as a scene describes it."""
+    """Shape of the mould as stated in a scene."""
     stated, casting = scene.design.mould, scene.membrane_material.casting
     assert scene.mould_printer is not None
     shrinkage = stated.shrinkage_percent
@@ -209,11 +209,11 @@ def shape_of(scene: ResolvedDesign) -> MouldShape:
 
 
 FILM = 0.5
-"""Thickness in mm of the silicone that is left to run over into a window of the base: own choice."""
+"""Thickness in mm of the silicone that may overflow into a window of the base: own choice."""
 
 LOSS_SHARE = 0.15
 LEAST_LOSS_ML = 2.0
-"""Loss on cup, stirrer and syringe: this share, and at least so much; our choice, measure yours."""
+"""Loss on cup, stirrer and syringe: a share of the filling, but at least the volume; our choice, measure yours."""
 
 
 @dataclass(frozen=True)
@@ -232,27 +232,27 @@ class SiliconeBatch:
 
     @cached_property
     def filled_mL(self) -> float:
-        """Volume that the mould takes: cavities, channels and overflow."""
+        """Volume of silicone that the mould takes: cavities, channels and overflow."""
         return self.cavities * (self.cavity_mL + self.channels_mL + self.overflow_mL)
 
     @property
     def loss_mL(self) -> float:
-        """Volume that is lost: `LOSS_SHARE` of the filling, at least `LEAST_LOSS_ML`."""
+        """Volume that is lost: `LOSS_SHARE` of the filling, but at least `LEAST_LOSS_ML`."""
         return max(LOSS_SHARE * self.filled_mL, LEAST_LOSS_ML)
 
     @property
     def volume_mL(self) -> float:
-        """To be mixed."""
+        """Volume to mix."""
         return self.filled_mL + self.loss_mL
 
     @property
     def mass_g(self) -> float:
-        """To be weighed, all parts together."""
+        """Mass to weigh, of all parts together."""
         return grams(self.volume_mL * ML, self.density_g_per_cm3)
 
     @property
     def parts_g(self) -> tuple[float, ...]:
-        """To be weighed of each part, in the order of ``parts_by_mass``."""
+        """Masses to weigh of each part, in the order of ``parts_by_mass``."""
         whole = sum(self.parts_by_mass)
         return tuple(self.mass_g * part / whole for part in self.parts_by_mass)
 

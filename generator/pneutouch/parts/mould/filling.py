@@ -1,10 +1,10 @@
-"""Times in which a mould fills, and its air leaves, by the silicone's viscosity.
+"""Times in which a mould fills and its air escapes, from the silicone's viscosity.
 
 Slow flow of a Newtonian liquid: the pour channel by Hagen and Poiseuille (pipe of varying radius, 8 mu L / (pi r^4)
-integrated along it), the dome's wall by the flow between parallel faces (12 mu ds / (w h^3), its width w taken as the
-circumference at half the arc). Batchelor, An Introduction to Fluid Dynamics (1967), sections 4.2 and 4.8.
+integrated along it), the dome's wall by the flow between parallel faces (12 mu ds / (w h^3), with the circumference at
+half the arc as width w). Batchelor, An Introduction to Fluid Dynamics (1967), sections 4.2 and 4.8.
 
-Stretch that a cured membrane needs to leave its core.
+Also the stretch that a cured membrane needs to come off its core.
 """
 
 import math
@@ -14,7 +14,7 @@ from pneutouch.parts.mould.size import CavityFaces, MouldSize
 from pneutouch.shape.meridian import Meridian
 
 GRAVITY = 9.80665
-"""m/s2."""
+"""Acceleration of gravity, m/s2."""
 
 SYRINGE_KPA = 100.0
 """Pressure of a hand on a syringe of 10 mL, about 15 N on 1.5 cm2: own estimate."""
@@ -33,7 +33,7 @@ class MouldFilling:
 
 
 def filling(size: MouldSize, viscosity_Pa_s: float, density_g_per_cm3: float) -> MouldFilling:
-    """Filling of one cavity. A bubble rises at rho g r^2 / (3 mu): Hadamard (1911), Rybczynski (1911), free surface."""
+    """Filling times of one cavity. A bubble rises at rho g r^2 / (3 mu): Hadamard, Rybczynski (1911), free surface."""
     resistance = viscosity_Pa_s * (_channel(size) + _wall(size)) * 1e9
     volume = size.cavity_volume * 1e-9
     weight = density_g_per_cm3 * 1e3 * GRAVITY
@@ -53,7 +53,7 @@ def _channel(size: MouldSize) -> float:
 
 
 def _wall(size: MouldSize) -> float:
-    """Resistance of the wall from the flange to the pole, mm-3."""
+    """Flow resistance of the wall from the flange to the pole, mm-3."""
     faces = size.faces
     inner, outer = faces.halfway
     length = 0.5 * sum(piece.length for piece in (*faces.inner, *faces.outer))
@@ -61,36 +61,36 @@ def _wall(size: MouldSize) -> float:
 
 
 PEEL_STRETCH = 1.5
-"""Stretch of the wall's outside where a finger rolls it back over itself: a strip of thickness t bent to an inner
-radius of t / 2 has its middle at the radius t, so its outside is longer by half. Own estimate."""
+"""Stretch on the wall's outside where a finger rolls it back over itself: a strip of thickness t, bent to an inner
+radius of t / 2, has its middle at the radius t, so its outside is longer by half. Own estimate."""
 
 SAFETY = 2.0
-"""Elongation at break over the strain needed: own choice, for nicks at the flange and silicone not fully cured."""
+"""Required elongation at break over the strain needed: own choice, for nicks at the flange and incomplete curing."""
 
 
 @dataclass(frozen=True, slots=True)
 class Release:
-    """``opening_mm`` is the smallest opening of the cured membrane, ``core_mm`` the greatest diameter of the core that
-    passes it."""
+    """Sizes for the release: ``opening_mm`` is the smallest opening of the cured membrane, ``core_mm`` the greatest
+    diameter of the core, which passes the opening."""
 
     opening_mm: float
     core_mm: float
 
     @property
     def passing_strain(self) -> float:
-        """Strain around the opening as the core passes it; 0 where it passes freely."""
+        """Circumferential strain of the opening as the core passes it; 0 if it passes freely."""
         return max(self.core_mm / self.opening_mm - 1.0, 0.0)
 
     @property
     def strain(self) -> float:
-        """The strain needed: of the passing core, or of rolling the wall back, whichever is more."""
+        """Strain needed: by the passing core or by rolling the wall back, whichever is greater."""
         return max(self.passing_strain, PEEL_STRETCH - 1.0)
 
 
 def release_of(membrane: Meridian, size: MouldSize) -> Release:
-    """The release of a membrane (its meridian, as cured) from the core of its mould.
+    """Release of a membrane (its meridian, as cured) from the core of its mould.
 
-    It is an upper bound: the whole core is taken to pass the smallest opening, wherever that is.
+    An upper bound: the whole core is taken to pass the smallest opening, wherever that is.
     """
     # The opening is bounded by the faces below the dome: its rim and what lies within the flange.
     cured = CavityFaces.of(membrane, 1.0)

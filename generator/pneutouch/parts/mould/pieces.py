@@ -1,6 +1,6 @@
-"""The parts of a mould as exact solids: cap, ring, core and base; ring and core stand once for each cavity.
+"""The parts of a mould as exact solids: cap, ring, core and base; ring and core are those of one cavity.
 
-Lengths of the mould from a membrane and the mould's entries in a design.
+Also the sizes of the mould, from a membrane and the mould's entries in a design.
 """
 
 import math
@@ -23,17 +23,17 @@ from pneutouch.shape.meridian import Arc, Line, Meridian, Point, Segment, Traced
 from pneutouch.spec.material import Material
 
 LEAST_GATES = 4
-"""Fewest pour channels and vents together: one pour channel, a vent across and one at each side; always even."""
+"""Least number of pour channels and vents together, always even: one pour channel, a vent opposite and two beside."""
 
 _RIM = 0.5
-"""Space in mm between a channel and the edge of the window: own choice."""
+"""Distance in mm between a channel and the edge of the window: own choice."""
 
 CLIP_LEDGE = 8.0
-"""Width in mm of the ledges that clips hold: own choice."""
+"""Width in mm of the ledges for clips: own choice."""
 
 
 def lay_out_mould(membrane: Meridian, shape: MouldShape, insert: RingSize | None = None) -> MouldSize:
-    """All lengths of the mould of a membrane, cast around a ring or not; `space.check_mould_space` judges them."""
+    """Sizes of the mould of a membrane, with or without a ring inside; `assembly.check_mould_space` checks them."""
     faces = CavityFaces.of(membrane, shape.factor)
     if insert is not None:
         cured = CavityFaces.of(membrane, 1.0)
@@ -44,7 +44,7 @@ def lay_out_mould(membrane: Meridian, shape: MouldShape, insert: RingSize | None
     mouth = neck + 0.5 * foot
     window = middle + max(mouth, 0.5 * shape.vent_diameter) + _RIM
     deep = math.tan(TAPER)
-    # At z = 0 the cap's seat holds a land and its fillet; at the foot's underside the base's shoulder.
+    # At z = 0 the cap's seat needs a land and its fillet; at the foot's underside it needs the base's shoulder.
     turn = FILLET / math.tan(0.5 * (0.5 * math.pi + TAPER))
     around = insert.collar_radius + shape.clearance if insert is not None else 0.0
     at_base = max(faces.edge.end[0], around) + LAND + turn
@@ -72,7 +72,7 @@ def lay_out_mould(membrane: Meridian, shape: MouldShape, insert: RingSize | None
 
 
 def _pitch(widest: float, shape: MouldShape) -> float:
-    """Distance of neighbouring cavities: a wall between them, and space for a screw between four."""
+    """Distance of neighbouring cavities: with a wall between two, and space for a screw between four."""
     across = 2 * widest + shape.wall
     if shape.fastener != "screws":
         return across
@@ -80,16 +80,16 @@ def _pitch(widest: float, shape: MouldShape) -> float:
 
 
 ROLE = "mould"
-"""Role of every part of a mould."""
+"""Role of all parts of a mould."""
 
 LEDGE_HEIGHT = 6.0
-"""Height in mm of the ledges that clips hold: own choice."""
+"""Height in mm of the ledges for clips: own choice."""
 
 _PAST = 1.0
 """Distance in mm by which a tool reaches past an open face, so that no two faces coincide."""
 
 _HANDLE_DEPTH = 8.0
-"""Depth in mm of the core's screw hole, by which it is drawn: own choice."""
+"""Depth in mm of the screw hole by which the core is pulled out: own choice."""
 
 
 def mould_solids(size: MouldSize, material: Material) -> tuple[Solid, ...]:
@@ -115,7 +115,7 @@ def cap(size: MouldSize, material: Material) -> Solid:
 
 
 def ring(size: MouldSize, material: Material) -> Solid:
-    """The ring that forms the flange's edge, or holds the collar that does, from the cap's face to the core's foot."""
+    """Ring that forms the flange's edge, or holds the collar that does, between the cap's face and the core's foot."""
     edge, low, clearance = size.bore, size.low, size.shape.clearance
     rounding = FILLET + clearance
     corner = _corner(size.seat_radius - clearance, rounding)
@@ -137,7 +137,7 @@ def ring(size: MouldSize, material: Material) -> Solid:
 
 
 def core(size: MouldSize, material: Material) -> Solid:
-    """The core that forms the inner wall, the rim inside the flange and, with its foot, the flange's underside."""
+    """Core that forms the inner wall, the rim inside the flange and, with its foot, the flange's underside."""
     faces, low, bottom, clearance = size.faces, size.low, size.foot_low, size.shape.clearance
     rim = faces.rim
     outline: tuple[Segment, ...] = (
@@ -153,7 +153,7 @@ def core(size: MouldSize, material: Material) -> Solid:
 
 
 def base(size: MouldSize, material: Material) -> Solid:
-    """The plate that presses the feet; silicone that runs over gathers in its windows."""
+    """Plate that presses the feet; overflowing silicone collects in its windows."""
     low, high = size.base_low, size.foot_low
     ledge = CLIP_LEDGE if size.shape.fastener == "clips" else 0.0
     radius = 0.5 * (SCREW.clearance_diameter + size.shape.hole_undersize)
@@ -163,7 +163,7 @@ def base(size: MouldSize, material: Material) -> Solid:
 
 
 def pocket_meridian(size: MouldSize, past: float) -> Meridian:
-    """Section of the pocket that is cut from the cap for one cavity, from ``past`` mm below its face up."""
+    """Meridian of the pocket cut from the cap for one cavity, from ``past`` mm below the cap's lower face upwards."""
     faces, low = size.faces, size.cap_low - past
     corner = _corner(size.seat_radius, FILLET)
     return Meridian(
@@ -178,9 +178,9 @@ def pocket_meridian(size: MouldSize, past: float) -> Meridian:
 
 
 def channels(size: MouldSize, past: float = 0.0) -> tuple[Turned, ...]:
-    """Bodies of the pour channel with its funnel, the first, and of the vents; they widen towards the cavity.
+    """The pour channel with its funnel, first, and the vents, as solids to cut; they widen towards the cavity.
 
-    They reach ``past`` mm beyond the foot's faces.
+    They extend ``past`` mm beyond the faces of the foot.
     """
     radius, sprue, vent = size.channel_radius, _sprue_meridian(size, past), _vent_meridian(size, past)
     return tuple(
@@ -190,24 +190,24 @@ def channels(size: MouldSize, past: float = 0.0) -> tuple[Turned, ...]:
 
 
 def _vent_meridian(size: MouldSize, past: float) -> Meridian:
-    """A vent about its axis."""
+    """Meridian of a vent about its own axis."""
     radius = 0.5 * size.shape.vent_diameter
     return _cones([_taper(size, radius, size.foot_low - past), _taper(size, radius, size.low + past)])
 
 
 def _sprue_meridian(size: MouldSize, past: float) -> Meridian:
-    """The pour channel about its axis: a funnel of 45 degrees down to the neck, then up to the flange."""
+    """Meridian of the pour channel about its own axis: a 45 degree funnel, the neck, then up to the flange."""
     gate = _taper(size, 0.5 * size.shape.sprue_diameter, size.low + past)
     return _cones([(size.mouth + past, size.foot_low - past), (size.neck, size.neck_height), gate])
 
 
 def _taper(size: MouldSize, radius: float, z: float) -> Point:
-    """A point of a channel's wall that has ``radius`` at the flange and widens upwards by the draft."""
+    """Point of a channel's wall at height z; the wall has ``radius`` at the flange and widens upwards by the draft."""
     return radius + (z - size.low) * math.tan(size.shape.draft), z
 
 
 def _cones(points: list[Point]) -> Meridian:
-    """A solid of revolution through points of its wall, from below up."""
+    """Solid of revolution through points of its wall, from the lowest up."""
     path: TracedPath = [("channel", point) for point in points]
     return trace((0.0, points[0][1]), [*path, ("channel", (0.0, points[-1][1]))])
 
@@ -221,7 +221,7 @@ def silicone(size: MouldSize, material: Material) -> Solid:
 
 
 def screw_places(size: MouldSize) -> tuple[tuple[float, float], ...]:
-    """Places of the screws: between the cavities, at every corner of the plates and at every second place within."""
+    """Positions of the screws: between the cavities, at every corner of the plates and at every second place inside."""
     if size.shape.fastener != "screws":
         return ()
     columns, rows, half = size.columns, size.rows, 0.5 * size.pitch
@@ -235,7 +235,7 @@ def screw_places(size: MouldSize) -> tuple[tuple[float, float], ...]:
 
 
 def plate(size: MouldSize, ledge: float = 0.0) -> tuple[Segment, ...]:
-    """The outline of cap and base: a rectangle with rounded corners, ``ledge`` mm wider at the ends of x."""
+    """Outline of cap and base: a rectangle with rounded corners, ``ledge`` mm longer at both ends along x."""
     half = 0.5 * size.pitch + size.margin
     low = (-half - ledge, -half)
     high = (size.pitch * (size.columns - 1) + half + ledge, size.pitch * (size.rows - 1) + half)
@@ -243,7 +243,7 @@ def plate(size: MouldSize, ledge: float = 0.0) -> tuple[Segment, ...]:
 
 
 def _rounded(low: Point, high: Point, radius: float) -> tuple[Segment, ...]:
-    """A rectangle with round corners, counter-clockwise."""
+    """Rectangle with rounded corners, counter-clockwise."""
     (x0, y0), (x1, y1), right = low, high, 0.5 * math.pi
     centres = [(x1 - radius, y0 + radius), (x1 - radius, y1 - radius), (x0 + radius, y1 - radius)]
     centres.append((x0 + radius, y0 + radius))
@@ -255,13 +255,13 @@ def _rounded(low: Point, high: Point, radius: float) -> tuple[Segment, ...]:
 
 
 def _corner(radius: float, fillet: float) -> Arc:
-    """The arc between the face z = 0 and a cone that has ``radius`` there and opens downwards at `TAPER`."""
+    """Fillet between the face z = 0 and a cone that has ``radius`` there and opens downwards at `TAPER`."""
     along = fillet / math.tan(0.5 * (0.5 * math.pi + TAPER))
     return Arc((radius - along, -fillet), fillet, TAPER, 0.5 * math.pi, "fillet")
 
 
 def _handle(size: MouldSize) -> tuple[Bore, ...]:
-    """A blind hole in the foot for a screw by which the core is drawn; none where the core is too small for it."""
+    """Blind hole in the foot for a screw by which the core is pulled out; none if the core is too small."""
     radius = 0.5 * (SCREW.core_diameter + size.shape.hole_undersize)
     if size.faces.rim.start[0] < 3 * radius:
         return ()

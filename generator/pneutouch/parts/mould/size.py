@@ -1,7 +1,7 @@
 r"""Layout of a mould: radii, heights and the places of its cavities. Lengths in mm.
 
-The frame is the design's, the first cavity's axis being z and the membrane's base plane z = 0. It is poured turned
-over, with the flange's underside up: air leaves there, and neither a vent nor a parting line meets the sensing face.
+The frame is that of the design: z is the axis of the first cavity, and the membrane's base plane is z = 0. It is poured
+upside down, with the flange's underside up: air leaves there, and the sensing face has no vent or parting line.
 
     cap        ______________________
               |      .-------.      |     outer wall and top of the flange
@@ -12,11 +12,11 @@ over, with the flange's underside up: air leaves there, and neither a vent nor a
     core     /_____|________|_____\       the foot's cone centres the core in the cap
     base     |______| window |______|     presses the foot; its window holds what runs over
 
-The screws that hold a mould closed.
+Also the screws that hold a mould closed.
 
-Open moulds of flat coupons: a tray whose top is the plane that a straight edge strikes the silicone off at.
+Also open moulds of flat coupons: a tray whose top is the plane along which a straight edge strikes off the silicone.
 
-Walls stand upright, without draft: it would change a cross-section that is measured, and a cured coupon of silicone is
+Their walls are upright, without draft, which would change a measured cross-section; a cured coupon of silicone is
 peeled out of the open side.
 """
 
@@ -41,13 +41,13 @@ FILLET = 1.0
 """Radius in mm of the fillet at the bottom of the cap's seat: own choice."""
 
 PROUD = 0.3
-"""Height in mm by which the core's foot stands out of the cap, so that the base presses the foot: our choice."""
+"""Height in mm by which the core's foot protrudes from the cap, so that the base presses on it: our choice."""
 
 SHOULDER = 2.5
-"""Width in mm on which the base presses the foot: own choice."""
+"""Width in mm of the contact between base and foot: own choice."""
 
 VENT_PITCH = 15.0
-"""Greatest distance in mm from vent to vent along the flange: own choice."""
+"""Greatest distance in mm between vents along the flange: own choice."""
 
 CORNER = 3.0
 """Radius in mm of the plates' upright edges: own choice."""
@@ -55,7 +55,7 @@ CORNER = 3.0
 
 @dataclass(frozen=True, slots=True)
 class MouldShape:
-    """Shape of a mould as a design describes it; lengths in mm, ``draft`` in rad, ``shrinkage`` a share of the
+    """Shape of a mould as stated in a design; lengths in mm, ``draft`` in rad, ``shrinkage`` as a share of the
     length."""
 
     cavities: int
@@ -70,13 +70,13 @@ class MouldShape:
 
     @property
     def factor(self) -> float:
-        """Length of the mould over that of the cured membrane."""
+        """Ratio of lengths of the mould to those of the cured membrane."""
         return 1.0 / (1.0 - self.shrinkage)
 
 
 @dataclass(frozen=True, slots=True)
 class CavityFaces:
-    """The faces of the membrane that each part of the mould forms, as the meridian of the membrane orders them."""
+    """Faces of the membrane, by the part of the mould that forms them, in the order of the membrane's meridian."""
 
     inner: tuple[Segment, ...]
     rim: Line
@@ -87,7 +87,7 @@ class CavityFaces:
 
     @staticmethod
     def of(membrane: Meridian, factor: float) -> "CavityFaces":
-        """The faces of a membrane's meridian, every length times ``factor``."""
+        """Faces of a membrane's meridian, with every length multiplied by ``factor``."""
         whole = Meridian(tuple(scaled(piece, factor) for piece in membrane.pieces))
         inner, outer = (tuple(whole.tagged(tag)) for tag in (INNER_WALL, OUTER_WALL))
         flange = whole.pieces[len(inner) : -len(outer)]
@@ -95,7 +95,7 @@ class CavityFaces:
         return CavityFaces(inner, rim, underside, edge, top, outer)
 
     def keeping(self, underside: Line, edge: Line) -> "CavityFaces":
-        """This cavity, but with the flange's underside and edge in their heights and outer radius."""
+        """This cavity with the given underside and edge of the flange, at their heights and outer radius."""
         low = underside.start[1]
         foot = self.rim.end[0], low
         return replace(
@@ -108,24 +108,24 @@ class CavityFaces:
 
     @property
     def meridian(self) -> Meridian:
-        """The outline of the cavity, which the silicone and the web of a ring within the flange fill."""
+        """Outline of the cavity, which is filled by the silicone and by the web of a ring in the flange."""
         return Meridian((*self.inner, self.rim, self.underside, self.edge, self.top, *self.outer))
 
     @property
     def high(self) -> float:
-        """Height of the pole outside."""
+        """Height of the outer pole."""
         return self.outer[-1].end[1]
 
     @property
     def halfway(self) -> tuple[Point, Point]:
-        """Points of the inner and the outer face half way along their middle pieces."""
+        """Points of the inner and the outer face, each half way along its middle piece."""
         pieces = self.inner[(len(self.inner) - 1) // 2], self.outer[len(self.outer) // 2]
         one, other = (piece.along(np.array([0.5]))[0].tolist() for piece in pieces)
         return (one[0], one[1]), (other[0], other[1])
 
 
 def scaled(piece: Segment, factor: float) -> Segment:
-    """A piece of a meridian, every length times ``factor``, about the origin."""
+    """Piece of a meridian with every length multiplied by ``factor``, about the origin."""
 
     def moved(point: Point) -> Point:
         return factor * point[0], factor * point[1]
@@ -139,9 +139,9 @@ def scaled(piece: Segment, factor: float) -> Segment:
 class MouldSize:
     """All lengths of a mould in mm; heights are z coordinates.
 
-    ``seat_radius`` is that of the cap's seat at z = 0; it opens downwards at `TAPER`. ``columns`` along x and ``rows``
-    along y are ``pitch`` apart, the first cavity at the origin. ``channel_radius`` is that of the circle of the vents.
-    ``insert`` is the ring that the flange is cast around, at its own size: it does not shrink, nor does what it holds.
+    ``seat_radius`` is the radius of the cap's seat at z = 0; it opens downwards at `TAPER`. ``columns`` along x and
+    ``rows`` along y are ``pitch`` apart, the first cavity at the origin. ``channel_radius`` is the radius of the vents'
+    circle. ``insert`` is the ring that the flange is cast around, at its own size: neither it nor its filling shrinks.
     """
 
     shape: MouldShape
@@ -161,12 +161,12 @@ class MouldSize:
 
     @property
     def cavity_volume(self) -> float:
-        """Silicone of one membrane, mm3."""
+        """Volume of silicone in one membrane, mm3."""
         return self.faces.meridian.volume() - (0.0 if self.insert is None else self.insert.embedded)
 
     @property
     def bore(self) -> Line:
-        """Inside of the ring, from below up: the flange's edge, or clear around the collar that forms it."""
+        """Inside of the ring, from below upwards: the flange's edge, or a clearance outside the collar."""
         if self.insert is None:
             return self.faces.edge
         radius = self.insert.collar_radius + self.shape.clearance
@@ -174,27 +174,27 @@ class MouldSize:
 
     @property
     def low(self) -> float:
-        """The flange's underside, where the core's foot begins."""
+        """Height of the flange's underside, where the core's foot begins."""
         return self.faces.underside.start[1]
 
     @property
     def foot_low(self) -> float:
-        """Underside of the core's foot, where the base begins."""
+        """Height of the underside of the core's foot, where the base begins."""
         return self.low - self.foot
 
     @property
     def cap_low(self) -> float:
-        """Lower face of the cap."""
+        """Height of the lower face of the cap."""
         return self.foot_low + PROUD
 
     @property
     def cap_high(self) -> float:
-        """Upper face of the cap."""
+        """Height of the upper face of the cap."""
         return self.faces.high + self.shape.wall
 
     @property
     def base_low(self) -> float:
-        """Lower face of the base."""
+        """Height of the lower face of the base."""
         return self.foot_low - self.shape.wall
 
     def seat(self, z: float) -> float:
@@ -203,12 +203,12 @@ class MouldSize:
 
     @property
     def neck_height(self) -> float:
-        """Height of the pour channel's neck, where it is torn off; below it the funnel opens downwards."""
+        """Height of the pour channel's neck, where the sprue is torn off; below it the funnel opens downwards."""
         return self.low - 0.5 * self.foot
 
     @property
     def places(self) -> tuple[tuple[float, float], ...]:
-        """Axes of the cavities (x, y), row by row; the last row may be short."""
+        """Positions (x, y) of the axes of the cavities, row by row; the last row may be incomplete."""
         grid = [(self.pitch * i, self.pitch * j) for j in range(self.rows) for i in range(self.columns)]
         return tuple(grid[: self.shape.cavities])
 
@@ -219,17 +219,17 @@ class MouldSize:
 
     @property
     def wall_error(self) -> float:
-        """Greatest change in mm of the wall at the rim where core and cap stand apart by all their clearance.
+        """Greatest change in mm of the wall, at the rim, if core and cap are displaced by their whole clearance.
 
         The core moves sideways by the clearance of its cone; the wall at polar angle t from the axis changes by the
-        clearance times sin t, most at the rim, and not at the pole.
+        clearance times sin t: most at the rim, and not at all at the pole.
         """
         return self.shape.clearance
 
 
 @dataclass(frozen=True, slots=True)
 class MouldScrew:
-    """A screw by its holes, mm in diameter."""
+    """A screw, by the diameters of its holes and head and the depth of its hole, mm."""
 
     name: str
     clearance_diameter: float
@@ -238,7 +238,7 @@ class MouldScrew:
     depth: float
 
     def margin(self, undersize: float) -> float:
-        """Plastic in mm from a screw's axis outwards: its head and half a millimetre."""
+        """Material in mm needed around a screw's axis: half of its head or hole, plus a millimetre."""
         return 0.5 * (max(self.head_diameter, self.clearance_diameter) + undersize) + 1.0
 
 
@@ -248,17 +248,17 @@ depth: own choice, above two diameters."""
 
 
 WALL, FLOOR = 2.5, 2.5
-"""Wall around the cavity and floor under it, mm: own choice."""
+"""Thickness of the wall around the cavity and of the floor under it, mm: own choice."""
 
 _PAST = 1.0
 """Distance in mm by which the cut reaches past the open top, so that no two faces coincide."""
 
 
 def open_mould(coupon: Solid, material: Material, factor: float) -> Solid:
-    """The mould of a coupon that lies on z = 0 and has one outline all over its height.
+    """Mould of a coupon that lies on z = 0 and has the same outline at every height.
 
-    ``factor`` is the length of the mould over that of the cured coupon. The cavity's floor is z = 0, the strike-off
-    plane the coupon's thickness times ``factor`` above it.
+    ``factor`` is the ratio of lengths of the mould to those of the cured coupon. The cavity's floor is at z = 0, the
+    strike-off plane above it by the coupon's thickness times ``factor``.
     """
     shape, cavity, tool = coupon.base, _scaled(coupon.base, factor, 0.0), _scaled(coupon.base, factor, _PAST)
     if isinstance(shape, Meridian):
@@ -277,7 +277,7 @@ def open_mould(coupon: Solid, material: Material, factor: float) -> Solid:
 
 
 def _scaled(shape: Meridian | Prism, factor: float, past: float) -> Turned | Prism:
-    """A coupon at the mould's size, its top ``past`` mm higher."""
+    """Coupon at the size of the mould, with its top raised by ``past`` mm."""
     if isinstance(shape, Prism):
         outline = tuple(scaled(piece, factor) for piece in shape.outline)
         return Prism(outline, factor * shape.low, factor * shape.high + past)

@@ -1,4 +1,4 @@
-"""Texture specimens: a block of one resin with patterns of another in it, two closed bodies that share their faces."""
+"""Texture specimens: a block of one resin with patterns of another, as two closed bodies that share their faces."""
 
 from pneutouch.parts.specimen import bars, struts, surfaces, waves
 from pneutouch.parts.specimen.faces import complement
@@ -13,6 +13,6 @@ FAMILIES: dict[str, PatternFamily] = {
     **dict.fromkeys(STRUTS, struts.FAMILY),
     **dict.fromkeys(SURFACES, surfaces.FAMILY),
 }
-"""Every kind of a [[layer]] with how it is drawn."""
+"""Pattern family of every kind of a [[layer]]."""
 
 __all__ = ["FAMILIES", "Box", "Mesh", "PatternContext", "PatternFamily", "PatternGeometry", "complement"]

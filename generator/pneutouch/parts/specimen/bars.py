@@ -1,4 +1,4 @@
-"""Straight bars across the path: built corner by corner, flush where they meet a side of the block, never cut."""
+"""Straight bars across the path: built from their corners, flush where they meet a side of the block, never cut."""
 
 import math
 from itertools import pairwise
@@ -31,11 +31,11 @@ _FACES = np.array([
 ])  # fmt: skip
 
 _MOST_EXACT = 500
-"""Bars that are written to STEP: beyond it Open CASCADE takes minutes."""
+"""Greatest number of bars written to STEP: beyond it Open CASCADE takes minutes."""
 
 
 def places(layer: Bars, context: PatternContext) -> Array:
-    """Near sides (n,) of the bars along the path, mm: whole bars only."""
+    """Positions (n,) of the near sides of the bars along the path, mm: whole bars only."""
     start, end = along(layer, context)
     pitch = layer.pitch(context.speed)
     first = start + layer.offset_mm
@@ -45,7 +45,7 @@ def places(layer: Bars, context: PatternContext) -> Array:
 
 
 def box(layer: Bars, context: PatternContext, number: int) -> Box:
-    """The box around all bars."""
+    """Box around all bars. Raises InputError for sizes that cannot be printed."""
     pitch = layer.pitch(context.speed)
     check_least(context, number, "width_mm", layer.width_mm, "wall")
     check_least(context, number, "height_mm", layer.height_mm, "wall")
@@ -79,7 +79,7 @@ def _across(layer: Bars, context: PatternContext) -> tuple[float, float]:
 
 
 def draw(layer: Bars, context: PatternContext, number: int) -> PatternGeometry:
-    """The bars, 12 triangles each, with their exact volume."""
+    """Geometry of the bars, 12 triangles each, with their exact volume."""
     around = box(layer, context, number)
     lefts = places(layer, context)
     rights = np.round(lefts + layer.width_mm, DECIMALS)
@@ -108,7 +108,7 @@ def _solid(context: PatternContext, number: int, k: int, left: float, around: Bo
     low, high = around.low[2], around.high[2]
     corners = [(left, low), (right, low), (right, high), (left, high)]
     outline = tuple(Line(a, b, "") for a, b in pairwise([*corners, corners[0]]))
-    # Its own y is the block's z, so its axis runs against y.
+    # The prism's own y is the block's z, so its axis runs against the block's y.
     upright = Frame(axis=(0.0, -1.0, 0.0), across=(1.0, 0.0, 0.0))
     prism = Prism(outline, -around.high[1], -around.low[1], upright)
     return Solid(f"layer-{number + 1}-bar-{k + 1}", "inclusion", context.inclusion, prism)

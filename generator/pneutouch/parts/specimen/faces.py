@@ -1,9 +1,9 @@
-"""Triangulate a flat region by its directed boundary edges, in parts: ear clipping costs the square of the corners.
+"""Triangulation of a flat region from its directed boundary edges, in parts: ear clipping is quadratic in the corners.
 
-The matrix of a specimen: what its inclusion leaves of the block, with the inclusion's own triangles where they meet.
+Also the matrix of a specimen: the block without its inclusion, with the inclusion's own triangles on the common face.
 
-The common face is taken once and turned round, so both bodies have it corner by corner. Only the block's six sides are
-triangulated again, around the inclusion's footprints. No boolean is made, so nothing depends on a tolerance.
+The common face is taken once and reversed, so both bodies have it corner by corner. Only the block's six sides are
+triangulated again, around the inclusion's footprints. No boolean is computed, so nothing depends on a tolerance.
 """
 
 import itertools
@@ -21,19 +21,19 @@ BoxSide = tuple[int, int]
 SIDES: tuple[BoxSide, ...] = tuple(itertools.product(range(3), range(2)))
 
 _LARGE = 400
-"""Indices from which a region is cut into parts."""
+"""Number of boundary edges from which a region is cut into parts."""
 
 _PART = 80
-"""Indices of a part."""
+"""Number of boundary edges of a part."""
 
 _CLEARANCE = 1e-3
-"""Least width in mm of a gap that a cut runs through."""
+"""Least width in mm of a gap for a cut."""
 
 _CHUNK = 500
-"""Holes that are compared with all outlines at once."""
+"""Number of holes that are compared with all outlines at once."""
 
 _DECIMALS = 4
-"""Cuts stand on a grid of 0.1 um, so that those of two sides are either at one place or visibly apart."""
+"""Cuts lie on a grid of 0.1 um, so that those of two sides are either at the same place or clearly apart."""
 
 
 def boundary(triangles: Indices, size: int) -> Indices:
@@ -45,7 +45,7 @@ def boundary(triangles: Indices, size: int) -> Indices:
 
 
 def cut_places(spans: Array) -> list[float]:
-    """Places between spans (n, 2) in mm where a straight cut meets none, about every ``_PART`` of them."""
+    """Places between spans (n, 2) in mm at which a straight cut meets no span, one for about every ``_PART``."""
     if len(spans) < _LARGE:
         return []
     order = spans[np.argsort(spans[:, 0], kind="stable")]
@@ -76,15 +76,15 @@ def rim(points: Array, ends: Array, side: BoxSide) -> list[Indices]:
 
 
 def plane(side: BoxSide) -> tuple[int, int]:
-    """The two axes of a side, in the order that makes counter-clockwise face outwards."""
+    """The two axes of a side, in the order for which counter-clockwise faces outwards."""
     axis, end = side
     return ((axis + 1) % 3, (axis + 2) % 3) if end else ((axis + 2) % 3, (axis + 1) % 3)
 
 
 def triangulated(points: Array, edges: Indices) -> Indices:
-    """Indices (m, 3) of the region left of directed ``edges`` (n, 2) among plane ``points`` (k, 2); no new vertices.
+    """Triangles (m, 3) of the region left of directed ``edges`` (n, 2) between plane ``points`` (k, 2); none is added.
 
-    Raises ComputationError if the edges bound no region.
+    Raises ComputationError if the edges do not bound a region.
     """
     try:
         groups = _grouped(points, _loops(points, edges))
@@ -116,14 +116,14 @@ def _loops(points: Array, edges: Indices) -> list[Indices]:
 
 
 def _leftmost(points: Array, before: int, here: int, exits: list[int]) -> int:
-    """Take the edge out of ``here`` that turns most to the left."""
+    """Remove and return the exit from ``here`` that turns most to the left."""
     if len(exits) == 1:
         return exits.pop()
     back = points[before] - points[here]
 
     def turn(vertex: int) -> float:
         out = points[vertex] - points[here]
-        # Clockwise from where we came from: the region lies between.
+        # Angle clockwise from the incoming edge: the region lies in between.
         angle = np.arctan2(back[0] * out[1] - back[1] * out[0], back @ out)
         return float(-angle % (2 * np.pi))
 
@@ -134,14 +134,14 @@ def _leftmost(points: Array, before: int, here: int, exits: list[int]) -> int:
 
 @dataclass
 class _Group:
-    """An outer loop with the holes in it."""
+    """An outer loop with its holes."""
 
     outer: Indices
     holes: list[Indices]
 
 
 def _grouped(points: Array, loops: list[Indices]) -> list[_Group]:
-    """Outer loops, each with its holes: those of the smallest outer loop around them."""
+    """Outer loops with their holes; a hole belongs to the smallest outer loop around it."""
     if not loops:
         return []
     starts = np.cumsum([0, *(len(loop) for loop in loops)])[:-1]
@@ -166,14 +166,14 @@ def _grouped(points: Array, loops: list[Indices]) -> list[_Group]:
 
 
 def _shifted(index: Indices, starts: Indices) -> Indices:
-    """The vertex after each one in its loop."""
+    """Next vertex of each vertex in its loop."""
     after = np.roll(index, -1)
     after[np.append(starts[1:], len(index)) - 1] = index[starts]
     return after
 
 
 def _holds(outline: Array, line: Array) -> bool:
-    """True if a loop lies in an outline, by the middle of its first edge; the two may touch in corners alone."""
+    """True if a loop lies inside an outline, by the middle of its first edge; the two may touch only in corners."""
     x, y = 0.5 * (line[0] + line[1])
     (x0, y0), (x1, y1) = outline.T, np.roll(outline, -1, axis=0).T
     level = np.where(y1 == y0, 1.0, y1 - y0)
@@ -201,7 +201,7 @@ def _convex(corners: Array) -> bool:
 
 
 def complement(box: Box, inclusion: Mesh) -> Mesh:
-    """The box without a closed inclusion inside it, whose faces on the box's sides lie on them exactly.
+    """The box minus a closed inclusion inside it; inclusion faces on the box's sides must lie exactly on them.
 
     Raises ComputationError if the inclusion touches itself or the box's edges in a way that leaves no solid.
     """
@@ -222,7 +222,7 @@ class _Partition:
         self._vertices = np.concatenate([self._vertices, np.array(list(self._extra)).reshape(-1, 3)])
 
     def matrix(self) -> Mesh:
-        """The matrix."""
+        """Mesh of the matrix."""
         on_sides = np.zeros(len(self._inclusion.triangles), bool)
         for mask in self._footprints.values():
             on_sides |= mask
@@ -239,7 +239,7 @@ class _Partition:
         return boundary(self._inclusion.triangles[self._footprints[side]], len(self._inclusion.vertices))
 
     def _cut(self, side: BoxSide) -> list[tuple[int, int]]:
-        """Straight cuts along z or y through a side that x runs along: pairs of vertices on its opposite edges."""
+        """Straight cuts along z or y through a side that extends along x: pairs of vertices on its opposite edges."""
         axis, end = side
         if axis == 0:
             return []
@@ -255,11 +255,11 @@ class _Partition:
         return spans
 
     def _number(self, point: list[float]) -> int:
-        """Number of an extra vertex; two sides that are cut at one place share it."""
+        """Number of an added vertex; two sides cut at the same place share it."""
         return self._extra.setdefault((point[0], point[1], point[2]), len(self._vertices) + len(self._extra))
 
     def _rest(self, side: BoxSide) -> Indices:
-        """Indices of a side around the footprints, facing outwards."""
+        """Triangles of a side around the footprints, facing outwards."""
         size, outline = len(self._vertices), self._outline(side)
         runs = rim(self._vertices, self._ends, side)
         around = np.concatenate([np.column_stack([run[:-1], run[1:]]) for run in runs])
@@ -272,7 +272,7 @@ class _Partition:
 
 
 def _with(vertices: Array, corners: Array, ends: Array) -> Array:
-    """The vertices and those corners of the box that are not among them."""
+    """The vertices, followed by those corners of the box that are not among them."""
     at = (vertices[:, None, :] == ends[None]).any(axis=1).all(axis=1) if len(vertices) else np.zeros(0, bool)
     there = {tuple(point) for point in vertices[at].tolist()}
     missing = [corner for corner in corners.tolist() if tuple(corner) not in there]

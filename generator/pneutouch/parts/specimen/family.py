@@ -1,6 +1,6 @@
-"""Input and output of a family of patterns.
+"""Interface of a family of patterns: its input and output.
 
-Meshes without a material, and the boxes they fill.
+Also meshes without a material, and boxes.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Point3 = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """A box along the axes between two corners, mm."""
+    """A box with edges along the axes between two corners, mm."""
 
     low: Point3
     high: Point3
@@ -36,7 +36,7 @@ class Box:
         return a * b * c
 
     def gap(self, other: Box) -> float:
-        """Greatest distance along an axis between the boxes, mm; negative where they overlap."""
+        """Greatest gap along an axis between the boxes, mm; negative if they overlap."""
         return max(max(self.low[k] - other.high[k], other.low[k] - self.high[k]) for k in range(3))
 
 
@@ -58,7 +58,7 @@ class Mesh:
         return is_closed(self.triangles, len(self.vertices)) and is_closed(triangles, len(vertices))
 
     def compact(self) -> Mesh:
-        """The mesh without vertices that no triangle has."""
+        """The mesh without unused vertices."""
         used = np.zeros(len(self.vertices), bool)
         used[self.triangles.reshape(-1)] = True
         number = np.cumsum(used) - 1
@@ -66,7 +66,7 @@ class Mesh:
 
 
 def joined(meshes: list[Mesh]) -> Mesh:
-    """Meshes that are apart from one another as one."""
+    """One mesh from several that do not touch each other."""
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     return Mesh(
         np.concatenate([mesh.vertices for mesh in meshes]),
@@ -75,7 +75,7 @@ def joined(meshes: list[Mesh]) -> Mesh:
 
 
 def snapped(mesh: Mesh, box: Box, slack: float) -> Mesh:
-    """The mesh with coordinates within ``slack`` mm of a side of the box put on it."""
+    """The mesh with coordinates within ``slack`` mm of a side of the box moved onto that side."""
     vertices = mesh.vertices.copy()
     for axis in range(3):
         for side in (box.low[axis], box.high[axis]):
@@ -85,16 +85,16 @@ def snapped(mesh: Mesh, box: Box, slack: float) -> Mesh:
 
 
 MOST_TRIANGLES = 3_000_000
-"""Largest number of triangles of one pattern: about 1.5 GiB while it is made and a 3MF of 60 MB, beyond which tray
+"""Greatest number of triangles of one pattern: about 1.5 GiB of memory and a 3MF file of 60 MB, beyond which tray
 software was not tried (our choice)."""
 
 DECIMALS = 4
-"""Coordinates are put on a grid of 0.1 um: two faces are either the same or visibly apart."""
+"""Decimals of coordinates, a grid of 0.1 um: two faces are either the same or clearly apart."""
 
 
 @dataclass(frozen=True)
 class PatternContext:
-    """The block that a pattern is drawn in, with its file for messages; ``speed`` in mm/s, ``tolerance`` in mm."""
+    """The block in which a pattern is drawn, and its file for messages; ``speed`` in mm/s, ``tolerance`` in mm."""
 
     block: Box
     printer: Printer
@@ -105,7 +105,7 @@ class PatternContext:
     where: str
 
     def refuse(self, number: int, key: str, value: Any, right: str) -> InputError:
-        """The error for one value of a layer: names file, layer, key and value, and says what would be right."""
+        """Error for one value of a layer: names file, layer, key and value, and states what would be right."""
         given = f"{value:g}" if isinstance(value, float | int) else shown(value)
         return InputError(f"layer[{number}].{key} = {given}: {right}", file=self.where)
 
@@ -116,16 +116,16 @@ class PatternContext:
         return feature.least or feature.recommended
 
     def least_matrix(self) -> float:
-        """Smallest wall in mm that the printer makes of the matrix."""
+        """Least wall in mm that the printer can make of the matrix material."""
         feature = self.printer.smallest.wall(self.matrix.kind)
         return feature.least or feature.recommended
 
 
 @dataclass(frozen=True)
 class PatternGeometry:
-    """A pattern drawn: its mesh, the box it fills, its pitches along the path in mm, and what else is true of it.
+    """A drawn pattern: mesh, filled box, pitches along the path in mm, and further properties in ``truth``.
 
-    ``volume`` is exact where there is an exact shape, else None; ``solids`` are the exact shapes for STEP.
+    ``volume`` is exact if there is an exact shape, else None; ``solids`` are the exact shapes for STEP.
     """
 
     mesh: Mesh
@@ -138,9 +138,9 @@ class PatternGeometry:
 
 @dataclass(frozen=True)
 class PatternFamily:
-    """A family: the box that its pattern will fill, known before it is drawn, and how it is drawn.
+    """A family: ``box`` returns the box that a pattern will fill, before it is drawn; ``draw`` draws the pattern.
 
-    Both take the layer, the context and the layer's number, for messages, and raise InputError for what cannot be.
+    Both take the layer, the context and the layer's number for messages, and raise InputError for impossible values.
     """
 
     box: Callable[[Any, PatternContext, int], Box]
@@ -154,13 +154,13 @@ def along(layer: Layer, context: PatternContext) -> tuple[float, float]:
 
 
 def heights(layer: Layer, context: PatternContext, height: float | None) -> tuple[float, float]:
-    """The least and greatest height of a layer, mm; down to the bottom of the block where it has no height."""
+    """Least and greatest z of a layer, mm; without a height it extends to the bottom of the block."""
     top = round(context.block.high[2] - layer.depth_mm, DECIMALS)
     return (context.block.low[2] if height is None else round(top - height, DECIMALS)), top
 
 
 def check_inside(box: Box, context: PatternContext, number: int, layer: Layer) -> None:
-    """Raise InputError where a pattern reaches out of the block, or its sides come within a micrometre of it."""
+    """Raise InputError if a pattern extends out of the block, or is within a micrometre of a side but not on it."""
     block = context.block
     keys = ("end_mm" if layer.end_mm is not None else "start_mm", "span_mm", "depth_mm")
     for axis, key in enumerate(keys):
@@ -194,7 +194,7 @@ def check_least(context: PatternContext, number: int, key: str, value: float, ki
 
 
 def check_count(context: PatternContext, number: int, key: str, value: float, triangles: float) -> None:
-    """Raise InputError where a pattern would take more triangles than files can carry."""
+    """Raise InputError if a pattern would have more triangles than files can carry."""
     if triangles > MOST_TRIANGLES:
         raise context.refuse(
             number,

@@ -10,7 +10,7 @@ from pneutouch.parts.specimen.faces import boundary, triangulated
 from pneutouch.parts.specimen.family import Box, Mesh
 
 CORNER = 0.5
-"""Share of the border that the cut corner takes at x = y = 0: it shows the orientation of the specimen."""
+"""Share of the border that is cut off at the corner x = y = 0, to show the orientation of the specimen."""
 
 
 def holes(block: Box, border: float) -> list[tuple[float, float]]:
@@ -30,10 +30,10 @@ def plate(
     letters: Sequence[Array] = (),
     depth: float = 0.0,
 ) -> Mesh:
-    """The plate, its top at the bottom of the block; lengths in mm.
+    """The plate, with its top at the bottom of the block; lengths in mm.
 
-    ``bodies`` are what stands on it: their triangles on that plane are taken over, turned round. ``letters`` are plane
-    loops (n, 2), the solid of a letter left of them, cut ``depth`` deep into the top next to the block.
+    ``bodies`` stand on it: their triangles on that plane are reused, reversed. ``letters`` are plane loops (n, 2), with
+    the solid of a letter to their left, cut ``depth`` deep into the top next to the block.
     """
     top = block.low[2]
     made = _Mesh()
@@ -66,7 +66,7 @@ def plate(
 
 
 class _Mesh:
-    """Vertices as they come, and walls between rings of them."""
+    """Vertices in the order in which they are added, and walls between rings of them."""
 
     def __init__(self) -> None:
         self._parts: list[Array] = []
@@ -82,7 +82,7 @@ class _Mesh:
         return np.concatenate(self._parts)
 
     def taken(self, body: Mesh, top: float) -> Indices:
-        """Indices of a body on the plane z = ``top``, turned round; bodies share their vertices by position."""
+        """Triangles of a body on the plane z = ``top``, reversed; bodies share their vertices by position."""
         flat = body.triangles[(body.vertices[:, 2] == top)[body.triangles].all(axis=1)]
         used = np.unique(flat)
         number = np.zeros(len(body.vertices), np.int64)
@@ -99,13 +99,13 @@ class _Mesh:
         return turned
 
     def ring(self, line: Array, height: float) -> Indices:
-        """Numbers of a loop's vertices at a height."""
+        """Numbers of the vertices of a loop, added at a height."""
         start = self._size
         self._add(np.column_stack([line, np.full(len(line), height)]))
         return np.arange(start, self._size)
 
     def wall(self, low: Indices, high: Indices) -> None:
-        """The strip between two rings, facing right of their direction where the first one is the lower."""
+        """Add the strip between two rings; it faces right of their direction if ``low`` is the lower ring."""
         a, b = low, np.roll(low, -1)
         c, d = high, np.roll(high, -1)
         self.walls += [np.column_stack([a, b, d]), np.column_stack([a, d, c])]
@@ -116,7 +116,7 @@ class _Mesh:
 
 
 def outline(block: Box, border: float) -> Array:
-    """Corners (5, 2) of the plate, mm, counter-clockwise from the cut one."""
+    """Corners (5, 2) of the plate, mm, counter-clockwise from the cut corner."""
     (x0, y0, _), (x1, y1, _) = block.low, block.high
     left, right, near, far, cut = x0 - border, x1 + border, y0 - border, y1 + border, CORNER * border
     return np.array([[left + cut, near], [right, near], [right, far], [left, far], [left, near + cut]])

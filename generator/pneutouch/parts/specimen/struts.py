@@ -1,16 +1,15 @@
 """Strut lattices: one octant of the cell by one batch boolean, mirrored and tiled by index.
 
 Every lattice here is its own mirror image in the planes at all multiples of half a cell. So an octant, [0, a/2]^3, and
-its
-mirror images fill any number of half cells, and what two of them share is the same outline by construction: nothing is
+its mirror images fill any number of half cells, and two of them share the same outline by construction: nothing is
 intersected twice and no positions are compared. Only a block that ends inside a half cell is cut to size, in one
 boolean.
 
-A strut is the convex hull of two balls. All balls of a lattice are one polyhedron, turned the same way. The octant is
-made with a side of one, its nodes and its balls on a grid of 2^-20: sums are exact, and the struts that join at a node
-share its facets instead of nearly doing so.
+A strut is the convex hull of two balls. All balls of a lattice are the same polyhedron in the same orientation. The
+octant is made with a side of one, with its nodes and balls on a grid of 2^-20: sums are exact, and struts that join at
+a node have identical facets there, not only nearly identical ones.
 
-The family of strut lattices: checked, sized to the required volume fraction, and drawn.
+Also the family of strut lattices: checked, sized to the required volume fraction, and drawn.
 """
 
 from __future__ import annotations
@@ -53,25 +52,25 @@ STRUTS: dict[str, tuple[Ends, ...]] = {
     "octet": ((_O, _A), (_O, _B), (_O, _C), (_A, _B), (_B, _C), (_C, _A)),
     "kelvin": tuple(itertools.pairwise([*_KELVIN, _KELVIN[0]])),
 }
-"""Struts, or the part of them, in an octant of the cell, in cells. Mirror images make the rest."""
+"""Struts, or their parts, in an octant of the cell, in units of the cell. Mirror images make the rest."""
 
 _GRID = 2.0**-20
-"""Vertices of the balls lie on this grid, in half cells, so that sums of them with nodes on the same grid are exact."""
+"""Grid of the balls' vertices, in half cells: sums of them with nodes on the same grid are exact."""
 
 _MERGED = 1e-5
-"""Detail in half cells left out after the boolean: a reader in float32 merges points nearer than 4e-6 mm at 60 mm."""
+"""Detail in half cells removed after the boolean: a float32 reader merges points closer than 4e-6 mm at 60 mm."""
 
 _NUDGES = (0.0, 1e-5, -1e-5, 3e-5, -3e-5, 1e-4, -1e-4, 3e-4)
-"""Relative changes of a radius that does not come out clean, in the order tried."""
+"""Relative changes, in the order tried, of a radius that does not give a clean octant."""
 
 _CUTS = (1e-3, 1e-4, 3e-3, 2e-5, 6e-3)
-"""Detail in mm left out where a lattice is cut to size, in the order tried: a cut may pass as near to its corners as it
-likes, and the remaining piece must be neither nearly nothing nor pressed into the face."""
+"""Detail in mm removed where a lattice is cut to size, in the order tried: a cut may pass arbitrarily close to the
+corners of the lattice, and the remaining piece must neither almost vanish nor be flattened into the face."""
 
 
 @dataclass(frozen=True)
 class Lattice:
-    """A strut lattice: its kind, cell and strut radius in mm, and the sides of a strut, a multiple of four."""
+    """A strut lattice: kind, cell and strut radius in mm, and number of sides of a strut, a multiple of four."""
 
     kind: str
     cell: float
@@ -80,13 +79,13 @@ class Lattice:
 
     @staticmethod
     def of(kind: str, cell: float, radius: float, tolerance: float) -> Lattice:
-        """Lattice with as many sides as keep a chord tolerance, mm."""
+        """Lattice with as many sides per strut as a chord tolerance (mm) requires."""
         return Lattice(kind, cell, radius, circle_count(radius, tolerance))
 
     def ball(self) -> Array:
-        """Corners (n, 3), in half cells, of the polyhedron that stands for every node's ball, about its middle.
+        """Corners (n, 3), in half cells, of the polyhedron that represents the ball of every node, about its centre.
 
-        A subdivided octahedron: the three planes of the axes cut it along its edges, so half balls are exact.
+        A subdivided octahedron: the three coordinate planes cut it along its edges, so half balls are exact.
         """
         steps = self.sides // 4
         corners = [
@@ -98,14 +97,14 @@ class Lattice:
             for sz in (-1, 1)
         ]
         points = np.unique(np.array(corners, float), axis=0)
-        # Equal angles along the edges: plain normalising would crowd the corners of the octahedron.
+        # Equal angles along the edges: plain normalisation would crowd points at the corners of the octahedron.
         bent = np.sign(points) * np.sin(0.5 * np.pi * np.abs(points) / steps)
         unit = bent / np.linalg.norm(bent, axis=1, keepdims=True)
-        # Widened until the equator has the area of its circle, as the circles of turned bodies are.
+        # Widened until the equator has the area of its circle, like the circles of turned bodies.
         return np.asarray(np.rint(unit * self.radius / (0.5 * self.cell) * widen(self.sides) / _GRID) * _GRID)
 
     def struts(self) -> list[tuple[Array, Array]]:
-        """Ends (3,), in half cells, of every strut that reaches into the octant, mirror images of its own included."""
+        """Ends (3,), in half cells, of every strut that reaches into the octant, mirror images included."""
         reach = 1.1 * self.radius / (0.5 * self.cell)
         segments: dict[tuple[float, ...], tuple[Array, Array]] = {}
         for one, other in STRUTS[self.kind]:
@@ -129,11 +128,10 @@ class Lattice:
 
 
 def octant(lattice: Lattice) -> Mesh:
-    """The lattice in an octant of the cell whose side is one, closed: one batch union of its struts and one cut.
+    """Closed mesh of the lattice in an octant of side one: one batch union of its struts and one cut.
 
     Struts that cross at symmetric places can leave a spike or a touching edge (manifold3d 3.5.4: octet, cell 7.7 mm,
-    radius 0.5 mm). The radius is then changed by some parts in 100,000. Raises ComputationError if that does not
-    help.
+    radius 0.5 mm). The radius is then changed by a few parts in 100,000. Raises ComputationError if that does not help.
     """
     for nudge in _NUDGES:
         tried = replace(lattice, radius=lattice.radius * (1 + nudge))
@@ -156,7 +154,7 @@ def _octant(lattice: Lattice) -> Mesh:
 
 
 def _sound(lattice: Lattice, piece: Mesh) -> bool:
-    """True if every vertex lies on a strut, and the octant with its mirror images is closed."""
+    """True if every vertex lies on a strut, and the octant together with its mirror images is closed."""
     reach = 1.01 * widen(lattice.sides) * lattice.radius / (0.5 * lattice.cell)
     if (lattice.distance(piece.vertices) > reach).any():
         return False
@@ -164,10 +162,10 @@ def _sound(lattice: Lattice, piece: Mesh) -> bool:
 
 
 def tiled(piece: Mesh, half: float, counts: tuple[int, int, int], origin: Array) -> Mesh:
-    """An octant, drawn ``half`` mm wide, and its mirror images, ``counts`` along each axis, from ``origin`` (3,).
+    """An octant, scaled to ``half`` mm, and its mirror images, ``counts`` along each axis, from ``origin`` (3,).
 
-    A vertex on a plane between octants is one vertex of both, by its number and the plane's: positions are not
-    compared.
+    A vertex on a plane between octants is one vertex of both, identified by its number and that of the plane: positions
+    are not compared.
     """
     vertices, triangles = piece.vertices, piece.triangles
     on_low, on_high = vertices == 0.0, vertices == 1.0
@@ -175,7 +173,7 @@ def tiled(piece: Mesh, half: float, counts: tuple[int, int, int], origin: Array)
     odd = (index % 2).astype(bool)
     on_first = np.where(odd[:, None, :], on_high, on_low)
     on_last = np.where(odd[:, None, :], on_low, on_high)
-    # Planes have even codes, what lies between them odd ones.
+    # Planes have even codes, the spaces between them odd ones.
     code = 2 * index[:, None, :] + 1 - on_first + on_last
     local = np.where(odd[:, None, :], 1.0 - vertices, vertices)
     place = np.where(code % 2 == 0, (code // 2) * half, (index[:, None, :] + local) * half)
@@ -190,7 +188,7 @@ def tiled(piece: Mesh, half: float, counts: tuple[int, int, int], origin: Array)
 
 
 def _inner(code: Indices, sizes: list[int]) -> Flags:
-    """Triangles (octants, triangles) that lie on a plane between two octants: both have them, so neither keeps them."""
+    """Mask (octants, triangles) of triangles on a plane between two octants: both have them, so neither keeps them."""
     inner = np.zeros(code.shape[:2], bool)
     for axis in range(3):
         one = code[..., axis]
@@ -200,24 +198,22 @@ def _inner(code: Indices, sizes: list[int]) -> Flags:
 
 
 def half_cells(cell: float, box: Box) -> tuple[tuple[int, int, int], bool]:
-    """Half cells along each axis that cover a box, and whether they fill it exactly."""
+    """Numbers of half cells along each axis that cover a box, and True if they fill it exactly."""
     size = np.array(box.high) - np.array(box.low)
     a, b, c = (math.ceil(round(length / (0.5 * cell), 6)) for length in size.tolist())
     return (a, b, c), bool(np.allclose(np.array([a, b, c]) * 0.5 * cell, size, rtol=0, atol=1e-6))
 
 
 def fill(lattice: Lattice, box: Box, piece: Mesh | None = None) -> Mesh:
-    """The lattice in a box, closed; cells start at its least corner. One boolean cuts it where half cells do not fit.
-
-    ``piece`` is its octant, where it is there already.
-    """
+    """Closed mesh of the lattice in a box; cells start at its least corner. One boolean cuts it if half cells do not
+    fit. ``piece`` is the octant, if it is known already."""
     counts, whole = half_cells(lattice.cell, box)
     mesh = tiled(piece or octant(lattice), 0.5 * lattice.cell, counts, np.array(box.low))
     return snapped(mesh, box, 2e-6) if whole else _cut(mesh, box)
 
 
 def _cut(mesh: Mesh, box: Box) -> Mesh:
-    """Part of a mesh inside a box that its low sides are flush with."""
+    """Part of a mesh inside a box whose low sides the mesh is flush with."""
     from manifold3d import Manifold, Mesh64
 
     size = np.array(box.high) - np.array(box.low)
@@ -237,19 +233,19 @@ def _read(manifold: Any) -> Mesh:
 
 
 _SAMPLES = 28
-"""Samples along each side of an octant for the first guess of a radius."""
+"""Number of samples along each side of an octant for the first guess of a radius."""
 
 _LARGEST = 0.85
-"""Greatest radius over the distance at which no matrix is left: beyond it slivers remain (our choice)."""
+"""Greatest radius over the radius at which no matrix is left: above it slivers remain (our choice)."""
 
 _CLOSE = 1e-3
-"""Relative error of the fraction at which the search stops."""
+"""Relative error of the volume fraction at which the search stops."""
 
 _TRIES = 8
 
 
 def box(layer: StrutLattice, context: PatternContext, number: int) -> Box:
-    """The box that the lattice fills: whole width, cells from its least corner."""
+    """Box that the lattice fills: the whole width, with cells from its least corner. Raises InputError."""
     cell = layer.pitch(context.speed)
     start, end = along(layer, context)
     low, high = heights(layer, context, layer.height_mm)
@@ -274,7 +270,7 @@ def box(layer: StrutLattice, context: PatternContext, number: int) -> Box:
 
 
 def draw(layer: StrutLattice, context: PatternContext, number: int) -> PatternGeometry:
-    """The lattice, with the radius and the fraction that it has as measured on its mesh."""
+    """Geometry of the lattice, with its radius and with the volume fraction as measured on its mesh."""
     around, cell = box(layer, context, number), layer.pitch(context.speed)
     (a, b, c), _ = half_cells(cell, around)
     first = layer.strut_radius_mm or _guess(layer.kind, cell, layer.volume_fraction or 0.0)
@@ -296,7 +292,7 @@ def draw(layer: StrutLattice, context: PatternContext, number: int) -> PatternGe
 
 
 def _solved(layer: StrutLattice, context: PatternContext, number: int, around: Box, sides: int) -> tuple[Lattice, Mesh]:
-    """The lattice of a volume fraction: by its octant alone where half cells fill the box, else by the whole mesh."""
+    """Lattice with a given volume fraction: by its octant only if half cells fill the box, else by the whole mesh."""
     cell, target = layer.pitch(context.speed), layer.volume_fraction or 0.0
     _check_fraction(layer, context, number, cell, target)
     _, whole = half_cells(cell, around)
@@ -312,14 +308,14 @@ def _solved(layer: StrutLattice, context: PatternContext, number: int, around: B
         tried.append((radius, fraction))
         radius = _next(tried, target)
     raise ComputationError(
-        f"layer[{number}].volume_fraction = {target:g}: no strut radius fraction within {_TRIES} steps",
+        f"layer[{number}].volume_fraction = {target:g}: no strut radius gives it within {_TRIES} steps",
         file=context.where,
         remedy="give strut_radius_mm instead",
     )
 
 
 def _next(tried: list[tuple[float, float]], target: float) -> float:
-    """The next radius: the fraction goes about with its square at first, then along the secant."""
+    """Next radius: at first with the fraction taken as proportional to its square, then along the secant."""
     radius, fraction = tried[-1]
     if len(tried) == 1 or tried[-1][1] == tried[-2][1]:
         return radius * math.sqrt(target / fraction)
@@ -328,7 +324,7 @@ def _next(tried: list[tuple[float, float]], target: float) -> float:
 
 
 def _check_fraction(layer: StrutLattice, context: PatternContext, number: int, cell: float, target: float) -> None:
-    """Raise InputError for a fraction whose struts cannot be printed or leave no matrix."""
+    """Raise InputError for a volume fraction whose struts cannot be printed or leave no matrix."""
     distances = _distances(layer.kind, cell)
     thinnest, thickest = 0.5 * context.least("pin"), _LARGEST * float(distances.max())
     low, high = (float((distances < radius).mean()) for radius in (thinnest, thickest))
@@ -353,7 +349,7 @@ def _guess(kind: str, cell: float, fraction: float) -> float:
 
 
 def _greatest(kind: str, cell: float) -> float:
-    """Radius in mm from which no matrix is left."""
+    """Radius in mm from which on no matrix is left."""
     return float(_distances(kind, cell).max())
 
 

@@ -1,11 +1,11 @@
-"""Minimal surfaces as sheets or networks: level sets of a sum of waves, marched on a grid that ends with the box.
+"""Minimal surfaces as sheets or networks: level sets of a sum of waves, computed on a grid that ends with the box.
 
-Level sets of a function on a grid by marching tetrahedra, ended on the sides of the grid's box exactly.
+Level sets of a function on a grid by marching tetrahedra end exactly on the sides of the grid's box.
 
 Each cube of the grid is six tetrahedra about its diagonal, the same six everywhere, so neighbours match and no case is
-ambiguous: a level set is closed but for its rim on the box, and two level sets of one function never touch.
+ambiguous: a level set is closed except for its rim on the box, and two level sets of one function never touch.
 
-The family of minimal surfaces: checked, levelled to the volume fraction or thickness required, and drawn.
+Also the family of minimal surfaces: checked, set to the required volume fraction or thickness, and drawn.
 """
 
 import itertools
@@ -32,41 +32,41 @@ from pneutouch.parts.specimen.family import (
 from pneutouch.spec.specimen import MinimalSurface
 
 _NEAREST = 0.01
-"""A vertex keeps this share of its edge from the edge's ends: nearer, triangles vanish when a file rounds them."""
+"""Least distance of a vertex from the ends of its edge, as share of the edge: closer, triangles vanish by rounding."""
 
 _REFINED = 1
-"""Steps of regula falsi along the edges after the first guess."""
+"""Number of steps of regula falsi along the edges after the first guess."""
 
 LevelFunction = Callable[[Array], Array]
-"""Values (n,) of a function at points (n, 3), mm."""
+"""A function with values (n,) at points (n, 3), mm."""
 
 _PATHS = tuple(itertools.permutations(range(3)))
-"""Paths from a cube's least corner to its greatest; each is a tetrahedron."""
+"""Paths from a cube's least corner to its greatest; each defines a tetrahedron."""
 
 
 @dataclass(frozen=True)
 class MarchingGrid:
-    """A box in equal steps, ``counts`` of them along each axis."""
+    """A box divided into equal steps, ``counts`` of them along each axis."""
 
     box: Box
     counts: tuple[int, int, int]
 
     def lines(self) -> list[Array]:
-        """Coordinates of the grid's planes along each axis, mm; the ends are the box's own."""
+        """Coordinates of the grid's planes along each axis, mm; the first and last are exactly those of the box."""
         ends = zip(self.box.low, self.box.high, self.counts, strict=True)
         return [np.linspace(low, high, count + 1) for low, high, count in ends]
 
     @property
     def shape(self) -> tuple[int, int, int]:
-        """Nodes along each axis."""
+        """Number of nodes along each axis."""
         a, b, c = self.counts
         return a + 1, b + 1, c + 1
 
 
 def level_set(grid: MarchingGrid, wave: LevelFunction, values: Array, level: float) -> Mesh:
-    """The surface on which a wave is ``level``, facing upwards; open on the box's sides.
+    """Surface on which a wave equals ``level``, facing upwards; open on the box's sides.
 
-    ``values`` are the wave's at the grid's nodes. Vertices lie on the surface itself, not on its interpolation.
+    ``values`` are those of the wave at the grid's nodes. Vertices lie on the surface itself, not on its interpolation.
     """
     below = values < level
     keys, tables = [], _cases()
@@ -93,12 +93,12 @@ def between(grid: MarchingGrid, wave: LevelFunction, values: Array, low: float |
 
 
 def _corners(values: Array) -> Array:
-    """Values at the box's corners (8,), z running first."""
+    """Values at the box's corners (8,), with z as the fastest index."""
     return values[np.ix_((0, -1), (0, -1), (0, -1))].reshape(-1)
 
 
 def _cases() -> dict[int, list[list[tuple[int, int]]]]:
-    """For each set of corners inside, as bits, the triangles as edges of a tetrahedron, for positive orientation."""
+    """Triangles for each set of inside corners (as bits), as edges of a tetrahedron with positive orientation."""
     corner = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
     table: dict[int, list[list[tuple[int, int]]]] = {}
     for bits in range(1, 15):
@@ -120,7 +120,7 @@ def _facing(corner: Array, face: list[tuple[int, int]], inside: list[int]) -> li
 
 
 def _crossed(below: Flags, path: tuple[int, ...], tables: dict[int, list[list[tuple[int, int]]]]) -> list[Indices]:
-    """Indices in one tetrahedron of every cube, each corner as the key of the grid edge that it lies on."""
+    """Triangles in one tetrahedron of every cube, each corner as the key of the grid edge on which it lies."""
     strides = np.array([below.shape[1] * below.shape[2], below.shape[2], 1])
     steps = np.zeros((4, 3), np.int64)
     for k, axis in enumerate(path):
@@ -144,7 +144,7 @@ def _crossed(below: Flags, path: tuple[int, ...], tables: dict[int, list[list[tu
 
 
 def _key(node: Indices, steps: Indices, strides: Indices, low: int, high: int) -> Indices:
-    """A grid edge as one number: its lower node, and which axes it runs along as three bits."""
+    """Key of a grid edge in one number: its lower node, and the axes along which it runs, as three bits."""
     towards = int((steps[high] - steps[low]) @ np.array([4, 2, 1]))
     key: Indices = (node + steps[low] @ strides) * 8 + towards
     return key
@@ -171,7 +171,7 @@ def _places(grid: MarchingGrid, wave: LevelFunction, values: Array, level: float
 
 
 def _closed(surface: Mesh, box: Box, inside: Flags) -> Mesh:
-    """The surface with caps on the box's sides; ``inside`` (8,) states which corners of the box belong to the body."""
+    """The surface with caps on the box's sides; ``inside`` (8,) is True for box corners that belong to the body."""
     ends = np.array([box.low, box.high])
     corners = np.array(list(itertools.product(*ends.T)))
     first = len(surface.vertices)
@@ -182,12 +182,12 @@ def _closed(surface: Mesh, box: Box, inside: Flags) -> Mesh:
 
 
 def _cap(points: Array, ends: Array, open_edges: Indices, side: BoxSide, inside: Flags, first: int) -> Indices:
-    """Indices of the body on one side of the box."""
+    """Triangles of the body on one side of the box."""
     axis, end = side
     on = (points[open_edges][:, :, axis] == ends[end, axis]).all(axis=1)
     edges = [open_edges[on][:, ::-1]]
     for run in rim(points, ends, side):
-        # Along an edge of the box the body begins and ends at every vertex of its surface.
+        # Along an edge of the box the body begins or ends at every vertex of its surface.
         starts = np.arange(len(run) - 1) % 2 == (0 if inside[run[0] - first] else 1)
         edges.append(np.column_stack([run[:-1], run[1:]])[starts])
     whole = np.concatenate(edges)
@@ -214,26 +214,26 @@ def _diamond(x: Array, y: Array, z: Array) -> Array:
 
 
 SURFACES: dict[str, PeriodicFunction] = {"gyroid": _gyroid, "schwarz-p": _schwarz_p, "diamond": _diamond}
-"""First nodal approximations; x, y and z in radians, one cell being 2 pi (von Schnering and Nesper 1991)."""
+"""First nodal approximations; x, y and z in radians, with 2 pi per cell (von Schnering and Nesper 1991)."""
 
 PINCHED: dict[str, float] = {"gyroid": math.sqrt(2.0), "schwarz-p": 1.0, "diamond": math.sqrt(0.5)}
-"""Levels at which a neck closes: the saddle of the wave. Beyond it the body falls apart."""
+"""Levels at which a neck closes, at the saddle of the wave. Beyond it the body falls apart."""
 
 RADIUS: dict[str, float] = {"gyroid": 0.13, "schwarz-p": 0.16, "diamond": 0.066}
-"""Radius of curvature in cells by which the grid is stepped; the deviation that follows is tested."""
+"""Radius of curvature in cells that sets the step of the grid; the resulting deviation is tested."""
 
 _SAMPLES = 48
-"""Samples along each axis of a cell, at their middles, for the level of a given fraction."""
+"""Number of samples along each axis of a cell, at interval centres, for the level of a given fraction."""
 
 _CLOSE = 2e-3
-"""Relative error of the fraction at which the search for a level stops."""
+"""Relative error of the volume fraction at which the search for a level stops."""
 
 _TRIES = 5
 
 
 @dataclass(frozen=True)
 class PeriodicSurface:
-    """A family with its cell in mm, its form, and the chord tolerance of its mesh in mm."""
+    """A surface family with its cell in mm, its form, and the chord tolerance of its mesh in mm."""
 
     kind: str
     cell: float
@@ -242,22 +242,22 @@ class PeriodicSurface:
 
     @property
     def step(self) -> float:
-        """Step of the grid in mm that keeps the tolerance, from the wave's least radius of curvature."""
+        """Step of the grid in mm that meets the tolerance, from the wave's least radius of curvature."""
         return math.sqrt(8 * self.tolerance * RADIUS[self.kind] * self.cell)
 
     def grid(self, box: Box) -> MarchingGrid:
-        """A grid over a box, its steps as equal as the box allows."""
+        """Grid over a box, with steps as equal as the box allows."""
         step = self.step
         a, b, c = (max(2, math.ceil((high - low) / step)) for low, high in zip(box.low, box.high, strict=True))
         return MarchingGrid(box, (a, b, c))
 
     def values(self, grid: MarchingGrid) -> Array:
-        """The wave at the grid's nodes; cells start at the box's least corner."""
+        """Values of the wave at the grid's nodes; cells start at the box's least corner."""
         x, y, z = (2 * np.pi * (line - line[0]) / self.cell for line in grid.lines())
         return self._wave(x[:, None, None], y[None, :, None], z[None, None, :])
 
     def at(self, box: Box) -> Callable[[Array], Array]:
-        """The wave at points (n, 3) in mm."""
+        """The wave as a function of points (n, 3) in mm."""
         low = np.array(box.low)
 
         def wave(points: Array) -> Array:
@@ -267,18 +267,18 @@ class PeriodicSurface:
         return wave
 
     def levels(self, level: float) -> tuple[float | None, float]:
-        """The levels between which the body lies."""
+        """Levels between which the body lies; the lower is None for a network."""
         return (-level, level) if self.form == "sheet" else (None, level)
 
     def limits(self) -> tuple[float, float]:
-        """Least and greatest volume fraction of one cell at which the body hangs together."""
+        """Least and greatest volume fraction of one cell for which the body is connected."""
         pinched, wave = PINCHED[self.kind], self._samples()
         if self.form == "sheet":
             return 0.0, float((np.abs(wave) < pinched).mean())
         return float((wave < -pinched).mean()), float((wave < pinched).mean())
 
     def level(self, fraction: float) -> float:
-        """The level that gives one cell a volume fraction, by its share of evenly spread samples."""
+        """Level at which one cell has a volume fraction, from the quantile of evenly spread samples."""
         wave = self._samples()
         return float(np.quantile(np.abs(wave) if self.form == "sheet" else wave, fraction))
 
@@ -292,7 +292,7 @@ class PeriodicSurface:
 
 
 def fill(surface: PeriodicSurface, box: Box, fraction: float) -> Mesh:
-    """The body in a box, closed, at a volume fraction of the box, met within 0.2 % as measured on the mesh."""
+    """Closed body in a box with a volume fraction of the box, accurate to 0.2 % as measured on the mesh."""
     grid = surface.grid(box)
     values, wave = surface.values(grid), surface.at(box)
     level = surface.level(fraction)
@@ -308,7 +308,7 @@ def fill(surface: PeriodicSurface, box: Box, fraction: float) -> Mesh:
 
 
 def fraction_of(surface: PeriodicSurface, box: Box, thickness: float) -> float:
-    """The volume fraction of a sheet whose volume is ``thickness`` mm times the area of its middle surface."""
+    """Volume fraction of a sheet whose volume is ``thickness`` mm times the area of its middle surface."""
     grid = surface.grid(box)
     middle = level_set(grid, surface.at(box), surface.values(grid), 0.0)
     a, b, c = np.moveaxis(middle.vertices[middle.triangles], 1, 0)
@@ -317,11 +317,11 @@ def fraction_of(surface: PeriodicSurface, box: Box, thickness: float) -> float:
 
 
 _PER_CELL = 7.0
-"""Triangles of a sheet per step of the grid squared and per cell's area of its two faces, measured, rounded up."""
+"""Triangles of a sheet per squared step of the grid and area of its two faces per cell; measured, rounded up."""
 
 
 def box(layer: MinimalSurface, context: PatternContext, number: int) -> Box:
-    """The box that it fills: whole width, cells from its least corner."""
+    """Box that the body fills: the whole width, with cells from its least corner. Raises InputError."""
     if layer.thickness_mm is not None:
         check_least(context, number, "thickness_mm", layer.thickness_mm, "wall")
     start, end = along(layer, context)
@@ -339,7 +339,7 @@ def box(layer: MinimalSurface, context: PatternContext, number: int) -> Box:
 
 
 def draw(layer: MinimalSurface, context: PatternContext, number: int) -> PatternGeometry:
-    """The body, with the fraction that it has as measured on its mesh."""
+    """Geometry of the body, with the volume fraction as measured on its mesh."""
     around, cell = box(layer, context, number), layer.pitch(context.speed)
     surface = PeriodicSurface(layer.kind, cell, layer.form, context.tolerance)
     requested = layer.volume_fraction

@@ -32,7 +32,7 @@ def _wave(layer: Sinusoid | RandomPhase, context: PatternContext) -> Wave:
 
 
 def _samples(wave: Wave, start: float, end: float, tolerance: float) -> tuple[Array, Array]:
-    """Places along the path, so close that chords keep the tolerance, and heights of the sum of sines there, mm."""
+    """Positions along the path, so dense that chords keep the tolerance, and heights of the sum of sines there, mm."""
     pitches, phases, amplitude = wave
     curvature = sum(amplitude * (2 * math.pi / pitch) ** 2 for pitch in pitches)
     count = max(2, math.ceil((end - start) / math.sqrt(8 * tolerance / curvature)))
@@ -42,7 +42,7 @@ def _samples(wave: Wave, start: float, end: float, tolerance: float) -> tuple[Ar
 
 
 def _section(layer: Sinusoid | RandomPhase, context: PatternContext, number: int) -> tuple[Array, Array, float]:
-    """Places, heights of the top and the height of the flat bottom, mm."""
+    """Positions along the path, heights of the top, and height of the flat bottom, mm."""
     check_least(context, number, "height_mm", layer.height_mm, "wall")
     least = context.least_matrix()
     if layer.depth_mm < least - 1e-9:
@@ -70,7 +70,7 @@ def box(layer: Sinusoid | RandomPhase, context: PatternContext, number: int) -> 
 
 
 def draw(layer: Sinusoid | RandomPhase, context: PatternContext, number: int) -> PatternGeometry:
-    """The sheet."""
+    """Geometry of the sheet, with its exact volume under the sampled section."""
     x, top, floor = _section(layer, context, number)
     pitches, phases, amplitude = _wave(layer, context)
     low, high = context.block.low[1], context.block.high[1]
@@ -85,7 +85,7 @@ def draw(layer: Sinusoid | RandomPhase, context: PatternContext, number: int) ->
 
 
 def _swept(x: Array, top: Array, floor: float, low: float, high: float) -> Mesh:
-    """The strip between a line of heights and a flat floor, drawn from y = low to y = high."""
+    """Solid between a line of heights and a flat floor, extruded from y = low to y = high."""
     n = len(x)
     section = np.concatenate([np.column_stack([x, np.full(n, floor)]), np.column_stack([x, top])])
     near, far = (np.column_stack([section[:, 0], np.full(2 * n, y), section[:, 1]]) for y in (low, high))

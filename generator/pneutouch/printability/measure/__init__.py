@@ -1,1 +1,1 @@
-"""Measurements on meshes that several rules share; each is made once a part."""
+"""Measurements on meshes that several rules share; each is made once for each part."""

@@ -18,7 +18,7 @@ PITCH = 0.25
 """Edge of a cube, mm, on parts small enough."""
 
 MOST = 300_000
-"""Cubes of a model; a larger part gets larger ones."""
+"""Greatest number of cubes of a model; a larger part gets larger cubes."""
 
 _OFF = (0.4142135623730951, 0.7320508075688772)
 """Shift of the columns in cubes: no column runs along an edge of a part drawn on whole hundredths."""
@@ -101,12 +101,12 @@ NARROW = 0.7
 """Share of a hollow's width below which its opening is a neck."""
 
 _STEPS = 8
-"""Widths of opening tried in the first place; each find is then narrowed down."""
+"""Number of opening widths tried at first; each find is then narrowed down."""
 
 _HALVINGS = 3
 
 _BIAS = 0.25
-"""Distance from the middle of the nearest full cube to the surface, in cubes: half a one at a flat wall, less at a
+"""Distance from the middle of the nearest full cube to the surface, in cubes: half a cube at a flat wall, less at a
 round one."""
 
 _TILTS = (-1.0, -0.5, 0.0, 0.5, 1.0)

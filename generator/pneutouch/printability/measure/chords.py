@@ -122,7 +122,7 @@ class Chords:
         return self.start + self.length[:, None] * self.direction
 
     def take(self, rows: NDArray[Any]) -> Chords:
-        """Some of them."""
+        """Chords of the given rows."""
         return Chords(*(getattr(self, field.name)[rows] for field in fields(self)))
 
 

@@ -1,6 +1,6 @@
 """Connected components of a graph and of a space in cubes, and distances in such a space.
 
-By NumPy alone: SciPy's `csgraph` and `ndimage` give the same in as much time (test_joined.py), but loading both takes
+With NumPy only: SciPy's `csgraph` and `ndimage` give the same in as much time (test_joined.py), but loading both takes
 half as long as `import numpy, scipy.linalg`, longer than these rules take on a dome and its connector.
 
 Closed hollows: shells of a solid that face inwards.
@@ -158,7 +158,7 @@ class Hollow:
         return x, y, z
 
     def alike(self, other: Hollow) -> bool:
-        """True if both are one and the same."""
+        """True if both are the same hollow."""
         return bool(np.allclose(self.bounds, other.bounds, atol=1e-6))
 
 

@@ -24,7 +24,7 @@ _GRID = 3
 """Points on each triangle, see `Body.surface_points`."""
 
 _REACH = 0.5
-"""Distance in mm by which that window reaches past the flange, within the land of `parts.mould.size.LAND`."""
+"""Distance in mm by which the window of the void reaches past the flange, within `parts.mould.size.LAND`."""
 
 _SIDES = 256
 """Sides of the window that the void is taken from; it lies in the ring, clear of the gap at the ring's outside."""
@@ -33,7 +33,7 @@ _ROUNDING = 1e-9
 """Volume in mm3 that faces which touch may seem to share."""
 
 _MOST_POINTS = 3000
-"""Points whose rays are cast for each part."""
+"""Greatest number of points whose rays are cast for each part."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +114,7 @@ def undercuts(size: MouldSize, bodies: Sequence[Body], tolerance: float) -> list
 
 
 def _starts(size: MouldSize, body: Body, tolerance: float) -> list[tuple[Array, Array, bool]]:
-    """Starts of rays, the points of the faces, and whether the silicone there leaves backwards, out of the funnel."""
+    """Starts of rays, points of the faces, and True if the silicone there leaves backwards, out of the funnel."""
     points = body.surface_points(_GRID)
     count = len(points) // len(body.triangles)
     a, b, c = np.moveaxis(body.corners, 1, 0)
@@ -136,7 +136,7 @@ def _starts(size: MouldSize, body: Body, tolerance: float) -> list[tuple[Array, 
 
 
 def _whole(near: Flags, count: int) -> Flags:
-    """True for the points, ``count`` on each triangle, of those triangles all of whose points are ``near``."""
+    """True for the ``count`` points of each triangle whose points are all ``near``."""
     return np.repeat(near.reshape(-1, count).all(axis=1), count)
 
 

@@ -13,12 +13,12 @@ from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.printability.measure.joined import components
 
 CREASE = np.radians(40.0)
-"""Edges that turn more are drawn edges; less, they approximate a curve: nine sides and more count as round."""
+"""Turn above which an edge is a drawn one; below, edges approximate a curve: nine sides and more count as round."""
 
 _OCTAGON = np.radians(46.0)
 _EQUAL = 0.05
-"""Edges that turn no more than a regular octagon's approximate a curve where the faces at both sides are as wide, to
-this share: meshes of the smallest circles have eight sides, chamfers of 45 degrees have not."""
+"""Edges that turn no more than a regular octagon's approximate a curve if the faces on both sides have one width, to
+this share: so have the eight sides of the smallest circles' meshes, but not chamfers of 45 degrees."""
 
 _FLAT = 1e-4
 """Faces that turn less (radians) are one flat face."""
@@ -89,7 +89,7 @@ class SurfaceMesh:
 
     @cached_property
     def creases(self) -> Flags:
-        """Edges that belong to the drawing, not to the mesh alone, (e,)."""
+        """Edges that belong to the drawing, not only to the mesh, (e,)."""
         edges, turn = self.edges, np.abs(self.edges.turn)
         drawn: Flags = turn >= CREASE
         rows = np.flatnonzero(drawn & (turn <= _OCTAGON))

@@ -1,7 +1,7 @@
 """Thin places of a part by kind: walls, pins, holes, channels, gaps, ridges and grooves, each as one place.
 
-A place is what chords join of smooth face groups. Where fillets make one face of several features they are one place,
-described by its narrowest.
+A place is a set of smooth face groups that chords join. Where fillets make one face of several features they are one
+place, described by its narrowest.
 """
 
 from dataclasses import dataclass, replace
@@ -45,7 +45,7 @@ _ALONG = np.radians(2.0)
 """Faces that part by less run along each other, within the accuracy of interpolated normals."""
 
 _PER_GROUP = 48
-"""Chords of a face group that are looked at closely, from the shortest on and then evenly."""
+"""Number of chords of a face group that are examined, from the shortest on and then evenly."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def thin_places(
 
 
 def _is_round(manifold: Any, surface: SurfaceMesh, short: Chords, side: Side) -> Flags:
-    """Pins among chords inside, holes among those outside."""
+    """Flags of the chords across pins (inside) or holes (outside), (n,)."""
     if side == "outside":
         return np.asarray(short.second <= ROUND * short.length)
     rows = np.flatnonzero(short.second <= STOUT * short.length)
@@ -114,7 +114,7 @@ class _Sized:
 
 
 def _place(side: Side, some: _Sized, faces: int) -> ThinPlace:
-    """One place is of one kind: what most of it is, where flanks are concerned, and else what its narrowest tenth is.
+    """Place of chords, of one kind: raised or engraved if most are at flanks, else the kind of its narrowest tenth.
 
     ``faces`` is the number of face groups around it.
     """
@@ -182,7 +182,7 @@ def _connected(some: Chords, groups: Indices, round_: Flags) -> list[Indices]:
 
 
 def _in_wedge(surface: SurfaceMesh, chords: Chords, side: Side) -> Flags:
-    """Chords in the corner between two faces that meet at less than 50 degrees, (n,) bool."""
+    """Chords in the corner between two faces that meet at less than 30 degrees, (n,) bool."""
     edges = surface.edges
     turn = edges.turn if side == "inside" else -edges.turn
     sharp = turn > np.pi - _KNIFE

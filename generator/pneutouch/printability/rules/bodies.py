@@ -19,7 +19,7 @@ _SOLID = (
 _FINEST = "the machine's finest step: least of layer height and pixel, as its profile states; "
 _VENDOR = "vendor, objet.com Tips and Tricks: finer does not print better; four times finer: own, unverified"
 _GUESS = 1.5
-"""A sagitta overstates the deviation of a mesh that keeps its area by as much."""
+"""Factor by which a sagitta overstates the deviation of a mesh that keeps its area."""
 _FINER = 4.0
 """Chords this many times narrower than the finest step needs make at least as many times the triangles."""
 
@@ -172,11 +172,11 @@ _MOST = 0.01
 _DOWN = {"polyjet": -0.02, "filament": -0.7, "resin": -0.7}
 """Vertical part of the normal below which a face needs support: any overhang (PolyJet), past 45 degrees (others)."""
 _OFF = 1e-3
-"""Distance from the face in mm at which the look upwards starts."""
+"""Distance from the face in mm at which rays upwards start."""
 
 
 def check_matte(view: PrintView) -> list[Finding]:
-    """Measure the share of each sensing face that looks down or lies under something of the same job; none is cast."""
+    """Measure the share of each sensing face that faces down or lies under its job's parts; cast ones are left out."""
     return [
         finding
         for job in view.jobs

@@ -24,9 +24,9 @@ _FILAMENT = "own, unverified: support that no tool reaches stays in"
 CONFINED = 0.5
 """Opening over the width behind it, below which a hollow is as good as closed."""
 SLENDER = 10.0
-"""Length of a channel over its width from which water alone does not clear it."""
+"""Ratio of a channel's length to its width from which water does not suffice to clear it."""
 _HIDDEN = 2.0
-"""Volume out of sight (mm3) that is worth a word, and at least 30 cubes of the model."""
+"""Volume out of sight (mm3) that is worth a finding, if it is also at least 30 cubes of the model."""
 _SAMPLED, _DIRECTIONS = 40, 300
 """Cubes out of sight that are checked again, and directions spread evenly over the sphere (Fibonacci's spiral)."""
 _BRIDGED = 50.0
@@ -106,7 +106,7 @@ def _escapes(job: PrintJob, cells: Indices) -> Flags:
 
 
 def _needs_support(job: PrintJob, region: Flags) -> bool:
-    """Polyjet fills every hollow; filament and resin need support under ceilings too wide to bridge."""
+    """True if a region needs support: always by PolyJet, by filament and resin under ceilings too wide to bridge."""
     if job.printer.process == "polyjet":
         return True
     ceiling = overhangs(job.voxels)[:, :, 1:] & region[:, :, :-1]

@@ -92,7 +92,7 @@ def _finding(
 
 
 def spot(where: object) -> Point3:
-    """A point as findings carry it."""
+    """A point as a tuple of three floats, as findings have it."""
     x, y, z = (float(value) for value in where)  # type: ignore[attr-defined]
     return x, y, z
 
@@ -130,11 +130,11 @@ CHECKS = {name: partial(check, name=name) for name in SIZE_RULES}
 
 
 _KNIFE = 30.0
-"""Angle inside the body (degrees) below which an edge is a knife's."""
+"""Angle inside the body (degrees) below which an edge is too sharp."""
 _ROUNDING = 1e-4
 """Degrees by which an edge drawn at the limit may miss it."""
 _LENGTH = 0.5
-"""Length of sharp edges in mm that is worth a word."""
+"""Length of sharp edges in mm that is worth a finding."""
 _SHARP = "own, unverified: an edge thins to nothing, and below the smallest wall it is not printed"
 _WRITTEN = "STL holds coordinates as 32-bit floats; 3MF readers do likewise"
 
@@ -184,13 +184,13 @@ _TOUCHING = 1e-3
 """Faces nearer than this (mm) are meant to touch."""
 
 _PARALLEL = -np.cos(np.radians(10.0))
-"""Faces of two bodies leave a gap where they run along each other; where they meet at an edge they leave a corner."""
+"""Cosine between normals of two bodies' faces below which these leave a gap; faces that meet at an edge do not."""
 
 _GAP_FIX = "widen the gap, close it, or print the bodies apart"
 
 
 def check_gaps(view: PrintView) -> list[Finding]:
-    """Compare every gap."""
+    """Compare every gap, within a body and between the bodies of a job."""
     findings = compare(view, "gaps", {"gap": "a gap"}, "gap", _GAP_FIX)
     for job in view.jobs:
         for one, other in combinations([part for part in job.parts if part.sound], 2):

@@ -1,4 +1,4 @@
-"""A liquid silicone in a thin wall, and the mould that it fills, cures in and lets go.
+"""Rules on a liquid silicone in a thin wall, and on the mould that it fills, cures in and leaves.
 
 The mould's void is the membrane, its parts stay apart, nothing is undercut, and its walls are even.
 """
@@ -22,7 +22,7 @@ _DRAFT = (
 )
 
 _MOST_ERROR = 0.1
-"""Share of the wall that core and cap may be apart by: own choice."""
+"""Greatest error of the wall by the clearance of the cones, as a share of the wall: own choice."""
 _ERROR = "the wall at the rim differs by the clearance of the cones; a tenth of it is allowed: own choice"
 
 
@@ -188,7 +188,7 @@ _INHIBITION = (
 
 
 def check_filling(view: PrintView) -> list[Finding]:
-    """Compare the time in which the liquid runs down the wall by its weight with what mixing leaves of the pot life."""
+    """Compare the time in which the liquid runs down the wall by its weight with the pot life left after mixing."""
     pour = _cast(view)
     if pour is None or pour[2].mixed_viscosity_Pa_s is None:
         return []
@@ -247,7 +247,7 @@ def check_inhibition(view: PrintView) -> list[Finding]:
 
 
 def _cast(view: PrintView) -> tuple[PrintPart, SensorContext, Casting] | None:
-    """The membrane where it is cast and still to be made, with its figures."""
+    """Part, context and casting data of a membrane that is cast and still to be made; None for any other."""
     context = view.sensor
     part = None if context is None else view.part(context.membrane)
     if context is None or part is None or context.calibrated or not part.item.printer.is_casting:

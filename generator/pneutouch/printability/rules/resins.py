@@ -48,7 +48,7 @@ def _check(job: PrintJob) -> Finding | None:
 
 
 def _other(job: PrintJob, resins: list[str], digital: bool) -> str:
-    """A mode that would do, else the plain advice."""
+    """Advice to print in a mode that fits, else the general advice."""
     printer = job.parts[0].item.printer
 
     def fits(mode: Mode) -> bool:

@@ -18,7 +18,7 @@ _OFF = 0.1
 
 
 _FAR = 4.0
-"""The advised wall is at most this many of the coarser steps from the one drawn."""
+"""Greatest distance of the advised wall from the drawn one, in the coarser of the two steps."""
 
 
 class WallStep(NamedTuple):
@@ -33,14 +33,14 @@ class WallStep(NamedTuple):
         return abs(wall / self.size - round(wall / self.size))
 
     def printed(self, wall: float) -> tuple[float, float]:
-        """The walls that it prints as, mm."""
+        """Walls of whole steps next below and next above a wall, mm."""
         return self.size * math.floor(wall / self.size), self.size * math.ceil(wall / self.size)
 
 
 def check_layers(view: PrintView) -> list[Finding]:
-    """Compare the wall with the steps of the machine at the pole and at the rim: one finding a wall.
+    """Compare the wall with the steps of the machine at the pole and at the rim: one finding for each wall.
 
-    The wall of a calibrated sensor is printed already, and fitted: nothing is found of it. A cast one has no steps.
+    The wall of a calibrated sensor is printed already, and fitted: it has no finding. A cast wall has no steps.
     """
     context = view.sensor
     part = None if context is None else view.part(context.membrane)
@@ -112,13 +112,13 @@ _SOURCES = {
 
 
 def check_driving(view: PrintView) -> list[Finding]:
-    """Compare the highest driving pressure with the rated pressure and with the nominal limit; and with a gauge that
-    the design names the pressure while pressed."""
+    """Compare the highest driving pressure with the rated pressure and the nominal limit, and the pressure while
+    pressed with the range of a gauge that the design names."""
     return [] if view.sensor is None else [*_driven(view.sensor), *_pressed(view.sensor)]
 
 
 def _pressed(context: SensorContext) -> list[Finding]:
-    """The states whose range ends at that of the gauge."""
+    """Finding on the states whose range ends at the range of the gauge."""
     gauge, limit = context.gauge, context.sensor.gas.gauge_limit / KPA
     if gauge is None:
         return []
@@ -200,11 +200,11 @@ _MEETING = (
     "this project's prediction: the model's wall passes through this body: its figures do not hold where they touch"
 )
 _TOUCH = 0.05
-"""Depth in mm below which a meeting is the mesh's and the prediction's own error."""
+"""Depth in mm below which a contact is within the errors of mesh and prediction."""
 
 
 def check_freedom(view: PrintView) -> list[Finding]:
-    """The deepest meeting of the inflated or pressed wall with each other body; nothing without predicted shapes."""
+    """Findings on the deepest contact of the inflated or pressed wall with each other body; none without shapes."""
     if view.sensor is None:
         return []
     others = [part for part in view.parts if part.name != view.sensor.membrane and part.sound]

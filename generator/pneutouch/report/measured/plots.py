@@ -1,4 +1,4 @@
-"""Small multiples: one panel a resin, specimens, pressures and ages distinguished alike on every plot.
+"""Small multiples: one panel per resin, specimens, pressures and ages distinguished alike on every plot.
 
 Marker: specimen. Line and tone: driving pressure. Filled: the youngest age; open: older. Nothing rests on colour alone.
 """
@@ -24,7 +24,7 @@ from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.units import KPA
 
 _LEAST_SPAN = 20.0
-"""Driving pressures closer together than this, kPa, do not make the slack of an axis smaller."""
+"""Least span of driving pressures, kPa, from which the slack of an axis follows."""
 _MOST_TICKS, _COLUMNS = 5, 4
 _LONG = 15
 """Letters of an entry of a legend that does not fit into a third of a narrow plot."""
@@ -40,9 +40,9 @@ SKY = "#3F8FBF"
 _TONES = (INK, SKY, MUTED)
 
 _POINTS = 120
-"""Points of a branch that are drawn."""
+"""Number of points, about, that are drawn of a branch."""
 _PER_DECADE = 8
-"""Points of a relaxation a decade of time."""
+"""Points of a relaxation per decade of time."""
 
 Groups = Sequence[ResinGroups]
 
@@ -50,7 +50,7 @@ Groups = Sequence[ResinGroups]
 def _multiples(
     groups: Groups, draw: Callable[[ResinGroups], Panel], legend: Sequence[PlotLine], shared: str = ""
 ) -> str:
-    """One panel a resin, their axes named once; ``legend`` are lines without points."""
+    """One panel per resin, their axes named once; ``legend`` are lines without points."""
     panels = [draw(group) for group in groups]
     named = panels[0].x, panels[0].y
     panels = [
@@ -68,7 +68,7 @@ def _multiples(
 
 
 def _plot(groups: Groups, title: str, words: str, *drawing: Any) -> Plot | None:
-    """The plot of the groups that it has something of; several resins take the whole row."""
+    """The plot of groups that have data for it, None without any; several resins take the whole row."""
     if not groups:
         return None
     return Plot(_multiples(groups, *drawing), words, title, full=len(groups) > 1)
@@ -103,7 +103,7 @@ _BAND = PlotLine(low=(), high=(), dashes="", label="predicted, 95 %")
 
 
 def _ends(values: Sequence[float], most: int = 2) -> list[float]:
-    """All of them where they are few, else the lowest and the highest."""
+    """All values if they are few, else the lowest and the highest."""
     return list(values) if len(values) <= most else [values[0], values[-1]]
 
 
@@ -144,7 +144,7 @@ def _mean(k: int) -> PlotLine:
 
 
 def _predicted_sensitivity(groups: ResinGroups, half: float) -> list[PlotLine]:
-    """The band between driving pressures; of one alone a bar of ``half`` its width."""
+    """The band between driving pressures; at a single one a bar of ``half`` its width."""
     known = {
         b.group.key.driving_pressure_kPa: b.predicted[SENSITIVITY_KEY]
         for b in reversed(groups.comparisons)
@@ -186,7 +186,7 @@ def responses(groups: Groups) -> Plot | None:
 
 
 def indentations(groups: Groups) -> Plot | None:
-    """Force over indentation in the same way; the band is that of the stiffness."""
+    """Force over indentation in the same way; the band is the stiffness's."""
     words = "Contact force over indentation. {}stiffness{}"
     return _curves(groups, "Force over indentation", words, curves.forces, STIFFNESS_KEY)
 
@@ -211,7 +211,7 @@ def _curves(
 def _presses(groups: ResinGroups) -> list[curves.Press]:
     """Runs and predictions; bands of two driving pressures at most: more cover one another.
 
-    Of several ages the youngest's prediction.
+    Of several ages the prediction of the youngest is drawn.
     """
     shaded_kPa = _ends(groups.driving_pressures_kPa)
     presses: list[curves.Press] = []

@@ -179,7 +179,7 @@ def _where(measured: CampaignReport, comparison: GroupComparison) -> str:
 
 
 def _extent(measured: CampaignReport, key: str, name: str, unit: str) -> Tile | None:
-    """The one value that there is, or the extent from the least to the greatest group."""
+    """Tile with the only value, or with the extent from the least to the greatest group."""
     pairs = _with(measured, key)
     if not pairs:
         return None
@@ -220,7 +220,7 @@ def _against(measured: CampaignReport) -> list[Tile]:
 
 
 def _worst(measured: CampaignReport, key: str, name: str, unit: str, what: str) -> Tile | None:
-    """The greatest of a figure over the groups."""
+    """Tile with the greatest value of a figure over the groups."""
     pairs = [pair for pair in _with(measured, key) if math.isfinite(pair[1].value)]
     if not pairs:
         return None

@@ -35,11 +35,11 @@ class GroupComparison:
         group: The runs and their figures.
         label: Title of the resin.
         state: The predicted state at the group's driving pressure; None if there is none.
-        uncertainty: Its uncertainty, as `Evaluation.uncertainty` has it for a state.
-        predicted: Predicted figures by key of `bench.figure.FIGURES`, with the ends of their 95 % band where known:
+        uncertainty: Uncertainty of the state, as `Evaluation.uncertainty` has it for a state.
+        predicted: Predicted figures by key of `bench.figures.FIGURES`, with the ends of their 95 % band where known:
             value, low, high.
         why: Reason why there is no prediction; empty if there is one.
-        published: Measurements of the paper on this sensor, by key of `bench.figure.FIGURES`.
+        published: Measurements of the paper on this sensor, by key of `bench.figures.FIGURES`.
     """
 
     group: RunGroup
@@ -51,7 +51,7 @@ class GroupComparison:
     published: dict[str, float] = field(default_factory=dict)
 
     def relative_band(self, figure: str) -> tuple[float, float] | None:
-        """Ends of a figure's predicted band over its value; None if it has none."""
+        """Ends of a figure's predicted band, divided by its value; None if it has none."""
         value, low, high = self.predicted.get(figure, (0.0, None, None))
         return None if not value or low is None or high is None else (low / value, high / value)
 
@@ -68,11 +68,11 @@ class CampaignReport:
         curves: Every curve read, injections aside.
         failures: Files that are not used, with the message.
         questions: Data that look wrong and were not changed: file or run, and the question.
-        verdicts: Of the target, empty without one.
+        verdicts: Verdicts on the target; empty without one.
         injections: Figures of leak and injection runs.
         ageing: Changes of the sensitivity between ages.
         model: Model of the predictions.
-        input_hash: Of campaign, design and files.
+        input_hash: Hash of campaign, design and files.
     """
 
     campaign: Campaign
@@ -90,14 +90,14 @@ class CampaignReport:
 
 
 MOST_RUNS = 30
-"""Runs of a group that are drawn: more hide one another."""
+"""Greatest number of runs of a group that are drawn: more hide one another."""
 
 
 @dataclass(frozen=True)
 class ResinGroups:
     """The groups of one resin in the order of age and pressure.
 
-    ``campaign_pressures_kPa`` are the driving pressures of every resin, kPa; ``alone`` says that there is no other
+    ``campaign_pressures_kPa`` are the driving pressures of every resin, kPa; ``alone`` is True if there is no other
     resin.
     """
 
@@ -137,9 +137,9 @@ def some(curves: Sequence[MeasuredCurve]) -> list[MeasuredCurve]:
 
 
 MOST = 40
-"""Entries of a list of warnings, questions, failures, leaks or volumes that are printed."""
+"""Most entries of a list of warnings, questions, failures, leaks or volumes that are printed."""
 MOST_SPECIMENS = 120
-"""Rows of the specimen table that are printed."""
+"""Most rows of the specimen table that are printed."""
 
 _SHAPES = dict(zip(MARKERS, ("circle", "square", "triangle", "diamond", "triangle down", "plus", "cross"), strict=True))
 """Names of the markers of the plots."""
@@ -177,7 +177,7 @@ _AGEING = ("Resin", "Driving\nkPa", "Age", "Change\nof S\n%", "95 % interval\n%"
 
 
 def resin_section(groups: ResinGroups) -> list[SheetBlock]:
-    """Every figure of a resin over driving pressure and age, measured and predicted; and what is not there."""
+    """Every figure of a resin over driving pressure and age, measured and predicted; and those not measured."""
     found = [(each, b) for each in FIGURES for b in groups.comparisons if each.key in b.group.figures]
     rows = [[each.name, each.unit, *_condition(b), *_figure(each, b)] for each, b in found]
     there = {each.key for each, _ in found}
@@ -289,7 +289,7 @@ def _listed(
     most: int = MOST,
     merged: int = 0,
 ) -> list[SheetBlock]:
-    """A section with the first rows of a long list; nothing without any."""
+    """A section with the first rows of a long list; nothing without rows."""
     left = len(rows) - most
     more = Text(f"and {left} more: see figures.json" if left > 0 else "", "muted")
     return section(title, SheetTable(rows[:most], head, numeric, merged=merged), more, *notes) if rows else []
@@ -317,7 +317,7 @@ LINES_OF = {
     "noise_pressure_kPa": "Standard deviation of a pressure sample without contact, trend taken out.",
     "resolution_N": "Three standard deviations of the pressure's noise over the sensitivity.",
 }
-"""Lines by key of `bench.figure.FIGURES`."""
+"""Definitions of figures by key of `bench.figures.FIGURES`."""
 
 TERMS = (
     (
@@ -338,7 +338,7 @@ TERMS = (
     ),
     ("Full scale", "Difference of the greatest and the least pressure rise of the run."),
 )
-"""Further words of the tables."""
+"""Definitions of further words of the tables."""
 
 
 def definitions() -> SheetTable:

@@ -91,7 +91,7 @@ class CalibrationOutcome:
         calibration: The calibration itself.
         source: Source of its runs.
         design_given: The design as a command takes it.
-        assignments: Changes of the campaign to it.
+        assignments: Changes of the campaign to the design.
     """
 
     record: OutcomeRecord

@@ -57,9 +57,9 @@ def check_place(name: str, root: Path) -> Path:
 
 
 def check_unlike(path: Path, digest: str, names: Sequence[str], hold_out_kPa: Sequence[float]) -> None:
-    """Raise InputError where the file is there and cannot be the calibration that is to be made.
+    """Raise InputError if the file exists and cannot be the calibration that is to be made.
 
-    It can be where its campaign has the ``digest``, and ``names`` were fitted and ``hold_out_kPa`` were held out.
+    It can be if its campaign has the ``digest``, ``names`` were fitted and ``hold_out_kPa`` were held out.
     """
     if not path.is_file():
         return
@@ -149,7 +149,7 @@ def _plain(design: str, sensor: str) -> str:
 def prepare(
     calibration: Calibration, name: str, root: Path, source: CampaignSource, *, replace: bool = False
 ) -> SavedCalibration:
-    """Check and word ``root/calibrations/name.toml``; nothing is written.
+    """Check and compose ``root/calibrations/name.toml``; nothing is written.
 
     Raises InputError as `check_place` and `savable` do, and for a file of that name with another content, unless
     ``replace``.
@@ -165,9 +165,9 @@ def prepare(
 def savable(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
     """`calibration_content`, checked. Raises InputError if it cannot be a calibration.
 
-    That is: a modulus, a wall or a friction that was fitted has no interval, the data do not determine the friction,
-    the runs contradict the fitted model, or a value or its uncertainty is beyond the bounds. The key is ``fit`` where
-    another choice of parameters may help.
+    It cannot be one if a modulus, a wall or a friction that was fitted has no interval, the data do not determine the
+    friction, the runs contradict the fitted model, or a value or its uncertainty is beyond the bounds. The key is
+    ``fit`` where another choice of parameters may help.
     """
     _check_friction(calibration)
     content = calibration_content(calibration, source)

@@ -128,7 +128,7 @@ def _further(fitted: CalibrationFit, test: SuggestedTest) -> FurtherRecord:
 
 
 def _leaving(k: int, deviation: float) -> float | None:
-    """A deviation as it leaves: relative (of the logarithm), mL, or mm."""
+    """A deviation in the unit of records: relative (of the logarithm), mL, or mm."""
     return _number(float(deviation) / (ML if k == DEAD else 1.0))
 
 
@@ -142,10 +142,10 @@ FITTED_KINDS: tuple[RunKind, ...] = ("steps", "injection")
 
 @dataclass(frozen=True)
 class Calibration:
-    """A sensor calibrated.
+    """Calibration of a sensor.
 
     Attributes:
-        scene: The design it was made to.
+        scene: Design that the sensor was made to.
         sensor, title: Name of the specimen and of the campaign.
         fit, residuals, misses, identified, held_out: See `bench.calibrate`.
         notes: Remarks on what was read.
@@ -243,7 +243,7 @@ def calibrate(
 
 
 def chosen_sensor(campaign: Campaign, sensor: str | None) -> str:
-    """The sensor named, or the only one. Raises InputError if there are several and none is named, or not that."""
+    """The sensor named, or the only one. Raises InputError if none of several is named, or the name is unknown."""
     known = sorted({run.sensor for run in campaign.runs})
     if sensor is None and len(known) > 1:
         raise InputError(f"the campaign holds {', '.join(known)}", key="sensor", remedy="name one")

@@ -1,4 +1,4 @@
-"""Measured data to figures, compared with the predicted ones."""
+"""Evaluation of measured data into figures, and their comparison with predicted ones."""
 
 from pneutouch.workflows.characterize.campaign import CharacterizationResult, characterize, sound
 from pneutouch.workflows.characterize.load import (

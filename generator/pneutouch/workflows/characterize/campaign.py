@@ -69,7 +69,7 @@ def points_csv(curves: Iterable[MeasuredCurve]) -> bytes:
 
 
 def _cell(value: float, digits: int = 6) -> str:
-    """A number, or nothing of what is not known, such as the travel of a press by hand."""
+    """A number as text; empty if it is not known, such as the travel of a press by hand."""
     return f"{value:.{digits}g}" if math.isfinite(value) else ""
 
 
@@ -150,7 +150,7 @@ EVIDENCE = ("doubtful", "all", "none")
 @dataclass(frozen=True)
 class CharacterizationResult:
     """Result of a characterization: the sheet's content, the folder written, the traces of the runs by file, the
-    layouts of the files (`reading.read_as`), the design as a command takes it, and the files with their columns."""
+    layouts of the files (`load.read_as`), the design as a command takes it, and the files with their columns."""
 
     measured: CampaignReport
     traces: Mapping[str, Trace]
@@ -199,10 +199,10 @@ def characterize(
 ) -> CharacterizationResult:
     """Read a campaign's folder or one file, and compare its figures with the prediction of its design.
 
-    ``design`` comes before the one that the campaign names; ``changes`` are laid over either, and ``reading`` (tables
-    ``columns`` and ``format``) over what the campaign gives of its files. A single file is of the ``kind`` given, else
-    of that which its record shows. ``model`` USUAL is the solid, or harmonic
-    off the axis. Raises InputError if nothing can be read; files that fail are listed in the outcome.
+    ``design`` takes precedence over the one that the campaign names; ``changes`` are laid over either, and ``reading``
+    (tables ``columns`` and ``format``) over what the campaign gives of its files. A single file has the ``kind`` given,
+    else the kind that its record shows. ``model`` USUAL is the solid, or harmonic off the axis. Raises InputError if
+    nothing can be read; files that fail are listed in the outcome.
     """
     library = library or Library.default()
     name, named = (design, {}) if design is not None else _design_of(data, library)

@@ -1,4 +1,4 @@
-"""A campaign's folder, or one file, to curves; a file that fails does not stop the others.
+"""Reading of a campaign's folder, or of one file, into curves; a file that fails does not stop the others.
 
 Options of a command or a function for the reading of files, in place of [columns] and [format] of a campaign.
 """
@@ -35,7 +35,7 @@ Reading = Mapping[str, Mapping[str, Any]]
 _CHANNELS = "|".join(UNITS)
 _NEXT = re.compile(rf",(?=\s*(?:{_CHANNELS})\s*=)")
 _NAMED = 12
-"""Files that are named of a group that does not hold all."""
+"""Number of files that are named of a group that does not hold all files."""
 
 _FORM = "write channel=NAME or channel=NAME:UNIT, such as force=Load or force=Load:N; -NAME turns the sign"
 
@@ -73,7 +73,7 @@ def with_reading(campaign: Campaign, reading: Reading | None) -> Campaign:
 def _with_stated(
     columns: ColumnMap, written: FileFormat, reading: Reading, file: str = ""
 ) -> dict[str, ColumnMap | FileFormat]:
-    """Columns and format with ``reading`` in their place; ``file``: of one run. Raises InputError."""
+    """Columns and format of the campaign or of the run in ``file``, overridden by ``reading``. Raises InputError."""
     stated = {key: getattr(columns, key).model_dump() for key in columns.model_fields_set}
     try:
         merged = validate(ColumnMap, {**stated, **reading.get("columns", {})}, "")
@@ -85,8 +85,8 @@ def _with_stated(
 
 
 def read_as(sources: Mapping[str, MeasuredFile], runs: int) -> tuple[ReadFiles, ...]:
-    """Layouts that were found by looking at the files of a campaign of ``runs`` runs: files read alike together, with
-    the tables of a campaign file for them."""
+    """Guessed layouts of the files of a campaign of ``runs`` runs: files read alike together, with the tables of a
+    campaign file that state the layout."""
     alike: dict[str, list[str]] = {}
     for file, source in sources.items():
         if source.guessed:
@@ -99,13 +99,13 @@ def read_as(sources: Mapping[str, MeasuredFile], runs: int) -> tuple[ReadFiles, 
 
 
 def undisputed(sources: Mapping[str, MeasuredFile], failures: Sequence[tuple[str, str]]) -> dict[str, MeasuredFile]:
-    """The files whose columns no failure, (file, message), puts in question."""
+    """The files whose columns are not put in question by any of the failures, (file, message)."""
     disputed = {file for file, message in failures if "columns." in message}
     return {file: source for file, source in sources.items() if file not in disputed}
 
 
 def same_failures(failures: Iterable[Sequence[str]]) -> list[tuple[str, str]]:
-    """Failures, (file, message), those of one message together: the names of their files, and the message without."""
+    """Failures, (file, message), grouped by message: the names of their files, and the message without them."""
     alike: dict[str, list[str]] = {}
     for file, message in failures:
         _, named, problem = message.partition(f"{file}: ")
@@ -132,8 +132,8 @@ _MEGABYTE = 1e6
 _LONGEST = 60
 
 _NEAR_KPA, _NEAR_SHARE = 1.0, 0.1
-"""Largest distance of a pressure read before contact from the one of the design's that it is taken for: a reset's
-scatter."""
+"""Largest difference, in kPa and relative, between the pressure read before contact and the design's driving pressure
+for which it is taken: a reset's scatter."""
 
 
 @dataclass(frozen=True)
@@ -141,9 +141,9 @@ class CampaignData:
     """Content of a campaign's files.
 
     Attributes:
-        campaign: The campaign; of a single file one that holds it alone.
+        campaign: The campaign; for a single file, one with only that run.
         folder: Folder of its files.
-        curves: Of every run with a plate that could be read, in the campaign's order.
+        curves: Curves of every run with a plate that could be read, in the campaign's order.
         traces: The same runs thinned for plotting, by file.
         injections: Run, volumes (mm3) and pressures (MPa) of the injection runs.
         leaks: Run, leak rate and its standard error (MPa/s) of the leak runs.
@@ -190,9 +190,9 @@ def load_curves(
 ) -> CampaignData:
     """Read a campaign's folder, its campaign file, or one file of a run; ``reading`` is laid over the campaign.
 
-    A single file is of the ``kind`` given, else of that which it shows; of the design's resin, and of that of its
-    driving pressures that was read before contact; ``scene`` is the design then. Raises InputError if the
-    campaign itself is wrong, or none of its files can be read.
+    A single file has the ``kind`` given, else the kind that it shows; it has the resin of the design ``scene``, and the
+    driving pressure of the design that was read before contact. Raises InputError if the campaign itself is wrong, or
+    none of its files can be read.
     """
     if data.is_dir() or data.suffix == ".toml":
         campaign, folder = campaign_of(data)
@@ -243,12 +243,12 @@ class _Meter:
         self._progress, self._total, self._before = progress, total, 0
 
     def within(self, size: int) -> Callable[[float], None]:
-        """Takes the share read of the file at work."""
+        """Function that receives the share read of the current file of ``size`` bytes."""
         before = self._before
         return lambda share: self._report(before + share * size)
 
     def past(self, size: int) -> None:
-        """The file at work is done with."""
+        """Count the current file, of ``size`` bytes, as read."""
         self._before += size
         self._report(self._before)
 
@@ -297,8 +297,8 @@ _WITHOUT: dict[tuple[str, ...], tuple[RunKind, tuple[str, ...]]] = {
 
 
 def recognise(run: CampaignRun, campaign: Campaign, folder: Path) -> MeasuredFile:
-    """The file of a run with its columns; no sample is read. Of a run without a kind the channels are those that the
-    file has. Raises InputError if a column is not found."""
+    """The file of a run with its columns; no sample is read. A run without a stated kind has the channels that the file
+    has. Raises InputError if a column is not found."""
     path = folder / run.file
     if not exists(path):
         raise InputError("no such file", file=path, remedy=f"the campaign names it as {run.label}")
@@ -313,7 +313,7 @@ def recognise(run: CampaignRun, campaign: Campaign, folder: Path) -> MeasuredFil
 
 
 def _of_its_channels(run: CampaignRun, source: MeasuredFile) -> CampaignRun:
-    """The run with the kind that the channels of its file leave, where none is stated."""
+    """The run with the kind that follows from the channels of its file, if none is stated."""
     kind = next((kind for kind, channels in _WITHOUT.values() if channels == source.channels), None)
     if kind is None or run.kind == kind:
         return run
@@ -335,8 +335,8 @@ def _single(data: Path, scene: ResolvedDesign | None, kind: RunKind | None) -> C
 
 
 def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign, gathered: _Gathered) -> MeasuredCurve:
-    """A single file's curve under that of the design's pressures that it was read at, else the read one, with a
-    question.
+    """A single file's curve with the design's driving pressure near which it was read; without one, with the pressure
+    read, and a question.
 
     Raises InputError for a pressure before contact that looks like an absolute one.
     """

@@ -46,7 +46,7 @@ from pneutouch.spec.target import Target, TargetFigures
 from pneutouch.units import KPA
 
 _OF_STATE = (SENSITIVITY_KEY, STIFFNESS_KEY)
-"""Figures whose uncertainty goes by the same name; the force at the greatest depth is the range's end's."""
+"""Figures whose key is the same in the uncertainty; for the force at the greatest depth it is the range end's key."""
 
 
 @dataclass(frozen=True)
@@ -81,8 +81,8 @@ def answers(
 ) -> dict[tuple[str, float], StatePrediction]:
     """Predict the design in every (resin, driving pressure in kPa) given, resin by resin.
 
-    Where a resin's pressures cannot be predicted together each is tried alone; one beyond the limit has a reason in the
-    place of a state.
+    If a resin's pressures cannot be predicted together, each is tried alone; a pressure beyond the limit has a reason
+    in place of a state.
     """
     predictions: dict[tuple[str, float], StatePrediction] = {}
     pairs = sorted(set(pairs_of))
@@ -354,7 +354,7 @@ def _figure(key: str, estimate: Estimate, comparison: GroupComparison) -> Campai
 
 
 def of_run(run: CampaignRun) -> tuple[str, RunKind, str, str, int, float, float]:
-    """The fields of `RunOfSensor`."""
+    """Values for the fields of `RunOfSensor`."""
     return run.file, run.kind, run.sensor, run.resin, run.run, run.driving_pressure_kPa, run.age_days
 
 
@@ -364,5 +364,5 @@ def _run(curve: MeasuredCurve, values: dict[str, float]) -> MeasuredRun:
 
 
 def doubtful(part: SuspectInterval) -> tuple[float, float, str, bool]:
-    """The fields of `DoubtfulPart`."""
+    """Values for the fields of `DoubtfulPart`."""
     return round(part.start, 4), round(part.end, 4), part.why, part.used

@@ -26,7 +26,7 @@ from pneutouch.spec.printer import Mode, Printer
 from pneutouch.workflows.coupons.order import CouponItem, CouponOptions, CouponOrder, order, results_template
 
 MARGIN, SPACING = 5.0, 5.0
-"""mm around the tray, and between bounding boxes: space for a spatula; Objet refuses boxes that touch (DOC-37004)."""
+"""Border of the tray and space between boxes, mm: room for a spatula; Objet refuses boxes that touch (DOC-37004)."""
 
 
 @dataclass(frozen=True)
@@ -102,10 +102,10 @@ def _piece(item: CouponItem, solid: Solid, printer: Printer, mode: Mode) -> Coup
 
 
 _CELLS = 5
-"""Readings on one line."""
+"""Greatest number of readings on one line."""
 
 CAST_EXCESS = 1.3
-"""Silicone mixed over that of the coupons: the part struck off and the part that stays in the cup; our choice."""
+"""Ratio of silicone mixed to silicone in the coupons: some is struck off, some stays in the cup; our choice."""
 
 _CAST = "Cast as described above. Clean, dry, and wait 24 h after the cure; note the age."
 
@@ -115,7 +115,7 @@ _MIXES = (
     "by "
     "droplet from voxel slices of the same fractions."
 )
-"""Instruction to get a mix from a machine that takes catalogue materials alone."""
+"""Instruction to get a mix from a machine that takes only catalogue materials."""
 
 
 def sheet(order: CouponOrder, trays: Mapping[str, tuple[CouponPiece, ...]]) -> str:
@@ -202,7 +202,7 @@ def _measuring(coupon: Coupon, items: list[CouponItem]) -> list[str]:
 
 
 def _table(item: CouponItem) -> list[str]:
-    """Cells to fill: a line a feature and copy; where a feature has many sizes, a line a size."""
+    """Cells to fill: a line for each feature and copy, or for each size of a feature with many sizes."""
     nominals = item.nominals
     if len({nominal.feature for nominal in nominals}) < len(nominals):
         return _sizes(nominals)

@@ -30,13 +30,13 @@ from pneutouch.wording import counted
 
 FRACTIONS = (0.0, 0.03, 0.06, 0.1, 0.15, 0.2, 0.27, 0.35)
 """Volume fractions of the stiff resin that are printed: our own choice for TangoPlus with VeroClear, whose curve ends
-at 35.6 %. By each curve of that pair the modulus rises by less than 2.5 times from one to the next, as far as the curve
-is known (docs/background/mixing.md)."""
+at 35.6 %. By each curve of that pair the modulus rises less than 2.5-fold from one fraction to the next, as far as the
+curve is known (docs/background/mixing.md)."""
 
 
 @dataclass(frozen=True, slots=True)
 class CouponMix:
-    """One fraction of a pair ``SOFT+STIFF`` and its resins."""
+    """Mix of a pair of resins ``SOFT+STIFF`` at one fraction."""
 
     pair: str
     fraction: float
@@ -44,7 +44,7 @@ class CouponMix:
 
     @property
     def about(self) -> str:
-        """Name of its pieces: ``TangoPlus+VeroClear-15``."""
+        """Name of the mix's coupons: ``TangoPlus+VeroClear-15``."""
         return f"{self.pair}-{100 * self.fraction:g}"
 
 
@@ -76,7 +76,7 @@ def blends(pair: str, library: Library) -> list[CouponMix]:
 MOST_COPIES = 100
 
 MIXED = ("puck", "dumbbell")
-"""Coupons that there are of a mix."""
+"""Names of the coupons that a mix has."""
 
 MIXED_COPIES = 2
 """Copies of each fraction: the least that gives a spread, two pucks making the 6 mm under the durometer."""
@@ -98,8 +98,8 @@ class CouponOptions:
 class CouponItem:
     """One coupon to print: ``about`` is the material or design that the results file files it under.
 
-    ``blend`` is given where it is of two resins in a known fraction, and then states where it is filed. ``mould`` is
-    the material of the mould of one that is cast; ``printer`` then is that of the mould.
+    ``blend`` is given for a coupon of two resins in a known fraction, and then states where it is filed. ``mould`` is
+    the material of the mould of a cast coupon; ``printer`` then prints the mould.
     """
 
     coupon: Coupon
@@ -118,7 +118,7 @@ class CouponItem:
 
     @property
     def printed(self) -> Material:
-        """Material that is printed: the coupon's, or that of the mould in which it is cast."""
+        """Material that is printed: the coupon's, or the mould's if the coupon is cast."""
         return self.mould or self.material
 
     def solids(self) -> tuple[Solid, ...]:
@@ -131,7 +131,7 @@ class CouponItem:
 
     @property
     def nominals(self) -> tuple[Nominal, ...]:
-        """Quantities to measure on it; of a mixed puck the hardness alone, for a mixing curve has no density."""
+        """Quantities to measure on the coupon; only the hardness of a mixed puck, as a mixing curve has no density."""
         listed = self.coupon.nominals(self.context)
         return listed if self.blend is None or self.coupon.name != MIXED[0] else listed[:1]
 
@@ -352,7 +352,7 @@ def _table(item: CouponItem, path: str) -> str:
 
 
 def _settings(model: type[BaseModel]) -> list[str]:
-    """Plain numbers that state how it was measured, at their defaults."""
+    """Lines for the numbers that state how a coupon was measured, with their help, at their defaults."""
     lines = []
     for key, info in model.model_fields.items():
         if isinstance(info.default, float):

@@ -1,4 +1,4 @@
-"""Measured coupons to figures, and to profiles of the lab's own.
+"""Evaluation of measured coupons into figures and into profiles of the lab's own.
 
 The lab's own mixing curve, from coupons of two resins mixed in known fractions.
 
@@ -29,7 +29,7 @@ from pneutouch.spec.values import file_name
 from pneutouch.workflows.coupons.order import resins_of
 
 HEAD = "# Written by pneutouch coupons"
-"""First words of every profile that is ours to overwrite."""
+"""First words of every profile that the command may overwrite."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class MeasuredProfile:
 
 
 def base_file(kind: str, name: str, library: Library) -> Path:
-    """The first profile of a known name that the command did not write; its own where there is no other."""
+    """The first profile of this name that the command did not write; if there is none, the first that it wrote."""
     candidates = [root / KINDS[kind].folder / f"{name}.toml" for root in library.folders]
     there = [path for path in candidates if path.is_file()]
     return next((path for path in there if not _is_ours(path)), there[0])
@@ -207,8 +207,8 @@ def _changes(path: Path, curve: MixingCurve, pair: str, library: Library) -> tup
 def enter_results(path: Path, out: Path | None = None, library: Library | None = None) -> CouponReport:
     """Read a results file, compute, and write local profiles under ``out``, else in the user's folder.
 
-    Raises InputError for a bad file, for one without readings, and rather than overwrite a profile that is not ours.
-    """
+    Raises InputError for a bad file, for one without readings, and instead of overwriting a profile that the command
+    did not write."""
     library, out = library or Library.default(), out or user_folder()
     results = read_results(path)
     findings = evaluate_results(results, str(path), library)

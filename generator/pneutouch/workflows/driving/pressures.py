@@ -34,17 +34,17 @@ from pneutouch.spec.tasks import TASK_FIGURES
 from pneutouch.units import KPA
 
 BUDGET_KEYS = {"force_range_N": "force_at_range_end_N"}
-"""Keys of the budget whose figures have another key in a task."""
+"""Keys in the budget of figures that have another key in a task, by the latter."""
 
 _TOP = 0.98
 """Share of the least nominal limit up to which the figures are computed: at the limit point itself they end."""
 
 _POINTS = {"atlas": 33, "membrane": 33}
 _FEW = 13
-"""Driving pressures at which the models of microseconds are evaluated, and those of a second."""
+"""Numbers of driving pressures: for models that take microseconds, and for those that take a second."""
 
 _BUDGETS = 7
-"""Driving pressures at which the uncertainty is computed; it changes slowly between them."""
+"""Number of driving pressures at which the uncertainty is computed; it changes slowly between them."""
 
 ReachProgress = Callable[[int, int, str], None]
 
@@ -100,7 +100,7 @@ class ReachCurves:
         return predict(scene.name, self.evaluation.sensor, pressures, model=self.model, closure=options.closure)
 
     def add(self, pressure: float) -> SensorState:
-        """The state at a driving pressure (MPa); it is kept."""
+        """The state at a driving pressure (MPa), computed and inserted if it is missing."""
         k = int(np.searchsorted(self.pressures, pressure))
         if k == len(self.states) or self.states[k].driving_pressure != pressure:
             self.states.insert(k, self.predicted([pressure]).states[0])
@@ -121,10 +121,10 @@ def reach_curves(
     progress: ReachProgress = lambda done, total, what: None,
     **options: object,
 ) -> ReachCurves:
-    """Evaluate a design over its driving pressures; its own list of them is not read. Raises InputError.
+    """Evaluate a design over driving pressures, whichever it lists itself. Raises InputError.
 
-    Where a curve has a local extremum the pressure of its parabola is added, so that the ends of what can be reached
-    are met.
+    At a local extremum of a curve the pressure of the vertex of a parabola is added, so that the ends of the reachable
+    values are met.
     """
     vented = {**changes, "pneumatics.driving_pressures_kPa": [0.0]}
     progress(0, 3, "evaluating the vented sensor")
@@ -185,7 +185,7 @@ _JUMPED = 1e-3
 class PressureBand:
     """Driving pressures (MPa) at which the k = 2 interval of the figure holds the required value.
 
-    ``open_low``, ``open_high``: the band reaches the vented sensor, the top of what was computed: it may go on.
+    ``open_low``, ``open_high``: True if the band reaches the vented sensor or the highest pressure computed.
     """
 
     low: float
@@ -261,13 +261,12 @@ def possible(curves: ReachCurves, figure: str, value: float) -> PressureBand | N
 
 
 def _excess(curves: ReachCurves, figure: str, value: float) -> Array:
-    """Distance by which the value lies outside the interval, in ln (n,); NaN if one of them is not known."""
+    """Distance by which the value lies outside the interval, in ln (n,); NaN if either is not known."""
     return np.asarray(np.abs(np.log(curves.values(figure) / value)) - curves.widths(figure))
 
 
 def _crossing(pressures: Array, excess: Array, inside: int, outside: int) -> float:
-    """Pressure at which the excess is zero between two states; the state inside if the other is none or has no
-    figure."""
+    """Pressure at which the excess is zero between two states; the inside one's if no other has a figure."""
     if not 0 <= outside < len(pressures) or np.isnan(excess[outside]):
         return float(pressures[inside])
     share = excess[inside] / (excess[inside] - excess[outside])

@@ -55,7 +55,7 @@ _FIELDS = {
     "shear_modulus": ("shear modulus of the resin, MPa", 1.0),
     "dead_volume": ("pneumatics.dead_volume_mL", ML),
 }
-"""Inputs of the model that a design can change: the user's name for each, and its unit in that of the model."""
+"""Inputs of the model that a design can change: the user's name for each, and the user's unit in the model's unit."""
 
 _FARTHEST = 2.0
 """Greatest factor on an input for which its derivative is followed: our choice."""
@@ -64,8 +64,8 @@ _FARTHEST = 2.0
 def offline_changes(curves: ReachCurves, figure: str, value: float) -> list[OfflineChange]:
     """Changes of one input each by which the figure comes nearer to the value, least change first.
 
-    The input is moved by the elasticity of the figure at the nearest state; ``predicted`` is what the model then has.
-    """
+    The input is moved by the elasticity of the figure at the nearest state; ``predicted`` is the figure that the model
+    then has."""
     values = curves.values(figure)
     if np.isnan(values).all():
         return []
@@ -108,9 +108,9 @@ HOLD_SHARE = 0.01
 
 @dataclass(frozen=True)
 class TaskAnswer:
-    """A task and the driving pressures that do it, the preferred one (the lowest) first.
+    """A task and the driving pressures that fulfil it, the preferred one (the lowest) first.
 
-    Without a solution: ``changes`` of the design, and the band in which the sensor in hand may reach it all the same.
+    Without a solution: ``changes`` of the design, and the band in which the sensor in hand may still reach the value.
     """
 
     task: DrivingTask
@@ -121,7 +121,7 @@ class TaskAnswer:
 
     @property
     def reached(self) -> bool:
-        """True if a driving pressure does it."""
+        """True if a driving pressure fulfils the task."""
         return bool(self.solutions)
 
 
@@ -206,7 +206,7 @@ _NO_LEAK = "no leak was measured; give the results of the coupon leak-cap or of 
 
 
 def driving_record(schedule: DrivingSchedule) -> DrivingRecord:
-    """The whole answer."""
+    """Record of a whole driving schedule, in the units of its names."""
     curves, rating, leak = schedule.curves, schedule.curves.evaluation.rating, schedule.leak
     record = DrivingRecord(
         design=curves.evaluation.scene.name,
@@ -242,7 +242,7 @@ def _reach(curves: ReachCurves, figure: str) -> FigureReach | None:
 
 
 def _ends(at_kPa: Array, values: Array) -> tuple[float, float, float, float]:
-    """The least value with its pressure, and the greatest with its."""
+    """The least value with its pressure, and the greatest value with its pressure."""
     low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
     return float(values[low]), float(at_kPa[low]), float(values[high]), float(at_kPa[high])
 

@@ -1,1 +1,1 @@
-"""A target to designs."""
+"""Selection of designs for a target."""

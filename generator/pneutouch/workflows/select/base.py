@@ -58,7 +58,7 @@ class ResinPair:
         return mixed_material(grade, self.library, file=self.where)
 
     def resin(self, fraction: float) -> CandidateResin:
-        """A constant mix as the search takes a resin."""
+        """A constant mix as a candidate resin of the search."""
         grade = self.grade(fraction)
         material = self.material(grade)
         sensor = material_sensor(material)
@@ -70,7 +70,7 @@ class ResinPair:
 def pair_of(name: str, printer: Printer, library: Library, where: str, named: bool = True) -> ResinPair:
     """The pair of ``SOFT+STIFF``. Raises InputError if a name is unknown or the printer does not hold both.
 
-    ``named`` is whether the user named the pair.
+    ``named`` is True if the user named the pair.
     """
     soft, stiff = (part.strip() for part in name.split("+"))
     pair = ResinPair(soft, stiff, mixing(soft, stiff, library, file=where, key="given.mix"), library, where)
@@ -215,7 +215,7 @@ def with_connector(scene: ResolvedDesign) -> str:
 
 
 def _source(target: Target, library: Library) -> DesignSource:
-    """The base without its calibration: that is of its own membrane, which the candidates' replace."""
+    """The base without its calibration, which holds only for its own membrane, not for the candidates'."""
     if target.setting.base is None:
         return DEFAULT
     try:
@@ -268,7 +268,7 @@ def _some_resin(target: Target, where: str, changes: Changes, library: Library) 
 
 
 def _runs_none(printer: Printer, named: dict[str, Material], where: str, library: Library) -> InputError:
-    """The refusal of the materials named, none of which the profile runs, or of a profile that runs no elastomer."""
+    """Error for a profile that runs none of the materials named, or no elastomer at all."""
     for name, material in named.items():
         if casting_missing(printer, material):
             return uncast(printer, material, str(library.paths("materials")[name]))

@@ -24,10 +24,10 @@ _SIZE = (130.0, 90.0)
 """Width and height of a chart, mm."""
 
 _SOLVED, _LEAST = 9, 2
-"""Driving pressures of a tuning curve by the solid, and how many must have figures."""
+"""Number of driving pressures of a tuning curve by the solid, and how many of them must have figures."""
 
 _DESIGNS = 5
-"""Designs marked on the trade-off, and resins compared with the chosen one on the tuning chart."""
+"""Most designs marked on the trade-off, and most resins compared with the chosen one on the tuning chart."""
 
 
 def write_charts(

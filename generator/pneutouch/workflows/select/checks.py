@@ -55,14 +55,14 @@ from pneutouch.spec.read import Changes, override, parse_changes, validate
 from pneutouch.spec.toml_text import design_template
 
 _RADII = np.geomspace(2.0, 60.0, 8)
-"""Radii in mm at which the connector is drawn for its dead volume; between them it is straight."""
+"""Radii in mm at which the connector is drawn for its dead volume, which is interpolated linearly between them."""
 
 _WALL_SHARE = 0.15
-"""Wall over radius of the domes drawn there: the dead volume does not go with the wall."""
+"""Wall over radius of the domes drawn at these radii: the dead volume does not depend on the wall."""
 
 
 def connector_fit(scene: ResolvedDesign) -> Callable[[Array, Array], ConnectorFit]:
-    """The connector of a scene around domes of inner radius (n,) and wall (n,), mm."""
+    """Function that fits a scene's connector around domes of inner radius (n,) and wall (n,), mm."""
     port = port_shape(scene.port, scene.tube, scene.hole_undersize)
 
     def fit(radius: Array, wall: Array) -> ConnectorFit:
@@ -77,7 +77,7 @@ def connector_fit(scene: ResolvedDesign) -> Callable[[Array, Array], ConnectorFi
 
 
 def base_sensor(scene: ResolvedDesign) -> Sensor:
-    """The sensor of a base, whose own dome is drawn in another size where the connector has no space for it.
+    """Sensor of a base; with a dome of another size if the connector has no space for the base's own.
 
     Raises InputError if no size has space.
     """
@@ -91,7 +91,7 @@ def base_sensor(scene: ResolvedDesign) -> Sensor:
 
 
 def dead_volume(scene: ResolvedDesign, sensor: Sensor) -> Callable[[Array], Array]:
-    """Dead volume (mm3) over the inner radius: drawn at a few radii where the connector's channel follows it."""
+    """Function of the inner radius that gives the dead volume (mm3): stated, or interpolated between drawn radii."""
     if scene.design.pneumatics.dead_volume_mL is not None:
         return lambda radius: np.full_like(radius, sensor.gas.dead_volume)
     drawn = [(radius, assembly.dead_volume) for radius, assembly in _sizes(scene) if assembly is not None]
@@ -140,7 +140,7 @@ class Judgement(NamedTuple):
     """Judgement of ``check`` on a design.
 
     reason: the first broken rule (None if the design cannot be drawn or predicted) and why; None if it passes.
-    evaluation: the design as the solid predicts it; None if the print rules alone looked at it.
+    evaluation: the design as the solid predicts it; None if only the print rules were applied.
     """
 
     reason: tuple[str | None, str] | None
@@ -148,7 +148,7 @@ class Judgement(NamedTuple):
 
 
 def judge(source: DesignSource, library: Library, *, predicted: bool) -> Judgement:
-    """Judge a design: ``predicted`` as ``check`` does, by the solid too; else by the print rules on its bodies.
+    """Judge a design as ``check`` does, with the solid if ``predicted``; else only by the print rules on its bodies.
 
     The stability around the axis, which changes neither a finding nor a figure, is not checked.
     """
@@ -194,8 +194,8 @@ AssignmentsOf = Callable[[Candidate], list[str]]
 
 
 def other_contact(sensor: Sensor) -> str | None:
-    """Reason why the search with the atlas alone is not enough: the pressing object, or the missing base; None if it
-    is."""
+    """Reason why the search with the atlas alone is not enough: the pressing object, or the missing base; None if the
+    atlas is enough."""
     if sensor.protocol.other_contact is not None:
         return sensor.protocol.other_contact
     return "the wall passes through its base plane" if sensor.dome.base is None else None
@@ -224,9 +224,9 @@ def contact_notes(selection: ContactSelection, scene: ResolvedDesign) -> list[st
 
 
 class CandidateSolver:
-    """Candidates as `predict` answers their designs: base and assignments drawn, pressed by the solid.
+    """Solver of candidates as `predict` computes their designs: base and assignments drawn, pressed by the solid.
 
-    ``assignments`` gives what turns the base into a candidate.
+    ``assignments`` gives the changes that turn the base into a candidate.
     """
 
     def __init__(self, base: ResolvedDesign, assignments: AssignmentsOf, library: Library) -> None:

@@ -193,7 +193,7 @@ def relaxed(selection: SelectionRun, dropped: DroppedRequirement) -> tuple[str |
 
 
 def _rounded(value: float, to: Callable[[float], int]) -> float:
-    """A value to a hundredth, down or up."""
+    """A value rounded to a hundredth by ``to`` (floor or ceil)."""
     return to(100 * value) / 100
 
 
@@ -279,7 +279,7 @@ def _rejected_words(one: RejectedDesign) -> str:
 
 
 def graded(selection: GradedSelectionRun) -> GradedRecord:
-    """The search as ``select`` prints it."""
+    """The search for a graded wall as ``select`` prints it."""
     search, sensor = selection.search, selection.sensor
     return GradedRecord(
         target=selection.target.model_dump(mode="json"),

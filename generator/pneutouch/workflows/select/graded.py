@@ -42,10 +42,10 @@ from pneutouch.workflows.select.checks import judge, other_contact, source_of, w
 from pneutouch.workflows.select.select import grade_text, problem_of
 
 _LEVELS = 4
-"""Fractions of the scan at pole and rim: moduli twice apart for TangoPlus and VeroClear, 16 trials."""
+"""Number of fractions scanned at pole and rim: moduli twice apart for TangoPlus and VeroClear, 16 trials."""
 _TRIALS = 48
 _WALL_ROUNDS = 2
-"""Corrections of the wall under a contact that the atlas does not cover; the grade is searched for by the solid."""
+"""Number of corrections of the wall under a contact that the atlas does not cover; the solid searches the grade."""
 _SMALLER = "give a smaller given.inner_radius_mm (`inner_radius`)"
 
 
@@ -160,7 +160,7 @@ def _grade_target(target: Target) -> GradeTarget:
 
 
 def _wall(target: Target, where: str, grade_target: GradeTarget, problem: SelectionProblem, base: Sensor) -> float:
-    """The wall given; else that with which the mix of middle modulus has the sensitivity, else the base's."""
+    """Wall, mm: as given; else the one with which the mix of middle modulus has the sensitivity; else the base's."""
     radius, most = base.dome.inner_radius, target.target.max_diameter_mm
     thickest = np.inf if most is None else 0.5 * most - radius
     wall = target.given.wall_thickness_mm
@@ -188,7 +188,7 @@ def _wall(target: Target, where: str, grade_target: GradeTarget, problem: Select
 
 
 def _middle_wall(grade_target: GradeTarget, problem: SelectionProblem, base: Sensor, thickest: float) -> float | None:
-    """The wall of `middle_wall`; under a contact that the atlas does not cover for a target that it has corrected."""
+    """Wall of `middle_wall`; under a contact that the atlas does not cover, with the target corrected by the solid."""
     radius, target_kPa_per_N = base.dome.inner_radius, grade_target.sensitivity
     problem = without_plate(problem, base)
     wall = middle_wall(grade_target, problem, radius, thickest)
@@ -261,7 +261,7 @@ def _nearest(
 ) -> UniformMembrane:
     """The constant mix nearest to the target: by the atlas, else the nearest of those tried; solved by the solid.
 
-    Where the solid then has it outside of a tolerance, the atlas looks once more, corrected by that solve.
+    If the solid finds it outside a tolerance, the atlas searches once more, corrected by that solution.
     """
 
     def solved(fraction: float) -> UniformMembrane:

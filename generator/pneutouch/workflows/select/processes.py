@@ -1,6 +1,6 @@
-"""One target over several processes: the selection of each on a profile of it, one below the other.
+"""One target over several processes: a selection for each process, on one of its profiles.
 
-A selection with its gauge: the one named, or of all the one that covers the range and detects the smallest force.
+A selection with its gauge: the one named, or the one that covers the range and detects the smallest force.
 """
 
 from __future__ import annotations
@@ -52,10 +52,10 @@ def select(
     written: int | None = None,
     progress: Callable[[str], None] = lambda step: None,
 ) -> SelectionRun:
-    """Answer a target as `run.select` does; with ``setting.gauge`` "any" also choose the gauge.
+    """Answer a target as `select.select` does; with ``setting.gauge`` "any" also choose the gauge.
 
     Gauges are tried in the order of the smallest force that they detect; the first one whose range no selected design
-    leaves is taken. Those whose noise is not stated come last. Without one the answer has no design.
+    leaves is taken. Those whose noise is not stated come last. If there is none, the answer has no design.
     """
     library = CachedLibrary((library or Library.default()).folders)
     named = target.setting.gauge
@@ -170,10 +170,10 @@ def select_processes(
     *,
     progress: Callable[[int, int, str], None] = lambda done, total, step: None,
 ) -> ProcessSelection:
-    """Answer a target once for each of its ``setting.processes``. Raises InputError as `gauged.select` does.
+    """Answer a target once for each of its ``setting.processes``. Raises InputError as `select` does.
 
-    A process takes the base's profile where that is one of it, else the first that makes an elastomer; resins that the
-    target names count for the processes that make them.
+    A process takes the base's profile if that is of the process, else its first that makes an elastomer; resins that
+    the target names count for the processes that make them.
     """
     library = CachedLibrary((library or Library.default()).folders)
     names = _named(target, library)
@@ -196,7 +196,7 @@ def select_processes(
 
 
 def _named(target: Target, library: Library) -> list[str]:
-    """The processes of a target once each; all that make an elastomer in place of any."""
+    """Processes of a target, each once; for "any" all processes that make an elastomer."""
     names = list(dict.fromkeys(target.setting.processes or ()))
     if names == ["any"]:
         return [process for process in get_args(Process) if _profile(process, "", None, library) is not None]

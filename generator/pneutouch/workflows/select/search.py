@@ -1,4 +1,4 @@
-"""The answer to a target of any kind: designs by rank, with a gauge chosen where none is named, a grade, or the best of
+"""The answer to a target of any kind: designs by rank, with a gauge chosen if any may be taken, a grade, or the best of
 each process.
 
 For a target that no design meets: changes of one thing outside its requirements, each of which alone is enough.
@@ -31,21 +31,21 @@ SelectedRecord = SelectionRecord | GradedRecord | ProcessesRecord
 
 @dataclass(frozen=True)
 class FoundChoice:
-    """A design that meets a target: its rank or its process, and what turns the base into it."""
+    """A design that meets a target: its rank or process, its base, and the assignments that change the base into it."""
 
     label: str
     base: ResolvedDesign
     assignments: list[str]
 
     def write(self, name: str, folder: Path, *, overwrite: bool = False) -> Path:
-        """Save it as ``folder/name.toml``, a design that ``build`` takes; over a file with ``overwrite`` alone."""
+        """Save the design as ``folder/name.toml`` for ``build``; replace a file only if ``overwrite``."""
         return write_assigned(self.base.design, self.assignments, name, folder, overwrite=overwrite)
 
 
 @dataclass(frozen=True)
 class TargetAnswer:
-    """An answer: its record, the designs that meet the target, best first, and why ``check`` rejects a grade that
-    would; without designs the single changes with which there are some."""
+    """An answer: its record, the designs that meet the target, best first, the reason why ``check`` rejects a grade
+    that would meet it, and, without designs, the single changes that make one possible."""
 
     run: SelectionRun | GradedSelectionRun | ProcessSelection
     record: SelectedRecord
@@ -91,13 +91,13 @@ def search(
 
 
 class Change(NamedTuple):
-    """A change of a field of the target, ``table.key``; for ``setting.assignments`` one more of them."""
+    """A change of a field of the target, ``table.key``; for ``setting.assignments`` an additional assignment."""
 
     field: str
     value: Any
 
     def of(self, target: Target, library: Library) -> Target:
-        """The target with it; a process by the printer that makes its resins."""
+        """The target with this change; a process is set by a printer that makes the target's resins."""
         table, _, key = self.field.partition(".")
         if key == "processes":
             return on_process(target, self.value[0], library)
@@ -117,8 +117,8 @@ def working_changes(
 ) -> Iterator[WorkingChange]:
     """Changes of tube, port, gauge, settled sizes, resins and process, each of which alone makes a design possible.
 
-    Each was searched, and the design passes ``check``; of tubes and dead volumes the one nearest to the target's own is
-    given. Nothing where the solid searches, in minutes a change, and where ``check`` rejects what was found.
+    Each was searched, and the design passes ``check``; of tubes and dead volumes the value nearest to the target's own
+    is given. Nothing is tried if the solid searches (minutes for each change) or ``check`` rejected a design.
     """
     if run.by_solid is not None or run.rejected or run.answer.nearest is None:
         return
@@ -144,7 +144,7 @@ _BEHIND_THE_CAVITY = ("setting.tube_length_mm", "setting.dead_volume_mL", "setti
 def _tried(run: SelectionRun, change: Change, where: str, library: Library) -> SelectionRun | None:
     """The selection with a change; None if no design on the scan meets the target and passes ``check``.
 
-    What stands behind the cavity is tried with the resins that come nearest, in a fraction of the time of all.
+    Changes behind the cavity are tried only with the resins of the nearest designs, in a fraction of the time.
     """
     target, near = change.of(run.target, library), [run.answer.nearest, *(each.best for each in run.answer.dropped)]
     names = sorted({choice.resin.name for choice in near if choice is not None and choice.resin.grade is None})
@@ -174,7 +174,7 @@ def _trials(run: SelectionRun, where: str, library: Library) -> Iterator[tuple[s
 
 
 _SHORTEST_MM = 20.0
-"""A gauge right behind the connector."""
+"""Shortest tube that is tried, mm: a gauge right behind the connector."""
 _SHARES = (0.5, 0.25, 0.1)
 _MULTIPLES = (2.0, 4.0, 8.0)
 
@@ -201,11 +201,11 @@ def _wider(run: SelectionRun, library: Library) -> list[str]:
 
 
 _PORTS = 3
-"""Ports that are tried, those first that are nearest to the target in what it misses."""
+"""Greatest number of ports that are tried, in the order of `_ports`."""
 
 
 def _ports(run: SelectionRun, library: Library) -> list[str]:
-    """Other ports, those with the least gas first, or with the least footprint where that is exceeded."""
+    """Other ports, by least gas first; or by least footprint first, if the footprint is exceeded."""
     nearest = run.answer.nearest
     assert nearest is not None
     radius, wall = nearest.pool.radius, nearest.pool.wall

@@ -1,4 +1,4 @@
-"""A target to designs: resolves its names, searches, confirms the best by the solid, writes the chosen one."""
+"""Selection of designs for a target: resolve names, search, confirm the best by the solid, write the chosen one."""
 
 from __future__ import annotations
 
@@ -56,15 +56,15 @@ from pneutouch.workflows.select.checks import (
 )
 
 _CONFIRMED = 3
-"""Designs that are confirmed by the solid."""
+"""Number of designs that are confirmed by the solid."""
 _NOTHING = SelectionResult([], None, [], 0)
 _PLATE_SHARE = 1.25
-"""Radius over R0 of a plate that no base gives: the contact of an inflated dome grows past R0."""
+"""Radius over R0 of the plate where no base gives one: the contact of an inflated dome grows past R0."""
 
 
 @dataclass(frozen=True)
 class Confirmation:
-    """The result of the solid for a design: sensitivity (kPa/N) and whether it lies within the stated uncertainty."""
+    """The result of the solid for a design: sensitivity (kPa/N) and True if it lies within the stated uncertainty."""
 
     sensitivity: float
     within: bool
@@ -118,7 +118,7 @@ class SelectionRun:
         return float(self.problem.connector(choice.pool.radius, choice.pool.wall).diameter[0])
 
     def sensor_of(self, choice: Candidate) -> Sensor:
-        """A choice as a sensor, in everything else the base design's."""
+        """Sensor of a choice, otherwise with the properties of the base design."""
         pool, resin = choice.pool, choice.resin
         batch = self.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
         return sized_as(self.sensor, batch, 0).replace(
@@ -167,9 +167,9 @@ def found(
     thorough: bool = True,
     progress: Callable[[str], None] = lambda step: None,
 ) -> SelectionRun:
-    """The search alone: designs by rank that neither the print rules nor the solid have seen.
+    """Search for designs, by rank; neither the print rules nor the solid check them.
 
-    Without ``thorough`` the scan alone is searched: a design between its points may be missed.
+    Without ``thorough`` only the scan is searched: a design between its points may be missed.
     """
     progress("base")
     scene = base_scene(target, where, library)
@@ -186,7 +186,7 @@ def found(
 
 
 def _answered(run: SelectionRun, refine: Refine | None, library: Library, *, thorough: bool) -> SelectionRun:
-    """The run with its answer: by the atlas, or by the solid where that alone covers the base's contact."""
+    """The run with its answer: by the atlas, or by the solid where only that covers the base's contact."""
     target, problem = run.target, run.problem
     weights = target.weights.robustness, target.weights.tunability
     errors = measured_errors(library.all("materials", Material))
@@ -210,7 +210,7 @@ def _answered(run: SelectionRun, refine: Refine | None, library: Library, *, tho
 
 
 def passing(run: SelectionRun, written: int | None, library: Library) -> SelectionRun:
-    """The answer without the designs that do not pass; looked at by rank until enough do."""
+    """The run without designs that do not pass ``check``; they are tried by rank until enough pass."""
     passed: list[Candidate] = []
     rejected: list[RejectedDesign] = []
     judged: dict[int, Evaluation] = {}
@@ -270,7 +270,7 @@ def _resins(
 def problem_of(
     target: Target, scene: ResolvedDesign, sensor: Sensor, resins: tuple[CandidateResin, ...]
 ) -> SelectionProblem:
-    """The search in numbers, on a base with its sensor."""
+    """Selection problem of a target, in numbers, on a base with its sensor."""
     required, given = target.target, target.given
     feature = scene.printer.smallest.wall("elastomer")
     return SelectionProblem(
@@ -300,7 +300,7 @@ def problem_of(
 
 
 def _confirm(selection: SelectionRun, choice: Candidate, judged: Evaluation | None) -> Confirmation:
-    """The solid's sensitivity, compared with that of the atlas; of a design judged already it is known."""
+    """The solid's sensitivity, compared with that of the atlas; a judged design has it already."""
     from pneutouch.mechanics.models.solid import solid_states
 
     if judged is None:

@@ -38,7 +38,7 @@ BONDED = frozenset({"walls", "pins"})
 """Rules on free-standing features: here they are bonded to the other resin, which the limits do not include."""
 
 _MOST_CHECKED = 40_000
-"""Indices of a body up to which it is measured by rays; beyond it a minute and more."""
+"""Number of triangles up to which a body is measured by rays; beyond it a minute and more."""
 
 _JOB = "specimen"
 
@@ -81,7 +81,7 @@ def _item(drawn: SpecimenBodies, body: Body) -> PrintItem:
 
 
 def _joint(drawn: SpecimenBodies) -> Joint:
-    """All of the inclusion but its footprints on the sides of the block meets the matrix."""
+    """Joint of matrix and inclusion: the inclusion's surface without its footprints on the sides of the block."""
     inclusion = drawn.bodies[1]
     corners, block = inclusion.corners, drawn.scene.block
     ends = np.array([block.low, block.high])
@@ -101,7 +101,7 @@ def _rounding(drawn: SpecimenBodies, finding: Finding) -> bool:
 
 
 def _bonded(finding: Finding) -> Finding:
-    """A thin place of a body that is bonded is a warning: the limit is of one that stands free."""
+    """The finding, as a warning for a thin place of a bonded body: the limit is of free-standing features."""
     if finding.rule not in BONDED or finding.body == "frame":
         return finding
     severity = "warning" if finding.severity == "error" else finding.severity
@@ -150,7 +150,7 @@ def build_specimen(
     *,
     called: str | None = None,
 ) -> tuple[Path, list[Finding]]:
-    """Write everything a specimen, by name or path, gives into ``out/<name>/``; that folder and the findings.
+    """Write everything a specimen, by name or path, gives into ``out/<name>/``; returns that folder and the findings.
 
     ``called`` is the name of the folder and its files where it is not the specimen's own.
 

@@ -128,9 +128,9 @@ class SpecimenBodies:
 
 
 def draw(scene: ResolvedSpecimen) -> SpecimenBodies:
-    """Draw every layer and part the block among the bodies.
+    """Draw every layer and divide the block among the bodies.
 
-    Raises InputError for layers that cannot be or meet one another, ComputationError where a body is not closed.
+    Raises InputError for layers that are impossible or meet one another, ComputationError where a body is not closed.
     """
     patterns = _patterns(scene)
     whole = joined([pattern.mesh for pattern in patterns])

@@ -1,4 +1,4 @@
-"""Records to one xarray dataset, and that to the bytes of a netCDF file.
+"""Conversion of records to one xarray dataset, and of the dataset to the bytes of a netCDF file.
 
 netCDF-3 with 64-bit offsets, by scipy: it needs no further library here, every tool reads it, and it holds no clock.
 
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 PRESSURE = "driving_pressure_kPa"
-"""The dimension of the driving pressures: those of all points."""
+"""Name of the dimension of driving pressures, which holds those of all points."""
 
 MOST_BYTES = 2**30
 """Largest size of a dataset, which is in memory as a whole: some million points."""
@@ -49,8 +49,8 @@ _CONTENT_HASH = "content_hash"
 def dataset(study: SweepStudy, records: dict[int, Record]) -> xarray.Dataset:
     """The dataset of a finished sweep: ``records`` holds every point.
 
-    Dimensions are those of the grid, or ``point``, and the driving pressure. Numbers that are not there are NaN,
-    texts empty.
+    Dimensions are those of the grid, or ``point``, and the driving pressure. Missing numbers are NaN, missing texts
+    empty.
     """
     import xarray
 
@@ -228,7 +228,7 @@ _ENDS = "sensitivity_low_kPa_per_N", "sensitivity_high_kPa_per_N"
 def table_rows(content: xarray.Dataset) -> list[dict[str, Any]]:
     """A row for every state of the sweep, in the order of the dataset: swept fields, driving pressure, then figures.
 
-    Numbers that are not there are None.
+    Missing numbers are None.
     """
     dims = list(content["status"].dims)
     names = [v.name for v in (*STATE, *POINT)]
@@ -261,9 +261,9 @@ def _cell(value: Any) -> Any:
 
 
 def check_companions(out: Path, plan: SweepPlan) -> None:
-    """Raise InputError where ``out`` can be no dataset, or the table or a picture would replace another's file.
+    """Raise InputError if ``out`` cannot be a dataset, or its table or a picture would replace a foreign file.
 
-    Where there is no dataset, what stands in their places was written by no sweep.
+    Where there is no dataset, a file in the place of table or picture was not written by a sweep.
     """
     check_output(out)
     if out.exists():
@@ -298,7 +298,7 @@ def _picture_files(out: Path, name: str) -> tuple[Path, Path]:
 
 
 def swept_figure(content: xarray.Dataset) -> SweptFigure | None:
-    """The drawn figure over the swept fields; None if no state has one. A list is drawn over its first field."""
+    """Sensitivity over the swept fields, to be drawn; None if no state has one. A list becomes a grid (`_gridded`)."""
     from pneutouch.report.swept import SweptFigure
 
     if not np.isfinite(content[SENSITIVITY_KEY].values).any():
@@ -313,7 +313,7 @@ def swept_figure(content: xarray.Dataset) -> SweptFigure | None:
 
 
 def _gridded(content: xarray.Dataset) -> xarray.Dataset:
-    """A list of points as a grid over its fields, where it is one; else over the number of the point."""
+    """A list of points over its field, if it has a single one without repeats; else over the number of the point."""
     fields = [str(name) for name, values in content.coords.items() if name != "point" and values.dims == ("point",)]
     kept = content[[SENSITIVITY_KEY, *_ENDS]]
     places = list(zip(*(content[name].values.tolist() for name in fields), strict=True))
@@ -352,7 +352,7 @@ def write_maps(content: xarray.Dataset, folder: Path) -> list[Path]:
 def sweep_maps(content: xarray.Dataset) -> dict[str, SweptMap]:
     """The maps of every figure over the first two dense fields, by the names of their files.
 
-    Values of a third field, four at most, have maps of their own; what is left stays at its middle value.
+    Values of a third field, four at most, have maps of their own; every other field stays at its middle value.
     """
     from pneutouch.report.swept import SweptMap, spread_places
 
@@ -378,7 +378,7 @@ def sweep_maps(content: xarray.Dataset) -> dict[str, SweptMap]:
 
 
 def _map_panels(content: xarray.Dataset, variable: str) -> list[MapPanel]:
-    """A figure at each driving pressure, four at most; one panel where it is of the points."""
+    """A figure at each driving pressure, four at most; one panel for a figure that does not depend on it."""
     from pneutouch.report.swept import MapPanel, spread_places
 
     values, messages, axis = content[variable].values, content["message"].values, _axis(content, PRESSURE)

@@ -33,7 +33,7 @@ class SweepResult:
 
 @dataclass(frozen=True, slots=True)
 class ComputeResources:
-    """Computers of a sweep: ``workers`` processes here (None: one a core), or the cluster of ``scheduler``."""
+    """Computers of a sweep: ``workers`` processes here (None: one per core), or the cluster of ``scheduler``."""
 
     workers: int | None = None
     scheduler: str | None = None

@@ -117,7 +117,7 @@ class SweepPlan:
         return tuple(reversed(places))
 
     def overrides(self, index: int) -> Settings:
-        """All settings of a point, those of all points included."""
+        """All settings of a point, including those common to all points."""
         if self.points:
             return {**self.settings, **self.points[index]}
         place = self.position(index)
@@ -279,7 +279,7 @@ def _values(where: str, key: str, given: Any) -> list[Any]:
 
 
 def _unwrapped(values: list[Any]) -> list[Any]:
-    """The values of one axis; a sweep's are scalars, so that a list in brackets is that list."""
+    """Values of one axis; a sweep varies scalars, so that a single list in brackets is the list of values."""
     return values[0] if len(values) == 1 and isinstance(values[0], list) else values
 
 
@@ -308,7 +308,7 @@ def _scalar(where: str, key: str, given: Any, label: str) -> float | int | str |
 
 
 def _flat(where: str, table: str, given: Any) -> dict[str, Any]:
-    """Keys as ``table.key``, whether they were written with quotes or TOML made tables of the dots."""
+    """Keys as ``table.key``, from keys in quotes and from dotted keys, of which TOML makes tables."""
     if not isinstance(given, dict):
         raise InputError(f"{table} = {shown(given)}: must be a table", file=where)
     flat: dict[str, Any] = {}

@@ -70,7 +70,7 @@ class Journal:
             os.fsync(file.fileno())
 
     def _rewrite(self, lines: list[bytes]) -> None:
-        """Keep these lines alone: a line appended to a torn one would be lost with it."""
+        """Rewrite the file with only these lines: a line appended to a torn one would be lost with it."""
         fresh = self.path.with_name(f"{self.path.name}.new")
         replace_whole(fresh, self.path, b"".join(line + b"\n" for line in lines))
 
@@ -168,7 +168,7 @@ class WorkFolder:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Let go of the lock; a folder without progress in it is removed."""
+        """Release the lock; a folder without progress in it is removed."""
         cleaned(self._leave)
 
     def _leave(self) -> None:

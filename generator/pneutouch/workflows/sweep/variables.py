@@ -1,6 +1,6 @@
 """The variables of a sweep's dataset: each declared once, with its place in a prediction, unit and meaning.
 
-The figures that are mapped, and short words for the message of a state that is not there.
+The figures that are mapped, and short words for the message of a missing state.
 """
 
 import re
@@ -35,7 +35,7 @@ class SweepVariable:
 
 
 def _at(*keys: str) -> Callable[[Any], Any]:
-    """Reads a nested entry; None if one on the way is None."""
+    """Function that reads a nested entry; it returns None if an entry on the way is None."""
 
     def read(record: Any) -> Any:
         for key in keys:
@@ -54,7 +54,7 @@ def _force(end: int) -> Callable[[StateRecord], Any]:
 
 
 def _off_axis(name: str, units: str, long_name: str) -> SweepVariable:
-    """A curve of contact off the axis at the end of the range."""
+    """Variable with the value of an off-axis curve at the end of the range."""
 
     def read(state: StateRecord) -> Any:
         values, travel = _at("off_axis", name)(state), state.curve.indentation_mm
@@ -73,7 +73,7 @@ def _range_event(state: StateRecord) -> str:
 
 
 def _unread(state: StateRecord) -> None:
-    """The interval stands beside the state."""
+    """No value: an interval is not part of a state (see `state_values`)."""
 
 
 _ENDS = "sensitivity_low_kPa_per_N", "sensitivity_high_kPa_per_N"
@@ -214,7 +214,7 @@ _REASONS = (
 
 
 def reason_words(message: str) -> str:
-    """Short words for a state's message, the same for messages that differ in numbers alone."""
+    """Short words for a state's message, the same for messages that differ only in numbers."""
     for part, words in _REASONS:
         if part in message:
             return words

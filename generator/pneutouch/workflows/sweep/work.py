@@ -42,12 +42,12 @@ class SweepPoint:
 
 @dataclass(frozen=True)
 class SweepStudy:
-    """A checked plan. ``base`` is the design file alone; ``files`` (path to text) is a library of the files that it
+    """A checked plan. ``base`` is only the design file; ``files`` (path to text) is a library of the files that it
     names.
 
-    The work reads ``files`` and not the library: a sweep does not notice when a user edits a material while it
-    runs, and a machine of a cluster needs no copy of the user's folder. ``fingerprint`` is the SHA-256 of all that
-    the figures follow from.
+    The work reads ``files`` and not the library: a sweep does not notice when a user edits a material while it runs,
+    and a machine of a cluster needs no copy of the user's folder. ``fingerprint`` is the SHA-256 of all that the
+    figures follow from.
     """
 
     plan: SweepPlan
@@ -57,7 +57,7 @@ class SweepStudy:
     fingerprint: str
 
     def point(self, index: int) -> SweepPoint:
-        """The point of a number."""
+        """The point with a given number."""
         settings = self.plan.overrides(index)
         given = settings.pop(PRESSURES, self.base.pneumatics.driving_pressures_kPa)
         assert isinstance(given, list)
@@ -199,8 +199,8 @@ def _fault(plan: SweepPlan, index: int, library: Library) -> InputError | None:
 
 
 CHUNK_POINTS = {"membrane": 32, "atlas": 128, "auto": 32}
-"""Points handed out at once: about a second of work, so that a stop loses and a slow machine delays little. The atlas
-answers them together."""
+"""Number of points in a chunk by model: about a second of work, so that a stop loses and a slow machine delays little.
+The atlas answers them together."""
 
 Record = dict[str, Any]
 """A finished point as plain data: ``point`` (its number), ``states`` in order of driving pressure, ``values``."""
@@ -208,7 +208,7 @@ Record = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class SweepChunk:
-    """Points to compute alike: which design and options."""
+    """Points to compute with the same design and options."""
 
     points: tuple[SweepPoint, ...]
     design: str
@@ -233,7 +233,7 @@ def unpack(files: dict[str, str], folder: Path) -> None:
 
 
 def compute(chunk: SweepChunk, folder: Path) -> list[Record]:
-    """Predict every point of a chunk from the files in ``folder``; a point that cannot be is a record too.
+    """Predict every point of a chunk from the files in ``folder``; a point that cannot be predicted has a record too.
 
     Driving pressures beyond the limit are refused one by one, and the rest is predicted.
     """
@@ -351,6 +351,6 @@ def _failure(error: Exception, count: int, library: Library) -> list[dict[str, A
 
 
 def _stopped(status: str, message: str, count: int, library: Library) -> list[dict[str, Any]]:
-    """States without figures. The folder of the files is a temporary one, so messages name the file alone."""
+    """States without figures. The folder of the files is a temporary one, so messages name only the file."""
     folder = f"{library.folders[0]}/"
     return [{"status": status, "message": message.replace(folder, "")} for _ in range(count)]

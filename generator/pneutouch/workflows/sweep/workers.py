@@ -1,4 +1,4 @@
-"""Chunks computed on a Dask cluster that is there already.
+"""Chunks computed on an existing Dask cluster.
 
 Chunks computed on this machine: in this process, or in a pool of others.
 """
@@ -33,7 +33,7 @@ _PATIENCE = 6
 """Seconds to wait for the scheduler, and again for a worker."""
 
 _QUEUED = 3
-"""Chunks sent ahead a core of the cluster: more only lengthen the work that a stop throws away."""
+"""Chunks sent ahead for each core of the cluster: more would only lengthen the work that a stop throws away."""
 
 
 def on_cluster(study: SweepStudy, chunks: list[SweepChunk], address: str) -> Iterator[list[Record]]:
@@ -78,7 +78,7 @@ def _computed(client: Client, study: SweepStudy, chunks: list[SweepChunk], addre
 
 
 def compute_there(chunk: SweepChunk, files: dict[str, str], version: str) -> list[Record]:
-    """Compute a chunk on a machine that may have nothing of the user's: the files come with it."""
+    """Compute a chunk from files sent with it, on a machine that may have nothing of the user's."""
     if version != __version__:
         raise InputError(f"a worker has pneutouch {__version__}, this is {version}; they must be the same")
     with temporary_folder() as folder:
@@ -160,7 +160,7 @@ async def _identity(address: str) -> str:
 
 
 _QUEUED_EACH = 2
-"""Chunks waiting a worker: enough that none idles, few enough that a stop is soon done."""
+"""Chunks that wait for each worker: enough that none idles, few enough that a stop is soon done."""
 
 
 def cores() -> int:
@@ -169,7 +169,7 @@ def cores() -> int:
 
 
 def in_process(chunks: list[SweepChunk], folder: Path) -> Iterator[list[Record]]:
-    """Compute one chunk after the other, here."""
+    """Compute one chunk after the other in this process."""
     for chunk in chunks:
         yield compute(chunk, folder)
 
@@ -177,7 +177,7 @@ def in_process(chunks: list[SweepChunk], folder: Path) -> Iterator[list[Record]]
 def in_pool(chunks: list[SweepChunk], folder: Path, workers: int) -> Iterator[list[Record]]:
     """Compute chunks in ``workers`` processes; records come in the order in which chunks are done.
 
-    Raises ComputationError if a worker dies. What ends it half way ends the processes as well.
+    Raises ComputationError if a worker dies. If it is ended half way, the processes end as well.
     """
     context = multiprocessing.get_context("spawn")
     waiting, others = iter(chunks), set(multiprocessing.active_children())
@@ -229,7 +229,7 @@ def _single_threaded() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _deaf() -> Iterator[None]:
-    """Processes started here never receive Ctrl-C, not even while they start: it is the parent's to handle.
+    """Processes started here never receive Ctrl-C, not even while they start: the parent handles it.
 
     Blocked and not ignored, for the parent receives it afterwards.
     """
@@ -241,7 +241,7 @@ def _deaf() -> Iterator[None]:
 
 
 def _prepare_worker() -> None:
-    """A worker is deaf to Ctrl-C however it was started, and ends with its parent where that was killed."""
+    """Make a worker ignore Ctrl-C, however it was started, and end when its parent was killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 

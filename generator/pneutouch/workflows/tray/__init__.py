@@ -1,1 +1,1 @@
-"""Several sensors on one tray of a printer: packed, marked, labelled, in as few resin changes as can be."""
+"""Several sensors on one tray of a printer: packed, marked, labelled, with as few resin changes as possible."""

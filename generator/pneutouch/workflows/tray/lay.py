@@ -1,4 +1,4 @@
-"""A tray laid out: its parts meshed once a geometry, marked, packed, and split into jobs by resin."""
+"""A tray laid out: its parts meshed once for each geometry, marked, packed, and split into jobs by resin."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -115,7 +115,7 @@ class TrayLayout:
 
 
 def lay(order: TrayOrder, library: Library | None = None, progress: StepReport = lambda step: None) -> TrayLayout:
-    """Draw, group, mesh, mark and pack the parts of a tray. Raises InputError if it cannot be or does not fit."""
+    """Draw, group, mesh, mark and pack the parts of a tray. Raises InputError if they cannot be made or do not fit."""
     progress("designs")
     expanded = expand(order, library)
     pieces, printer = expanded.pieces, expanded.printer
@@ -182,7 +182,7 @@ def _job(pieces: list[TrayPiece], printer: Printer, marker: Marker, order: TrayO
 
 
 def _part(piece: TrayPiece, plain: list[Body], copy: int, marker: Marker) -> TrayPart:
-    """A part with its marks, at the origin. In an assembly the rigid body is marked, and the membrane left alone."""
+    """A part with its marks, at the origin. In an assembly the rigid body is marked, and the membrane is not."""
     value, label = piece.value, f"{piece.value.letter}{copy}"
     bodies, marks = [], []
     for solid, body in zip(piece.solids, plain, strict=True):
@@ -214,7 +214,7 @@ def _check_height(parts: list[TrayPart], printer: Printer, where: str) -> None:
 
 
 def _check_closed(part: TrayPart) -> None:
-    """Readers of STL merge vertices in float32, in the tray's frame."""
+    """Raise ComputationError if a mesh does not close once vertices merge in float32, as readers of STL do."""
     for body in part.on_tray():
         if not body.welded().is_closed():
             raise ComputationError(

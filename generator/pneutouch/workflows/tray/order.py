@@ -39,7 +39,7 @@ class TrayOrder:
 
 
 def is_tray_file(path: Path) -> bool:
-    """True if a path is a TOML file with the tables of a tray; designs have none, and a missing file neither."""
+    """True if a path is a TOML file with the tables of a tray; False for a design or a missing file."""
     return path.suffix == ".toml" and is_file(path) and not {"tray", "entry"}.isdisjoint(read_toml(path))
 
 
@@ -57,7 +57,7 @@ def order_of_file(path: Path, overrides: Changes | None = None, **head: Any) -> 
 def order_of_flags(
     designs: Sequence[str], over: Sequence[str] = (), copies: int = 1, overrides: Changes | None = None, **head: Any
 ) -> TrayOrder:
-    """One entry a design, each over the values of ``table.key=VALUES`` (see `spec.tray`), ``copies`` of each.
+    """One entry for each design, varied over ``table.key=VALUES`` (see `spec.tray`), with ``copies`` of each value.
 
     Raises InputError naming the parameter.
     """
@@ -72,15 +72,15 @@ def order_of_flags(
 
 
 LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"
-"""Without I and O, which read as 1 and 0."""
+"""Letters of the variants, without I and O, which read as 1 and 0."""
 
 MOST_PARTS = 2000
-"""More bodies than this are a mistake: a tray holds some hundred."""
+"""Greatest number of bodies of a tray, which holds some hundred: more are a mistake."""
 
 
 @dataclass(frozen=True)
 class TrayVariant:
-    """One design of a tray. ``index`` counts from 1, ``letter`` is it in letters; ``key`` and ``value`` vary."""
+    """One design of a tray: its number ``index`` from 1, the same in letters, and the varied ``key`` with its value."""
 
     index: int
     letter: str
@@ -142,7 +142,7 @@ def expand(order: TrayOrder, library: Library | None = None) -> ExpandedTray:
 
 
 def letter(index: int) -> str:
-    """The letters of a value: A to Z without I and O, then AA, AB ..."""
+    """Number of a value in letters: A to Z without I and O, then AA, AB ..."""
     text = ""
     while index > 0:
         index, digit = divmod(index - 1, len(LETTERS))

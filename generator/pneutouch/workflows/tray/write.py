@@ -36,7 +36,7 @@ _WIDTH = 170.0
 
 
 def tray_svg(layout: TrayLayout, job: TrayJob) -> bytes:
-    """SVG of one job."""
+    """SVG drawing of one job, seen from above."""
     envelope = layout.printer.envelope
     head = layout.order.tray.tray
     with figure(_WIDTH, _WIDTH * envelope.y / envelope.x + 6.0) as drawn:
@@ -185,7 +185,7 @@ def inputs(layout: TrayLayout) -> Mapping[str, Any]:
 
 
 def _item(part: TrayPart) -> TrayItem:
-    """Copies without marks are one shape: their object carries the value's letter instead of the label."""
+    """Item of a part; copies without marks share one object, with the value's letter instead of the label."""
     if any(mark.kind != "none" for mark in part.marks):
         return TrayItem(part.name, part.name, part.bodies, part.transform)
     letter = part.value.letter
@@ -226,7 +226,7 @@ def _job(layout: TrayLayout, job: TrayJob) -> TrayJobRecord:
 def subject(part: TrayPart, printer: Printer, mode: Mode) -> PrintSubject:
     """The bodies of a part in its own frame, marked, in the mode of the tray's job.
 
-    They carry no exact shape: that stands in the design frame and has no marks.
+    They carry no exact shape, which is in the design's frame and has no marks.
     """
     items = (PrintItem(body, printer, mode, job=part.label if len(part.bodies) > 1 else "") for body in part.bodies)
     return PrintSubject(tuple(items), name=part.name)

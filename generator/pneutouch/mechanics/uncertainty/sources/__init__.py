@@ -1,4 +1,4 @@
-"""Every source of uncertainty of n sensors that share a resin and a printer."""
+"""All sources of uncertainty of n sensors of one resin and printer."""
 
 from __future__ import annotations
 
@@ -39,23 +39,23 @@ def sources(
     contact: ContactModel | None = None,
     anywhere: bool = False,
 ) -> list[UncertaintySource]:
-    """Sources that count for at least one figure of one of n sensors that share a resin and a printer.
+    """Sources that count for at least one figure of one of n sensors of one resin and printer.
 
     Args:
         batch: The sensors, mm, MPa, mm3; see `batch_of`.
         material: Their resin; must have a shear modulus.
-        printer: Who prints them.
-        near_paper: Those to which the model's error on the paper's sensor applies, one flag or (n,).
+        printer: Their printer.
+        near_paper: True for sensors to which the model's error on the paper's sensor applies, one flag or (n,).
         errors: The model's relative errors against Table S1; see `model_errors`.
         numerical: Greatest relative errors of discretisation and interpolation by figure (`FIGURES`).
         aged: Greatest age of the sensor, or the greatest time since it was calibrated, in years; a year counts at most.
-        calibration: Of the sensor in hand; its parameters and its model error take the place of those of design and
+        calibration: Calibration of the sensor in hand; its parameters and its model error replace those of design and
             resin.
-        contact: Contact at the n driving pressures, if that is no plate without friction.
+        contact: Contact at the n driving pressures, if it is not a frictionless plate.
         anywhere: True if object and place of contact are unknown; see `sources.place`.
 
     Raises:
-        InputError: ``numerical`` names a figure that there is not.
+        InputError: ``numerical`` names an unknown figure.
     """
     size = len(batch)
     near = np.broadcast_to(np.asarray(near_paper, dtype=bool), size)

@@ -1,4 +1,4 @@
-"""The uncertainty of a calibrated sensor: its fitted parameters together, and the remaining error of the corrected
+"""The uncertainty of a calibrated sensor: its fitted parameters as one source, and the remaining error of the corrected
 model."""
 
 import math
@@ -15,7 +15,7 @@ from pneutouch.spec.calibration import CalibratedResponse, SensorCalibration
 from pneutouch.units import KPA, ML
 
 FORCE_GAUGE = 0.01
-"""Greatest relative error of the rig's force sensor: an assumption; the paper gives its resolution alone."""
+"""Greatest relative error of the rig's force sensor: an assumption; the paper gives only its resolution."""
 
 NAME = "calibrated parameters"
 
@@ -24,25 +24,25 @@ _INPUT_OF = {
     "wall_thickness_mm": ("wall_thickness", 1.0),
     "dead_volume_mL": ("dead_volume", ML),
 }
-"""Input and factor from a parameter's unit by its key; the contact offset belongs to the rig, not to the sensor."""
+"""Input, and factor from the parameter's unit, by parameter key; the contact offset belongs only to the rig."""
 
 _FORCES = (FIGURES.index("stiffness_N_per_mm"), FIGURES.index("force_at_range_end_N"))
 
 LEFT = math.sqrt(2.0 * (1.0 - MODEL_CORRELATION))
-"""Standard deviation of the difference of two errors of the model, over that of one: the part of the model's error that
-a correction found at one driving pressure leaves far from it, as far as Table S1 shows at 0 and 22 kPa."""
+"""Standard deviation of the difference of two errors of the model over that of one error: the share of the model's
+error that remains far from the driving pressure of a correction, as far as Table S1 shows at 0 and 22 kPa."""
 
 _BEYOND = 1.05
-"""A driving pressure up to this share above the greatest measured one counts as measured: our choice."""
+"""Factor by which a driving pressure may lie outside the measured ones and still count as measured: our choice."""
 
 
 def replaced(calibration: SensorCalibration) -> frozenset[str]:
-    """Inputs whose uncertainty the calibration brings: the sources of design and resin do not act on them."""
+    """Inputs whose uncertainty comes from the calibration: the sources of design and resin do not act on them."""
     return frozenset(_INPUT_OF[key][0] for key in calibration.covered if key in _INPUT_OF)
 
 
 def calibrated_sources(batch: SensorBatch, calibration: SensorCalibration) -> list[UncertaintySource]:
-    """Sources that a calibration brings, for n sensors that are the calibrated one at n driving pressures."""
+    """Sources from a calibration, for n sensors: the calibrated sensor at n driving pressures."""
     parameters = [_parameters(batch, calibration)] if replaced(calibration) else []
     response = calibration.response
     return parameters + ([] if response is None else _response(batch, calibration, response))
@@ -51,10 +51,10 @@ def calibrated_sources(batch: SensorBatch, calibration: SensorCalibration) -> li
 def kept_of_design(
     batch: SensorBatch, calibration: SensorCalibration, design: list[UncertaintySource]
 ) -> list[UncertaintySource]:
-    """Sources of design and resin that the calibration leaves, for n sensors that are the calibrated one.
+    """Sources of design and resin that remain after calibration, for the calibrated sensor at n driving pressures.
 
-    The inner radius is never fitted, but it is the specimen's own in the runs too, and so is the friction of what
-    presses it: where curves were measured, the correction holds what they do to sensitivity and force.
+    The inner radius is never fitted, but it is the specimen's own radius in the runs too, and so is the friction of the
+    object: if curves were measured, the correction includes their effect on sensitivity and force.
     """
     known = replaced(calibration)
     kept = [source for source in design if source.acts_on not in known]
@@ -69,9 +69,9 @@ def kept_of_design(
 def kept_of_model(
     batch: SensorBatch, calibration: SensorCalibration, model: list[UncertaintySource]
 ) -> list[UncertaintySource]:
-    """The model's error that the calibration leaves, for n sensors at n driving pressures: all of it without curves,
-    `LEFT` of it beyond the driving pressures of the curves, none within them.
-    """
+    """Sources of the model's error that remain after calibration, for n sensors at n driving pressures: unchanged
+    without curves; with curves, `LEFT` of the error beyond the driving pressures of the curves, and none within
+    them."""
     if calibration.response is None:
         return model
     beyond = _outside(batch, calibration)
@@ -82,12 +82,12 @@ def kept_of_model(
 
 
 def _parameters(batch: SensorBatch, calibration: SensorCalibration) -> UncertaintySource:
-    """One joint source: a root of the covariance by its eigenvectors."""
+    """Fitted parameters as one joint source, with a root of the covariance from its eigenvectors."""
     keys = [key for key in calibration.covered if key in _INPUT_OF]
     places = [calibration.covered.index(key) for key in keys]
     factors = np.array([_INPUT_OF[key][1] for key in keys])
     covariance = np.array(calibration.covariance)[np.ix_(places, places)] * np.outer(factors, factors)
-    # Of one scale, else the eigenvalue of a volume in mm3 would drown those of the logarithms.
+    # Scaled, because the eigenvalue of a volume in mm3 would drown those of the logarithms.
     scale = np.sqrt(np.maximum(np.diag(covariance), 1e-30))
     values, vectors = np.linalg.eigh(covariance / np.outer(scale, scale))
     root = scale[:, None] * vectors * np.sqrt(np.maximum(values, 0.0))
@@ -99,14 +99,14 @@ def _parameters(batch: SensorBatch, calibration: SensorCalibration) -> Uncertain
     )
     counts = counting(size)
     if calibration.response is not None:
-        # Where curves were measured the correction makes up for whatever the parameters are: it moves against them.
+        # Where curves were measured the correction compensates changes of the parameters: they are correlated.
         counts[[SENSITIVITY, *_FORCES]] = _outside(batch, calibration)
         origin += "; sensitivity and force within the driving pressures measured do not follow from it"
     return UncertaintySource(NAME, JOINT, np.zeros(size), "normal", counts, origin, True, loads=loads)
 
 
 def _outside(batch: SensorBatch, calibration: SensorCalibration) -> Flags:
-    """True for those of n sensors at driving pressures beyond those of the calibration's curves."""
+    """Mask (n,) of the sensors at driving pressures beyond those of the calibration's curves."""
     pressures_kPa, at_kPa = calibration.source.driving_pressures_kPa, batch.driving_pressure / KPA
     return np.asarray((at_kPa < min(pressures_kPa) / _BEYOND) | (at_kPa > max(pressures_kPa) * _BEYOND))
 
@@ -163,8 +163,8 @@ def _error(
 ) -> Array:
     """Standard uncertainty of a correction, (n,), at driving pressures ``at_kPa``.
 
-    ``errors`` and ``logs`` are those of the pressures ``known_kPa``. Between two of them it grows as that of a random
-    walk known at both ends: in the middle it is half of the change between them, at least ``outside``.
+    ``errors`` and ``logs`` belong to the pressures ``known_kPa``. Between two of them the uncertainty is that of a
+    random walk known at both ends: in the middle half of the change between them, but at least ``outside``.
     """
     places_kPa = np.array(known_kPa)
     measured = np.interp(at_kPa, places_kPa, errors)

@@ -1,9 +1,9 @@
-"""The uncertainty of the model itself: its errors against the paper's Table S1, and the numbers' own error.
+"""The uncertainty of the model itself: its errors against the paper's Table S1, and its numerical errors.
 
-The uncertainty of the print and its surroundings: wall, radius, air behind the cavity, weather, driving pressure.
+Also the uncertainty of the print and its surroundings: wall, radius, air behind the cavity, weather, driving pressure.
 
-The uncertainty of the contact: an unknown friction, and the part of another contact that the plate's derivatives
-miss.
+Also the uncertainty of the contact: unknown friction, and the part of another contact that the derivatives for the
+plate do not include.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.uncertainty.contact_model import ContactModel
 
 UNEXPLAINED = 1.5
-"""A resin whose cells are all off by more than this factor is left out of the pool and named: a choice of this program.
-It leaves out FLX9995-DM, which reads twice too sensitive for a reason not known."""
+"""Factor beyond which all errors of a resin must lie for it to be left out of the pool and named: a choice of this
+program. It leaves out FLX9995-DM, which reads twice too sensitive for an unknown reason."""
 
 MODEL_CORRELATION = 0.756
-"""Correlation between the model's errors of two sensors in one resin, each error the logarithm of model over
-measurement: 1 - mean((e22 - e0)^2) / (2 mean(e^2)) over the errors at 0 and 22 kPa of the six resins of the paper's
-Table S1 that the model's error is pooled from gives 0.756. Between resins it is 0.03, taken as none."""
+"""Correlation between the model's errors of two sensors in one resin, where an error is the logarithm of model over
+measurement. Over the errors e0 and e22 at 0 and 22 kPa of the six pooled resins of the paper's Table S1, 1 - mean((e22
+- e0)^2) / (2 mean(e^2)) is 0.756. Between resins it is 0.03, taken as zero."""
 
 MODEL = "model"
 """Name of the sources of `model_sources`."""
@@ -45,7 +45,7 @@ MODEL = "model"
 
 @dataclass(frozen=True)
 class ModelErrors:
-    """Relative errors of the sensitivity against Table S1: of the resin itself, and of all resins of the pool."""
+    """Relative errors of the sensitivity against Table S1: of one resin, and of all pooled; ``left_out``: titles."""
 
     resin_errors: tuple[float, ...] = ()
     pool: tuple[float, ...] = ()
@@ -53,14 +53,14 @@ class ModelErrors:
 
 
 def model_errors(material: Material, materials: Iterable[Material]) -> ModelErrors:
-    """The atlas on the paper's sensor against Table S1, in every resin of ``materials`` that was measured."""
+    """Errors of the atlas for the paper's sensor against Table S1, for ``material`` and pooled over ``materials``."""
     others = list(materials)
     resin_errors, *rest = table_s1_errors([material, *others])
     return _pooled(resin_errors, others, rest)
 
 
 def measured_errors(materials: Mapping[str, Material]) -> dict[str, ModelErrors]:
-    """`model_errors` of every resin that was measured, by name."""
+    """`model_errors` of every resin with measurements, by name."""
     every = list(materials.values())
     errors = table_s1_errors(every)
     return {
@@ -77,7 +77,7 @@ def _pooled(resin_errors: tuple[float, ...], others: list[Material], rest: list[
 
 
 def table_s1_errors(materials: list[Material]) -> list[tuple[float, ...]]:
-    """Relative errors of the atlas at 0 and 22 kPa by material; empty for one that was not measured."""
+    """Relative errors of the atlas at 0 and 22 kPa by material; empty for a material without measurements."""
     sensors = tuple(material_sensor(m) for m in materials if m.measured is not None)
     computed = iter(_table_s1_sensitivities(sensors))
     return [() if m.measured is None else _against(m.measured, next(computed)) for m in materials]
@@ -85,7 +85,7 @@ def table_s1_errors(materials: list[Material]) -> list[tuple[float, ...]]:
 
 @lru_cache
 def _table_s1_sensitivities(sensors: tuple[Sensor, ...]) -> Array:
-    """Sensitivities by the atlas at 0 and 22 kPa, kPa/N, (n, 2). Kept, since they do not depend on the design."""
+    """Sensitivities by the atlas at 0 and 22 kPa, kPa/N, (n, 2); cached, because they do not depend on the design."""
     if not sensors:
         return np.empty((0, 2))
     batch = SensorBatch.join([batch_of(sensor, [0.0, 22.0 * KPA]) for sensor in sensors])
@@ -103,14 +103,14 @@ def _unexplained(errors: tuple[float, ...]) -> bool:
 
 
 def _spread(errors: tuple[float, ...]) -> float:
-    """Root mean square of the logarithms of model over measurement: scatter and bias in one, nothing corrected."""
+    """Root mean square of the logarithms of model over measurement: scatter and bias together, without correction."""
     return float(np.sqrt(np.mean(np.log1p(errors) ** 2)))
 
 
 def model_sources(near: Flags, errors: ModelErrors) -> list[UncertaintySource]:
-    """The model's error in sensitivity: the resin's own near the paper's sensor, elsewhere the pool's; (n,) flags.
+    """Sources for the model's error in sensitivity: the resin's own ``near`` (n,) the paper's sensor, else the pool's.
 
-    A resin left out of the pool keeps its own error everywhere. Nothing of the kind is known for the other figures.
+    A resin left out of the pool keeps its own error everywhere. For the other figures no such error is known.
     """
     resin_errors = (near | _unexplained(errors.resin_errors)) & bool(errors.resin_errors)
     left = f", without {', '.join(errors.left_out)}" if errors.left_out else ""
@@ -140,7 +140,7 @@ def model_sources(near: Flags, errors: ModelErrors) -> list[UncertaintySource]:
 
 
 def numerical_sources(size: int, numerical: Mapping[str, float]) -> list[UncertaintySource]:
-    """Discretisation and interpolation: greatest relative errors by figure. Raises InputError for an unknown figure."""
+    """Sources for greatest numerical errors by figure, relative. Raises InputError for an unknown figure."""
     source_list = []
     for name, greatest in numerical.items():
         if name not in FIGURES:
@@ -160,21 +160,21 @@ def numerical_sources(size: int, numerical: Mapping[str, float]) -> list[Uncerta
 
 
 BORE, BORE_TOLERANCE = 2.5, 0.1
-"""Bore of a 4 mm tube (SMC TU0425) and its tolerance, mm. Only outer diameters have a published one, +-0.1 mm for nylon
-(SMC KQ2 precautions); that the bore keeps the same is an assumption."""
+"""Bore of a 4 mm tube (SMC TU0425) and its tolerance, mm. Only outer diameters have a published tolerance, +-0.1 mm for
+nylon (SMC KQ2 precautions); the same for the bore is an assumption."""
 
 UNSTATED_VOLUME = 100.0
-"""Air in fitting and gauge that a stated dead volume may have missed, mm3: an assumption, 20 mm of a 2.5 mm bore."""
+"""Air in fitting and gauge that a stated dead volume may omit, mm3: an assumption, 20 mm of a 2.5 mm bore."""
 
 WEATHER = 4.5 * KPA
-"""Sea level pressure mostly stays within 960 and 1050 mbar (San Francisco State University, Geosciences, course M301,
-Atmospheric Pressure)."""
+"""Half range of sea level pressure, MPa: mostly within 960 and 1050 mbar (San Francisco State University, Geosciences,
+course M301, Atmospheric Pressure)."""
 
 GAUGE = 0.02
-"""Temperature characteristic of the SMC PSE543, +-2 % of its range (paper, Supplement C)."""
+"""Temperature characteristic of the SMC PSE543: +-2 % of its range (paper, Supplement C)."""
 
 _LIMITS = 3.0
-"""Standard deviations within which limits that hold nearly always are read (JCGM 100, 4.3.5)."""
+"""Number of standard deviations to which limits that hold almost always are taken to extend (JCGM 100, 4.3.5)."""
 
 _ROOT = np.sqrt(3.0)
 
@@ -220,12 +220,12 @@ FRICTION, CORRECTION = "friction", "contact correction"
 """Names of the sources of `contact_sources`."""
 
 WALL_GAP, OBJECT_WALL_GAP = 0.4, 0.7
-"""Greatest difference found of d ln figure / d ln wall between the plate without friction and one with friction, and
-other objects (docs/background/contact.md)."""
+"""Greatest differences found in d ln figure / d ln wall between the frictionless plate and a plate with friction, and
+between the frictionless plate and other objects (docs/background/contact.md)."""
 
 
 def contact_sources(contact: ContactModel, others: list[UncertaintySource]) -> list[UncertaintySource]:
-    """Sources of the contact of n sensors; ``others`` act on the wall, whose derivative is the plate's."""
+    """Sources for the contact of n sensors; those of ``others`` on the wall act by the derivative for the plate."""
     size, source_list = len(contact.pressures), []
     friction = contact.friction
     if friction is not None:

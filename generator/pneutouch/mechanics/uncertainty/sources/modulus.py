@@ -1,4 +1,4 @@
-"""The uncertainty of the shear modulus: between prints, between laboratories, and as the resin ages."""
+"""The uncertainty of the shear modulus: between prints, between laboratories, and by ageing of the resin."""
 
 from dataclasses import replace
 
@@ -13,24 +13,24 @@ from pneutouch.spec.material import HARDEST, Material
 from pneutouch.spec.values import Quantity
 
 ASSUMED_FACTOR = 2.7
-"""High over low of a modulus for which no independent value is known: an assumption, taken from the four estimates of
+"""Ratio of high to low for a modulus without a known independent value: an assumption, from the four estimates of
 relaxed Agilus30, 0.10 to 0.27 MPa (see `Agilus30.toml`)."""
 
 ASSUMED_HARDNESS_SPREAD = 1.64
-"""Shore A, where a resin's own is not known: root mean square of the seven of the paper's Table 1."""
+"""Spread of Shore A for a resin without a known one: root mean square over the seven resins of the paper's Table 1."""
 
 ASSUMED_HARDNESS_CHANGE = 2.88
-"""Shore A in a year, where a resin's own is not known: root mean square of the seven of the paper's Table 1."""
+"""Change of Shore A in a year for a resin without a known one: root mean square over the paper's Table 1 (seven)."""
 
 ASSUMED_AGEING = 0.24
-"""Relative change of sensitivity in a year, where a resin's own is not known: root mean square of the paper's three
-(14.8, 17.0 and 34.9 %, Supplement E)."""
+"""Relative change of sensitivity in a year for a resin without a known one: root mean square of the paper's three
+values (14.8, 17.0 and 34.9 %, Supplement E)."""
 
 _READINGS = 20
-"""Readings behind a hardness spread of the paper's Table 1 (Supplement A)."""
+"""Number of readings behind a hardness spread of the paper's Table 1 (Supplement A)."""
 
 _ELASTIC = 3.0
-"""E over the shear modulus of an incompressible solid."""
+"""Ratio of Young's modulus to shear modulus of an incompressible solid."""
 
 _GENT = "Gent 1958, d ln E/dS"
 
@@ -40,10 +40,10 @@ def _filled(value: float, size: int) -> Array:
 
 
 def modulus_sources(material: Material, validated: Flags) -> list[UncertaintySource]:
-    """Sources on the shear modulus of n sensors in one resin.
+    """Sources for the shear modulus of n sensors in one resin.
 
-    ``validated``, (n,), states where the model's error on a sensor was measured in this resin: that error contains the
-    error of the published modulus, so the published range does not count there for the sensitivity.
+    ``validated`` (n,) is True where the model's error was measured in this resin: that error includes the error of the
+    published modulus, so the published range does not count there for the sensitivity.
     """
     modulus = material.shear_modulus_MPa
     assert modulus is not None
@@ -61,7 +61,7 @@ def modulus_sources(material: Material, validated: Flags) -> list[UncertaintySou
             )
         ]
     if modulus.source.startswith(FROM_CURVE):
-        # The band is that of the fraction alone; how well the resins' own moduli are known comes on top.
+        # The band is only that of the fraction; the uncertainty of the resins' own moduli is added.
         bare = modulus.model_copy(update={"low": None, "high": None})
         mixed = [_mixing_fraction(modulus, size)] if modulus.low is not None else []
         return [*mixed, _published(bare, validated), _between_prints(material, size)]
@@ -69,7 +69,7 @@ def modulus_sources(material: Material, validated: Flags) -> list[UncertaintySou
 
 
 def _mixing_fraction(modulus: Quantity, size: int) -> UncertaintySource:
-    """Possible error of an assumed mixing curve; see `pneutouch.catalogue.mixture.Mixing.band_at`."""
+    """Source for the possible error of an assumed mixing curve; see `pneutouch.catalogue.mixture.Mixing.band_at`."""
     return UncertaintySource(
         "mixing fraction",
         "shear_modulus",
@@ -85,9 +85,9 @@ def _mixing_fraction(modulus: Quantity, size: int) -> UncertaintySource:
 
 
 def _log_rectangular(factor: float) -> float:
-    """Standard deviation of the logarithm of a value that lies anywhere between two ends, ``factor`` apart.
+    """Standard deviation of the logarithm of a value that is log-uniform between two ends, ``factor`` apart.
 
-    Twelve is the square of a rectangle's width over its variance; the width is kept although the value need not be its
+    For a rectangle the squared width is 12 times the variance; the width is kept although the value need not be the
     middle (JCGM 100, 4.3.8).
     """
     return float(np.log(factor) / np.sqrt(12.0))
@@ -121,7 +121,7 @@ def _hardness(material: Material) -> tuple[float, bool]:
     if material.shore_a is not None:
         return material.shore_a.nominal, True
     assert material.shear_modulus_MPa is not None
-    # What is softer than the scale reads is taken at its zero, where Gent's slope is the greatest that it has.
+    # A resin softer than the scale can read is taken at its zero, where Gent's slope is greatest.
     return max(0.0, shore_a(_ELASTIC * material.shear_modulus_MPa.nominal)), False
 
 
@@ -152,13 +152,13 @@ AGEING = ("ageing", "ageing of the modulus")
 
 
 def ageing_sources(material: Material, size: int, remaining: float = 1.0) -> list[UncertaintySource]:
-    """Effects of a year in light and air: on the modulus by the hardness, on the sensitivity as it was measured.
+    """Sources for a year in light and air: for the modulus by the hardness, for the sensitivity as measured.
 
     ``remaining`` is the share of the year that counts: what has passed is in the values, what is later does not matter.
 
-    The age at use is taken as anything from fresh to a year. A deviation even over 0 to c has the mean square c^2/3
-    about the fresh value, that of a rectangle of half-width c: the drift is not corrected for but enters whole (JCGM
-    100, F.2.4.5).
+    The age at use is taken as anything from fresh to a year. A deviation that is uniform from 0 to c has the mean
+    square c^2/3 about the fresh value, like a rectangle of half-width c: the drift is not corrected, but included in
+    full (JCGM 100, F.2.4.5).
     """
     whole = _ageing_by_hardness(material, size), _ageing_of_sensitivity(material, size)
     if remaining == 1.0:
@@ -171,7 +171,7 @@ def _ageing_by_hardness(material: Material, size: int) -> UncertaintySource:
     shore, _ = _hardness(material)
     aged = material.shore_a_one_year
     known = aged is not None and material.shore_a is not None
-    # The assumed change ends with the scale, at 100 of which there is no modulus.
+    # The assumed change ends at the top of the scale: there is no modulus at Shore A 100.
     after = aged.nominal if aged is not None and known else max(shore, min(shore + ASSUMED_HARDNESS_CHANGE, HARDEST))
     change = logarithmic_change(shore, after)
     origin = f"{_GENT}: Shore A {shore:.3g} to {after:.3g} in a year, modulus {np.expm1(change):+.0%}; " + (

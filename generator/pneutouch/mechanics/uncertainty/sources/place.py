@@ -1,4 +1,4 @@
-"""The uncertainty of a sensitivity that is used where object and place of contact are not known."""
+"""The uncertainty of a sensitivity that is used with unknown object and place of contact."""
 
 import numpy as np
 
@@ -24,7 +24,7 @@ _ORIGIN = (
 
 
 def place_sources(batch: SensorBatch) -> list[UncertaintySource]:
-    """The source of n sensors; it counts for those that the table of contact anywhere covers."""
+    """Source for n sensors; it counts for those that the table of contact anywhere covers."""
     standard = place_uncertainties(batch, respond(batch))
     known = np.isfinite(standard)
     counts = counting(standard.size, only=(SENSITIVITY,)) & known
@@ -32,6 +32,6 @@ def place_sources(batch: SensorBatch) -> list[UncertaintySource]:
 
 
 def place_uncertainties(batch: SensorBatch, response: AtlasResponse) -> Array:
-    """Relative standard uncertainties (n,) of sensors with their responses; NaN outside the table."""
+    """Relative standard uncertainties (n,) of sensors with their atlas responses; NaN outside the table."""
     domes = batch_conditions(batch, response.limit_pressure, response.cavity_volume)
     return place_uncertainty(domes, response.range_end / batch.inner_radius)
