@@ -66,7 +66,7 @@ def _columns(size: float) -> dict[str, np.ndarray]:
     time = np.arange(int(size / 32)) / 1000
     depth = 5 * np.abs(time % 2 - 1)
     force = 0.25 * depth**1.5
-    return {"time_s": time, "position_mm": depth, "force_N": force, "pressure_kPa": 12 + 2.4 * force}
+    return {"time_s": time, "position_mm": depth, "force_N": force, "pressure_kPa": 12 + 2.4 * force + 0.02 * force**2}
 
 
 def parquet(path: Path) -> None:

@@ -1,7 +1,7 @@
 // The page: a state, its history and its address; questions to the studio, and what shows the answers.
 import * as address from "./address.js";
 import { Areas } from "./areas.js";
-import { Line, send, Stopped, unlock } from "./requests.js";
+import { Line, post, send, Stopped, unlock } from "./requests.js";
 import * as charts from "./charts.js";
 import { byId, copied, element } from "./dom.js";
 import { Following } from "./following.js";
@@ -145,6 +145,15 @@ function draw() {
   else tables.showComparison(page.pinned, answer);
 }
 
+/** Fill the form of a design whose changes cannot work with its own values: the answer to such changes holds none. */
+async function plainly(base) {
+  const question = { base, values: {}, version: null };
+  const { status, content } = await post("/api/quick", question);
+  if (status !== 200) return;
+  files.answered(question, content);
+  if (page.state.base === base) show();
+}
+
 function quickly(question, status, content) {
   owed.send = null;
   page.outdated = status === CHANGED;
@@ -153,6 +162,7 @@ function quickly(question, status, content) {
     problems(content.problems);
     buttons();
     report(`${content.problems[0].message}. Shown below is the last design that can work.`);
+    if (!files.plain[question.base] && page.quick?.base !== question.base) plainly(question.base);
     return;
   }
   problems([]);
@@ -160,7 +170,7 @@ function quickly(question, status, content) {
   parts.pressed.show(null);
   // Curves of the resins stay those of the design before until the next ones are there.
   if (content.curves) content.curves.resins = page.quick?.curves?.resins ?? [];
-  page.quick = { ...content, pending: true };
+  page.quick = { ...content, base: question.base, pending: true };
   page.solved = null;
   parts.form.usual(content);
   show();
