@@ -129,7 +129,8 @@ def typed(line: str, folder: Path) -> str:
             line, shell=True, cwd=folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False
         )
         code, text = done.returncode, done.stdout
-    assert code == 0, f"{line}: exit code {code}\n{text}"
+    # That no design meets a target is an answer.
+    assert code == 0 or (code == 1 and words[:2] == ["pneutouch", "select"]), f"{line}: exit code {code}\n{text}"
     return text
 
 

@@ -227,7 +227,8 @@ def test_the_map_of_axisymmetry_is_what_the_code_gives_today():
         assert (outcome, depth) == (row["outcome"], pytest.approx(row["depth_ratio"], abs=2e-3))
 
 
-@pytest.mark.parametrize("count", [2, pytest.param(4, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [2, 4])
 def test_the_stored_coverage_is_what_the_code_gives_today(count):
     """A few campaigns again: whether each interval held is decided by the code alone."""
     cell = coverage.cell("FLX9960")

@@ -21,6 +21,7 @@ def campaign(tmp_path_factory):
     )
 
 
+@pytest.mark.slow
 def test_a_simulated_campaign_has_the_bytes_of_the_command_lines(campaign, printed, tmp_path):
     options = (
         "--specimens",
@@ -52,6 +53,7 @@ def test_figures_of_measured_runs_are_the_command_lines(campaign, printed, tmp_p
     assert own.to_dict() != found.to_dict()
 
 
+@pytest.mark.slow
 def test_a_calibration_is_the_command_lines_and_can_be_used_at_once(campaign, printed, tmp_path, monkeypatch):
     monkeypatch.setenv("PNEUTOUCH_HOME", str(tmp_path))
     found = pt.calibrate(campaign, fit=["modulus"], out=tmp_path / "ours")

@@ -41,6 +41,7 @@ def shown(tmp_path_factory):
     return [[output.get("data", {}) for output in cell.outputs] for cell in book.cells]
 
 
+@pytest.mark.slow
 def test_every_object_shows_itself_in_at_most_ten_lines(shown):
     for cell, outputs in zip(CELLS[:-1], shown[:-1], strict=True):
         (data,) = outputs

@@ -202,6 +202,7 @@ def test_an_unknown_material_is_refused_at_once():
     assert (caught.value.key, caught.value.value) == ("material", "TangoPlu")
 
 
+@pytest.mark.slow
 def test_results_of_several_things_are_walked_through():
     prediction = pt.load("paper-dome").predict([0, 12], model="atlas")
     assert [state.driving_pressure_kPa for state in prediction] == [0, 12] and len(prediction) == 2

@@ -12,6 +12,7 @@ from pneutouch.api.search import unmet_lines
 from pneutouch.results.selection import FoundGrade, GradedRecord, SearchCost
 
 
+@pytest.mark.slow
 def test_a_selection_is_the_command_lines_and_its_designs_meet_the_target(printed):
     found = pt.select(sensitivity_kPa_per_N=1.9, driving_pressure_kPa=12, base="paper-dome")
     said = printed("select", "--sensitivity", 1.9, "--at", 12, "--base", "paper-dome")
@@ -22,6 +23,7 @@ def test_a_selection_is_the_command_lines_and_its_designs_meet_the_target(printe
     assert first.predict(model="atlas").at(12).sensitivity_kPa_per_N == pytest.approx(1.9, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_target_file_is_taken_and_keywords_come_first(tmp_path):
     (tmp_path / "target.toml").write_text("[target]\nsensitivity_kPa_per_N = 1.9\n")
     found = pt.select(tmp_path / "target.toml", sensitivity_kPa_per_N=900.0)
@@ -54,6 +56,7 @@ def test_errors_of_a_target_name_the_keyword(fields, key):
     assert (caught.value.file, caught.value.key) == (None, key)
 
 
+@pytest.mark.slow
 def test_a_sweep_is_the_command_lines_dataset(printed, tmp_path):
     design = pt.load("paper-dome")
     ours = pt.sweep(
@@ -149,6 +152,7 @@ def test_one_resin_is_a_list_of_one():
     assert one.to_dict() == listed.to_dict() and one.met
 
 
+@pytest.mark.slow
 def test_a_selection_without_a_design_shows_what_to_drop():
     found = pt.select(sensitivity_kPa_per_N=1.9, force_range_N=150, max_diameter_mm=25)
     said, lines = found.to_dict(), repr(found).splitlines()

@@ -57,6 +57,7 @@ def long_file(path: Path, rest):
     return path
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_the_file(tmp_path):
     path = write(tmp_path / "a.csv", record(faults=Faults(rate=3000.0)), decimals=(12, 16, 18, 18))
     header, _, body = path.read_bytes().partition(b"\n")

@@ -79,6 +79,7 @@ def test_the_truth_is_in_the_intervals_and_the_files_predict(campaign, place):
     assert state["sensitivity_kPa_per_N"] == pytest.approx(measured, rel=0.03)
 
 
+@pytest.mark.slow
 def test_a_calibrated_comparison_leads_to_the_reader_and_another_design_gets_none(campaign, place):
     assert run("calibrate", str(campaign), "--design", "mine", "--save", "dome-1", "--out", "out").exit_code == 0
     compared = run("compare", "mine", "mine@dome-1", "--model", "atlas", "--out", "out")
@@ -100,6 +101,7 @@ def test_a_part_of_the_parameters_says_what_else_counts(campaign, place):
     assert width[0] > 1.5 * width[1]
 
 
+@pytest.mark.slow
 def test_the_file_is_named_by_design_and_sensor_and_kept(campaign, place):
     words = ("calibrate", str(campaign), "--design", "mine", "--out", "out", "--fit")
     result = run(*words, "modulus")
@@ -216,6 +218,7 @@ def stretched(monkeypatch):
     return stretch
 
 
+@pytest.mark.slow
 def test_a_usual_fit_has_no_warning_and_a_poor_one_has(campaign, place, stretched):
     words = ("calibrate", str(campaign), "--design", "mine", "--out", "out")
     usual = run(*words, "--json")

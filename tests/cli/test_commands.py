@@ -227,6 +227,7 @@ def test_the_solid_loads_lapack_without_the_packages_around_it():
     assert not {"scipy.linalg", "scipy.sparse", "scipy.interpolate", "scipy.optimize", "numpy.f2py"} & loaded
 
 
+@pytest.mark.slow
 def test_a_selection_loads_neither_scipys_packages_nor_masked_arrays_and_random_numbers():
     loaded = modules_after(
         "select", *["--sensitivity", "1.9", "--at", "12", "--force-range", "15", "--max-diameter", "25"]

@@ -40,6 +40,7 @@ def test_a_scan_is_of_its_schema(scanned):
     assert hold_folder(folder) == 2
 
 
+@pytest.mark.slow
 def test_stiff_state_shows_both_patterns_within_three_percent(scanned):
     said, _ = scanned
     assert [state["label"] for state in said["states"]] == ["0 kPa", "22 kPa"]

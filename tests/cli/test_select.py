@@ -70,6 +70,7 @@ def test_text_names_resins_and_what_binds():
     assert "left out: Agilus30" in said
 
 
+@pytest.mark.slow
 def test_an_impossible_target_exits_1_and_says_what_to_give_up():
     result = run(*ASKED[:-3], "150", "--max-diameter", "25")
     assert result.exit_code == 1

@@ -52,7 +52,9 @@ def test_what_is_left_out_is_said(command, bench):
     [
         (["nope.toml"], "nope.toml: no such file"),
         (["paper-dom"], "Did you mean paper-dome?"),
-        (["paper-dome", "--copies", "90"], "64 of 90 parts fit on the tray of 255 x 252 mm"),
+        pytest.param(
+            ["paper-dome", "--copies", "90"], "64 of 90 parts fit on the tray of 255 x 252 mm", marks=pytest.mark.slow
+        ),
         (["paper-dome", "--over", "membrane.material"], "write table.key=VALUES"),
         (["paper-dome", "--over", "membrane.materia=X"], "Did you mean material?"),
         (["paper-dome", "--over", "a.b=1", "--over", "c.d=1"], "it must vary one key"),

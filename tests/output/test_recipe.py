@@ -168,6 +168,7 @@ def test_a_3mf_builds_again_to_the_same_bytes_without_any_library(lab, again):
     assert content(again) == content(lab / "before/paper-dome")
 
 
+@pytest.mark.slow
 def test_what_was_asked_of_auto_is_asked_again(again):
     assert "meets 3.0%" in json.loads((again / "prediction.json").read_text())["error_estimate"]["model_choice"]
 

@@ -33,7 +33,7 @@ def test_the_shipped_design_s_mould_breaks_no_rule():
     assert all("mould." in finding.fix or "syringe" in finding.fix for finding in listed)
 
 
-@pytest.mark.parametrize("rule", ["edges", "mesh"])
+@pytest.mark.parametrize("rule", [pytest.param("edges", marks=pytest.mark.slow), "mesh"])
 def test_of_edges_and_meshes_a_mould_has_errors_alone(rule, monkeypatch):
     """Remarks on them stand in `mould fit`, which measures them with rays."""
     made = mould()

@@ -103,6 +103,7 @@ def test_tuning_curves_are_respond_s(selection, library):
     assert {other.label for other in found.others} == {"TangoPlus", "FLX9960-DM"} - {found.chosen.label}
 
 
+@pytest.mark.slow
 def test_charts_of_a_selection_are_written_whole_and_repeat(selection, library, tmp_path):
     for folder in ("a", "b"):
         paths = write_charts(selection, tmp_path / folder, library=library)

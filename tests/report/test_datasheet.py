@@ -261,6 +261,7 @@ def test_curves_end_where_the_range_ends(evaluated):
         assert curves.rises([press]).lines[0].x[-1] == pytest.approx(state.figures.force_range[1], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_print_sheet_names_files_resins_machines_and_the_measured_deviation(built):
     text = (built("fingertip-dome") / "print-sheet.md").read_text()
     for word in (

@@ -110,6 +110,7 @@ def test_figures_are_those_of_the_groups_with_interval_and_difference(campaign, 
     assert sum("3 / 9" in row for table in found(sheet.blocks, SheetTable) for row in table.rows) >= 12
 
 
+@pytest.mark.slow
 def test_simulated_data_says_so_on_every_page_and_measured_data_does_not(files, least):
     pages = list(pypdfium2.PdfDocument(files["measured-datasheet.pdf"]))
     assert all("SIMULATED DATA" in page.get_textpage().get_text_range() for page in pages)

@@ -56,6 +56,7 @@ def test_a_prediction_is_of_its_schema(evaluated, design, changes, model):
         assert not validator("prediction").is_valid(wrong), path
 
 
+@pytest.mark.slow
 def test_a_selection_is_of_its_schema(command):
     words = (
         "select",

@@ -135,6 +135,7 @@ def _samples() -> tuple:
     return batch, response, factors, where
 
 
+@pytest.mark.slow
 def test_the_corrected_atlas_is_the_solid_at_its_samples_and_between_them_between():
     batch, response, factors, where = _samples()
     ratio = figures_of(factors.corrected(batch, response)) / figures_of(response)

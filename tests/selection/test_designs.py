@@ -157,6 +157,7 @@ def test_predict_and_select_speak_of_one_sensor(fingertip, solid):
     assert state.driving_pressure / KPA == pytest.approx(12.0)
 
 
+@pytest.mark.slow
 def test_a_depth_stated_in_the_base_follows_the_size_into_the_design(tmp_path):
     """What is predicted for a choice is what its design file is predicted as, whatever the base says of the depth."""
     base = tmp_path / "base.toml"

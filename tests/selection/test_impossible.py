@@ -121,7 +121,7 @@ def test_what_there_is_not_is_named(tables, said):
 @pytest.mark.parametrize(
     ("typed", "field"),
     [
-        ("--sensitivity 3 --material FLX9995", "given.materials"),
+        pytest.param("--sensitivity 3 --material FLX9995", "given.materials", marks=pytest.mark.slow),
         pytest.param("--sensitivity 8", "setting.tube_length_mm", marks=pytest.mark.slow),
         pytest.param("--sensitivity 4.9 --max-diameter 9", "setting.assignments", marks=pytest.mark.slow),
         pytest.param("--sensitivity 3 --wall 2.5", "given.wall_thickness_mm", marks=pytest.mark.slow),

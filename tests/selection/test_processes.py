@@ -51,6 +51,7 @@ def test_a_cast_design_is_clamped_unless_the_target_says_otherwise(both, library
     assert second.base.seat.family == "glued-flange"
 
 
+@pytest.mark.slow
 def test_a_process_without_a_resin_named_is_left_out_with_the_reason(both, library):
     none = selection(["casting"], library, given={**DOME, "materials": ["TangoPlus"]})
     assert none.left_out == {"casting": "no profile of it makes TangoPlus"} and none.best == []

@@ -49,7 +49,7 @@ def figures_of(prediction):
     return np.concatenate([*rows, [prediction.limit_point.driving_pressure, prediction.limit_point.apex_outer]])
 
 
-@pytest.mark.parametrize("clamp", ["base", "flange"])
+@pytest.mark.parametrize("clamp", ["base", pytest.param("flange", marks=pytest.mark.slow)])
 def test_the_solid_predicts_a_hemisphere_of_another_name_alike(clamp):
     usual, other = (evaluate("paper-dome", {SHAPE: key}, clamp=clamp) for key in ("hemisphere", "half-ball"))
     assert figures_of(other.prediction) == pytest.approx(figures_of(usual.prediction), rel=1e-9)

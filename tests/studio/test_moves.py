@@ -47,6 +47,7 @@ def test_a_chart_outside_the_window_is_drawn_when_the_moves_pause(open_studio):
     until(page, f"{_INFLATION} !== {before!r}")
 
 
+@pytest.mark.slow
 def test_the_address_follows_a_slider_that_is_held(screen):
     solved(screen, "#paper-dome")
     slider = screen.get_by_role("slider", name="Wall thickness, mm", exact=True)

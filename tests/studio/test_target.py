@@ -35,6 +35,7 @@ def found():
     return content, steps
 
 
+@pytest.mark.slow
 def test_the_answer_is_what_select_prints_and_its_first_card_what_it_saves(found, command, tmp_path, library):
     content, steps = found
     card = content["cards"][0]

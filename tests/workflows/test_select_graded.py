@@ -81,6 +81,7 @@ def test_a_grade_is_set_beside_every_resin_and_the_nearest_mix_of_its_size(short
     assert listed.sensitivity[1] == pytest.approx(plain[-1].figures.sensitivity, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_nearest_mix_is_nearer_than_the_resins(short):
     least = min(cost(short.grade_target, constant.trial) for constant in short.constants[:-1])
     assert cost(short.grade_target, short.nearest.trial) <= least + 0.03

@@ -203,6 +203,7 @@ def test_a_design_that_is_not_there_names_the_plan(planned, tmp_path):
 QUICK = SimulationOptions(rate_Hz=20.0, rest_s=0.2, model="atlas")
 
 
+@pytest.mark.slow
 def test_without_a_model_a_sensor_off_the_axis_is_pressed_by_the_harmonic_one(tmp_path, monkeypatch):
     models = []
 
@@ -219,6 +220,7 @@ def test_without_a_model_a_sensor_off_the_axis_is_pressed_by_the_harmonic_one(tm
         assert json.loads((folder / "truth.json").read_text())["model"] == model
 
 
+@pytest.mark.slow
 def test_a_plan_is_simulated_run_by_run(planned, library, tmp_path):
     made = simulate(str(planned), tmp_path, None, QUICK, library, truth=FEW)
     there, here = (campaign_of(path)[0] for path in (planned, made))
@@ -233,6 +235,7 @@ def test_a_plan_is_simulated_run_by_run(planned, library, tmp_path):
     assert set(json.loads((made / "truth.json").read_text())["specimens"]) == {"TangoPlus-1", "tip 2/b"}
 
 
+@pytest.mark.slow
 def test_the_air_that_a_plan_states_is_pushed(library, tmp_path):
     """As many rows as the plan has pushes, at its volumes, with the pressures that its sheet foretells."""
     plan = make_plan("paper-dome", None, PlanOptions(specimens=1), library=library)

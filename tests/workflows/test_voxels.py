@@ -137,6 +137,7 @@ def test_a_slice_that_a_person_changed_or_added_is_left_alone(written, stack, na
     assert {path.name: path.read_bytes() for path in stack.iterdir()} == before
 
 
+@pytest.mark.slow
 def test_a_slice_that_is_changed_while_the_next_stack_is_made_is_left_alone(written, stack):
     def changed(done, total):
         (stack / "graded-dome_3.png").write_bytes(b"mine")

@@ -32,6 +32,7 @@ def record(*, factor: float = 1.0, relative: bool = True, range_kPa=(-101.325, 9
             "pressure_factor": [factor] * ROWS,
             "force_uncertainty_relative": [[single(0.05 + 0.01 * k) for k in range(5)]] * ROWS if relative else None,
             "force_uncertainty_unknown": None if relative else "an object",
+            "force_uncertainty_age_days": 365.0,
         },
         "gas": {"driving_pressure_kPa": gas, "volume_mL": [single(2.0 * (1 + 0.01 * p)) for p in gas]},
         "box": {

@@ -86,6 +86,7 @@ def test_membrane_ring_and_connector_fill_one_another_exactly(assembly):
     assert min(-ring.web_high, ring.web_low - layout.plate_high, ring.web_inner - layout.outer_radius) > 1.49
 
 
+@pytest.mark.slow
 @settings(max_examples=6)
 @given(rings())
 def test_the_closed_mould_and_the_ring_leave_the_silicone_and_nothing_else(assembly):

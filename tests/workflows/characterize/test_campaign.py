@@ -74,6 +74,7 @@ def test_a_sound_campaign_is_read_whole_and_near_its_prediction(folder, library)
     assert len(leaks) == 4 and all(abs(leak.value) < 0.2 for leak in leaks)
 
 
+@pytest.mark.slow
 def test_a_shallower_test_is_set_beside_the_prediction_over_its_own_range(folder, library):
     """S is a slope over a stated range: a sensor pressed half as deep has another."""
     whole = sensitivities(run(folder, library))[0.0]

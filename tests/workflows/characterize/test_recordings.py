@@ -45,6 +45,7 @@ def test_every_figure_is_that_of_the_truth(name, tmp_path):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("noise", [0.02, 0.15])
 def test_the_stiffness_of_one_run_has_an_interval_that_holds_the_truth(noise, tmp_path):
     """Its first contact is found in noise; 20 records are to hold it in most cases, and it is to shrink with the noise."""
@@ -57,6 +58,7 @@ def test_the_stiffness_of_one_run_has_an_interval_that_holds_the_truth(noise, tm
     assert np.median(widths) < (0.02 if noise < 0.1 else 0.1)
 
 
+@pytest.mark.slow
 def test_the_drift_of_one_run_has_an_interval_that_holds_the_truth(tmp_path):
     """Over a second without contact the slope of the noise is a hundred times a gauge's drift."""
     held = 0

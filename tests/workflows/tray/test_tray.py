@@ -51,6 +51,7 @@ def test_the_tallies_on_the_tray_read_as_their_labels(seven):
         assert read(sectors) == ("ABCDEFG".index(part.label[0]) + 1, int(part.label[1]))
 
 
+@pytest.mark.slow
 def test_a_one_piece_sensor_stays_one_assembly(seats):
     laid, where = seats
     parts = {part.name: part for part in laid.parts}
@@ -79,6 +80,7 @@ def test_what_another_printer_prints_is_left_out_and_said(library, tmp_path):
     assert "Not on this tray: membrane of paper-dome" in (where / "labels.md").read_text()
 
 
+@pytest.mark.slow
 def test_resins_that_do_not_fit_at_once_make_more_jobs(library, tmp_path):
     """A J735 cut down to one resin at a time."""
     own = (ROOT / "printprofiles/j735.toml").read_text()

@@ -1,7 +1,7 @@
 // The page: a state, its history and its address; questions to the studio, and what shows the answers.
 import * as address from "./address.js";
 import { Areas } from "./areas.js";
-import { Line, post, send, Stopped, unlock } from "./requests.js";
+import { Line, send, Stopped, unlock } from "./requests.js";
 import * as charts from "./charts.js";
 import { byId, copied, element } from "./dom.js";
 import { Following } from "./following.js";
@@ -47,8 +47,7 @@ function buttons() {
   byId("undo").disabled = !page.past.length;
   byId("redo").disabled = !page.future.length;
   byId("reset").disabled = !Object.keys(page.state.values).length && !page.outdated;
-  byId("pin").textContent = page.pinned ? "Unpin" : "Pin";
-  byId("pin").disabled = !page.pinned && !page.quick;
+  Object.assign(byId("pin"), { textContent: page.pinned ? "Unpin" : "Pin", disabled: !page.pinned && !page.quick });
 }
 
 /** The form as the state has it. */
@@ -145,15 +144,6 @@ function draw() {
   else tables.showComparison(page.pinned, answer);
 }
 
-/** Fill the form of a design whose changes cannot work with its own values: the answer to such changes holds none. */
-async function plainly(base) {
-  const question = { base, values: {}, version: null };
-  const { status, content } = await post("/api/quick", question);
-  if (status !== 200) return;
-  files.answered(question, content);
-  if (page.state.base === base) show();
-}
-
 function quickly(question, status, content) {
   owed.send = null;
   page.outdated = status === CHANGED;
@@ -162,7 +152,7 @@ function quickly(question, status, content) {
     problems(content.problems);
     buttons();
     report(`${content.problems[0].message}. Shown below is the last design that can work.`);
-    if (!files.plain[question.base] && page.quick?.base !== question.base) plainly(question.base);
+    if (page.quick?.base !== question.base) files.fetch(question.base).then(() => page.state.base === question.base && show());
     return;
   }
   problems([]);

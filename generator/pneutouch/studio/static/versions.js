@@ -1,4 +1,5 @@
 // Designs as the page read them: the version of each file, which the page's states are changes to, and the answer to it.
+import { post } from "./requests.js";
 
 /** Status of an answer: the file was changed since the page read it, by another page or an editor. */
 export const CHANGED = 412;
@@ -17,6 +18,13 @@ export class Versions {
   read(base, version = null) {
     if (this.known[base] !== version) delete this.plain[base];
     this.known[base] = version;
+  }
+
+  /** Get the values of the design itself, for its form: the answer to changes that cannot work holds none. */
+  async fetch(base) {
+    const question = { base, values: {}, version: null };
+    const { status, content } = this.plain[base] ? {} : await post("/api/quick", question);
+    if (status === 200) this.answered(question, content);
   }
 
   /** Note an answer; the question with the version that it was answered for. */
