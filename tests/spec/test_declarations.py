@@ -28,7 +28,7 @@ def test_every_field_has_help_and_numbers_have_bounds_and_units(table, entry):
 
 @pytest.mark.parametrize("cast", [False, True])
 def test_template_is_a_valid_design_with_every_key_and_every_default(cast):
-    text = design_template('my "sensor"', {"mould": {}, "cast_ring": {}} if cast else None)
+    text = design_template('my "sensor"', {"mould": {}, "cast_ring": {}, "accepted": {}} if cast else None)
     design = validate(DesignFile, tomllib.loads(text), "template")
     assert design.membrane == DesignFile().membrane
     assert design.pneumatics == DesignFile().pneumatics
@@ -36,7 +36,7 @@ def test_template_is_a_valid_design_with_every_key_and_every_default(cast):
     # Mould and ring stand in the files of cast designs alone.
     assert ("[mould]" in text) == ("[cast_ring]" in text) == cast
     for table, entry in FIELDS:
-        if cast or table not in ("mould", "cast_ring"):
+        if cast or table not in ("mould", "cast_ring", "accepted"):
             assert f"{entry.key} =" in text
             assert f"[{table}]" in text
 

@@ -3,7 +3,7 @@
 Findings of the print rules on a sensor and, where its membrane is cast, on its mould.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -120,12 +120,24 @@ def _outer_wall(assembly: Assembly) -> Callable[[Array], Flags]:
 
 
 def sensor_findings(assembly: Assembly, context: SensorContext) -> list[Finding]:
-    """All findings, errors first. A calibrated membrane is cast already: its mould is left aside.
+    """All findings, errors first; warnings that the design accepts are notes. A calibrated membrane is cast already, so
+    its mould is left aside.
 
     Raises InputError if a detail of the mould has no space.
     """
     context = replace(context, glued=glued_seat(assembly.scene))
     if assembly.mould is None or context.calibrated:
-        return check(subject_of(assembly), context)
-    findings = check(subject_of(assembly), replace(context, wetted=wetted(assembly)))
-    return sorted([*findings, *check_mould(assembly.mould)], key=lambda finding: finding.rank)
+        findings = check(subject_of(assembly), context)
+    else:
+        findings = check(subject_of(assembly), replace(context, wetted=wetted(assembly)))
+        findings += check_mould(assembly.mould)
+    reasons = assembly.scene.design.accepted.reasons
+    return sorted((_accepted(finding, reasons) for finding in findings), key=lambda finding: finding.rank)
+
+
+def _accepted(finding: Finding, reasons: Mapping[str, str]) -> Finding:
+    """A warning whose rule has a reason as a note with it; any other finding as it is."""
+    reason = reasons.get(finding.rule)
+    if reason is None or finding.severity != "warning":
+        return finding
+    return replace(finding, severity="note", message=f"{finding.message}; accepted: {reason}")

@@ -223,6 +223,46 @@ class Print(Table):
     )
 
 
+Reason = Annotated[str, Field(min_length=3, max_length=200)] | None
+
+
+def _reason(rule: str) -> Any:
+    return Field(default=None, description=f"Reason to accept warnings of the rule {rule}.")
+
+
+class Accepted(Table):
+    """[accepted]: print rules whose warnings are known and accepted, each with the reason; they become notes.
+
+    Errors cannot be accepted.
+    """
+
+    mesh: Reason = _reason("mesh")
+    walls: Reason = _reason("walls")
+    pins: Reason = _reason("pins")
+    holes: Reason = _reason("holes")
+    channels: Reason = _reason("channels")
+    gaps: Reason = _reason("gaps")
+    emboss: Reason = _reason("emboss")
+    edges: Reason = _reason("edges")
+    cleaning: Reason = _reason("cleaning")
+    matte: Reason = _reason("matte")
+    filling: Reason = _reason("filling")
+    bubbles: Reason = _reason("bubbles")
+    inhibition: Reason = _reason("inhibition")
+    glue: Reason = _reason("glue")
+    driving: Reason = _reason("driving")
+    freedom: Reason = _reason("freedom")
+    mixing_curve: Reason = _reason("mixing curve")
+    mould_fit: Reason = _reason("mould fit")
+    mould_filling: Reason = _reason("mould filling")
+
+    @property
+    def reasons(self) -> dict[str, str]:
+        """Reasons by the name of the rule."""
+        given = self.model_dump(exclude_none=True)
+        return {key.replace("_", " "): reason for key, reason in given.items()}
+
+
 CALIBRATION = "calibration"
 """Key of a design file, outside its tables, that names a calibration."""
 
@@ -233,7 +273,7 @@ NO_CALIBRATION = "none"
 class DesignFile(SparseTable):
     """A whole design file."""
 
-    left_out = (CALIBRATION, "mould", "cast_ring")
+    left_out = (CALIBRATION, "mould", "cast_ring", "accepted")
 
     calibration: str | None = Field(
         default=None,
@@ -251,6 +291,7 @@ class DesignFile(SparseTable):
     print: Print = Print()
     mould: Mould = Mould()
     cast_ring: PerforatedRing = PerforatedRing()
+    accepted: Accepted = Accepted()
 
     @model_validator(mode="before")
     @classmethod

@@ -119,8 +119,8 @@ def design_template(title: str, values: Mapping[str, Any] | None = None, note: s
     blocks += [f"{key} = {value_text(value)}" for key, value in chosen.items() if not isinstance(value, Mapping)]
     for key in DesignFile.model_fields:
         model = table_of(DesignFile, key)
-        # Mould and ring are for cast membranes: a design that names none is not cluttered by them.
-        if model is None or (key in ("mould", "cast_ring") and key not in chosen):
+        # Mould and ring are for cast membranes, and nothing is accepted at first: no clutter in a design without them.
+        if model is None or (key in ("mould", "cast_ring", "accepted") and key not in chosen):
             continue
         lines = [f"[{key}]"]
         for entry in declarations(model):
