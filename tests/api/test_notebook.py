@@ -50,6 +50,7 @@ def test_every_object_shows_itself_in_at_most_ten_lines(shown):
         assert max(map(len, lines)) <= 250, cell
 
 
+@pytest.mark.slow
 def test_designs_and_predictions_show_their_section_and_a_table(shown):
     for number, outputs in enumerate(shown[:-1]):
         html = outputs[0].get("text/html", "")

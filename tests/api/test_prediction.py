@@ -90,6 +90,7 @@ def test_a_prediction_passes_between_processes(name):
     assert str(before) == str(found)
 
 
+@pytest.mark.slow
 def test_a_comparison_and_a_checked_design_pass_between_processes():
     design = pt.load("paper-dome")
     compared = pt.compare(design, "soft-pad", model="atlas")
@@ -101,6 +102,7 @@ def test_a_comparison_and_a_checked_design_pass_between_processes():
     assert again == design and again.check().to_dict() == checked.to_dict()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("run", [lambda: pt.plan("paper-dome"), lambda: pt.respond("paper-dome", model="atlas")])
 def test_a_result_passes_between_processes_and_can_be_saved_there(run, tmp_path):
     found = run()

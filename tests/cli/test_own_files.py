@@ -65,7 +65,7 @@ def given(campaign: Path, folder: Path) -> None:
     pulled(folder / "tension.csv")
 
 
-@pytest.mark.parametrize("line", LINES)
+@pytest.mark.parametrize("line", [*LINES[:3], *(pytest.param(line, marks=pytest.mark.slow) for line in LINES[3:])])
 def test_a_command_replaces_no_file_that_a_person_changed(line, campaign, command, tmp_path):
     sheet = annotated(tmp_path / "made" / LINES[line])
     given(campaign, tmp_path)
@@ -139,6 +139,7 @@ def test_a_measured_run_in_a_simulated_campaign_survives(command, tmp_path):
     assert (folder / "runs/mine.csv").read_bytes() == b"measured" and second.is_file()
 
 
+@pytest.mark.slow
 def test_an_annotated_plan_survives(command, tmp_path):
     words = ["plan", "paper-dome", "--specimens", "1"]
     assert command(*words).returncode == 0

@@ -46,6 +46,7 @@ def completed(line):
     return result.stdout.split(), result.stderr.split()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("line", "offered"),
     [
@@ -154,6 +155,7 @@ def test_closed_streams_change_no_exit_code_and_bring_no_traceback(shell, code, 
     assert "Traceback" not in result.stderr and "Exception ignored" not in result.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("names", "coloured"), [({}, False), ({"FORCE_COLOR": "1"}, True), ({"NO_COLOR": "1"}, False)])
 def test_no_colour_in_a_pipe_unless_it_is_required(names, coloured, tmp_path):
     environment = {key: value for key, value in os.environ.items() if "COLOR" not in key}

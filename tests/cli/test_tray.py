@@ -42,6 +42,7 @@ def test_json_is_one_document_and_progress_goes_to_stderr(command, bench):
     assert "3MF" in result.stderr
 
 
+@pytest.mark.slow
 def test_what_is_left_out_is_said(command, bench):
     result = command("tray", "paper-dome")
     assert "not on this tray: connector of paper-dome: for the ABS filament printer" in result.stderr

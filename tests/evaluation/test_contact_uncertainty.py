@@ -64,6 +64,7 @@ def test_an_unknown_coefficient_has_the_share_that_the_solid_gives_it(rough):
     assert "friction" not in next(note for note in said["notes"] if note.startswith("not in the budget"))
 
 
+@pytest.mark.slow
 def test_the_derivative_by_the_modulus_is_the_solids_with_friction(rough):
     pressure = 22 * KPA
     more, less = (
@@ -232,6 +233,7 @@ def test_the_interval_is_that_of_all_derivatives_by_the_solid(evaluated, library
         assert budget.standard[figure, 0] == pytest.approx(exact[figure, 0], rel=0.08)
 
 
+@pytest.mark.slow
 def test_a_prediction_already_solved_is_not_solved_again(rough, monkeypatch):
     """The contact is solved at two moduli and two coefficients alone."""
     solved = []

@@ -38,6 +38,7 @@ def graded(sensor: Sensor, fractions: list[float], library, curve: str | None = 
     return sensor.replace(shear_modulus=other.wall.shear_modulus, grade=other.wall.grade)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "fractions", "curve", "pressure", "gap"),
     [

@@ -64,6 +64,7 @@ def test_a_stiffer_wall_reads_less_at_a_newton(graded):
     assert used == graded.prediction.states[0].figures.sensitivity
 
 
+@pytest.mark.slow
 def test_check_and_datasheet_set_the_curves_side_by_side(graded):
     (note,) = finding(graded)
     assert note.severity == "note"

@@ -50,6 +50,7 @@ def test_any_vertices_and_text_come_back(tmp_path_factory, shift, scale, title):
     assert package.bodies[0].vertices == pytest.approx(body.vertices, rel=2e-7, abs=2e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", ["", " ", '"x" ', "a  b\n\tc ", "é漢&<>\"' "], ids=range(5))
 @pytest.mark.parametrize("size", [1, 60_000, 65_535, 200_000, 2_000_000])
 def test_metadata_of_any_length_comes_back(tmp_path, text, size):

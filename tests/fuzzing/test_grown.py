@@ -37,6 +37,7 @@ def calls(target: Target, content: bytes, folder: Path) -> int:
     return count
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(set(TARGETS) - set(BINARY)))
 def test_twice_the_input_takes_at_most_twice_the_calls(name, tmp_path):
     target = TARGETS[name]

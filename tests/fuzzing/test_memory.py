@@ -32,6 +32,7 @@ def peak(target: Target, content: bytes, folder) -> int:
         tracemalloc.stop()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(set(TARGETS) - set(BINARY)))
 def test_memory_is_bounded_by_the_input(name, tmp_path):
     target = TARGETS[name]

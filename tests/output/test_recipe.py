@@ -173,6 +173,7 @@ def test_what_was_asked_of_auto_is_asked_again(again):
     assert "meets 3.0%" in json.loads((again / "prediction.json").read_text())["error_estimate"]["model_choice"]
 
 
+@pytest.mark.slow
 def test_a_changed_library_changes_a_build(lab, tmp_path):
     """Its mix is in the 3MF; without it the inputs, which the 3MF holds as well, are others."""
     before = read_threemf(lab / "before/paper-dome/paper-dome.3mf")

@@ -82,6 +82,7 @@ def check_size(radius, share, parts):
 SIZES = given(st.floats(1, 70), st.floats(0.05, 0.6), st.sampled_from(PARTS))
 
 
+@pytest.mark.slow
 @settings(max_examples=8)
 @SIZES
 def test_a_size_gives_sound_bodies_or_says_what_there_is_no_room_for(radius, share, parts):

@@ -58,6 +58,7 @@ def test_crossing_of_equal_cylinders_is_the_bicylinder():
         crossing(1.0, 1.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("port", "seat", "mount"), CASES)
 def test_internal_volume_is_what_the_meshes_leave_free(port, seat, mount):
     made = assembly(port, seat, mount)

@@ -25,6 +25,7 @@ def test_a_wide_soft_dome_meets_its_clamping_ring_and_no_glued_groove(evaluated)
     assert meetings(evaluated("soft-pad", THROUGH)) == []
 
 
+@pytest.mark.slow
 def test_a_wall_that_lies_down_on_the_ring_does_not_enter_it(evaluated):
     assert meetings(evaluated("soft-pad", "connector.seat=clamped-flange-M2")) == []
 

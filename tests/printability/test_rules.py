@@ -41,6 +41,7 @@ def test_no_shipped_design_breaks_a_rule(name):
     assert "error" not in [finding.severity for finding in check(subject(name))]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "part"), PARTS)
 def test_no_part_breaks_a_rule_on_a_polyjet_printer(kind, part):
     try:

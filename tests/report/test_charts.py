@@ -52,6 +52,7 @@ def axes(monkeypatch):
     return seen
 
 
+@pytest.mark.slow
 def test_the_window_stands_where_the_target_says(selection):
     panel = tradeoff_panel(selected_tradeoff(selection))
     (window,) = [line for line in panel.lines if line.high is not None]

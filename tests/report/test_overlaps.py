@@ -90,6 +90,7 @@ def picked(monkeypatch):
     return seen
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DESIGNS)
 def test_the_design_is_picked_out_on_its_own_curve(name, sheet_of, picked):
     """A graded design too, whose resin is none of the chart's."""

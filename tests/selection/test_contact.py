@@ -148,6 +148,7 @@ def test_the_corrected_atlas_is_the_solid_at_its_samples_and_between_them_betwee
     assert beyond == pytest.approx(0.5, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_the_corrected_curve_has_the_corrected_slope():
     """Force and pressure rise are corrected so that their line has the corrected sensitivity."""
     batch, response, factors, _ = _samples()

@@ -60,6 +60,7 @@ def test_a_slider_moves_the_figures_of_the_commands(screen, command):
     assert screen.evaluate(f"{_WALL}.value") == "1.5"
 
 
+@pytest.mark.slow
 def test_a_resin_takes_a_printer_that_runs_it(screen, pages):
     # That no request goes elsewhere is required by the fixtures; here, that requests are seen at all.
     seen = {each.rpartition("/")[2] for each in pages.requested}

@@ -49,6 +49,7 @@ def test_the_answer_is_what_select_prints_and_its_first_card_what_it_saves(found
     ]
 
 
+@pytest.mark.slow
 def test_every_card_is_its_design_with_the_figures_of_the_table(found, library):
     content, _ = found
     designs = content["selection"]["designs"]

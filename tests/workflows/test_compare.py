@@ -108,6 +108,7 @@ def test_results_alone_are_their_measurement_and_their_prediction(results, libra
         assert predicted.value == pytest.approx(stated["predicted"]["value"], rel=1e-5)
 
 
+@pytest.mark.slow
 def test_a_prediction_is_read_at_the_depths_of_the_measurement(results, library):
     """What compare makes of design and results is what characterize made of them."""
     alone = compare([str(results)], library=library)
@@ -124,6 +125,7 @@ def test_a_prediction_is_read_at_the_depths_of_the_measurement(results, library)
     assert len(measured) == 4 and all(len(curve.contact_force_N) > 5 for curve in measured)
 
 
+@pytest.mark.slow
 def test_the_sheet_is_written_whole_and_the_same_twice(tmp_path, results, library):
     result = compare(["paper-dome", THICK, str(results)], library=library, model="atlas")
     folder = write(result, tmp_path / "one")

@@ -87,6 +87,7 @@ def test_the_nearest_mix_is_nearer_than_the_resins(short):
     assert cost(short.grade_target, short.nearest.trial) <= least + 0.03
 
 
+@pytest.mark.slow
 def test_the_written_grade_is_the_one_found(short, tmp_path):
     path = FoundChoice("1", short.base, short.assignments()).write("flat", tmp_path)
     material = tomllib.loads(path.read_text(encoding="utf-8"))["membrane"]["material"]
@@ -234,6 +235,7 @@ def _rejected(short, monkeypatch):
     monkeypatch.setattr("pneutouch.workflows.select.search.select_graded", lambda *_, **__: found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("plate_mm", "passes", "said"), [(30, True, None), (4, None, "reaches the plate's edge")])
 def test_a_grade_that_meets_the_target_is_judged_as_check_does(short, monkeypatch, plate_mm, passes, said):
     """A search that has met its target: its grade passes with the base's plate and not with one that digs in."""

@@ -71,6 +71,7 @@ def test_manifest_has_the_digest_of_every_file(folder):
     assert all(hashlib.sha256((folder / n).read_bytes()).hexdigest() == e["sha256"] for n, e in files.items())
 
 
+@pytest.mark.slow
 def test_same_seed_gives_the_same_bytes_and_another_other_noise(folder, library, tmp_path):
     again = simulate("paper-dome", tmp_path / "same", None, ASKED, library, truth=TRUTH)
     for path in (p for p in folder.rglob("*") if p.is_file()):

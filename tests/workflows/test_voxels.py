@@ -25,6 +25,7 @@ from tests.refusals import refused
 from tests.running import files_of_at_most
 
 
+@pytest.mark.slow
 def test_slices_are_what_the_utility_asks_for(written):
     plan, folder = written
     manifest = json.loads((folder / MANIFEST).read_text())
@@ -71,6 +72,7 @@ def test_the_picture_is_the_right_way_up(written):
     assert columns == pytest.approx(2 * rows, abs=2)
 
 
+@pytest.mark.slow
 def test_same_input_same_bytes_in_the_place_of_an_earlier_stack(written, stack):
     plan, folder = written
     # A taller one, with a slice more.
@@ -252,6 +254,7 @@ def test_a_whole_build_and_its_stack_are_of_one_input(tmp_path):
     assert not any("voxel" in name for name in built["files"])
 
 
+@pytest.mark.slow
 def test_check_and_build_refuse_a_printer_without_voxels(tmp_path):
     runner = CliRunner()
     result = runner.invoke(app, ["build", "paper-dome", "--model", "membrane", "--voxels", "--out", str(tmp_path)])

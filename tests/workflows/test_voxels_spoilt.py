@@ -98,6 +98,7 @@ SPOILED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", SPOILED)
 def test_what_is_wrong_with_a_stack_is_named(stack, case):
     spoil, said = SPOILED[case]

@@ -74,6 +74,7 @@ def test_without_friction_a_hold_ends_as_the_press_at_the_relaxed_modulus_and_wi
     assert 1.03 < rise < 1.1 and force == pytest.approx(1.0, abs=0.02)
 
 
+@pytest.mark.slow
 def test_a_resin_that_hardly_relaxes_has_the_loop_of_friction_alone():
     rough = SENSOR.replace(friction=0.3, depth=DEPTH, steps=16)
     (run,) = loop_by_solid(rough, [ELASTIC], [0.0], DEPTH, 1.0)[0]

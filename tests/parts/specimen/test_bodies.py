@@ -54,6 +54,7 @@ def check(at, pattern):
     assert overlap_volume(inclusion, matrix) < 1e-6 * at.block.volume
 
 
+@pytest.mark.slow
 @STEPS
 @SHARES
 @pytest.mark.parametrize("kind", STRUTS)
@@ -65,6 +66,7 @@ def test_struts_at_three_fractions(kind, share, cell, step):
     check(at, pattern)
 
 
+@pytest.mark.slow
 @STEPS
 @SHARES
 @pytest.mark.parametrize("form", ["sheet", "network"])
@@ -76,6 +78,7 @@ def test_surfaces_at_three_fractions(kind, form, share, step):
     check(at, pattern)
 
 
+@pytest.mark.slow
 @STEPS
 @pytest.mark.parametrize("kind", [*STRUTS, "gyroid"])
 def test_a_lattice_through_the_whole_block_is_flush_with_every_side(kind, step):

@@ -94,6 +94,7 @@ CASES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seat", "mount", "marks"), CASES)
 def test_marked_meshes_stay_closed_and_differ_by_the_mark_alone(drawn, seat, mount, marks):
     assembly = drawn(

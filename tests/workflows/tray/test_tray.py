@@ -62,6 +62,7 @@ def test_a_one_piece_sensor_stays_one_assembly(seats):
     assert model.GetComponentsObjects().Count() == 2
 
 
+@pytest.mark.slow
 def test_shared_faces_of_an_assembly_keep_their_triangles(seats):
     from pneutouch.printability.rules.bodies import shared_area
 
