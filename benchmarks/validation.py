@@ -220,7 +220,7 @@ def references(data: dict[str, Any]) -> list[dict[str, Any]]:
     shell = [max(map(abs, balls["shell"][-1]["sheared"]))]
     rows = [
         ("thick spheres", "exact", "limit pressure, stretch", greatest(spheres)),
-        ("thin membrane, inflated", "exact", "limit pressure, height, extrapolated to no wall", membrane),
+        ("thin membrane, inflated", "exact", "limit pressure, height (both extrapolated to no wall)", membrane),
         ("thin membrane, pressed by a plate", "exact", "cavity pressure, force, contact radius", greatest(pressed)),
         ("Hertz, smallest contact", "exact", "force", [abs(balls["hertz"][-1][1])]),
         ("pressurised shell with shear, wall of 0.0025 R", "exact", "first stiffness under a ball", shell),

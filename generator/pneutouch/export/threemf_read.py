@@ -260,7 +260,7 @@ class StoredBody:
 
 @dataclass(frozen=True)
 class Package:
-    """Content of a 3MF. ``metadata`` has our own entries by their bare names; ``recipe`` is JSON text of our files."""
+    """Content of a 3MF; ``metadata`` has names of other namespaces as ``namespace:name``, ``recipe`` is JSON text."""
 
     path: Path
     bodies: tuple[StoredBody, ...]

@@ -60,7 +60,7 @@ class Harmonics:
     def contact_angles(self) -> Array:
         """Angles at which contact is evaluated, (n + 1,) midpoints: as many as a component has coefficients.
 
-        At more points than coefficients, a contact with a stiff penalty cannot close at all of them.
+        At more points than coefficients, a contact with a stiff penalty cannot close at every one of them.
         """
         return self._midpoints(self.waves + 1)
 

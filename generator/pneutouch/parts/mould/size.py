@@ -166,7 +166,7 @@ class MouldSize:
 
     @property
     def bore(self) -> Line:
-        """Inside of the ring, from below upwards: the flange's edge, or a clearance outside the collar."""
+        """Inside of the mould's ring, upwards: the flange's edge, or with an insert, a clearance outside its collar."""
         if self.insert is None:
             return self.faces.edge
         radius = self.insert.collar_radius + self.shape.clearance

@@ -74,8 +74,8 @@ def overlaps(closed: Sequence[Body]) -> dict[tuple[str, str], float]:
 
 
 def cavity_match(size: MouldSize, closed: Sequence[Body], tolerance: float) -> CavityMatch:
-    """Difference between the first cavity of the closed mould, channels plugged, and the membrane, in both
-    directions."""
+    """Volumes in which the first cavity of the closed mould, its channels plugged, and the membrane differ: what the
+    cavity lacks and what it has in excess."""
     from manifold3d import Manifold, OpType
 
     plugs = [_manifold(tool, tolerance) for tool in channels(size)]

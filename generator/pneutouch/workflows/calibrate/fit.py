@@ -226,7 +226,7 @@ def calibrate(
     title: str = "",
     notes: Sequence[str] = (),
 ) -> Calibration:
-    """Fit the parameters ``names`` of a design to observations, and predict pressures ``hold_out_kPa`` by the others.
+    """Fit the parameters ``names`` of a design to observations; predict each of ``hold_out_kPa`` by a fit without it.
 
     Raises InputError for what cannot be fitted, ComputationError where no fit is found.
     """

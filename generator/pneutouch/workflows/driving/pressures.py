@@ -255,7 +255,7 @@ def band(curves: ReachCurves, figure: str, value: float, near: float) -> Pressur
 
 
 def possible(curves: ReachCurves, figure: str, value: float) -> PressureBand | None:
-    """The first band in which the sensor in hand may have the value, although the prediction has it nowhere."""
+    """Lowest band of driving pressures where the figure may have the value within its uncertainty; None without one."""
     inside = np.flatnonzero(_excess(curves, figure, value) <= 0.0)
     return None if inside.size == 0 else band(curves, figure, value, float(curves.pressures[inside[0]]))
 

@@ -248,7 +248,7 @@ def dropped_lines(selection: SelectionRun, typed: Typed = in_file) -> list[str]:
 
 
 def change_lines(changes: Sequence[WorkingChange], typed: Typed) -> list[str]:
-    """Each single change outside the requirements with which a design meets the target."""
+    """Lines on the changes that each alone let a design meet the target, requirements unchanged; empty without any."""
     lines = [f"{typed(change.field, change.value)}: {change.best}" for change in changes]
     return ["with the same requirements, one of these alone is enough:", *lines] if lines else []
 
