@@ -9,6 +9,8 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.printability.rulebook import MOULD_RULES, RULES
 from pneutouch.spec.design import Accepted, DesignFile
+from pneutouch.spec.target import Setting, Target, TargetFigures
+from pneutouch.workflows.select.base import base_scene
 
 REASON = "printed twelve, none broke"
 
@@ -43,7 +45,18 @@ def test_a_design_that_accepts_nothing_reads_as_before():
     assert DesignFile(accepted={"walls": REASON}).model_dump()["accepted"]["walls"] == REASON
 
 
-@pytest.mark.parametrize(("key", "value"), [("resins", REASON), ("walls", ""), ("walls", "x" * 201)])
+def test_a_selection_on_a_base_accepts_nothing_of_it(library, tmp_path):
+    """The reasons are of the base's own membrane."""
+    path = tmp_path / "mine.toml"
+    path.write_text(f'[accepted]\nwalls = "{REASON}"\n')
+    target = Target(target=TargetFigures(sensitivity_kPa_per_N=2.0), setting=Setting(base=str(path)))
+    assert load_scene(str(path), {}, library).design.accepted.walls == REASON
+    assert base_scene(target, "test", library).design.accepted == Accepted()
+
+
+@pytest.mark.parametrize(
+    ("key", "value"), [("resins", REASON), ("driving", REASON), ("walls", ""), ("walls", "    "), ("walls", "x" * 201)]
+)
 def test_another_rule_or_no_reason_is_refused(library, key, value):
     with pytest.raises(InputError) as caught:
         load_scene("paper-dome", {f"accepted.{key}": value}, library)

@@ -123,6 +123,17 @@ def test_what_there_is_not_is_named(tables, said):
     [
         pytest.param("--sensitivity 3 --material FLX9995", "given.materials", marks=pytest.mark.slow),
         pytest.param("--sensitivity 8", "setting.tube_length_mm", marks=pytest.mark.slow),
+        # Twice the tube is enough, eight times too much; of a value that rounding costs no option is stated.
+        pytest.param(
+            "--sensitivity 2.167 --at 5 --inner-radius 6 --wall 1 --material TangoPlus",
+            "setting.tube_length_mm",
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            "--sensitivity 0.5 --tolerance 0.1% --stiffness-least 50",
+            "target.sensitivity_kPa_per_N",
+            marks=pytest.mark.slow,
+        ),
         pytest.param("--sensitivity 4.9 --max-diameter 9", "setting.assignments", marks=pytest.mark.slow),
         pytest.param("--sensitivity 3 --wall 2.5", "given.wall_thickness_mm", marks=pytest.mark.slow),
         pytest.param("--sensitivity 3 --inner-radius 3", "given.inner_radius_mm", marks=pytest.mark.slow),

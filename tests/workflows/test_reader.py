@@ -11,8 +11,11 @@ import jsonschema
 import numpy as np
 import pytest
 
+from pneutouch.cli.complete import years_of
+from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.reader import ROWS, _driving_pressures, reader_grid
+from pneutouch.evaluation.reader_tables import reader_tables
 from pneutouch.export.reader.reading import ForceReader, Status
 from pneutouch.export.reader.render import MOST_TABLES, table_bytes
 from pneutouch.mechanics import predict
@@ -94,6 +97,30 @@ def test_the_uncertainty_is_that_of_the_sensitivity_where_the_curve_is_as_stiff(
     stated = [entry.known["sensitivity_kPa_per_N"].standard_uncertainty_relative for entry in evaluation.uncertainty]
     relative = np.array(result.document["grid"]["force_uncertainty_relative"])
     assert relative.min() > 0.5 * min(stated) and relative.max() < 2.0 * max(stated)
+
+
+def test_less_ageing_is_less_uncertainty_and_a_year_is_all_that_is_known(evaluation, result):
+    grid = reader_grid(evaluation)
+    year, half, fresh = (reader_tables(evaluation, grid, aged).grid for aged in (None, 0.5, 0.0))
+    assert [one.force_uncertainty_age_days for one in (year, half, fresh)] == [365.0, 182.5, 0.0]
+    rows = [np.array(one.force_uncertainty_relative) for one in (year, half, fresh)]
+    assert (rows[0] > rows[1]).all() and (rows[1] > rows[2]).all()
+    for aged in (-0.1, 1.1, float("nan")):
+        with pytest.raises(InputError):
+            reader_tables(evaluation, grid, aged)
+
+
+@pytest.mark.parametrize(
+    ("text", "years"), [("90d", 90 / 365), ("8w", 56 / 365), ("6m", 0.5), ("1y", 1.0), ("0d", 0.0)]
+)
+def test_a_time_with_its_unit_is_a_share_of_a_year(text, years):
+    assert years_of(text, "age") == pytest.approx(years)
+
+
+@pytest.mark.parametrize("text", ["", "y", "1", "2y", "-1d", "1 year", "nany"])
+def test_a_time_without_a_unit_or_beyond_a_year_is_refused(text):
+    with pytest.raises(InputError):
+        years_of(text, "age")
 
 
 @pytest.mark.parametrize("pressures", [[0.0], [12.0]])

@@ -59,7 +59,8 @@ def unmet_lines(record: SelectedRecord) -> list[str]:
         dropped = record.dropped_requirements
         lines += [f"drop the requirement on {each.requirement}: {each.attainable}" for each in dropped]
         lines += [] if dropped else ["no design fits with any single requirement dropped"]
-        lines += [f"enough by itself: {_keyword(each)}: {_size(each.design)}" for each in record.single_changes]
+        theirs = record.target["setting"]["assignments"]
+        lines += [f"enough by itself: {_keyword(each, theirs)}: {_size(each.design)}" for each in record.single_changes]
     return lines
 
 
@@ -72,10 +73,10 @@ def _of_grade(record: GradedRecord) -> list[str]:
     return [f"nearest grade: {best.reason or f'beyond what is allowed: {used}'}"]
 
 
-def _keyword(change: SingleChange) -> str:
-    """A change as the keyword of `select`."""
+def _keyword(change: SingleChange, assignments: list[str]) -> str:
+    """A change as the keyword of `select`, with the ``assignments`` that the target has already."""
     key = change.field.partition(".")[2]
-    return f"{key}={[change.value] if key == 'assignments' else change.value!r}"
+    return f"{key}={[*assignments, change.value] if key == 'assignments' else change.value!r}"
 
 
 def _size(design: FoundDesign) -> str:

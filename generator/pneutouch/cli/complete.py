@@ -101,8 +101,8 @@ def years_of(text: str, parameter: str) -> float:
         value = plain_number(number) * _DAYS[unit] / _DAYS["y"]
     except (ValueError, KeyError):
         value = float("nan")
-    if not 0.0 <= value <= 100.0:
-        problem = "it must be a time of at most 100 years with its unit, such as 90d, 8w, 6m or 1y"
+    if not 0.0 <= value <= 1.0:
+        problem = "it must be a time of at most a year with its unit, such as 90d, 8w, 6m or 1y"
         raise InputError(problem, key=parameter, value=text)
     return value
 

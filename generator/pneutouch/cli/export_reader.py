@@ -27,6 +27,7 @@ from pneutouch.cli.app import (
 )
 from pneutouch.cli.complete import simulators, years_of
 from pneutouch.cli.terminal import echo, notify, table_text
+from pneutouch.errors import InputError
 from pneutouch.results.reader import ReaderRecord, SimulatorRecord
 from pneutouch.results.record import plain
 
@@ -64,6 +65,8 @@ def export_reader(
 
         options = model_options(model or (None if tolerance else "auto"), tolerance)
         aged = None if age is None else years_of(age, "age")
+        if simulator is not None and age is not None:
+            raise InputError("a simulator's model states no uncertainty", key="age", value=age, remedy="leave it out")
         if simulator is not None:
             _export_simulator(design, changes(set_, calibration), simulator, out, options, json=json)
             return

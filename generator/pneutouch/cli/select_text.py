@@ -16,11 +16,9 @@ from pneutouch.selection import Candidate
 from pneutouch.units import KPA
 from pneutouch.workflows.select.document import (
     Typed,
-    WorkingChange,
     change_lines,
     dropped_lines,
     headline,
-    in_file,
     missed_text,
     remarks,
     search_notes,
@@ -45,10 +43,11 @@ def answer_text(answer: TargetAnswer, typed: Typed) -> str:
         return processes_text(answer.run)
     if isinstance(answer.run, GradedSelectionRun):
         return graded_text(answer.run)
-    return selection_text(answer.run, answer.changes, typed)
+    enough = [*dropped_lines(answer.run, answer.options, typed), *change_lines(answer.changes, typed)]
+    return selection_text(answer.run, enough)
 
 
-def selection_text(selection: SelectionRun, changes: Sequence[WorkingChange] = (), typed: Typed = in_file) -> str:
+def selection_text(selection: SelectionRun, enough: Sequence[str] = ()) -> str:
     """Ranked designs, or why there are none and what would make one possible."""
     answer, notes, left = selection.answer, search_notes(selection), remarks(selection)
     head = [*HEAD[:8], *(["place (k=1)"] if selection.problem.anywhere else []), *HEAD[8:]]
@@ -71,7 +70,6 @@ def selection_text(selection: SelectionRun, changes: Sequence[WorkingChange] = (
             table_text(head[:-1], [["", *row_of(selection, answer.nearest)]]),
             f"it misses: {missed_text(selection, answer.nearest)}",
         ]
-    enough = [*dropped_lines(selection, typed), *change_lines(changes, typed)]
     return "\n".join([*lines, "", *enough, "", *left]).rstrip()
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.errors import InputError
 from pneutouch.evaluation.reader import CHANGE_K, CHANGE_KPA, REFERENCE_K, ReaderGrid
 from pneutouch.evaluation.uncertainty import even_wall, spread, unknown
 from pneutouch.export.reader.reading import NOISES, UNSTEADY
@@ -130,12 +131,17 @@ FILTER_S = 1.0
 def reader_tables(evaluation: Evaluation, grid: ReaderGrid, aged: float | None = None) -> ReaderTables:
     """The reader without its source and its largest difference from the full model. Numbers are float32 ones.
 
-    ``aged`` are the years since the calibration that the uncertainty counts, or since the print of a sensor without
-    one; None: 0 of a calibrated sensor, which is its own reference, else 1.
+    ``aged`` is the share of a year since the calibration that the uncertainty counts, or since the print of a sensor
+    without one; None: 0 of a calibrated sensor, which is its own reference, else 1. Later ageing is not known: a sensor
+    that was calibrated in its first year counts the rest of it at most. Raises InputError for another share.
     """
     scene, sensor, rating = evaluation.scene, evaluation.sensor, evaluation.rating
     if aged is None:
         aged = 1.0 if scene.calibration is None else 0.0
+    if not 0.0 <= aged <= 1.0:
+        problem = "ageing is known for the first year alone"
+        raise InputError(problem, key="age_years", value=aged, remedy="give 0 to 1 years")
+    aged = min(aged, 1.0 if scene.calibration is None else scene.calibration.remaining_year)
     relative = force_uncertainty(evaluation, grid, aged)
     ambient_kPa = sensor.gas.ambient_pressure / KPA
     return ReaderTables(

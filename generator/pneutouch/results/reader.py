@@ -25,7 +25,7 @@ class ForceTable:
     force_uncertainty_unknown: str | None
     """Reason why it is unknown."""
     force_uncertainty_age_days: float
-    """Time since the calibration, or since the print of a sensor without one, up to which it holds."""
+    """Time since the calibration, or since the print of a sensor without one, whose ageing it counts."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ import datetime
 import math
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field, StringConstraints, model_validator
 
 from pneutouch.errors import shown
 from pneutouch.spec.contact import ContactTable
@@ -223,7 +223,7 @@ class Print(Table):
     )
 
 
-Reason = Annotated[str, Field(min_length=3, max_length=200)] | None
+Reason = Annotated[str, StringConstraints(strip_whitespace=True, min_length=3, max_length=200)] | None
 
 
 def _reason(rule: str) -> Any:
@@ -250,7 +250,6 @@ class Accepted(Table):
     bubbles: Reason = _reason("bubbles")
     inhibition: Reason = _reason("inhibition")
     glue: Reason = _reason("glue")
-    driving: Reason = _reason("driving")
     freedom: Reason = _reason("freedom")
     mixing_curve: Reason = _reason("mixing curve")
     mould_fit: Reason = _reason("mould fit")

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 
     from pneutouch.selection import Candidate
     from pneutouch.studio.job import Report
+    from pneutouch.workflows.select.document import Option
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,23 +185,29 @@ def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> PageSe
         if isinstance(run, GradedSelectionRun):
             return _graded(run, document, page)
         report(len(STEPS), steps, _CHART)
-        selected = _selected(run, document, page, library)
+        selected = _selected(run, document, page, library, found.options)
         return replace(selected, remarks=[*change_lines(found.changes, typed), *selected.remarks])
 
 
-def _selected(run: SelectionRun, document: Mapping[str, Any], page: CandidateStates, library: Library) -> PageSelection:
+def _selected(
+    run: SelectionRun,
+    document: Mapping[str, Any],
+    page: CandidateStates,
+    library: Library,
+    options: Mapping[str, Option],
+) -> PageSelection:
     return PageSelection(
         selection=document,
         headline=headline(run),
         notes=search_notes(run),
-        cards=_cards(run, page),
+        cards=_cards(run, page, options),
         remarks=[*_nothing_to_drop(run), *remarks(run)],
         chart=_chart(run, library),
         table=None,
     )
 
 
-def _cards(run: SelectionRun, page: CandidateStates) -> list[CandidateCard]:
+def _cards(run: SelectionRun, page: CandidateStates, options: Mapping[str, Option]) -> list[CandidateCard]:
     """The designs by rank; if there are none, the nearest, and those that fit without one of the requirements."""
 
     def card(choice: Candidate, kind: str, label: str, *, rank: int | None = None, note: str = "") -> CandidateCard:
@@ -225,7 +232,7 @@ def _cards(run: SelectionRun, page: CandidateStates) -> list[CandidateCard]:
     if answer.nearest is not None:
         misses = f"it misses: {missed_text(run, answer.nearest)}"
         cards.append(card(answer.nearest, "nearest", "nearest", note=misses))
-    for dropped, line in zip(answer.dropped, dropped_lines(run, typed), strict=False):
+    for dropped, line in zip(answer.dropped, dropped_lines(run, options, typed), strict=False):
         cards.append(card(dropped.best, "dropped", f"without {dropped.requirement}", note=line))
     return cards
 
@@ -233,7 +240,7 @@ def _cards(run: SelectionRun, page: CandidateStates) -> list[CandidateCard]:
 def _nothing_to_drop(run: SelectionRun) -> list[str]:
     """Lines for a target that no design meets even with one requirement dropped; else empty."""
     answer = run.answer
-    return [] if answer.designs or run.rejected or answer.dropped else dropped_lines(run, typed)
+    return [] if answer.designs or run.rejected or answer.dropped else dropped_lines(run)
 
 
 def _chart(run: SelectionRun, library: Library) -> FrontChart:

@@ -101,7 +101,8 @@ def fit(
             f"calibrate: {int(points.use.sum())} values for {count} parameters without priors; there must be more "
             "values, or fewer parameters with `fit`"
         )
-    contact, at = FittedContact.of(sensor, parameters, parameters.start), _start(sensor, points, parameters)
+    at = _start(sensor, points, parameters)
+    contact = FittedContact.of(sensor, parameters, parameters.full(at))
     # The ratio is centred by rough fits first: where it is off, the residuals show its error and not the runs'.
     for _ in range(_CENTRED):
         at = _roughly(AtlasModel(sensor, points, contact), parameters, at, floor).at

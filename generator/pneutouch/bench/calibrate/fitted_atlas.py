@@ -30,7 +30,7 @@ from pneutouch.bench.calibrate.parameters import (
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
 from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasSlices, shipped
-from pneutouch.mechanics.corrected.curves import contact_ratio
+from pneutouch.mechanics.corrected.curves import contact_ratio, injection_ratio
 from pneutouch.mechanics.corrected.figures import outside_fit, stand_in
 from pneutouch.mechanics.sensor import Sensor
 
@@ -98,6 +98,11 @@ class FittedContact:
         centre = sensor.of_modulus(modulus).replace(wall_thickness=wall, dead_volume=float(full[DEAD]))
         return cls(centre, chosen.frictions)
 
+    @property
+    def other_wall(self) -> bool:
+        """True if the wall has a law or a grade, which changes its inflation too."""
+        return self.centre.wall.law is not None or self.centre.wall.grade is not None
+
     def distance(self, other: "FittedContact") -> float:
         """Distance of two contacts' centres: the greatest change of ln modulus, ln wall and ln gas volume."""
         pairs = [
@@ -126,9 +131,11 @@ class AtlasModel:
             raise InputError(f"calibrate: the atlas does not cover this sensor: {why}; no fit without it")
         self.sensor, self.points = stand_in(sensor), points
         deep = float(points.travel.max(initial=0.0)) + OFFSET_BOUND
-        self._ratio = None
+        self._ratio, self._blown = None, np.zeros(points.volume.size)
         if contact is not None and points.travel.size:
             self._ratio = contact_ratio(contact.centre, contact.frictions, points.driving, deep)
+        if contact is not None and points.volume.size and contact.other_wall:
+            self._blown = injection_ratio(contact.centre, points.volume.ravel())
         self._last: tuple[bytes, Array, Flags] | None = None
         size, depth = sensor.dome.inner_radius, points.travel / sensor.dome.inner_radius
         deepest = float(depth.max(initial=0.0))
@@ -194,7 +201,7 @@ class AtlasModel:
         size, mu = self.sensor.dome.inner_radius, np.exp(sets[:, MODULUS])
         ambient = self.sensor.gas.ambient_pressure / mu
         pressure, ok = injected(slices, k, ambient, sets[:, DEAD] / size**3, volume / size**3)
-        return pressure * mu[:, None], ok
+        return pressure * mu[:, None] * np.exp(self._blown), ok
 
 
 FLOOR = np.array([0.01, 0.005, 0.005])

@@ -68,6 +68,9 @@ class ContactRatio:
         return np.asarray(PchipInterpolator(self.frictions, self.logs, axis=1)(friction))
 
 
+_BEYOND, _FIRST = 1.05, 1e-3
+"""Travel of an end that is not reached, over the last one; least injected volume of a ratio, over the greatest."""
+
 _RING = 0.01
 """Share of the force by which a ring that the wall meets ends the ratio: our choice. Behind it the force rises within a
 few tenths of a millimetre to twice as much, and the place depends on every size."""
@@ -98,15 +101,36 @@ def contact_ratio(
         pairs = zip(_pressed(whole.replace(friction=held[0].protocol.friction), pressures), over[0], strict=False)
         ends = np.array([_parting(ringed, free, depths) for ringed, free in pairs])[:count]
         count = len(ends)
+    if not count:
+        raise ComputationError("calibrate: the solid cannot press the sensor onto the ring around its flange")
     return ContactRatio(
         np.array(frictions), grains[:count], depths, np.array(logs).transpose(2, 0, 1, 3)[:, :, :count], ends
     )
 
 
 def _parting(ringed: Array, free: Array, depths: Array) -> float:
-    """Last of the travels before the force with the ring parts from that without it, mm; inf where it does not."""
+    """Last of the travels before the force with the ring parts from that without it, mm; beyond all where it does not.
+
+    Finite, so that the end at a driving pressure between two lies between theirs.
+    """
     apart = np.flatnonzero(np.abs(_log_ratio(ringed, free, depths)[0]) > _RING)
-    return float(depths[max(apart[0] - 1, 0)]) if apart.size else np.inf
+    return float(depths[max(apart[0] - 1, 0)]) if apart.size else _BEYOND * float(depths[-1])
+
+
+def injection_ratio(sensor: Sensor, volumes: Array) -> Array:
+    """Logarithm of the pressure after injected volumes (n,), mm3, over that of the `stand_in`, by the solid."""
+    some = np.maximum(volumes, _FIRST * float(volumes.max()))
+    return np.asarray(np.log(_after_injection(sensor, some) / _after_injection(stand_in(sensor), some)))
+
+
+def _after_injection(sensor: Sensor, volumes: Array) -> Array:
+    """Pressures (n,), MPa, at which wall and gas are in equilibrium after injected volumes; beyond the end of the
+    inflation that of its end."""
+    from pneutouch.mechanics.models.solid import solid_result
+
+    curve, gas = solid_result(sensor.replace(waves=0), np.zeros(0)).inflation, sensor.gas
+    content = (curve.volume + gas.dead_volume) * (curve.pressure + gas.ambient_pressure)
+    return np.asarray(np.interp(content[0] + gas.ambient_pressure * volumes, content, curve.pressure))
 
 
 @lru_cache(maxsize=64)

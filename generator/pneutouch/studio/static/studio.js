@@ -152,7 +152,7 @@ function quickly(question, status, content) {
     problems(content.problems);
     buttons();
     report(`${content.problems[0].message}. Shown below is the last design that can work.`);
-    if (page.quick?.base !== question.base) files.fetch(question.base).then(() => page.state.base === question.base && show());
+    if (!page.outdated && page.quick?.base !== question.base) files.fetch(question.base, () => page.state.base === question.base && show());
     return;
   }
   problems([]);

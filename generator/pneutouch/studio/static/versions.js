@@ -20,11 +20,16 @@ export class Versions {
     this.known[base] = version;
   }
 
-  /** Get the values of the design itself, for its form: the answer to changes that cannot work holds none. */
-  async fetch(base) {
-    const question = { base, values: {}, version: null };
-    const { status, content } = this.plain[base] ? {} : await post("/api/quick", question);
-    if (status === 200) this.answered(question, content);
+  /** Get the values of the design itself, for its form, and call `then`: the answer to changes that cannot work holds none. */
+  async fetch(base, then) {
+    const question = this.of({ base, values: {} });
+    try {
+      const { status, content } = this.plain[base] ? {} : await post("/api/quick", question);
+      if (status === 200) this.answered(question, content);
+      then();
+    } catch {
+      // The studio was stopped: the next move says so.
+    }
   }
 
   /** Note an answer; the question with the version that it was answered for. */

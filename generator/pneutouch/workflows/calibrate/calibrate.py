@@ -17,6 +17,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.calibrated import check_fitted
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.resins import rating_of
+from pneutouch.mechanics.corrected.figures import is_corrected
 from pneutouch.output.files import check_writable
 from pneutouch.parts import assemble
 from pneutouch.results.calibration import OutcomeRecord
@@ -131,7 +132,7 @@ def run_calibration(
     built = sensor_of(assemble(scene))
     check_fitted(scene, built)
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
-    expected = answers(design, changes, pairs, "solid" if built.protocol.other_contact else "atlas", library)
+    expected = answers(design, changes, pairs, "solid" if is_corrected(built) else "atlas", library)
     curves, refused, questions = sound(loaded, expected)
     _check_left(data, loaded, sensor, curves, refused)
     _, observations, notes = observations_of(loaded.campaign, curves, loaded.injections, scene, sensor)

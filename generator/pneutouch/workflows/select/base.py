@@ -215,7 +215,7 @@ def with_connector(scene: ResolvedDesign) -> str:
 
 
 def _source(target: Target, library: Library) -> DesignSource:
-    """The base without its calibration, which holds only for its own membrane, not for the candidates'."""
+    """The base without its calibration and accepted warnings, which hold only for its own membrane."""
     if target.setting.base is None:
         return DEFAULT
     try:
@@ -223,7 +223,9 @@ def _source(target: Target, library: Library) -> DesignSource:
     except PneutouchError as error:
         error.key = "setting.base" if error.key == "design" else error.key
         raise
-    return replace(source, content={key: value for key, value in source.content.items() if key != CALIBRATION})
+    return replace(
+        source, content={key: value for key, value in source.content.items() if key not in (CALIBRATION, "accepted")}
+    )
 
 
 def settled_base(target: Target, changes: Changes, library: Library) -> DesignFile:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -36,6 +37,8 @@ from pneutouch.workflows.select.checks import RejectedDesign, contact_notes, con
 from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.select import Confirmation, SelectionRun
 
+_NONE: Mapping[str, Any] = MappingProxyType({})
+
 
 class WorkingChange(NamedTuple):
     """A change of one field of the target, ``table.key``, with which a design meets it: the value, the one that it
@@ -54,8 +57,15 @@ class WorkingChange(NamedTuple):
         return f"{choice.resin.name}, R0 {radius:.2f} mm, t0 {wall:.2f} mm, {figures.sensitivity:.3f} kPa/N"
 
 
-def selected(selection: SelectionRun, changes: Sequence[WorkingChange] = ()) -> SelectionRecord:
-    """The selection as ``select`` prints it, with the single changes that make a design possible."""
+Option = tuple[str, float]
+"""Field of a target, ``table.key``, and its value."""
+
+
+def selected(
+    selection: SelectionRun, changes: Sequence[WorkingChange] = (), options: Mapping[str, Option] = _NONE
+) -> SelectionRecord:
+    """The selection as ``select`` prints it, with the single changes that make a design possible, and the ``options``
+    that relax a requirement, by its name."""
     answer = selection.answer
     confirmed = [*selection.confirmed, *[None] * (len(answer.designs) - len(selection.confirmed))]
     return SelectionRecord(
@@ -83,10 +93,9 @@ def selected(selection: SelectionRun, changes: Sequence[WorkingChange] = ()) -> 
             misses_percent=missed_percent(selection.problem, answer.nearest),
         ),
         dropped_requirements=tuple(
-            DroppedChoice(
-                each.requirement, would_need(selection, each), *relaxed(selection, each), _choice(selection, each.best)
-            )
+            DroppedChoice(each.requirement, would_need(selection, each), field, value, _choice(selection, each.best))
             for each in answer.dropped
+            for field, value in [options.get(each.requirement, (None, None))]
         ),
         single_changes=tuple(
             SingleChange(each.field, each.value, each.instead_of, _choice(each.run, each.run.answer.designs[0]))
@@ -235,14 +244,14 @@ def in_file(field: str, value: Any) -> str:
     return f"{field} = {value_text(value)}"
 
 
-def dropped_lines(selection: SelectionRun, typed: Typed = in_file) -> list[str]:
+def dropped_lines(selection: SelectionRun, options: Mapping[str, Option] = _NONE, typed: Typed = in_file) -> list[str]:
     """Each single requirement whose removal admits a design, with the value that can be reached; or that there is
     none."""
     lines = []
     for dropped in selection.answer.dropped:
-        field, value = relaxed(selection, dropped)
         needs = f"{would_need(selection, dropped)} ({dropped.best.resin.name})"
-        option = "" if field is None else f": {typed(field, value)}"
+        known = options.get(dropped.requirement)
+        option = "" if known is None else f": {typed(*known)}"
         lines.append(f"without the requirement on {dropped.requirement} alone a design fits: {needs}{option}")
     return lines or ["no design fits with any single requirement dropped"]
 

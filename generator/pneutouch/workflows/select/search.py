@@ -6,8 +6,9 @@ For a target that no design meets: changes of one thing outside its requirements
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,11 +17,12 @@ from pneutouch.catalogue.library import CachedLibrary
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.mechanics.gauge_reading import gauge_reading
 from pneutouch.results.selection import GradedRecord, ProcessesRecord, SelectionRecord
+from pneutouch.spec.fields import declaration
 from pneutouch.spec.gauge import Gauge
-from pneutouch.spec.target import Target
+from pneutouch.spec.target import Setting, Target
 from pneutouch.workflows.select.base import base_scene
 from pneutouch.workflows.select.checks import base_sensor, connector_fit, dead_volume, write_assigned
-from pneutouch.workflows.select.document import WorkingChange, graded, selected
+from pneutouch.workflows.select.document import Option, WorkingChange, graded, relaxed, selected
 from pneutouch.workflows.select.graded import GradedSelectionRun, select_graded
 from pneutouch.workflows.select.processes import ProcessSelection, offers, on_process, select, select_processes
 from pneutouch.workflows.select.select import STEPS, SelectionRun, found, passing
@@ -52,6 +54,7 @@ class TargetAnswer:
     choices: tuple[FoundChoice, ...]
     rejected: str | None = None
     changes: tuple[WorkingChange, ...] = ()
+    options: Mapping[str, Option] = field(default_factory=dict)
 
     def pick(self, rank: int) -> FoundChoice:
         """The design of a rank, or of a row over processes, from 1. Raises InputError if there is none."""
@@ -86,8 +89,11 @@ def search(
     run = select(target, where, library, written=written, progress=lambda s: progress(STEPS.index(s), steps, s))
     ranked = enumerate(run.answer.designs, start=1)
     choices = tuple(FoundChoice(str(rank), run.base, run.assignments(choice)) for rank, choice in ranked)
-    changes = () if choices else tuple(working_changes(run, where, library, lambda what: progress(2, steps, what)))
-    return TargetAnswer(run, selected(run, changes), choices, changes=changes)
+    if choices:
+        return TargetAnswer(run, selected(run), choices)
+    options = relaxations(run, where, library)
+    changes = tuple(working_changes(run, where, library, lambda what: progress(steps - 1, steps, what)))
+    return TargetAnswer(run, selected(run, changes, options), (), changes=changes, options=options)
 
 
 class Change(NamedTuple):
@@ -112,6 +118,26 @@ class Change(NamedTuple):
         return None if key == "assignments" else getattr(getattr(target, table), key)
 
 
+def relaxations(run: SelectionRun, where: str, library: Library | None) -> dict[str, Option]:
+    """Field and value of each requirement that alone prevents a design, by its name; only those with which the search
+    finds one, for the best design of a coarse scan may lose a margin at round sizes."""
+    if run.by_solid is not None:
+        return {}
+    library, options = CachedLibrary((library or Library.default()).folders), {}
+    for dropped in run.answer.dropped:
+        name, value = relaxed(run, dropped)
+        if name is None or value is None:
+            continue
+        target = Change(name, value).of(run.target, library)
+        if dropped.best.resin.grade is None:
+            target = target.model_copy(
+                update={"given": target.given.model_copy(update={"materials": [dropped.best.resin.name]})}
+            )
+        if passing(found(target, where, library), 1, library).answer.designs:
+            options[dropped.requirement] = name, value
+    return options
+
+
 def working_changes(
     run: SelectionRun, where: str, library: Library | None, trying: Callable[[str], None] = lambda what: None
 ) -> Iterator[WorkingChange]:
@@ -123,7 +149,7 @@ def working_changes(
     if run.by_solid is not None or run.rejected or run.answer.nearest is None:
         return
     library = CachedLibrary((library or Library.default()).folders)
-    for what, changes in _trials(run, where, library):
+    for what, changes in _trials(run, library):
         trying(f"another {what}")
         for change in changes:
             tried = _tried(run, change, where, library)
@@ -157,20 +183,21 @@ def _tried(run: SelectionRun, change: Change, where: str, library: Library) -> S
     return tried if tried.answer.designs else None
 
 
-def _trials(run: SelectionRun, where: str, library: Library) -> Iterator[tuple[str, list[Change]]]:
+def _trials(run: SelectionRun, library: Library) -> Iterator[tuple[str, list[Change]]]:
     """Things to change, each with its values in the order to be tried."""
     given = run.target.given
-    for what, changes in _volumes(run):
-        # Where the last, which changes most, is not enough, none before it is.
-        yield what, changes if changes and _tried(run, changes[-1], where, library) else []
+    yield _volumes(run)
     yield "port", [Change("setting.assignments", f"connector.port={name}") for name in _ports(run, library)]
     yield "gauge", [Change("setting.gauge", name) for name in _wider(run, library)]
     for key in ("wall_thickness_mm", "inner_radius_mm", "materials"):
         if getattr(given, key) is not None:
-            yield key.partition("_")[0], [Change(f"given.{key}", None)]
+            what = "resin" if key == "materials" else key.removesuffix("_mm").replace("_", " ")
+            yield what, [Change(f"given.{key}", None)]
     yield "printer", [Change("setting.profile", name) for name in offers(run.base, given.materials, library)]
-    for process in offers(run.base, given.materials, library, others=True):
-        yield "process", [Change("setting.processes", [process])]
+    # With a profile a process contradicts the target.
+    if run.target.setting.profile is None:
+        for process in offers(run.base, given.materials, library, others=True):
+            yield "process", [Change("setting.processes", [process])]
 
 
 _SHORTEST_MM = 20.0
@@ -179,7 +206,7 @@ _SHARES = (0.5, 0.25, 0.1)
 _MULTIPLES = (2.0, 4.0, 8.0)
 
 
-def _volumes(run: SelectionRun) -> Iterator[tuple[str, list[Change]]]:
+def _volumes(run: SelectionRun) -> tuple[str, list[Change]]:
     """Less gas behind the cavity for a sensitivity that is not reached, more for one that is exceeded."""
     assert run.answer.nearest is not None
     wanted, pneumatics = run.problem.sensitivity, run.base.design.pneumatics
@@ -187,9 +214,10 @@ def _volumes(run: SelectionRun) -> Iterator[tuple[str, list[Change]]]:
     shares = _MULTIPLES if more else (*_SHARES, 0.0)
     what, key = ("tube", "tube_length_mm") if pneumatics.dead_volume_mL is None else ("dead volume", "dead_volume_mL")
     base, least = getattr(pneumatics, key), _SHORTEST_MM if what == "tube" else 0.0
-    values = dict.fromkeys(max(float(f"{base * share:.2g}"), least) for share in shares)
+    most = declaration(Setting, key).high or math.inf
+    values = dict.fromkeys(min(max(float(f"{base * share:.2g}"), least), most) for share in shares)
     kept = [value for value in values if (value > base) == more and value != base]
-    yield what, [Change(f"setting.{key}", value) for value in kept]
+    return what, [Change(f"setting.{key}", value) for value in kept]
 
 
 def _wider(run: SelectionRun, library: Library) -> list[str]:
