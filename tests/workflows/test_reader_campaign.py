@@ -9,6 +9,7 @@ import tomllib
 import numpy as np
 import pytest
 
+from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.spec.options import CalibrationOptions, SimulationOptions
 from pneutouch.spec.read import assignments
@@ -109,3 +110,16 @@ def test_the_compiled_reader_holds_its_uncertainty_on_the_held_out_runs(design, 
     assert read.mean() > 0.97
     within = np.abs(force - measured) <= 2.0 * np.hypot(standard, noise)
     assert within[read].mean() >= 0.95
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("design", ["cast-dome", "graded-dome"])
+def test_runs_with_their_columns_exchanged_are_not_fitted(design, tmp_path, monkeypatch):
+    """Also where the atlas has no prediction to hold them against."""
+    monkeypatch.setenv("PNEUTOUCH_HOME", str(tmp_path))
+    options = SimulationOptions(specimens=1, driving_pressures_kPa=[6.0], runs=2, kinds=["steps"], seed=1)
+    place = simulate(design, tmp_path / "campaign", {}, options)
+    for path in (place / "runs").glob("*.csv"):
+        path.write_text(path.read_text().replace("force_N,pressure_kPa", "pressure_kPa,force_N"))
+    with pytest.raises(InputError, match="swapped"):
+        run_calibration(place, None, CalibrationOptions(fit=["modulus"]), tmp_path / "fit")
