@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
     from pneutouch.selection import Candidate
     from pneutouch.studio.job import Report
-    from pneutouch.workflows.select.document import Option
+    from pneutouch.workflows.select.document import RelaxedValue
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,7 +194,7 @@ def _selected(
     document: Mapping[str, Any],
     page: CandidateStates,
     library: Library,
-    options: Mapping[str, Option],
+    options: Mapping[str, RelaxedValue],
 ) -> PageSelection:
     return PageSelection(
         selection=document,
@@ -207,7 +207,7 @@ def _selected(
     )
 
 
-def _cards(run: SelectionRun, page: CandidateStates, options: Mapping[str, Option]) -> list[CandidateCard]:
+def _cards(run: SelectionRun, page: CandidateStates, options: Mapping[str, RelaxedValue]) -> list[CandidateCard]:
     """The designs by rank; if there are none, the nearest, and those that fit without one of the requirements."""
 
     def card(choice: Candidate, kind: str, label: str, *, rank: int | None = None, note: str = "") -> CandidateCard:

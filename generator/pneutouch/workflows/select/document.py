@@ -57,12 +57,12 @@ class WorkingChange(NamedTuple):
         return f"{choice.resin.name}, R0 {radius:.2f} mm, t0 {wall:.2f} mm, {figures.sensitivity:.3f} kPa/N"
 
 
-Option = tuple[str, float]
+RelaxedValue = tuple[str, float]
 """Field of a target, ``table.key``, and its value."""
 
 
 def selected(
-    selection: SelectionRun, changes: Sequence[WorkingChange] = (), options: Mapping[str, Option] = _NONE
+    selection: SelectionRun, changes: Sequence[WorkingChange] = (), options: Mapping[str, RelaxedValue] = _NONE
 ) -> SelectionRecord:
     """The selection as ``select`` prints it, with the single changes that make a design possible, and the ``options``
     that relax a requirement, by its name."""
@@ -244,7 +244,9 @@ def in_file(field: str, value: Any) -> str:
     return f"{field} = {value_text(value)}"
 
 
-def dropped_lines(selection: SelectionRun, options: Mapping[str, Option] = _NONE, typed: Typed = in_file) -> list[str]:
+def dropped_lines(
+    selection: SelectionRun, options: Mapping[str, RelaxedValue] = _NONE, typed: Typed = in_file
+) -> list[str]:
     """Each single requirement whose removal admits a design, with the value that can be reached; or that there is
     none."""
     lines = []

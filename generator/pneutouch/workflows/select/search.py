@@ -22,7 +22,7 @@ from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.target import Setting, Target
 from pneutouch.workflows.select.base import base_scene
 from pneutouch.workflows.select.checks import base_sensor, connector_fit, dead_volume, write_assigned
-from pneutouch.workflows.select.document import Option, WorkingChange, graded, relaxed, selected
+from pneutouch.workflows.select.document import RelaxedValue, WorkingChange, graded, relaxed, selected
 from pneutouch.workflows.select.graded import GradedSelectionRun, select_graded
 from pneutouch.workflows.select.processes import ProcessSelection, offers, on_process, select, select_processes
 from pneutouch.workflows.select.select import STEPS, SelectionRun, found, passing
@@ -54,7 +54,7 @@ class TargetAnswer:
     choices: tuple[FoundChoice, ...]
     rejected: str | None = None
     changes: tuple[WorkingChange, ...] = ()
-    options: Mapping[str, Option] = field(default_factory=dict)
+    options: Mapping[str, RelaxedValue] = field(default_factory=dict)
 
     def pick(self, rank: int) -> FoundChoice:
         """The design of a rank, or of a row over processes, from 1. Raises InputError if there is none."""
@@ -118,7 +118,7 @@ class Change(NamedTuple):
         return None if key == "assignments" else getattr(getattr(target, table), key)
 
 
-def relaxations(run: SelectionRun, where: str, library: Library | None) -> dict[str, Option]:
+def relaxations(run: SelectionRun, where: str, library: Library | None) -> dict[str, RelaxedValue]:
     """Field and value of each requirement that alone prevents a design, by its name; only those with which the search
     finds one, for the best design of a coarse scan may lose a margin at round sizes."""
     if run.by_solid is not None:
