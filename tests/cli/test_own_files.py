@@ -65,7 +65,9 @@ def given(campaign: Path, folder: Path) -> None:
     pulled(folder / "tension.csv")
 
 
-@pytest.mark.parametrize("line", [*LINES[:3], *(pytest.param(line, marks=pytest.mark.slow) for line in LINES[3:])])
+@pytest.mark.parametrize(
+    "line", [*list(LINES)[:3], *(pytest.param(line, marks=pytest.mark.slow) for line in list(LINES)[3:])]
+)
 def test_a_command_replaces_no_file_that_a_person_changed(line, campaign, command, tmp_path):
     sheet = annotated(tmp_path / "made" / LINES[line])
     given(campaign, tmp_path)
