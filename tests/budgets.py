@@ -11,6 +11,7 @@ import subprocess
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -82,6 +83,7 @@ def classes_with_a_sensitivity() -> int:
     )
 
 
+@cache
 def loaded() -> list[Path]:
     """Files of the package that ``predict paper-dome`` loads."""
     code = (

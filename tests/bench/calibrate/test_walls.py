@@ -21,7 +21,12 @@ from tests.bench.calibrate.sensors import disturbed
 SOFTER, THICKER = 0.93, 1.04
 """The specimen's modulus and wall over the designed ones."""
 DRAGON_SKIN_10 = {"membrane.material": "DragonSkin10", "pneumatics.driving_pressures_kPa": [0.0, 4.0]}
-RING = {"connector.seat": "clamped-flange-M2"}
+RING = {
+    "connector.seat": "clamped-flange-M2",
+    "membrane.wall_thickness_mm": 1.0,
+    "pneumatics.dead_volume_mL": 1.0,
+    "pneumatics.driving_pressures_kPa": [0.0, 8.0],
+}
 
 
 @pytest.mark.parametrize(
@@ -30,7 +35,7 @@ RING = {"connector.seat": "clamped-flange-M2"}
         ("cast-dome", {}),
         pytest.param("cast-dome", DRAGON_SKIN_10, marks=pytest.mark.slow),
         pytest.param("graded-dome", {}, marks=pytest.mark.slow),
-        pytest.param("cast-dome", RING, marks=pytest.mark.slow),
+        pytest.param("paper-dome", RING, marks=pytest.mark.slow),
     ],
     ids=["law", "soft", "grade", "ring"],
 )
@@ -78,7 +83,7 @@ def test_modulus_and_wall_are_found_by_injected_air_alone(library, design):
 
 def test_the_ring_ends_the_ratio_at_a_finite_travel(library):
     """Between two driving pressures the end lies between theirs, also where one does not reach it."""
-    sensor = sensor_of(assemble(load_scene("cast-dome", RING, library))).replace(waves=0)
+    sensor = sensor_of(assemble(load_scene("cast-dome", {}, library))).replace(waves=0)
     ratio = contact_ratio(sensor, (0.0,), np.array([0.0, 12.0]) * KPA, 7.2)
     assert np.isfinite(ratio.ends).all() and ratio.ends[0] < ratio.depths[-1]
 
