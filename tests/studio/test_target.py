@@ -105,6 +105,15 @@ def test_where_nothing_is_found_it_says_so_in_the_words_of_select(command):
     assert content["chart"]["fronts"]
 
 
+@pytest.mark.slow
+def test_what_one_change_makes_possible_is_a_card_whose_state_has_the_change():
+    content = asked({"target.sensitivity_kPa_per_N": "8"})
+    (said,) = content["selection"]["single_changes"]
+    (card,) = [card for card in content["cards"] if card["kind"] == "changed"]
+    assert said["field"] == "setting.tube_length_mm"
+    assert float(card["state"]["values"]["pneumatics.tube_length_mm"]) == said["value"]
+
+
 @pytest.mark.parametrize(
     ("values", "field", "flags"),
     [

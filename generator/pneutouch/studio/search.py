@@ -7,7 +7,7 @@ a target like a question about a design: fields with texts.
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.catalogue import Library
@@ -23,14 +23,7 @@ from pneutouch.spec.target import Target
 from pneutouch.studio.candidate import CandidateCard, CandidateStates, candidate_figures, grade_figures
 from pneutouch.studio.form import PAGE, Question
 from pneutouch.workflows.select.charts import tradeoff
-from pneutouch.workflows.select.document import (
-    change_lines,
-    dropped_lines,
-    headline,
-    missed_text,
-    remarks,
-    search_notes,
-)
+from pneutouch.workflows.select.document import dropped_lines, headline, missed_text, remarks, search_notes
 from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.processes import ProcessSelection
 from pneutouch.workflows.select.search import search as answer
@@ -42,7 +35,7 @@ if TYPE_CHECKING:
 
     from pneutouch.selection import Candidate
     from pneutouch.studio.job import Report
-    from pneutouch.workflows.select.document import RelaxedValue
+    from pneutouch.workflows.select.search import TargetAnswer
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,32 +178,30 @@ def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> PageSe
         if isinstance(run, GradedSelectionRun):
             return _graded(run, document, page)
         report(len(STEPS), steps, _CHART)
-        selected = _selected(run, document, page, library, found.options)
-        return replace(selected, remarks=[*change_lines(found.changes, typed), *selected.remarks])
+        return _selected(run, found, document, page, library)
 
 
 def _selected(
-    run: SelectionRun,
-    document: Mapping[str, Any],
-    page: CandidateStates,
-    library: Library,
-    options: Mapping[str, RelaxedValue],
+    run: SelectionRun, found: TargetAnswer, document: Mapping[str, Any], page: CandidateStates, library: Library
 ) -> PageSelection:
     return PageSelection(
         selection=document,
         headline=headline(run),
         notes=search_notes(run),
-        cards=_cards(run, page, options),
+        cards=_cards(run, found, page),
         remarks=[*_nothing_to_drop(run), *remarks(run)],
         chart=_chart(run, library),
         table=None,
     )
 
 
-def _cards(run: SelectionRun, page: CandidateStates, options: Mapping[str, RelaxedValue]) -> list[CandidateCard]:
-    """The designs by rank; if there are none, the nearest, and those that fit without one of the requirements."""
+def _cards(run: SelectionRun, found: TargetAnswer, page: CandidateStates) -> list[CandidateCard]:
+    """The designs by rank; if there are none, the nearest, and those that fit with one change or without one of the
+    requirements."""
 
-    def card(choice: Candidate, kind: str, label: str, *, rank: int | None = None, note: str = "") -> CandidateCard:
+    def card(
+        choice: Candidate, kind: str, label: str, *, rank: int | None = None, note: str = "", run: SelectionRun = run
+    ) -> CandidateCard:
         """A design as the page shows it, with the state that makes it the page's design."""
         return extended(
             CandidateCard,
@@ -232,7 +223,11 @@ def _cards(run: SelectionRun, page: CandidateStates, options: Mapping[str, Relax
     if answer.nearest is not None:
         misses = f"it misses: {missed_text(run, answer.nearest)}"
         cards.append(card(answer.nearest, "nearest", "nearest", note=misses))
-    for dropped, line in zip(answer.dropped, dropped_lines(run, options, typed), strict=False):
+    for change in found.changes:
+        option = typed(change.field, change.value)
+        note = f"with {option} it meets the target"
+        cards.append(card(change.run.answer.designs[0], "changed", option, note=note, run=change.run))
+    for dropped, line in zip(answer.dropped, dropped_lines(run, found.options, typed), strict=False):
         cards.append(card(dropped.best, "dropped", f"without {dropped.requirement}", note=line))
     return cards
 

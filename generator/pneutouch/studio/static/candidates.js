@@ -7,6 +7,7 @@ const TITLES = {
   process: "Best of its process",
   "runner-up": "Runner-up of its resin",
   nearest: "Nearest to the target",
+  changed: "Fits with one change",
   dropped: "Fits without one requirement",
 };
 
