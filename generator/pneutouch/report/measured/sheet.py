@@ -125,7 +125,7 @@ def verdict_box(measured: CampaignReport) -> FramedBlocks:
 def _notes(measured: CampaignReport) -> list[str]:
     """Notes under the verdicts."""
     failed, runs = len(measured.failures), len(measured.campaign.runs)
-    suspect = sum(warning.kind != "note" for curve in measured.curves for warning in curve.warnings)
+    suspect = [warning for curve in measured.curves for warning in curve.warnings if warning.kind != "note"]
     notes = []
     if any(v.passed is None for v in measured.verdicts):
         notes.append("Not decided: the interval holds values on both sides of the limit; more specimens would decide.")
@@ -134,8 +134,9 @@ def _notes(measured: CampaignReport) -> list[str]:
     else:
         notes.append(f"All {runs} runs were read." if runs > 1 else "The run was read.")
     if suspect:
-        parts = "parts of the records are" if suspect > 1 else "part of the records is"
-        notes.append(f"{suspect} {parts} doubtful: see Warnings.")
+        left = sum(not warning.used for warning in suspect)
+        parts = counted(left, "doubtful part")
+        notes.append(f"{parts} of the records left out, {len(suspect) - left} noted and used: see Warnings.")
     return notes
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.bench.figures import FIGURES, FigureDefinition, RunGroup
-from pneutouch.bench.record import MeasuredCurve
+from pneutouch.bench.record import MeasuredCurve, SuspectInterval
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report.blocks import Cell, SheetBlock, SheetTable, Text, section
@@ -263,20 +263,27 @@ def lists(measured: CampaignReport) -> list[SheetBlock]:
     ]
     # The message begins with the file's path, which is printed next to it.
     failures = [[file, why.split(f"{file}: ", 1)[-1]] for file, why in measured.failures]
-    # Mere notes are in figures.json.
-    warnings = [
-        [curve.run.file, f"{warning.start:.2f} to {warning.end:.2f}", warning.why, word_of(warning.used)]
-        for curve in measured.curves
-        for warning in curve.warnings
-        if warning.kind != "note"
-    ]
-    wrong, doubtful = "What looks wrong and was not changed.", "Parts of runs that may be wrong."
+    wrong, doubtful = "What looks wrong and was not changed.", "Parts of runs that may be wrong, alike ones together."
+    alike = ("Why", "Used", "Parts", "First in", "Seconds")
     volumes = ("Sensor", "Figure", "Value", "Standard error", "Unit")
     return [
         *_listed("Leak and dead volume", injections, volumes, (2, 3)),
         *_listed("Failures", failures, ("File", "Why it is not used")),
         *_listed("Questions", measured.questions, ("File or run", "Question"), (), Text(wrong, "muted")),
-        *_listed("Warnings", warnings, ("File", "Seconds", "Why", "Used"), (1,), Text(doubtful, "muted")),
+        *_listed("Warnings", _warnings(measured), alike, (2, 4), Text(doubtful, "muted")),
+    ]
+
+
+def _warnings(measured: CampaignReport) -> list[list[str]]:
+    """Doubtful parts of the records by reason, with number and first place of each; mere notes are in figures.json."""
+    parts: dict[tuple[str, bool], list[tuple[str, SuspectInterval]]] = {}
+    for curve in measured.curves:
+        for warning in curve.warnings:
+            if warning.kind != "note":
+                parts.setdefault((warning.why, warning.used), []).append((curve.run.file, warning))
+    return [
+        [why, word_of(used), str(len(places)), places[0][0], f"{places[0][1].start:.2f} to {places[0][1].end:.2f}"]
+        for (why, used), places in parts.items()
     ]
 
 
