@@ -51,6 +51,20 @@ def test_every_field_of_the_files_has_one_keyword():
     assert set(inspect.signature(pt.Design).parameters) == {"name", *keywords(DesignFile)}
 
 
+def test_what_a_design_accepts_is_named_by_its_table():
+    """A rule's name alone means nothing: `walls` is no wall."""
+    assert pt.Design(accepted_walls="twelve printed").accepted_walls == "twelve printed"
+    with pytest.raises(pt.InputError):
+        pt.Design(walls="twelve printed")
+
+
+@pytest.mark.parametrize(("title", "after"), [(None, "mine"), ("A sensor", "A sensor")])
+def test_a_design_saved_under_a_name_is_headed_by_it(title, after, tmp_path):
+    design = pt.Design(name="selected-1", title=title or "selected-1")
+    assert pt.load(design.save(tmp_path / "mine.toml")).title == after
+    assert design.replace("mine").title == after
+
+
 def test_tables_arrays_and_scalars_of_numpy_are_taken():
     design = pt.Design(
         pneumatics={"tube_length_mm": 80, "driving_pressures_kPa": np.array([0, 10])},

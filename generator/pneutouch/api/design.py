@@ -143,7 +143,9 @@ class Design(show.Shown):
     __hash__ = None  # type: ignore[assignment]
 
     def replace(self, name: str | None = None, **fields: Any) -> Design:
-        """The design with fields changed, and under another name if one is given."""
+        """The design with fields changed, and under another name if one is given, with the title if that is its name."""
+        if name and self.file.document.title == self.name:
+            fields = {"title": name, **fields}
         design = type(self).__new__(type(self))
         design._take(self.name if name is None or name == "" else name, self.source.content, fields)
         return design
@@ -151,12 +153,16 @@ class Design(show.Shown):
     def save(self, name_or_path: str | Path | None = None, *, overwrite: bool = False) -> Path:
         """Write the design file and return its path; a bare name goes to the user's ``designs/``.
 
-        An existing file is replaced only with ``overwrite``.
+        A title that is the design's name becomes the name of the file. An existing file is replaced only with
+        ``overwrite``.
         """
         path = Path(name_or_path or self.name)
         folder = path.parent if path.suffix == ".toml" or len(path.parts) > 1 else user_folder() / "designs"
-        text = design_template(self.name, self.file.model_dump(by_alias=True), "Every key may be left out.")
-        return write_design(path.name.removesuffix(".toml"), folder, text, overwrite=overwrite)
+        name, content = path.name.removesuffix(".toml"), self.file.model_dump(by_alias=True)
+        if content["document"]["title"] == self.name:
+            content["document"]["title"] = name
+        text = design_template(name, content, "Every key may be left out.")
+        return write_design(name, folder, text, overwrite=overwrite)
 
     def predict(
         self,

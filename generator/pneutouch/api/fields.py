@@ -29,12 +29,14 @@ _MOST = 100_000
 def keywords(model: type[BaseModel]) -> dict[str, str]:
     """Every field of a file's ``model`` as ``table.key``, by its keyword; the first table of a key keeps the bare name.
 
-    A key outside the tables is its own keyword, and comes last."""
+    Keys of the tables ``prefixed`` of the model, which mean nothing by themselves, always have the table's name. A key
+    outside the tables is its own keyword, and comes last."""
     fields: dict[str, str] = {}
     for name in model.model_fields:
         table = table_of(model, name)
         for key in table.model_fields if table else ():
-            fields[f"{name}_{key}" if key in fields else key] = f"{name}.{key}"
+            bare = key not in fields and name not in getattr(model, "prefixed", ())
+            fields[key if bare else f"{name}_{key}"] = f"{name}.{key}"
     return fields | {name: name for name in model.model_fields if table_of(model, name) is None}
 
 

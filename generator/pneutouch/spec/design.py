@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import datetime
 import math
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, Field, StringConstraints, model_validator
 
@@ -273,6 +273,7 @@ class DesignFile(SparseTable):
     """A whole design file."""
 
     left_out = (CALIBRATION, "mould", "cast_ring", "accepted")
+    prefixed: ClassVar[tuple[str, ...]] = ("accepted",)
 
     calibration: str | None = Field(
         default=None,
