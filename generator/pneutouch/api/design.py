@@ -143,7 +143,7 @@ class Design(show.Shown):
     __hash__ = None  # type: ignore[assignment]
 
     def replace(self, name: str | None = None, **fields: Any) -> Design:
-        """The design with fields changed, and under another name if one is given, with the title if that is its name."""
+        """The design with fields changed, under another name if one is given, with the title if that is its name."""
         if name and self.file.document.title == self.name:
             fields = {"title": name, **fields}
         design = type(self).__new__(type(self))
