@@ -22,6 +22,8 @@ from tests.running import Shared, in_new_process, in_process
 ROOT = Path(__file__).resolve().parents[1]
 
 os.environ.pop("PNEUTOUCH_HOME", None)
+# The workers of a run, which start with this environment, take the cores: a second thread each would wait for the others.
+os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
 
 settings.register_profile("everyday", deadline=None, max_examples=40, derandomize=True)
 settings.load_profile("everyday")

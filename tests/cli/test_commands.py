@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -240,3 +241,16 @@ def test_a_command_loads_no_other_commands_module():
     loaded = modules_after("select", "--help")
     assert "pneutouch.cli.select" in loaded
     assert not {"pneutouch.cli.sweep", "pneutouch.cli.tray", "pneutouch.cli.calibrate"} & loaded
+
+
+def test_the_command_line_computes_with_one_thread_whatever_the_environment_says():
+    """The order of a threaded sum, and so the last digits of a result, would follow the number of cores."""
+    code = (
+        "import os, sys; sys.argv = ['pneutouch', '--version']\n"
+        "import pneutouch.cli\n"
+        "try: pneutouch.cli.run()\n"
+        "except SystemExit: print({os.environ[name] for name in pneutouch.cli._THREADS})"
+    )
+    environment = {**os.environ, "OMP_NUM_THREADS": "2", "OPENBLAS_NUM_THREADS": "4"}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "{'1'}"

@@ -19,6 +19,11 @@ _KEPT_BYTES = 1 << 20
 Without that the arrays of each Newton step are returned and requested again: a tenth of the time of ``predict``.
 """
 
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+"""Variables that set the threads of the linear algebra, one here: the order of its sums, and so the last digits of a
+result, follow their number; and where others use the cores two threads wait for one another, which took 450 s in place
+of 35 s of a press off the axis on a busy machine."""
+
 _UNWOUND = 2
 """Exit codes from this one on are those of commands that an error or a stop signal ended."""
 
@@ -27,6 +32,8 @@ def run() -> None:
     """Entry point of the ``pneutouch`` command."""
     gc.set_threshold(_OBJECTS_BEFORE_COLLECTION, 50, 50)
     bytes(_KEPT_BYTES)
+    # Before numpy loads.
+    os.environ.update(dict.fromkeys(_THREADS, "1"))
     # The models have no plugins: to look for some, pydantic reads the metadata of every installed package.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     with stop_signals(after=signal.SIG_IGN) as stop:

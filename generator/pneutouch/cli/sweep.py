@@ -5,7 +5,6 @@ Output of ``sweep`` for people: the first rows of its table.
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -64,8 +63,6 @@ def sweep(
 ) -> None:
     """Predict a grid or a list of designs into one dataset (netCDF)."""
     with reporting():
-        # Before numpy loads: the processes take the cores, and results must not depend on how many there are.
-        os.environ["OMP_NUM_THREADS"] = "1"
         from pneutouch.workflows.sweep import sweep as run
         from pneutouch.workflows.sweep.dataset import stored_dataset, write_companions, write_maps
         from pneutouch.workflows.sweep.execute import ComputeResources
