@@ -58,6 +58,13 @@ def test_what_a_design_accepts_is_named_by_its_table():
         pt.Design(walls="twelve printed")
 
 
+@pytest.mark.parametrize("age", ["1y", -0.1, 2.0, float("nan"), [1.0]])
+def test_an_age_that_is_no_share_of_a_year_is_refused_by_its_keyword(age, tmp_path):
+    with pytest.raises(pt.InputError) as caught:
+        pt.load("paper-dome").export_reader(tmp_path, age_years=age)
+    assert caught.value.key == "age_years"
+
+
 @pytest.mark.parametrize(("title", "after"), [(None, "mine"), ("A sensor", "A sensor")])
 def test_a_design_saved_under_a_name_is_headed_by_it(title, after, tmp_path):
     design = pt.Design(name="selected-1", title=title or "selected-1")

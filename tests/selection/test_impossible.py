@@ -13,9 +13,11 @@ from pneutouch.cli.app import app
 from pneutouch.cli.select import typed as as_option
 from pneutouch.cli.select_text import selection_text
 from pneutouch.errors import InputError
+from pneutouch.results.selection import GaugeTrial
 from pneutouch.selection.choose import missed_percent
 from pneutouch.workflows.select.base import base_scene
 from pneutouch.workflows.select.processes import offers
+from pneutouch.workflows.select.search import relaxations, working_changes
 from tests.selection.targets import FINGERTIP, answer, document, target
 
 RUNNER = CliRunner()
@@ -166,3 +168,9 @@ def test_other_printers_and_processes_are_those_that_make_the_resins(library):
     assert offers(base, None, library) == ["j735"]
     assert offers(base, None, library, others=True) == ["casting"]
     assert offers(base, ["FLX9995"], library, others=True) == []
+
+
+def test_with_an_open_gauge_no_change_is_named():
+    """The trials would hold for one gauge only."""
+    run = replace(answer({**FINGERTIP, "force_range_N": 150.0}), gauges=(GaugeTrial("a", "A", False, "why", None),))
+    assert not list(working_changes(run, "test", None)) and not relaxations(run, "test", None)

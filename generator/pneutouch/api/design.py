@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from pneutouch.api import show
 from pneutouch.api.driving import DrivingResult, tasks_of
-from pneutouch.api.fields import WHERE, changes, keywords, named_by_keyword, plain
+from pneutouch.api.fields import WHERE, changes, keywords, named_by_keyword, number_of, plain
 from pneutouch.api.prediction import Prediction
 from pneutouch.api.results import CheckResult
 from pneutouch.body import Body
@@ -261,7 +261,8 @@ class Design(show.Shown):
 
         options = model_options(model or (None if tolerance else "auto"), tolerance)
         with named_by_keyword():
-            return write_reader(make_reader(evaluate(self.source, **options), age_years), Path(out))
+            aged = number_of(age_years, "age_years")
+            return write_reader(make_reader(evaluate(self.source, **options), aged), Path(out))
 
     @cached_property
     def _evaluated(self) -> Evaluation:

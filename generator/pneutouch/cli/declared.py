@@ -42,6 +42,7 @@ def with_fields(model: type[BaseModel], options: Mapping[str, FieldOption]) -> C
     """Decorator that gives a command an option for each field, passed as a keyword, None if left out."""
 
     def decorate(command: Callable[..., None]) -> Callable[..., None]:
+        """The command with the signature that has the options."""
         hints = typing.get_type_hints(command, include_extras=True)
         written = [
             p.replace(annotation=hints.get(p.name, p.annotation))

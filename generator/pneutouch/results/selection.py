@@ -137,8 +137,6 @@ class SingleChange:
     """Field of the target, TABLE.KEY."""
     value: Any
     """Its value; for setting.assignments one TABLE.KEY=VALUE, besides those that are there."""
-    instead_of: Any
-    """The value that it replaces; null: none was given."""
     design: FoundDesign
     """The best design found with it."""
 

@@ -24,7 +24,7 @@ _CENTRED = 3
 """Greatest number of refits with the solid's contact ratio recomputed at the estimate: our choice."""
 
 _NEAR = 0.02
-"""Distance of the estimate below which that ratio is kept: it moves the force by less than 0.005."""
+"""Distance of the estimate below which that ratio is kept: with friction it moves the force by less than 0.005."""
 
 _SMOOTH = 0.1
 """Model discrepancy, share of the reading, allowed while the scatter of points is estimated: our choice, generous."""

@@ -1,7 +1,8 @@
-"""Friction and other objects as a correction of the atlas: ratio of the solid's curves under a contact and a plate.
+"""Friction, other objects and other walls as a correction of the atlas: ratio of the solid's curves to its stand-in's.
 
-The atlas presses with a frictionless plate. Its force and pressure rise are multiplied by the ratio of the solid's
-curve under the contact to the solid's curve under that plate, at the same travel and driving pressure. The ratio is
+The atlas presses a neo-Hookean wall with a frictionless plate, the stand-in. Its force and pressure rise are multiplied
+by the ratio of the solid's curve of the sensor to that of the stand-in, at the same travel and driving pressure; the
+pressure after injected air by the ratio of the two at the same volume. The ratio is
 computed for one sensor and taken as constant nearby. With friction, the logarithm of the force ratio changes by up to
 0.04 for a modulus 1.3 times as large, that of the sensitivity by up to 0.02
 (`tests/mechanics/test_corrected_curves.py`): a fit takes the ratio at its own estimate.

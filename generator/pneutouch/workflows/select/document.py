@@ -41,12 +41,10 @@ _NONE: Mapping[str, Any] = MappingProxyType({})
 
 
 class WorkingChange(NamedTuple):
-    """A change of one field of the target, ``table.key``, with which a design meets it: the value, the one that it
-    replaces, and the selection with it."""
+    """A change of one field of the target, ``table.key``, with which a design meets it: its value and the selection."""
 
     field: str
     value: Any
-    instead_of: Any
     run: SelectionRun
 
     @property
@@ -98,8 +96,7 @@ def selected(
             for field, value in [options.get(each.requirement, (None, None))]
         ),
         single_changes=tuple(
-            SingleChange(each.field, each.value, each.instead_of, _choice(each.run, each.run.answer.designs[0]))
-            for each in changes
+            SingleChange(each.field, each.value, _choice(each.run, each.run.answer.designs[0])) for each in changes
         ),
         rejected=tuple(
             RejectedChoice(each.rule, each.reason, _choice(selection, each.choice)) for each in selection.rejected

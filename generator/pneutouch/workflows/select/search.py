@@ -7,7 +7,7 @@ For a target that no design meets: changes of one thing outside its requirements
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,6 +17,7 @@ from pneutouch.catalogue.library import CachedLibrary
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.mechanics.gauge_reading import gauge_reading
 from pneutouch.results.selection import GradedRecord, ProcessesRecord, SelectionRecord
+from pneutouch.selection import Candidate
 from pneutouch.spec.fields import declaration
 from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.target import Setting, Target
@@ -112,28 +113,18 @@ class Change(NamedTuple):
         update = {key: value, **({"dead_volume_mL": None} if key == "tube_length_mm" else {})}
         return target.model_copy(update={table: section.model_copy(update=update)})
 
-    def before(self, target: Target) -> Any:
-        """The target's own value of the field; None if it has none."""
-        table, _, key = self.field.partition(".")
-        return None if key == "assignments" else getattr(getattr(target, table), key)
-
 
 def relaxations(run: SelectionRun, where: str, library: Library | None) -> dict[str, RelaxedValue]:
     """Field and value of each requirement that alone prevents a design, by its name; only those with which the search
     finds one, for the best design of a coarse scan may lose a margin at round sizes."""
-    if run.by_solid is not None:
+    if run.by_solid is not None or run.gauges:
         return {}
     library, options = CachedLibrary((library or Library.default()).folders), {}
     for dropped in run.answer.dropped:
         name, value = relaxed(run, dropped)
         if name is None or value is None:
             continue
-        target = Change(name, value).of(run.target, library)
-        if dropped.best.resin.grade is None:
-            target = target.model_copy(
-                update={"given": target.given.model_copy(update={"materials": [dropped.best.resin.name]})}
-            )
-        if passing(found(target, where, library), 1, library).answer.designs:
+        if _tried(Change(name, value).of(run.target, library), where, library, [dropped.best], thorough=True):
             options[dropped.requirement] = name, value
     return options
 
@@ -144,15 +135,18 @@ def working_changes(
     """Changes of tube, port, gauge, settled sizes, resins and process, each of which alone makes a design possible.
 
     Each was searched, and the design passes ``check``; of tubes and dead volumes the value nearest to the target's own
-    is given. Nothing is tried if the solid searches (minutes for each change) or ``check`` rejected a design.
+    is given. Nothing is tried if the solid searches (minutes for each change), ``check`` rejected a design, or the
+    gauge is left open.
     """
-    if run.by_solid is not None or run.rejected or run.answer.nearest is None:
+    if run.by_solid is not None or run.rejected or run.gauges or run.answer.nearest is None:
         return
+    near = [run.answer.nearest, *(each.best for each in run.answer.dropped)]
     library = CachedLibrary((library or Library.default()).folders)
     for what, changes in _trials(run, library):
         trying(f"another {what}")
         for change in changes:
-            tried = _tried(run, change, where, library)
+            by = near if change.field in _BEHIND_THE_CAVITY else []
+            tried = _tried(change.of(run.target, library), where, library, by)
             if tried is None:
                 continue
             best = tried.answer.designs[0].pool
@@ -160,24 +154,24 @@ def working_changes(
             value = float(settled[change.field][0]) if change.field in settled else change.value
             if change.field == "given.materials":
                 value = [tried.answer.designs[0].resin.name]
-            yield WorkingChange(change.field, value, change.before(run.target), tried)
+            yield WorkingChange(change.field, value, tried)
             break
 
 
 _BEHIND_THE_CAVITY = ("setting.tube_length_mm", "setting.dead_volume_mL", "setting.assignments", "setting.gauge")
+"""Changes that are tried only with the resins of the nearest designs, in a fraction of the time of all."""
 
 
-def _tried(run: SelectionRun, change: Change, where: str, library: Library) -> SelectionRun | None:
-    """The selection with a change; None if no design on the scan meets the target and passes ``check``.
-
-    Changes behind the cavity are tried only with the resins of the nearest designs, in a fraction of the time.
-    """
-    target, near = change.of(run.target, library), [run.answer.nearest, *(each.best for each in run.answer.dropped)]
-    names = sorted({choice.resin.name for choice in near if choice is not None and choice.resin.grade is None})
-    if change.field in _BEHIND_THE_CAVITY and names:
+def _tried(
+    target: Target, where: str, library: Library, near: Sequence[Candidate], *, thorough: bool = False
+) -> SelectionRun | None:
+    """The selection for a changed target, with the resins of ``near`` only if there are some; None if no design, on the
+    scan without ``thorough``, meets the target and passes ``check``."""
+    names = sorted({choice.resin.name for choice in near if choice.resin.grade is None})
+    if names:
         target = target.model_copy(update={"given": target.given.model_copy(update={"materials": names})})
     try:
-        tried = passing(found(target, where, library, thorough=False), 1, library)
+        tried = passing(found(target, where, library, thorough=thorough), 1, library)
     except PneutouchError:
         return None  # The base cannot be drawn so.
     return tried if tried.answer.designs else None
