@@ -6,6 +6,7 @@ import json
 import shlex
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -14,7 +15,8 @@ from pneutouch.cli.select import typed as as_option
 from pneutouch.cli.select_text import selection_text
 from pneutouch.errors import InputError
 from pneutouch.results.selection import GaugeTrial
-from pneutouch.selection.choose import missed_percent
+from pneutouch.selection.candidates import evaluated
+from pneutouch.selection.choose import missed_percent, rounded
 from pneutouch.workflows.select.base import base_scene
 from pneutouch.workflows.select.processes import offers
 from pneutouch.workflows.select.search import relaxations, working_changes
@@ -41,6 +43,14 @@ def test_the_wish_said_to_be_in_the_way_is(wanted):
         rest = {key: value for key, value in wanted.items() if key != KEYS[dropped.requirement]}
         if set(rest) & {"sensitivity_kPa_per_N", "force_range_N"}:
             assert answer(rest).answer.designs, f"{dropped.requirement} given up, and still nothing"
+
+
+def test_round_sizes_of_a_given_wall_stay_inside_the_atlas():
+    """A radius rounded down would make the thickest wall too thick."""
+    problem = answer({"sensitivity_kPa_per_N": 1.4}, given={"wall_thickness_mm": 2.5}).problem
+    radius = 2.5 / problem.recipe.thickest + np.array([1e-4, 4e-3, 9e-3])
+    pool = evaluated(problem, np.zeros(3), radius, np.full(3, 2.5), np.zeros(3))
+    assert (pool.wall / rounded(problem, pool).radius <= problem.recipe.thickest * (1 + 1e-9)).all()
 
 
 @pytest.mark.slow

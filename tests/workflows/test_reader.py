@@ -21,6 +21,7 @@ from pneutouch.export.reader.render import MOST_TABLES, table_bytes
 from pneutouch.mechanics import predict
 from pneutouch.units import KPA
 from pneutouch.workflows.export_reader import make_reader, write_reader
+from tests.evaluation.calibrated import DEAD, changed, library_of, predicted
 
 c_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="no C compiler (gcc) on this machine")
 
@@ -108,6 +109,15 @@ def test_less_ageing_is_less_uncertainty_and_a_year_is_all_that_is_known(evaluat
     for aged in (-0.1, 1.1, float("nan")):
         with pytest.raises(InputError):
             reader_tables(evaluation, grid, aged)
+
+
+@pytest.mark.parametrize(("age_days", "counted"), [(200.0, 165.0), (400.0, 0.0)])
+def test_after_a_calibration_only_the_rest_of_the_first_year_counts(library, tmp_path, age_days, counted):
+    place = library_of(tmp_path, library, changed(source={"age_days": age_days}))
+    calibrated = predicted(place, {**DEAD, "pneumatics.driving_pressures_kPa": [0.0]})
+    grid = reader_grid(calibrated)
+    assert reader_tables(calibrated, grid, 1.0).grid.force_uncertainty_age_days == pytest.approx(counted)
+    assert reader_tables(calibrated, grid).grid.force_uncertainty_age_days == 0.0
 
 
 @pytest.mark.parametrize(
