@@ -9,7 +9,7 @@ import datetime
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -113,9 +113,9 @@ def plain(samples: np.ndarray, header: str) -> str:
     return header + "\n" + "\n".join(",".join(f"{value:.5f}" for value in row) for row in samples.T) + "\n"
 
 
-def stamped(samples: np.ndarray, header: str) -> str:
-    begin = datetime.datetime(2026, 1, 5, 10, tzinfo=datetime.UTC)
-    times = [(begin + datetime.timedelta(seconds=float(second))).isoformat() for second in samples[0]]
+def stamped(samples: np.ndarray, header: str, clock: str = "10:00:00", form: str = "%Y-%m-%dT%H:%M:%S.%f+00:00") -> str:
+    begin = datetime.datetime.fromisoformat(f"2026-01-05T{clock}+00:00")
+    times = [(begin + datetime.timedelta(seconds=float(second))).strftime(form) for second in samples[0]]
     rows = [
         ",".join([time, *(f"{value:.5f}" for value in row)]) for time, row in zip(times, samples[1:].T, strict=True)
     ]
@@ -156,6 +156,7 @@ READ = {
         spoil=lambda s: s * np.array([[1e3], [1], [1], [1]]), header=HEADER.replace("time_s", "time_ms")
     ),
     "timestamps": Recording(header=HEADER.replace("time_s", "timestamp"), write=stamped),
+    "times of day, past midnight": Recording(write=partial(stamped, clock="23:59:50", form="%H:%M:%S.%f")),
     "footer": Recording(write=lambda s, h: plain(s, h) + "# end of the test, 3 cycles, 42\n"),
     "drift": Recording(drift=-0.005),
     "gaps": Recording(spoil=without((5000, 9000), (12000, 15000))),

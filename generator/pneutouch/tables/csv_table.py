@@ -18,6 +18,7 @@ from pneutouch.tables.locate import COMMENT, comment
 from pneutouch.tables.text import LONGEST_LINE, TOO_LONG, TextBytes
 
 _MARKS = tuple(mark.encode() for mark in COMMENT)
+_DAY = 86400.0
 
 CHUNK = 4 * 2**20
 """Bytes parsed at once: about 100 000 rows; larger chunks are not faster and take more memory."""
@@ -26,7 +27,8 @@ CHUNK = 4 * 2**20
 class _Reader(NamedTuple):
     """A text table with its columns located; ``least`` and ``most`` are the numbers of cells of a row.
 
-    ``stamps`` are the indices of columns with dates and times; ``begin`` has the first time of each, s, once read.
+    ``stamps`` are the indices of columns with dates and times; ``begin`` has the first time of each, s, once read, and
+    ``latest`` the latest time of day and the number of midnights before it.
     """
 
     path: Path
@@ -38,6 +40,7 @@ class _Reader(NamedTuple):
     places: list[int]
     stamps: tuple[int, ...]
     begin: dict[int, float]
+    latest: dict[int, tuple[float, int]]
 
     def fault(self, row: int, problem: str, remedy: str | None = None) -> InputError:
         return InputError(problem, file=self.path, key=f"row {row}", remedy=remedy)
@@ -57,11 +60,24 @@ class _Reader(NamedTuple):
             return None
 
     def seconds(self, texts: Sequence[str], place: int) -> Array:
-        """Seconds since the first cell of a column of dates and times. Raises ValueError for other texts."""
+        """Seconds since the first cell of a column of dates and times. Raises ValueError for other texts.
+
+        A time of day without a date that falls by more than half a day has passed midnight."""
         import pandas as pd
 
-        stamps = pd.to_datetime(pd.Series(texts).str.replace(",", "."), format="ISO8601", utc=True)
-        passed = stamps.astype("datetime64[ns, UTC]").astype("int64").to_numpy() * 1e-9
+        written = pd.Series(texts).str.replace(",", ".")
+        if "-" in texts[0]:
+            stamps = pd.to_datetime(written, format="ISO8601", utc=True)
+            passed = stamps.astype("datetime64[ns, UTC]").astype("int64").to_numpy() * 1e-9
+        else:
+            # The conversion takes 61 minutes as an hour and a minute.
+            if not written.str.fullmatch(STAMP).all():
+                raise ValueError("no times of day")
+            passed = pd.to_timedelta(written).dt.total_seconds().to_numpy()
+            last, days = self.latest.get(place, (float(passed[0]), 0))
+            midnights = days + np.cumsum(np.diff(passed, prepend=last) < -0.5 * _DAY)
+            self.latest[place] = float(passed[-1]), int(midnights[-1])
+            passed = passed + _DAY * midnights
         first = self.begin.setdefault(place, float(passed[0]))
         return np.asarray(passed - first)
 
@@ -81,6 +97,7 @@ def csv_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterato
         names,
         places(path, layout, names),
         layout.stamps,
+        {},
         {},
     )
     size = path.stat().st_size

@@ -88,8 +88,8 @@ class TableLayout:
         return self.units if self.clock is None else ("s", *self.units)
 
 
-STAMP = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d:\d\d([.,]\d+)?(Z|[+-]\d\d:?\d\d)?")
-"""A date with a time of day in the form of ISO 8601."""
+STAMP = re.compile(r"(\d{4}-\d\d-\d\d[T ]\d\d:\d\d:\d\d([.,]\d+)?(Z|[+-]\d\d:?\d\d)?|\d\d?:[0-5]\d:[0-5]\d([.,]\d+)?)")
+"""A date with a time of day in the form of ISO 8601, or a time of day alone."""
 
 NUMBER = {
     ".": re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?"),

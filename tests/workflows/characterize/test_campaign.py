@@ -203,6 +203,15 @@ def test_a_single_file_of_any_name_is_a_run_of_its_design(folder, library):
         characterize(long, library=library)
 
 
+@pytest.mark.parametrize("rows", [1.0, 0.9])
+def test_a_copied_run_is_asked_about_though_its_bytes_differ(rows, folder, library):
+    copy, other = table(folder), FIRST.replace("-1-0kPa", "-2-0kPa")
+    copy.loc[3, "force_N"] += 0.01
+    written(copy[: int(rows * len(copy))], folder, other)
+    questions = run(folder, library).measured.questions
+    assert [file for file, asked in questions if f"those of {FIRST}" in asked] == [other]
+
+
 def test_aged_runs_are_not_set_beside_a_fresh_prediction(folder, library):
     rewritten(
         folder, lambda content: [entry.update(age_days=365.0) for entry in content["runs"] if "-2-" in entry["file"]]

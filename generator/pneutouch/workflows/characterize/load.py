@@ -9,11 +9,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from pneutouch.arrays import Array
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.questions import check_leak, looks_absolute
 from pneutouch.bench.reading import HAND, INJECTION, LEAK, PLATE, leak_rate, read_blocks, read_injection
-from pneutouch.bench.record import MeasuredCurve, Trace, trace
+from pneutouch.bench.record import Blocks, MeasuredCurve, Trace, trace
 from pneutouch.bench.source import MeasuredFile, MissingChannelError, campaign_lines, identify
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.catalogue.library import example_remedy
@@ -131,6 +134,11 @@ Progress = Callable[[int, int], None]
 _MEGABYTE = 1e6
 _LONGEST = 60
 
+_LOADED, _COPY, _COMPARED = 0.1, 0.5, 20_000
+"""Share of its greatest force from which a run counts as loaded, share of its readings under load, force and pressure
+together, from which it is asked whether it is a copy of another, and number of them that are compared: our choice. Noise
+makes hardly any two readings the same."""
+
 _NEAR_KPA, _NEAR_SHARE = 1.0, 0.1
 """Largest difference, in kPa and relative, between the pressure read before contact and the design's driving pressure
 for which it is taken: a reset's scatter."""
@@ -173,12 +181,22 @@ class _Gathered:
     questions: list[tuple[str, str]] = field(default_factory=list)
     sources: dict[str, MeasuredFile] = field(default_factory=dict)
     digests: dict[str, str] = field(default_factory=dict)
+    readings: dict[str, NDArray[np.complex128]] = field(default_factory=dict)
 
     def first_of(self, path: Path, file: str) -> str | None:
         """The file before this one that has the same bytes; None if there is none."""
         digest = file_digest(path)
         first = file if digest is None else self.digests.setdefault(digest, file)
         return None if first == file else first
+
+    def much_of(self, file: str, blocks: Blocks) -> str | None:
+        """The file before this one that has most of its readings under load too; None if there is none."""
+        under_load = np.abs(blocks.force) > _LOADED * np.abs(blocks.force).max()
+        readings = (blocks.force + 1j * blocks.pressure)[under_load][:_COMPARED]
+        copied = (name for name, known in self.readings.items() if np.isin(readings, known).mean() > _COPY)
+        first = next(copied, None) if readings.size else None
+        self.readings[file] = readings
+        return first
 
 
 def load_curves(
@@ -281,6 +299,8 @@ def _read(
         said = f"the design's ambient pressure of {ambient / KPA:.6g} kPa is subtracted"
         gathered.questions.append((run.file, f"{said}: was it that of the day (pneumatics.ambient_pressure_kPa)?"))
     blocks = read_blocks(source, campaign.rig, progress, ambient)
+    if (first := gathered.much_of(run.file, blocks)) is not None:
+        gathered.questions.append((run.file, f"most of its readings are those of {first}: is it a copy of that run?"))
     gathered.traces[run.file] = trace(blocks)
     if run.kind == "leak":
         gathered.questions += [(run.file, text) for text in check_leak(blocks, run, campaign.rig)]

@@ -1,0 +1,36 @@
+"""Times of day in a recording become seconds, whatever the chunks, and midnight may pass."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pneutouch.errors import InputError
+from pneutouch.tables import csv_table
+from pneutouch.tables.read import whole
+
+
+@pytest.mark.parametrize("chunk", [40, 4 * 2**20])
+@pytest.mark.parametrize(
+    ("first", "form"), [(86399.0, "{h}:{m:02d}:{s:06.3f}"), (3 * 3600.0, "{h:02d}:{m:02d}:{s:06.3f}")]
+)
+def test_times_of_day_are_seconds_from_the_first(chunk, first, form, tmp_path, monkeypatch):
+    monkeypatch.setattr(csv_table, "CHUNK", chunk)
+    passed = np.arange(0.0, 4.0, 0.25)
+    day = (first + passed) % 86400.0
+    rows = [
+        f"{form.format(h=int(t // 3600), m=int(t // 60 % 60), s=t % 60)},{value:.3f}"
+        for t, value in zip(day, passed, strict=True)
+    ]
+    path = tmp_path / "run.csv"
+    path.write_text("time,force_N\n" + "\n".join(rows) + "\n")
+    _, (time, force) = whole(path, ["time", "force_N"])
+    np.testing.assert_allclose(time, passed, atol=1e-9)
+    np.testing.assert_allclose(force, passed)
+
+
+def test_an_impossible_time_of_day_is_refused_with_its_row(tmp_path):
+    path = tmp_path / "run.csv"
+    path.write_text("time,force_N\n10:00:00,1\n10:00:01,2\n10:61:02,3\n")
+    with pytest.raises(InputError, match="row 4: column time: '10:61:02'"):
+        whole(path, ["time", "force_N"])
