@@ -136,6 +136,19 @@ def test_a_force_whose_fit_knows_no_first_contact_has_no_interval(tmp_path):
     assert figure.low is None or figure.high - figure.low < figure.value
 
 
+def later(seconds):
+    """The pressure delayed."""
+    return lambda s: np.vstack([s[:3], np.interp(s[0] - seconds, s[0], s[3])])
+
+
+@pytest.mark.parametrize("name", ["triangular", "steps", "noise"])
+@pytest.mark.parametrize("seconds", [0.1, -0.25])
+def test_channels_that_lag_one_another_are_asked_about(name, seconds, tmp_path):
+    lagging = replace(READ[name], spoil=later(seconds))
+    words = "pressure turns 0.1 s after the force" if seconds > 0 else "force turns 0.25 s after the pressure"
+    assert asked(read(tmp_path, lagging), words)
+
+
 def test_a_great_leak_is_a_question(tmp_path):
     assert asked(read(tmp_path, replace(READ["stairs without return"], drift=-5.0)), "without contact")
 
