@@ -32,6 +32,10 @@ SWAP_MARGIN = math.log(2.0)
 _RESTS = 0.05
 """Share of the greatest force or rise by which points may be negative: noise about the origin."""
 
+_STARTED, _STARTS, _REACHED, _LIKE, _UNLIKE = 4, 81, 0.8, 0.05, 0.3
+"""Least number of points, number of places inside the dome where a record may begin, share of the depth that is compared
+at least, and distances from the prediction, as a share, up to which it is met and from which it is missed: our choice."""
+
 _MINUS = {
     1: " (in `columns` a minus before the name turns the sign)",
     -1: " (in `columns` leave out the minus before the name)",
@@ -80,6 +84,7 @@ def check_plausible(
     _check_signs(curve, columns, file)
     by_hand = curve.run.kind == "hand"
     if expected is not None and not by_hand:
+        _check_start(curve, expected, file)
         _check_swap(curve, columns, expected, file)
     # A kind that was told is not contradicted by the length of its holds.
     time = None if by_hand or curve.told else _check_time(curve, columns, file)
@@ -169,6 +174,37 @@ def _check_signs(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> None:
             file=file,
             remedy=f"it must count into the sensor: set columns.position.sign = {-columns.position.sign}"
             f"{_MINUS[columns.position.sign]}",
+        )
+
+
+def _check_start(curve: MeasuredCurve, expected: ExpectedRun, file: Path) -> None:
+    """Raise InputError if force and rise are those of the prediction from some way inside the dome on, and no multiple
+    of those from first contact."""
+    if expected.curve is None or curve.indentation.size < _STARTED:
+        return
+    (travel, *predictions), depths = expected.curve, curve.indentation
+
+    def off(start: float, *, scaled: bool = False) -> float:
+        """Greatest distance of force and rise from the prediction's beyond ``start``, as a share of their ends."""
+        shared, parts = depths + start <= travel[-1], []
+        for measured, predicted in zip((curve.force, curve.rise), predictions, strict=True):
+            beyond = (np.interp(depths + start, travel, predicted) - np.interp(start, travel, predicted))[shared]
+            values = measured[shared]
+            factor = float(values @ beyond / max(beyond @ beyond, 1e-300)) if scaled else 1.0
+            parts.append(np.abs(values - factor * beyond).max() / max(float(values.max()), 1e-300))
+        return float(max(parts))
+
+    farthest = float(travel[-1]) - _REACHED * float(depths[-1])
+    if farthest <= 0 or off(0.0) < _UNLIKE:
+        return
+    starts = np.linspace(0.0, farthest, _STARTS)
+    found = [off(start) for start in starts]
+    best = int(np.argmin(found))
+    if found[best] < min(_LIKE, 0.5 * off(0.0, scaled=True)):
+        raise InputError(
+            f"force and pressure are those predicted from {number(float(starts[best]))} mm inside the dome on",
+            file=file,
+            remedy="start the recording, and zero force and gauge, clear of the dome",
         )
 
 

@@ -136,6 +136,33 @@ def test_a_force_whose_fit_knows_no_first_contact_has_no_interval(tmp_path):
     assert figure.low is None or figure.high - figure.low < figure.value
 
 
+def zeroed_at(start, legs):
+    """A recording that begins with the plate ``start`` mm inside the dome, where all channels are zeroed."""
+
+    def zeroed(samples):
+        rest = samples[:, (samples[0] > 0.01) & (samples[0] < 1.0)]
+        return samples[:, 1:] - np.array([[0.0], *rest[1:].mean(axis=1)[:, None].tolist()])
+
+    return Recording([(1e-4, start), (2.0, start), *legs], spoil=zeroed)
+
+
+@pytest.mark.parametrize("start", [2.0, 3.0])
+@pytest.mark.parametrize("pressed", ["triangles", "stairs"])
+def test_a_record_zeroed_inside_the_dome_is_refused_with_the_place(start, pressed, tmp_path):
+    legs = 2 * [(5.0, DEEP), (5.0, start), (2.0, start)]
+    if pressed == "stairs":
+        legs = [leg for depth in np.linspace(start + 0.5, DEEP, 7) for leg in ((0.3, depth), (4.0, depth))]
+    (failure,) = read(tmp_path, zeroed_at(start, legs)).failures
+    assert f"from {start:.2g} mm inside the dome on; start the recording" in failure.message
+
+
+@pytest.mark.parametrize("factors", [(1.4, 1.4), (2.0, 1.4), (2.5, 1.2), (1.2, 1.4)])
+def test_a_stiffer_sensor_is_not_taken_for_a_record_zeroed_inside_the_dome(factors, tmp_path):
+    of_force, of_rise = factors
+    stiffer = Recording(spoil=lambda s: s * np.array([[1.0], [1.0], [of_force], [of_rise]]))
+    assert figures(read(tmp_path, stiffer))["stiffness_N_per_mm"].value > 2
+
+
 def later(seconds):
     """The pressure delayed."""
     return lambda s: np.vstack([s[:3], np.interp(s[0] - seconds, s[0], s[3])])
@@ -227,7 +254,8 @@ def test_a_record_that_begins_in_contact_is_refused_or_asked_about(tmp_path):
     with pytest.raises(InputError, match="pressed"):
         read(tmp_path, moving)
     resting = [(0.1, 1.5), (2.0, 1.5), (6.0, DEEP), (6.0, 1.5), (2.0, 1.5)]
-    assert asked(read(tmp_path, Recording(resting, spoil=lambda s: s[:, 60:])), "Mean stiffness", "pressed")
+    (failure,) = read(tmp_path, Recording(resting, spoil=lambda s: s[:, 60:])).failures
+    assert "1.5 mm inside the dome" in failure.message
 
 
 def test_a_stated_kind_insists_and_is_questioned(tmp_path):
