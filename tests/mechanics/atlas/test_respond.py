@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
-from pneutouch.mechanics.atlas.respond import BREAK, DEPTH, EDGE, GAUGE, respond
+from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, DEPTH, EDGE, GAUGE, OUTSIDE, respond
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.units import KPA
 from tests.mechanics.atlas.sampled import batch, energy, random_batch
@@ -185,6 +185,21 @@ def test_each_end_of_a_range_lies_where_its_own_quantity_meets_its_level():
     for cut in (by_gauge, by_edge, by_tear):
         force = np.interp(cut.indentation[0], free.indentation[0], free.force[0])
         assert np.abs(cut.force[0] - force).max() < 5e-3 * free.force.max()
+
+
+@pytest.mark.parametrize("steps", [14, 150, 1000])
+def test_where_no_level_is_set_only_buckling_ends_a_range(steps):
+    """At fine steps a state may just hold from one guess of the volume and not from another: that is no level met."""
+    ends = respond(random_batch(600 if steps < 1000 else 150, 5, deepest=0.75), steps=steps).ends
+    assert set(ends.tolist()) <= {DEPTH, BUCKLING, OUTSIDE} and BUCKLING in ends
+
+
+def test_the_end_of_a_range_has_one_reason_at_any_number_of_steps():
+    nearly = {"wall_thickness": 1.5, "inner_radius": 9.25, "shear_modulus": 0.17, "ambient_pressure": 0.101325}
+    nearly |= {"dead_volume": 4935.04935971, "driving_pressure": 0.005, "depth": 6.9375, "plate_radius": 15.0}
+    for steps in (14, 200, 1000):
+        found = respond(batch(**nearly, gauge_limit=0.1, break_stretch=2.7), steps=steps)
+        assert found.ends[0] == BUCKLING and found.range_end[0] == pytest.approx(6.827, abs=2e-3)
 
 
 def test_a_range_that_ends_within_the_first_step_ends_where_its_pressure_is_reached():

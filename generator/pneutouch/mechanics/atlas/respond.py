@@ -201,19 +201,23 @@ def _first_end(press: AtlasPress, indentation: Array, track: PressTrack, margins
         part = press.rows(hit)
         start = track.nu[hit, column - 1]
         bracket = indentation[hit, column - 1], indentation[hit, column]
-        low, ends[hit] = _closed_in(part, start, bracket)
+        buckled = track.point.folded[hit, column] | (track.margin[hit, column] <= 0)
+        lost = np.where(track.ok[hit, column], DEPTH, np.where(buckled, BUCKLING, OUTSIDE))
+        low, ends[hit] = _closed_in(part, start, bracket, lost)
         end[hit] = np.where(broken[hit, 0], 0.0, low)
     return end, ends
 
 
-def _closed_in(press: AtlasPress, nu: Array, bracket: tuple[Array, Array]) -> tuple[Array, Index]:
+def _closed_in(press: AtlasPress, nu: Array, bracket: tuple[Array, Array], lost: Index) -> tuple[Array, Index]:
     """Locate the first end of a range in a bracket of travels; the travel there, and the reason's number in `ENDS`.
 
-    Illinois variant of false position on the greatest margin; bisection where there is no state.
+    ``lost`` (n,) is the reason why the press had no state at the bracket's end, `DEPTH` where it had one: solved from
+    elsewhere, a state there may just hold. Illinois variant of false position on the greatest margin; bisection where there is no state.
     """
     low, high = bracket
     before, _, _ = _worst(press, nu, low)
     after, ends, _ = _worst(press, nu, high)
+    ends = np.where((after <= 0.0) & (lost != DEPTH), lost, ends)
     open_ = np.ones(nu.size, dtype=bool)
     for _ in range(_ROUNDS):
         with np.errstate(invalid="ignore", divide="ignore"):
