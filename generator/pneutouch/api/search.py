@@ -24,6 +24,7 @@ from pneutouch.spec.read import override, validate
 from pneutouch.spec.target import Target
 from pneutouch.stopping import temporary_folder
 from pneutouch.wording import counted
+from pneutouch.workflows.select.base import read_shelf
 from pneutouch.workflows.select.checks import assigned
 from pneutouch.workflows.select.search import FoundChoice, SelectedRecord, search
 
@@ -179,9 +180,11 @@ def select(target: str | Path | None = None, **fields: Any) -> Selection:
     """Designs for a target: a target file, keyword arguments named as its keys, or both (keywords first).
 
     ``select(sensitivity_kPa_per_N=1.9, driving_pressure_kPa=12)``. ``base`` may be a `Design`. With
-    ``processes=["polyjet", "casting"]`` or ``"any"`` the designs are the best of each process, named after it. Raises
-    InputError naming the keyword.
+    ``processes=["polyjet", "casting"]`` or ``"any"`` the designs are the best of each process, named after it. ``have``
+    is what the lab has: a mapping, or the path of a file. Raises InputError naming the keyword.
     """
+    if isinstance(fields.get("have"), str | Path):
+        fields["have"] = read_shelf(Path(fields["have"])).model_dump(exclude_none=True)
     file = None if target is None else path_of(target, "target", _REMEDY)
     named, design = with_base_named(fields)
     with named_by_keyword(Target), given_base(design) as base:

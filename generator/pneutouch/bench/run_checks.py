@@ -33,8 +33,9 @@ _RESTS = 0.05
 """Share of the greatest force or rise by which points may be negative: noise about the origin."""
 
 _STARTED, _STARTS, _REACHED, _LIKE, _UNLIKE = 4, 81, 0.8, 0.05, 0.3
-"""Least number of points, number of places inside the dome where a record may begin, share of the depth that is compared
-at least, and distances from the prediction, as a share, up to which it is met and from which it is missed: our choice."""
+"""Least number of points, number of places inside the dome where a record may begin, least share of the depth that is
+compared, and distances from the prediction, as a share, up to which it is met and from which it is missed: our
+choice."""
 
 _MINUS = {
     1: " (in `columns` a minus before the name turns the sign)",

@@ -122,6 +122,10 @@ def select(
     target: Annotated[
         Path | None, typer.Argument(metavar="TARGET", help="Target file (TOML); options override it.")
     ] = None,
+    have: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="What the lab has (TOML): materials, printers, gauges, ports to take from."),
+    ] = None,
     set_: SetOption = None,
     write: Annotated[
         str | None, typer.Option(metavar="NAME", help="Save the design picked as designs/NAME.toml.")
@@ -149,7 +153,7 @@ def select(
         folder = design_folder(out)
         if write is not None:
             check_free(write, folder, overwrite=overwrite)
-        request = _target(target, fields, set_ or [])
+        request = _target(target, fields, set_ or [], have)
         _refuse(request, charts=charts is not None, pick=pick != 1)
         if charts is not None:
             check_writable(charts / "chart", key="charts")
@@ -196,11 +200,12 @@ def _report(answer: TargetAnswer, path: Path | None, *, json: bool) -> None:
         raise typer.Exit(1)
 
 
-def _target(path: Path | None, fields: dict[str, Any], set_: list[str]) -> Target:
+def _target(path: Path | None, fields: dict[str, Any], set_: list[str], have: Path | None) -> Target:
     """The target of a file, with options in place of its fields; or of options only."""
     from pneutouch.catalogue.library import read_given
     from pneutouch.spec.files import design_inside
     from pneutouch.spec.read import validate
+    from pneutouch.workflows.select.base import read_shelf
 
     content = {} if path is None else read_given(path, "give the path of a target file; a design is given as `base`")
     setting = content.get("setting")
@@ -212,6 +217,8 @@ def _target(path: Path | None, fields: dict[str, Any], set_: list[str]) -> Targe
         if not isinstance(section, dict):
             raise InputError("must be a table", file=path, key=table, value=section)
         section.update(values)
+    if have is not None:
+        content["have"] = read_shelf(have)
     if "target" not in content and content.keys() <= Target.model_fields.keys():
         what = "a target file" if path is None else "the file a table [target]"
         raise InputError("no target", file=path, remedy=f"give {what}, or `sensitivity`, `force_range` or a stiffness")

@@ -221,13 +221,36 @@ class Weights(Table):
     )
 
 
-class Target(Table):
+class Shelf(Table):
+    """[have]: what a lab has; the search takes resins, printers, gauges and ports from these alone."""
+
+    materials: Names | None = Field(
+        default=None, description="Resins on the shelf.", json_schema_extra={"registry": "materials"}
+    )
+    printers: Names | None = Field(
+        default=None, description="Printers that membranes can be made on.", json_schema_extra={"registry": "printers"}
+    )
+    gauges: Names | None = Field(default=None, description="Gauges.", json_schema_extra={"registry": "gauges"})
+    ports: Names | None = Field(
+        default=None, description="Ports whose fittings are there.", json_schema_extra={"registry": "ports"}
+    )
+
+    def holds(self, kind: str, name: str) -> bool:
+        """True if a thing is on the shelf, or nothing is stated about its kind."""
+        listed: list[str] | None = getattr(self, kind)
+        return listed is None or name in listed
+
+
+class Target(SparseTable):
     """A whole target file."""
+
+    left_out = ("have",)
 
     target: TargetFigures
     given: Given = Given()
     setting: Setting = Setting()
     weights: Weights = Weights()
+    have: Shelf = Shelf()
 
     @model_validator(mode="after")
     def _fits(self) -> Target:
@@ -239,6 +262,17 @@ class Target(Table):
                 f"the dome alone is {2 * (radius + wall):g} mm wide",
                 "target.max_diameter_mm",
                 "given.inner_radius_mm",
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _resins_on_the_shelf(self) -> Target:
+        missing = [name for name in self.given.materials or () if not self.have.holds("materials", name)]
+        if missing:
+            raise FieldsError(
+                f"given.materials names {', '.join(missing)}, which have.materials, the shelf, does not",
+                "given.materials",
+                "have.materials",
             )
         return self
 

@@ -212,7 +212,8 @@ def _closed_in(press: AtlasPress, nu: Array, bracket: tuple[Array, Array], lost:
     """Locate the first end of a range in a bracket of travels; the travel there, and the reason's number in `ENDS`.
 
     ``lost`` (n,) is the reason why the press had no state at the bracket's end, `DEPTH` where it had one: solved from
-    elsewhere, a state there may just hold. Illinois variant of false position on the greatest margin; bisection where there is no state.
+    elsewhere, a state there may just hold. Illinois variant of false position on the greatest margin; bisection where
+    there is no state.
     """
     low, high = bracket
     before, _, _ = _worst(press, nu, low)

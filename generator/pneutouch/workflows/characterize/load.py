@@ -136,8 +136,8 @@ _LONGEST = 60
 
 _LOADED, _COPY, _COMPARED = 0.1, 0.5, 20_000
 """Share of its greatest force from which a run counts as loaded, share of its readings under load, force and pressure
-together, from which it is asked whether it is a copy of another, and number of them that are compared: our choice. Noise
-makes hardly any two readings the same."""
+together, from which it is asked whether it is a copy of another, and number of them that are compared: our choice.
+Noise makes hardly any two readings the same."""
 
 _NEAR_KPA, _NEAR_SHARE = 1.0, 0.1
 """Largest difference, in kPa and relative, between the pressure read before contact and the design's driving pressure

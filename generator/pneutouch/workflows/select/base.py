@@ -8,11 +8,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pneutouch.catalogue import DEFAULT, DesignSource, Library, ResolvedDesign, load_scene
+from pneutouch.catalogue.library import read_given
 from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixed_material, mixing
 from pneutouch.catalogue.printers import casting_missing, made_by, makers, uncast
 from pneutouch.errors import InputError, PneutouchError, shown
@@ -26,8 +28,8 @@ from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.part import OnePiece, Sleeve
 from pneutouch.spec.printer import Printer
-from pneutouch.spec.read import Changes, parse_changes
-from pneutouch.spec.target import Target
+from pneutouch.spec.read import Changes, parse_changes, validate
+from pneutouch.spec.target import Shelf, Target
 
 USUAL = "TangoPlus+VeroClear"
 """The pair a grade is made of where none is named: the paper's resins."""
@@ -254,8 +256,10 @@ def _some_resin(target: Target, where: str, changes: Changes, library: Library) 
     profile = settled_base(target, changes, library).print.profile
     key = "setting.profile" if target.setting.profile is not None else "print.profile"
     printer: Printer = library.load("printers", profile, file=where, key=key)
+    _check_shelf(target, profile, where, library)
     pair = requested_pair(target, where, printer, library)
-    names = [pair.soft] if pair else target.given.materials or sorted(library.paths("materials"))
+    shelf = [name for name in sorted(library.paths("materials")) if target.have.holds("materials", name)]
+    names = [pair.soft] if pair else target.given.materials or shelf
     loaded = {name: library.load("materials", name, file=where, key="given.materials") for name in names}
     for name in target.given.materials or []:
         if loaded[name].kind != "elastomer":
@@ -267,6 +271,32 @@ def _some_resin(target: Target, where: str, changes: Changes, library: Library) 
         named = loaded if pair or target.given.materials else {}
         raise _runs_none(printer, named, where, library)
     return runs[0]
+
+
+def read_shelf(path: Path) -> Shelf:
+    """The table [have] of a target, from a file with its keys. Raises InputError."""
+    content = read_given(path, 'give a file with lists such as materials = ["TangoPlus"] and printers')
+    shelf = validate(Shelf, content, str(path))
+    _check_known(shelf, Library.default(), str(path), "")
+    return shelf
+
+
+def _check_known(shelf: Shelf, library: Library, where: str, prefix: str) -> None:
+    """Raise InputError for a name on a shelf that the library has not; the keys are named with ``prefix``."""
+    for kind in type(shelf).model_fields:
+        for name in getattr(shelf, kind) or ():
+            library.load(kind, name, file=where, key=f"{prefix}{kind}")
+
+
+def _check_shelf(target: Target, profile: str, where: str, library: Library) -> None:
+    """Raise InputError for an unknown name on the shelf, and for a printer of the membrane that is not there."""
+    _check_known(target.have, library, where, "have.")
+    if not target.have.holds("printers", profile):
+        raise InputError(
+            f"the printer {profile} is not on the shelf, which has {', '.join(target.have.printers or ())}",
+            file=where,
+            remedy="give one of them by `profile`, or `process` any",
+        )
 
 
 def _runs_none(printer: Printer, named: dict[str, Material], where: str, library: Library) -> InputError:

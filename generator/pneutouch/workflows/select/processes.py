@@ -90,7 +90,7 @@ def select(
 def _parts(target: Target, where: str, library: Library) -> list[_Part]:
     """All gauges that read above the ambient pressure, those first that detect the smallest change of pressure."""
     ambient_kPa = base_scene(_with(target, None), where, library).design.pneumatics.ambient_pressure_kPa
-    gauges = library.all("gauges", Gauge)
+    gauges = {name: one for name, one in library.all("gauges", Gauge).items() if target.have.holds("gauges", name)}
     parts = [_Part(name, gauge_reading(gauge, ambient_kPa * KPA)) for name, gauge in gauges.items()]
 
     def order(part: _Part) -> tuple[bool, float, str]:
@@ -181,7 +181,7 @@ def select_processes(
         usual = settled_base(target, setting_changes(target, library), library).print.profile
     runs, profiles, left_out = {}, {}, {}
     for number, process in enumerate(names):
-        offered = _profile(process, usual, target.given.materials, library)
+        offered = _profile(process, target, library, usual)
         if offered is None:
             left_out[process] = _unmade(process, target.given.materials, library)
             continue
@@ -199,18 +199,20 @@ def _named(target: Target, library: Library) -> list[str]:
     """Processes of a target, each once; for "any" all processes that make an elastomer."""
     names = list(dict.fromkeys(target.setting.processes or ()))
     if names == ["any"]:
-        return [process for process in get_args(Process) if _profile(process, "", None, library) is not None]
+        free = target.model_copy(update={"given": target.given.model_copy(update={"materials": None})})
+        return [process for process in get_args(Process) if _profile(process, free, library) is not None]
     return [str(process) for process in names]
 
 
 _Offer = tuple[str, list[str] | None]
 
 
-def _profile(process: str, usual: str, resins: list[str] | None, library: Library) -> _Offer | None:
-    """A profile of a process, and those of the resins named that it makes; None if it makes none."""
-    printers = library.all("printers", Printer)
-    known = library.all("materials", Material)
-    loaded = {name: library.load("materials", name, key="given.materials") for name in resins or known}
+def _profile(process: str, target: Target, library: Library, usual: str = "") -> _Offer | None:
+    """A profile on the shelf of a process, and those of the resins named that it makes; None if it makes none."""
+    resins, shelf = target.given.materials, target.have
+    printers = {name: one for name, one in library.all("printers", Printer).items() if shelf.holds("printers", name)}
+    names = resins or [name for name in library.all("materials", Material) if shelf.holds("materials", name)]
+    loaded = {name: library.load("materials", name, key="given.materials") for name in names}
     for name in sorted(printers, key=lambda name: name != usual):
         makes = [each for each, one in loaded.items() if one.kind == "elastomer" and printers[name].mode_for(one)]
         if printers[name].process == process and makes:
@@ -218,27 +220,28 @@ def _profile(process: str, usual: str, resins: list[str] | None, library: Librar
     return None
 
 
-def offers(base: ResolvedDesign, resins: list[str] | None, library: Library, *, others: bool = False) -> list[str]:
+def offers(base: ResolvedDesign, target: Target, library: Library, *, others: bool = False) -> list[str]:
     """Other printers of a base's process that make one of the resins named, or an elastomer; with ``others`` the other
     processes of which a printer does."""
     here = base.printer.process
     if others:
         processes = (process for process in get_args(Process) if process != here)
-        return [process for process in processes if _profile(process, "", resins, library) is not None]
+        return [process for process in processes if _profile(process, target, library) is not None]
     printers = library.readable("printers", Printer)
     materials = library.all("materials", Material)
-    names = [name for name in resins or materials if materials[name].kind == "elastomer"]
+    offered = target.given.materials or [name for name in materials if target.have.holds("materials", name)]
+    names = [name for name in offered if materials[name].kind == "elastomer"]
     return [
         name
         for name, printer in printers.items()
-        if printer.process == here and name != base.design.print.profile
+        if printer.process == here and name != base.design.print.profile and target.have.holds("printers", name)
         if any(printer.mode_for(materials[one]) is not None for one in names)
     ]
 
 
 def on_process(target: Target, process: str, library: Library) -> Target:
     """The target on the printer that makes its resins by a process; as it is if none does."""
-    offered = _profile(process, "", target.given.materials, library)
+    offered = _profile(process, target, library)
     return target if offered is None else _of(target, process, *offered)
 
 

@@ -187,10 +187,10 @@ def _trials(run: SelectionRun, library: Library) -> Iterator[tuple[str, list[Cha
         if getattr(given, key) is not None:
             what = "resin" if key == "materials" else key.removesuffix("_mm").replace("_", " ")
             yield what, [Change(f"given.{key}", None)]
-    yield "printer", [Change("setting.profile", name) for name in offers(run.base, given.materials, library)]
+    yield "printer", [Change("setting.profile", name) for name in offers(run.base, run.target, library)]
     # With a profile a process contradicts the target.
     if run.target.setting.profile is None:
-        for process in offers(run.base, given.materials, library, others=True):
+        for process in offers(run.base, run.target, library, others=True):
             yield "process", [Change("setting.processes", [process])]
 
 
@@ -217,9 +217,10 @@ def _volumes(run: SelectionRun) -> tuple[str, list[Change]]:
 def _wider(run: SelectionRun, library: Library) -> list[str]:
     """The gauge that reads furthest, if that is further than the base's."""
     ambient = run.sensor.gas.ambient_pressure
-    limits = {name: gauge_reading(one, ambient).limit for name, one in library.all("gauges", Gauge).items()}
-    widest = max(limits, key=limits.__getitem__)
-    return [widest] if limits[widest] > run.problem.gauge_limit else []
+    gauges, have = library.all("gauges", Gauge), run.target.have
+    limits = {name: gauge_reading(one, ambient).limit for name, one in gauges.items() if have.holds("gauges", name)}
+    widest = max(limits, key=limits.__getitem__, default="")
+    return [widest] if widest and limits[widest] > run.problem.gauge_limit else []
 
 
 _PORTS = 3
@@ -234,7 +235,7 @@ def _ports(run: SelectionRun, library: Library) -> list[str]:
     by_size = nearest.margins.get("footprint", 0.0) < 0.0 or nearest.margins.get("connector", 0.0) < 0.0
     keys: dict[str, float] = {}
     for name in library.paths("ports"):
-        if name == run.base.design.connector.port:
+        if name == run.base.design.connector.port or not run.target.have.holds("ports", name):
             continue
         change = Change("setting.assignments", f"connector.port={name}").of(run.target, library)
         try:

@@ -256,7 +256,9 @@ def _resins(
         # A cast resin's law is the solid's: the search goes by the neo-Hookean fit, corrected by the solid.
         plain = material.model_copy(update={"law": None}) if casting else material
         wall = material_sensor(plain).wall
-        if casting_missing(scene.printer, material):
+        if not target.have.holds("materials", name):
+            out[name] = "it is not on the shelf"
+        elif casting_missing(scene.printer, material):
             out[name] = "its file has no table [casting]"
         elif not prints(scene, material):
             out[name] = f"the {scene.printer.title} cannot run it{with_connector(scene)}"
