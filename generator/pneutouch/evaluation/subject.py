@@ -4,21 +4,24 @@ Findings of the print rules on a sensor and, where its membrane is cast, on its 
 """
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.catalogue import ResolvedDesign
-from pneutouch.parts import Assembly
+from pneutouch.catalogue import Library, ResolvedDesign
+from pneutouch.errors import InputError
+from pneutouch.parts import Assembly, assemble
 from pneutouch.parts.cast_ring import RING
 from pneutouch.parts.glue import glue_of, glue_surfaces
 from pneutouch.parts.layout import Layout
 from pneutouch.printability import Finding, SensorContext, check
 from pneutouch.printability.measure.mould import LEAVES
 from pneutouch.printability.rulebook import check_mould, mould_subject
+from pneutouch.printability.rules.feature_sizes import CHECKS
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
-from pneutouch.printability.view import GluedSeat, WettedSurface
+from pneutouch.printability.view import GluedSeat, PrintView, WettedSurface
 
 _HINTS = {
     "membrane": {
@@ -27,10 +30,10 @@ _HINTS = {
         "resins": "take another membrane.material or print.profile",
     },
     "connector": {
-        "walls": "take another connector.seat, connector.port or print.connector_profile",
-        "pins": "take another connector.port or print.connector_profile",
-        "holes": "drill after printing, or take another connector.port or print.connector_profile",
-        "channels": "push a drill or wire through after printing, or take a connector.port with a wider bore",
+        "walls": "take another connector.port, or another connector.seat or print.connector_profile",
+        "pins": "take another connector.port, or another print.connector_profile",
+        "holes": "drill after printing, or take another connector.port, or another print.connector_profile",
+        "channels": "push a drill or wire through after printing, or take another connector.port",
         "envelope": "take a smaller membrane.inner_radius_mm, another connector.mount or print.connector_profile",
         "resins": "take another connector.material or print.connector_profile",
     },
@@ -132,7 +135,50 @@ def sensor_findings(assembly: Assembly, context: SensorContext) -> list[Finding]
         findings = check(subject_of(assembly), replace(context, wetted=wetted(assembly)))
         findings += check_mould(assembly.mould)
     reasons = assembly.scene.design.accepted.reasons
+    findings = _with_ports(findings, assembly.scene)
     return sorted((_accepted(finding, reasons) for finding in findings), key=lambda finding: finding.rank)
+
+
+_PORT, _NAMED = "another connector.port", 2
+"""Words for a port that ends a finding, and number of ports that are named in their place."""
+
+_OF_PORTS = ("walls", "pins", "holes", "channels")
+"""Rules on the connector that another port may end."""
+
+
+def _with_ports(findings: list[Finding], scene: ResolvedDesign) -> list[Finding]:
+    """Findings on the connector with ports that end them named in their remedies: each was drawn and measured.
+
+    Ports that take the design's tube come first."""
+    broken = {one.rule for one in findings if _names_port(one)}
+    if not broken:
+        return findings
+    library, ending = Library.default(), {rule: list[str]() for rule in broken}
+    ports = {name: library.load("ports", name) for name in library.paths("ports")}
+    used = scene.tube.title
+    tubes = {name: [library.load("tubes", tube) for tube in port.tubes] for name, port in ports.items()}
+    for name in sorted(ports, key=lambda name: all(tube.title != used for tube in tubes[name])):
+        if name == scene.design.connector.port or all(len(names) == _NAMED for names in ending.values()):
+            continue
+        connector = scene.design.connector.model_copy(update={"port": name})
+        design = scene.design.model_copy(update={"connector": connector})
+        with suppress(InputError):
+            subject = subject_of(assemble(replace(scene, design=design, port=ports[name], tube=tubes[name][0])))
+            items = tuple(item for item in subject.items if item.body.name == "connector")
+            view = PrintView(replace(subject, items=items, joints=()), None)
+            for rule, names in ending.items():
+                names += [] if len(names) == _NAMED or CHECKS[rule](view) else [name]
+    return [_with_port(one, ending[one.rule]) if _names_port(one) else one for one in findings]
+
+
+def _with_port(finding: Finding, names: list[str]) -> Finding:
+    return (
+        replace(finding, fix=finding.fix.replace(_PORT, f"connector.port = {' or '.join(names)}")) if names else finding
+    )
+
+
+def _names_port(finding: Finding) -> bool:
+    return finding.body == "connector" and finding.rule in _OF_PORTS and _PORT in finding.fix
 
 
 def _accepted(finding: Finding, reasons: Mapping[str, str]) -> Finding:

@@ -1,0 +1,35 @@
+"""A remedy that names a port holds: drawn with that port, the sensor has no such finding any more."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from pneutouch.evaluation.evaluate import evaluate
+
+
+def on_connector(changes):
+    return {
+        one.rule: one.fix for one in evaluate("paper-dome", changes, model="atlas").findings if one.body == "connector"
+    }
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"connector.port": "luer-female"},
+        {"connector.material": "ClearResin", "print.connector_profile": "sla-resin"},
+    ],
+)
+def test_every_port_that_a_remedy_names_ends_its_finding(changes):
+    fixes = on_connector(changes)
+    for rule in {"walls", "channels"} & fixes.keys():
+        (named,) = re.findall(r"connector\.port = (\S+) or (\S+)", fixes[rule])
+        for port in named:
+            assert rule not in on_connector({**changes, "connector.port": port})
+
+
+def test_ports_of_the_designs_own_tube_are_named_first():
+    assert "connector.port = push-in-4 or thread-M" in on_connector({})["walls"]
