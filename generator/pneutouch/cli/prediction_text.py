@@ -49,7 +49,7 @@ def prediction_text(prediction: PredictionRecord) -> str:
     closure = f" ({prediction.closure} contact)" if prediction.closure else ""
     error = prediction.error_estimate
     far = "unknown" if error.sensitivity_relative is None else f"up to {error.sensitivity_relative:.0%}"
-    idealised = f" ({prediction.dead_volume_note})" if prediction.dead_volume_note is not None else ""
+    idealised = ", the paper's idealisation" if prediction.dead_volume_note is not None else ""
     assert prediction.rating is not None and prediction.viscous is not None and prediction.dynamics is not None
     lines = [
         f"{prediction.design}: model {prediction.model}{closure}, dead volume {prediction.dead_volume_mL:.3f} mL"
@@ -60,6 +60,7 @@ def prediction_text(prediction: PredictionRecord) -> str:
         "",
         _state_table(prediction.states),
         "",
+        *_as_drawn(prediction),
         *_off_axis(prediction.states),
         *_sheared(prediction.states),
         f"error in sensitivity {far}: {error.sensitivity_basis}",
@@ -114,7 +115,6 @@ def _state_table(states: Sequence[StateRecord]) -> str:
     head += ["R2", "N/mm", "range N", "range ends at"]
     rows = []
     for state in states:
-        ends = [event.kind for event in state.events if event.ends_range]
         known = None if state.uncertainty is None else state.uncertainty.known.get(SENSITIVITY_KEY)
         row = [
             f"{state.driving_pressure_kPa:g}",
@@ -126,10 +126,36 @@ def _state_table(states: Sequence[StateRecord]) -> str:
             _optional(state.r_squared, ".4f"),
             _optional(state.stiffness_N_per_mm, ".3f"),
             "-" if state.force_range_N is None else f"0-{state.force_range_N[1]:.2f}",
-            f"{ends[0] if ends else 'depth'}, {state.range_end_mm:.2f} mm",
+            _range_end(state),
         ]
         rows.append(row)
     return table_text(head, rows)
+
+
+def _as_drawn(prediction: PredictionRecord) -> list[str]:
+    """The figures with the gas of connector and tube as drawn, where the design states none."""
+    volume_mL = prediction.dead_volume_as_drawn_mL
+    if volume_mL is None:
+        return []
+    head = f"with the {volume_mL:.2f} mL that connector and tube hold as drawn"
+    if not prediction.as_drawn:
+        return [f"{head}: --set pneumatics.dead_volume_mL={volume_mL:.2f}", ""]
+    rows = [
+        [
+            f"{state.driving_pressure_kPa:g}",
+            _optional(state.sensitivity_kPa_per_N, ".3f"),
+            _optional(state.stiffness_N_per_mm, ".3f"),
+            "-" if state.force_range_N is None else f"0-{state.force_range_N[1]:.2f}",
+            _range_end(state),
+        ]
+        for state in prediction.as_drawn
+    ]
+    return [f"{head} (atlas):", table_text(["kPa", "S kPa/N", "N/mm", "range N", "range ends at"], rows), ""]
+
+
+def _range_end(state: StateRecord) -> str:
+    ends = [event.kind for event in state.events if event.ends_range]
+    return f"{ends[0] if ends else 'depth'}, {state.range_end_mm:.2f} mm"
 
 
 def _off_axis(states: Sequence[StateRecord]) -> list[str]:

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.errors import InputError
 from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.evaluation.dynamics import dynamics
 from pneutouch.evaluation.gauge import gauge_record
 from pneutouch.evaluation.relaxation import viscous
 from pneutouch.evaluation.uncertainty import uncertainties
+from pneutouch.mechanics import predict
 from pneutouch.mechanics.prediction import InflationCurve
 from pneutouch.mechanics.response import tangent_stiffness
 from pneutouch.mechanics.viscous.prony import AGED, ageing_ratio
@@ -69,8 +71,23 @@ def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
         contact=contact_document(evaluation.scene).get("contact"),
         rating=rating_record(evaluation.rating, [state.driving_pressure for state in evaluation.prediction.states]),
         dead_volume_note=evaluation.assembly.dead_volume_note or None,
+        dead_volume_as_drawn_mL=evaluation.assembly.drawn_volume / ML if evaluation.assembly.dead_volume_note else None,
+        as_drawn=_as_drawn(evaluation),
         contact_anywhere=anywhere,
     )
+
+
+def _as_drawn(evaluation: Evaluation) -> tuple[StateRecord, ...]:
+    """The states with the gas of connector and tube as drawn, by the atlas; none where the design states its gas."""
+    assembly, prediction = evaluation.assembly, evaluation.prediction
+    if not assembly.dead_volume_note:
+        return ()
+    sensor = evaluation.sensor.replace(dead_volume=assembly.drawn_volume)
+    try:
+        drawn = predict(prediction.design, sensor, [s.driving_pressure for s in prediction.states], model="atlas")
+    except InputError:
+        return ()
+    return by_model(drawn, curves=False).states
 
 
 def _anywhere(evaluation: Evaluation) -> ContactAnywhere:

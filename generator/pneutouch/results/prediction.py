@@ -320,6 +320,10 @@ class PredictionRecord:
     """Object that presses the sensor, by the keys of [contact]; left out for a frictionless plate."""
     dead_volume_note: str | None = None
     """Note on a stated dead volume that is an idealisation."""
+    dead_volume_as_drawn_mL: float | None = None
+    """Gas volume of connector, tube and gauge as drawn, where the stated one is an idealisation."""
+    as_drawn: tuple[StateRecord, ...] = ()
+    """The same states with that gas volume, by the atlas and without curves; empty where the atlas has none."""
     contact_anywhere: ContactAnywhere | None = None
     """Errors of the force read where object and place are unknown."""
     viscous: Viscous | None = None
