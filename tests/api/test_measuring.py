@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import signal
 
 import pytest
 
 import pneutouch as pt
+from pneutouch.workflows.calibrate import calibrate as calibrating
+from pneutouch.workflows.calibrate.calibration_files import write_calibration
 
 
 def without_folder(document):
@@ -51,6 +54,21 @@ def test_figures_of_measured_runs_are_the_command_lines(campaign, printed, tmp_p
     assert (found.save(tmp_path / "ours") / "figures.json").is_file()
     own = pt.characterize(campaign, pt.load("paper-dome").replace(wall_thickness_mm=2.0), model="atlas")
     assert own.to_dict() != found.to_dict()
+
+
+@pytest.mark.slow
+def test_a_stop_leaves_no_report_without_its_calibration(campaign, tmp_path, monkeypatch):
+    monkeypatch.setenv("PNEUTOUCH_HOME", str(tmp_path))
+
+    def stopped(*given):
+        folder = write_calibration(*given)
+        signal.raise_signal(signal.SIGINT)
+        return folder
+
+    monkeypatch.setattr(calibrating, "write_calibration", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        pt.calibrate(campaign, fit=["modulus"], out=tmp_path / "out", save="mine")
+    assert list((tmp_path / "out").rglob("calibration.json")) and (tmp_path / "calibrations" / "mine.toml").is_file()
 
 
 @pytest.mark.slow

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import pytest
 
@@ -115,3 +116,12 @@ def test_any_text_makes_part_of_a_file_name():
     assert file_name("../../a\nb") == "-..-a-b"
     assert file_name("...") == file_name("") == "unnamed"
     assert len(file_name("字" * 300).encode()) <= 200
+
+
+def test_a_path_that_may_not_be_read_is_not_said_to_lead_out(tmp_path, monkeypatch):
+    def refused(path):
+        raise PermissionError(13, "Permission denied", str(path))
+
+    monkeypatch.setattr(Path, "is_symlink", refused)
+    with pytest.raises(InputError, match=r"a\.csv: cannot be read: Permission denied"):
+        inside(tmp_path, "a.csv", file="x.toml", key="file")

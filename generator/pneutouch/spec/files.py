@@ -67,7 +67,8 @@ def exists(path: Path) -> bool:
 
 
 def inside(folder: Path, name: str, *, file: str | PathLike[str], key: str) -> Path:
-    """The path of ``name`` in ``folder``. Raises InputError if it leads out of the folder, by a link too.
+    """The path of ``name`` in ``folder``. Raises InputError if it leads out of the folder, by a link too, or cannot be
+    read.
 
     ``file`` and ``key`` state where the name was written: whoever wrote it decides on the files of its folder alone.
     """
@@ -76,6 +77,8 @@ def inside(folder: Path, name: str, *, file: str | PathLike[str], key: str) -> P
         target = path.resolve()
         # From 3.13 on, Python leaves a link that leads to itself as it is.
         within = not Path(name).is_absolute() and target.is_relative_to(folder.resolve()) and not target.is_symlink()
+    except PermissionError as error:
+        raise InputError(f"cannot be read: {error.strerror}", file=path) from None
     except (OSError, ValueError, RuntimeError):
         within = False
     if not within:

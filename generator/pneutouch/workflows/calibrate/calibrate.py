@@ -27,6 +27,7 @@ from pneutouch.spec.campaign import CAMPAIGN
 from pneutouch.spec.design import CALIBRATION
 from pneutouch.spec.options import CalibrationOptions
 from pneutouch.spec.read import parse_changes
+from pneutouch.stopping import uninterrupted
 from pneutouch.workflows.calibrate.calibration_files import (
     CampaignSource,
     check_place,
@@ -180,7 +181,7 @@ def _check_left(
 def _write(
     job: CalibrationJob, calibration: Calibration, name: str, source: CampaignSource
 ) -> tuple[list[Path], list[str]]:
-    """Write the fit's report and the calibration: the written files, and a note if there is no calibration.
+    """Write the fit's report and the calibration together: the written files, and a note if there is no calibration.
 
     Raises InputError if ``save`` requires one; the report is written nevertheless.
     """
@@ -194,9 +195,13 @@ def _write(
             problem = f"{error.problem} (the fit is in {folder})"
             file = None if error.key else job.data
             raise InputError(problem, file=file, key=error.key, remedy=error.remedy) from None
-    written = [write_calibration(calibration, job.out, source, unsaved)]
-    if not unsaved:
-        written.append(_saved(calibration, name, job.root, source, replace=job.options.replace))
+    saved = None if unsaved else prepare(calibration, name, job.root, source, replace=job.options.replace)
+    # Neither is left without the other by a stop.
+    with uninterrupted():
+        written = [write_calibration(calibration, job.out, source, unsaved)]
+        if saved is not None:
+            save(saved)
+            written.append(saved.path)
     return written, unsaved
 
 
