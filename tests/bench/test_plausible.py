@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -294,3 +295,26 @@ def test_a_leak_run_that_is_clipped(tmp_path):
         InputError, match=r"leak\.csv: a leak run of 300 s of which 300 s are clipped .*range of 100 kPa"
     ):
         leak(tmp_path, 99.0, start=105.0, top=100.0, constant=1e5)
+
+
+@given(start=st.floats(1.2, 3.0), noise=st.sampled_from([0.0, 1.0]))
+@settings(max_examples=20)
+def test_a_curve_from_inside_the_dome_is_refused_as_zeroed_there_or_as_lost_in_the_noise(start, noise):
+    """Its force at the start decides which: what is below the noise was not seen."""
+    travel = np.linspace(0.0, 7.0, 60)
+    expected = ExpectedRun(
+        7.0, float(travel[-1] ** 2), float(travel[-1] ** 1.5) * KPA, (travel, travel**2, travel**1.5 * KPA)
+    )
+    depth = np.linspace(0.0, 7.0 - start, 12)
+    curve = MeasuredCurve(
+        run_of().model_copy(update={"driving_pressure_kPa": 0.0}),
+        depth,
+        (depth + start) ** 2 - start**2,
+        ((depth + start) ** 1.5 - start**1.5) * KPA,
+        driving=0.0,
+        noise=(noise * start**2, 0.0),
+    )
+    with pytest.raises(InputError) as caught:
+        check_plausible(curve, COLUMNS, expected, Path("run.csv"))
+    (found,) = re.findall(r"([\d.]+) mm late" if noise else r"from ([\d.]+) mm inside the dome", str(caught.value))
+    assert float(found) == pytest.approx(start, abs=0.15)

@@ -37,6 +37,9 @@ _STARTED, _STARTS, _REACHED, _LIKE, _UNLIKE = 4, 81, 0.8, 0.05, 0.3
 compared, and distances from the prediction, as a share, up to which it is met and from which it is missed: our
 choice."""
 
+_LOST = 10.0
+"""Multiple of its noise below which a force may be lost in it: our choice."""
+
 _MINUS = {
     1: " (in `columns` a minus before the name turns the sign)",
     -1: " (in `columns` leave out the minus before the name)",
@@ -201,12 +204,22 @@ def _check_start(curve: MeasuredCurve, expected: ExpectedRun, file: Path) -> Non
     starts = np.linspace(0.0, farthest, _STARTS)
     found = [off(start) for start in starts]
     best = int(np.argmin(found))
-    if found[best] < min(_LIKE, 0.5 * off(0.0, scaled=True)):
+    if found[best] >= min(_LIKE, 0.5 * off(0.0, scaled=True)):
+        return
+    start, noise = float(starts[best]), curve.noise[0]
+    begun = float(np.interp(start, travel, predictions[0]))
+    if begun < _LOST * noise:
         raise InputError(
-            f"force and pressure are those predicted from {number(float(starts[best]))} mm inside the dome on",
+            f"first contact is found {number(start)} mm late: there the predicted force is {number(begun)} N, and the "
+            f"force has a noise of {number(noise)} N",
             file=file,
-            remedy="start the recording, and zero force and gauge, clear of the dome",
+            remedy="record with a force sensor of less noise, or give `kind` hand, which does without the travel",
         )
+    raise InputError(
+        f"force and pressure are those predicted from {number(start)} mm inside the dome on",
+        file=file,
+        remedy="start the recording, and zero force and gauge, clear of the dome",
+    )
 
 
 def _check_swap(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> None:
