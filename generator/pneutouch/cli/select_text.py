@@ -137,6 +137,7 @@ def processes_lines(selection: ProcessSelection) -> list[str]:
             nearest = run.answer.nearest
             why = "" if nearest is None else f"; the nearest misses {missed_text(run, nearest)} ({nearest.resin.name})"
             lines.append(f"{process}: {headline(run)}{why}")
+            lines += [f"{process}: left out: {name}: {reason}" for name, reason in run.left_out.items()]
     return lines + [f"{process}: left out: {why}" for process, why in selection.left_out.items()]
 
 

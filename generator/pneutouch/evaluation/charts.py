@@ -323,7 +323,7 @@ def tradeoff_problem(evaluation: Evaluation, pressure: float) -> SelectionProble
         gauge_limit=sensor.gas.gauge_limit,
         depth_share=min(sensor.protocol.depth / sensor.dome.inner_radius, recipe.deepest),
         steps=sensor.protocol.steps,
-        recipe=recipe,
+        atlas=shipped(),
     )
 
 

@@ -70,7 +70,7 @@ class CandidatePool(NamedTuple):
 def evaluated(problem: SelectionProblem, resin: Array, radius: Array, wall: Array, pressure: Array) -> CandidatePool:
     """Candidates with their responses from the atlas, times the factors of the problem where there are any."""
     batch = problem.batch(resin, radius, wall, pressure)
-    response = respond(batch, problem.steps)
+    response = respond(batch, problem.steps, problem.atlas)
     if problem.factors is not None:
         response = problem.factors.corrected(batch, response)
     return CandidatePool(resin, radius, wall, pressure, response)

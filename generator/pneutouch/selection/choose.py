@@ -276,7 +276,7 @@ def _span(problem: SelectionProblem, pool: CandidatePool) -> tuple[Array, tuple[
     resin, radius, wall = (np.tile(column, 2) for column in (pool.resin, pool.radius, pool.wall))
     batch = problem.batch(resin, radius, wall, pressure)
     groups = np.repeat([0, 1], highest.size)
-    none, most = respond(batch, problem.steps, groups=groups).lines.sensitivity.reshape(2, -1)
+    none, most = respond(batch, problem.steps, problem.atlas, groups).lines.sensitivity.reshape(2, -1)
     return highest, (none, most)
 
 

@@ -260,7 +260,7 @@ def nearest_fraction(
     )
     one_resin, ones, numbers = replace(problem, resins=resins), np.ones(at.size), np.arange(at.size, dtype=float)
     answers = [
-        respond(one_resin.batch(numbers, size[0] * ones, size[1] * ones, pressure * ones), problem.steps)
+        respond(one_resin.batch(numbers, size[0] * ones, size[1] * ones, pressure * ones), problem.steps, problem.atlas)
         for pressure in target.pressures
     ]
     lines = [answer.lines for answer in answers]
@@ -299,7 +299,9 @@ def middle_wall(target: GradeTarget, problem: SelectionProblem, radius: float, t
         return None
     walls: Array = np.geomspace(low, high, _WALLS)
     ones = np.ones(_WALLS)
-    response = respond(problem.batch(0 * ones, radius * ones, walls, target.pressures[0] * ones), problem.steps)
+    response = respond(
+        problem.batch(0 * ones, radius * ones, walls, target.pressures[0] * ones), problem.steps, problem.atlas
+    )
     with np.errstate(invalid="ignore", divide="ignore"):
         off = np.abs(np.log(response.lines.sensitivity / target.sensitivity))
     return None if not np.isfinite(off).any() else round(float(walls[np.nanargmin(off)]), 2)

@@ -9,6 +9,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.recipe import AtlasRecipe
+from pneutouch.mechanics.atlas.table import Atlas
 from pneutouch.mechanics.corrected.designs import ContactFactors
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
@@ -50,7 +51,8 @@ class SelectionProblem:
     plate_share: the plate's radius over R0 where it is larger than ``plate_radius``, for a plate that goes with the
     dome. connector: its fit to domes of inner radius and wall (n,), mm; None if no connector matters. limit_spread:
     where it is None, designs may be driven above their rated pressure. factors: factors on the atlas's figures, for a
-    contact that it does not cover. anywhere: True if the ranking counts an unknown object and place of contact.
+    contact or a law that it does not cover. anywhere: True if the ranking counts an unknown object and place of
+    contact.
     """
 
     resins: tuple[CandidateResin, ...]
@@ -69,13 +71,18 @@ class SelectionProblem:
     gauge_limit: float
     depth_share: float
     steps: int
-    recipe: AtlasRecipe
+    atlas: Atlas
     plate_share: float = 0.0
     max_footprint: float | None = None
     connector: Callable[[Array, Array], ConnectorFit] | None = None
     limit_spread: LimitUncertainty | None = None
     factors: ContactFactors | None = None
     anywhere: bool = False
+
+    @property
+    def recipe(self) -> AtlasRecipe:
+        """Recipe of the atlas, with the box of the search."""
+        return self.atlas.recipe
 
     def plate(self, radius: Array) -> Array:
         """Radius of the plate for domes of inner radius (n,), mm."""

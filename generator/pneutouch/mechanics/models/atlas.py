@@ -77,9 +77,9 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
     return next((why for applies, why in reasons if applies), None)
 
 
-def resin_outside_atlas(wall: WallMaterial, ambient_pressure: float) -> str | None:
+def resin_outside_atlas(wall: WallMaterial, ambient_pressure: float, atlas: Atlas | None = None) -> str | None:
     """Reason why the atlas covers no dome of a resin, or None if it covers some; ``ambient_pressure`` in MPa."""
-    recipe = shipped().recipe
+    recipe = (atlas or shipped()).recipe
     # A fitted law has a neo-Hookean modulus next to it, which finds designs; the solid then confirms them by the law.
     own_law = wall.law is not None and wall.largest_stretch is None
     if own_law or wall.poisson_ratio != recipe.poisson_ratio:

@@ -53,6 +53,7 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.material import Material
 from pneutouch.spec.read import Changes, override, parse_changes, validate
 from pneutouch.spec.toml_text import design_template
+from pneutouch.wording import counted
 
 _RADII = np.geomspace(2.0, 60.0, 8)
 """Radii in mm at which the connector is drawn for its dead volume, which is interpolated linearly between them."""
@@ -216,7 +217,7 @@ def without_plate(problem: SelectionProblem, sensor: Sensor) -> SelectionProblem
 
 def contact_notes(selection: ContactSelection, scene: ResolvedDesign) -> list[str]:
     """Notes on an answer by the solid, line by line."""
-    settled = f"{selection.rounds} rounds, {selection.solves} candidates solved"
+    settled = f"{counted(selection.rounds, 'round')}, {counted(selection.solves, 'candidate')} solved"
     return [
         f"contact: {contact_text(scene)}",
         f"every figure is the solid's with this contact ({settled}), U as `predict` has it",

@@ -13,7 +13,8 @@ from pneutouch.catalogue.library import CachedLibrary, elastomers
 from pneutouch.catalogue.printers import casting_missing
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import Evaluation
-from pneutouch.mechanics.atlas.table import shipped
+from pneutouch.mechanics.atlas.figures import softer_walls
+from pneutouch.mechanics.atlas.table import Atlas, shipped
 from pneutouch.mechanics.models.atlas import resin_outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import LIMIT_ERROR
@@ -262,11 +263,16 @@ def _resins(
             out[name] = "its file has no table [casting]"
         elif not prints(scene, material):
             out[name] = f"the {scene.printer.title} cannot run it{with_connector(scene)}"
-        elif (why := resin_outside_atlas(wall, sensor.gas.ambient_pressure)) is not None:
+        elif (why := resin_outside_atlas(wall, sensor.gas.ambient_pressure, _atlas(scene))) is not None:
             out[name] = why
         else:
             resins.append(CandidateResin(name, material, wall.shear_modulus, wall.break_stretch or np.inf))
     return tuple(resins), out
+
+
+def _atlas(scene: ResolvedDesign) -> Atlas:
+    """The atlas to search with: for cast resins with its box opened to soft walls, since the solid corrects it."""
+    return softer_walls() if scene.printer.is_casting else shipped()
 
 
 def problem_of(
@@ -292,7 +298,7 @@ def problem_of(
         gauge_limit=sensor.gas.gauge_limit,
         depth_share=min(sensor.protocol.depth / sensor.dome.inner_radius, shipped().recipe.deepest),
         steps=sensor.protocol.steps,
-        recipe=shipped().recipe,
+        atlas=_atlas(scene),
         plate_share=0.0 if "plate_diameter_mm" in scene.design.indentation.model_fields_set else _PLATE_SHARE,
         max_footprint=required.max_footprint_mm,
         connector=connector_fit(scene),

@@ -1,0 +1,37 @@
+"""Cast silicones too soft for the atlas's own box are searched all the same: the solid has the last word."""
+
+from __future__ import annotations
+
+import pytest
+
+from pneutouch.cli.select_text import processes_lines
+from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.spec.read import validate
+from pneutouch.spec.target import Target
+from pneutouch.workflows.select.checks import source_of
+from pneutouch.workflows.select.processes import select_processes
+
+DOME = {"inner_radius_mm": 9.0}
+
+
+def cast(library, resin, sensitivity=1.9):
+    content = {
+        "target": {"sensitivity_kPa_per_N": sensitivity, "driving_pressure_kPa": 0.0},
+        "given": {**DOME, "materials": [resin]},
+        "setting": {"processes": ["casting"]},
+    }
+    return select_processes(validate(Target, content, "target"), "target", library)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("resin", ["Ecoflex0030", "Ecoflex0050"])
+def test_a_soft_silicone_is_found_and_the_solid_agrees(resin, library):
+    ((_, run),) = cast(library, resin).best
+    found = source_of(run.base, run.assignments(run.answer.designs[0]))
+    (state,) = evaluate(found, model="solid", library=library).prediction.states
+    assert state.figures.sensitivity == pytest.approx(1.9, rel=0.05)
+
+
+def test_a_silicone_beyond_the_opened_box_is_named_with_the_reason(library):
+    lines = processes_lines(cast(library, "Ecoflex0010"))
+    assert any("left out: Ecoflex0010: it is too soft for the atlas" in line for line in lines)
