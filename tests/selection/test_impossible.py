@@ -174,10 +174,12 @@ def replaced(words: list[str], option: list[str]) -> list[str]:
 
 
 def test_other_printers_and_processes_are_those_that_make_the_resins(library):
-    base = base_scene(target({"sensitivity_kPa_per_N": 2.0}), "test", library)
-    assert offers(base, None, library) == ["j735"]
-    assert offers(base, None, library, others=True) == ["casting"]
-    assert offers(base, ["FLX9995"], library, others=True) == []
+    free = target({"sensitivity_kPa_per_N": 2.0})
+    base = base_scene(free, "test", library)
+    assert offers(base, free, library) == ["j735"]
+    assert offers(base, free, library, others=True) == ["casting"]
+    named = free.model_copy(update={"given": Given(materials=["FLX9995"])})
+    assert offers(base, named, library, others=True) == []
 
 
 def test_with_an_open_gauge_no_change_is_named():
