@@ -17,6 +17,7 @@ from pneutouch.errors import InputError
 from pneutouch.results.selection import GaugeTrial
 from pneutouch.selection.candidates import evaluated
 from pneutouch.selection.choose import missed_percent, rounded
+from pneutouch.spec.target import Given
 from pneutouch.workflows.select.base import base_scene
 from pneutouch.workflows.select.processes import offers
 from pneutouch.workflows.select.search import relaxations, working_changes
