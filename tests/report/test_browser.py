@@ -17,6 +17,7 @@ e.getBoundingClientRect().right > innerWidth + 0.5).map(e => e.tagName + ': ' + 
 _WIDER_THAN_THE_PAGE = """(m => [...document.querySelectorAll('table, figure, .tiles')].filter(e =>
 e.getBoundingClientRect().right > m.getBoundingClientRect().right - parseFloat(getComputedStyle(m).paddingRight) + 0.5)
 .map(e => e.textContent.slice(0, 60)))(document.querySelector('main'))"""
+_UNFOLD = "document.querySelectorAll('details').forEach(e => { e.open = true })"
 _CUT = """[...document.querySelectorAll('td, th, h1, dd, figcaption, p, li')].filter(e =>
 e.scrollWidth > e.clientWidth + 1 && getComputedStyle(e).display != 'contents' &&
 getComputedStyle(e).display != 'inline').map(e => e.textContent)"""
@@ -41,6 +42,9 @@ def show(sheet, pages):
 def test_the_page_needs_no_scrolling_sideways(width, show):
     screen = show(width)
     assert screen.evaluate("innerWidth") == width
+    folded = screen.evaluate("document.querySelectorAll('details:not([open])').length")
+    assert (folded > 9) == (width <= 760)
+    screen.evaluate(_UNFOLD)
     assert screen.evaluate("document.documentElement.scrollWidth") <= width
     assert screen.evaluate(_TOO_WIDE) == []
     assert screen.evaluate(_WIDER_THAN_THE_PAGE) == []
@@ -50,11 +54,21 @@ def test_the_page_needs_no_scrolling_sideways(width, show):
 def test_letters_of_figures_can_be_read_on_a_narrow_screen(show):
     """The smallest of a figure are 6.5 points at its own width: at least 7 pixels on the screen."""
     screen = show(400)
+    screen.evaluate(_UNFOLD)
     sizes = screen.evaluate(
         "[...document.querySelectorAll('figure svg')].map(e => 6.5 * e.clientWidth / e.viewBox.baseVal.width)"
     )
     assert len(sizes) >= 13
     assert min(sizes) >= 7
+
+
+def test_a_narrow_screen_shows_the_front_and_folds_the_annex(show):
+    """Seven screens of 900 pixels hold all that the first page of the PDF has."""
+    screen = show(400)
+    assert screen.evaluate("document.documentElement.scrollHeight") < 7 * 900
+    assert screen.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(233, 238, 242)"
+    screen.emulate_media(color_scheme="dark")
+    assert screen.evaluate("getComputedStyle(document.querySelector('main')).backgroundColor") == "rgb(24, 33, 42)"
 
 
 def test_with_webgl_the_dome_is_drawn_as_in_the_picture(show):

@@ -54,7 +54,7 @@ def test_page_and_pdf_have_every_section(section, html, pdf_text):
 
 
 def test_the_page_holds_its_figures(html):
-    assert html.count("<svg") == 17
+    assert html.count("<svg") == 14
 
 
 def test_sheet_states_the_predicted_figures(built, html, pdf_text):
@@ -157,6 +157,20 @@ def test_model_and_why_it_was_taken_stand_on_the_sheet(evaluated):
 
 
 @pytest.fixture
+def front_and_annex():
+    """Texts of the first two pages of an evaluation's PDF."""
+    from pneutouch.evaluation.sheet import sheet_data
+    from pneutouch.report import pages
+    from pneutouch.report.datasheet import described
+
+    def texts(evaluation):
+        pdf = pypdfium2.PdfDocument(pages.pdf(described(sheet_data(evaluation, "0"))))
+        return [pdf[k].get_textpage().get_text_range() for k in (0, 1)]
+
+    return texts
+
+
+@pytest.fixture
 def page():
     """The HTML page of an evaluation alone, without the PDF."""
     from pneutouch.evaluation.sheet import sheet_data
@@ -200,7 +214,7 @@ def test_a_sensor_outside_the_atlas_says_so_on_its_sheet(page):
     assert "No interval is given: the sensor is outside the atlas: the flange is held as printed" in page
     assert "Trade-off and tuning charts are not drawn: the sensor is outside the atlas" in page
     assert "drawn by the solid" in page
-    assert page.count("<svg") == 9
+    assert page.count("<svg") == 8
 
 
 def test_zero_drift_is_that_of_the_gas_in_a_dome_that_yields(evaluated):
@@ -288,3 +302,24 @@ def test_the_friction_stands_with_the_conditions_of_use(changes, kind, held):
     scene = load_scene("paper-dome", changes)
     assert prose.contact_body(scene) == ("Ø30", "mm", kind)
     assert prose.limits_of_use(scene).endswith(held)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "paper-dome",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("fingertip-dome", "graded-dome", "soft-pad")),
+    ],
+)
+def test_the_front_is_one_page_that_stands_alone(name, evaluated, front_and_annex):
+    """Section, figures with intervals, ratings, contact off the centre and connections on it; the annex begins the next."""
+    front, annex = front_and_annex(evaluated(name, model="atlas" if name == "paper-dome" else "auto"))
+    for words in (
+        "How to connect it",
+        "k = 2",
+        "Mechanical drawing",
+        "Absolute maximum ratings",
+        "Contact that is not central",
+    ):
+        assert words in front
+    assert annex.index("Annex") < annex.index("Performance") and "Temperature" in front

@@ -72,12 +72,12 @@ def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
         rating=rating_record(evaluation.rating, [state.driving_pressure for state in evaluation.prediction.states]),
         dead_volume_note=evaluation.assembly.dead_volume_note or None,
         dead_volume_as_drawn_mL=evaluation.assembly.drawn_volume / ML if evaluation.assembly.dead_volume_note else None,
-        as_drawn=_as_drawn(evaluation),
+        as_drawn=as_drawn(evaluation),
         contact_anywhere=anywhere,
     )
 
 
-def _as_drawn(evaluation: Evaluation) -> tuple[StateRecord, ...]:
+def as_drawn(evaluation: Evaluation) -> tuple[StateRecord, ...]:
     """The states with the gas of connector and tube as drawn, by the atlas; none where the design states its gas."""
     assembly, prediction = evaluation.assembly, evaluation.prediction
     if not assembly.dead_volume_note:

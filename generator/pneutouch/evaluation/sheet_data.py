@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from pneutouch.parts.mould.assembly import SiliconeBatch
     from pneutouch.printability import Finding
     from pneutouch.results.behaviour import Dynamics, GaugeFigures, Viscous
+    from pneutouch.results.prediction import StateRecord
     from pneutouch.results.printing import JobEstimate
     from pneutouch.results.uncertainty import UncertaintyRecord
     from pneutouch.selection.front import TradeOffFront
@@ -68,6 +69,7 @@ class SheetData:
         speed: Speed of the sensor's reading; None if that was not computed.
         pour: The silicone to weigh; None if the membrane is not cast.
         curves: The sensor by every mixing curve of its mix, the softest first.
+        as_drawn: The states with the gas of connector and tube as drawn, where the design states none.
     """
 
     scene: ResolvedDesign
@@ -97,6 +99,7 @@ class SheetData:
     viscous_runs: ViscousRuns | None = None
     pour: SiliconeBatch | None = None
     curves: tuple[CurveOutcome, ...] = ()
+    as_drawn: tuple[StateRecord, ...] = ()
 
 
 class SensitivityCurve(NamedTuple):

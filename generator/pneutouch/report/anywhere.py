@@ -23,6 +23,24 @@ _MARKED = 5
 """Number of points of a curve per mark."""
 
 
+def contact_line(chart: ContactChart | str | None) -> str:
+    """One line on contact that is not central: a ball's reading, and the uncertainty of unknown place and object."""
+    if chart is None or isinstance(chart, str):
+        return f"Not stated: {chart or ''}."
+    central = (row for row in chart.rows if row.kind == "ball" and not row.offset)
+    balls = [row for row in central if row.errors_percent[-1][0] is not None]
+    shares = " and ".join(f"±{share:.0%}" for share in chart.standard_uncertainties)
+    pressures = " and ".join(f"{pressure_kPa:g}" for pressure_kPa in chart.driving_pressures_kPa)
+    unknown = f"unknown place and object: {shares} (standard) at {pressures} kPa"
+    if not balls:
+        return f"{unknown[:1].upper()}{unknown[1:]}."
+    ball = balls[len(balls) // 2]
+    return (
+        f"Calibrated under a central plate. A central ball of {ball.radius:.3g} mm radius reads "
+        f"{ball.errors_percent[-1][0]:+.0f} % at {chart.driving_pressures_kPa[-1]:g} kPa; {unknown}. See the annex."
+    )
+
+
 def contact_section(chart: ContactChart | str | None) -> list[SheetBlock]:
     """Charts, table and notes; only the reason if the table does not cover the sensor."""
     title = "Contact that is not central"

@@ -33,7 +33,7 @@ def _letters(cell: str | Cell) -> int:
 
 @dataclass(frozen=True)
 class Heading:
-    """A heading of level 2 (a section) or 3."""
+    """A heading of level 2 (a section) or 3; level 1 begins a part of the sheet, on a page of its own."""
 
     text: str
     level: int = 2
@@ -165,7 +165,7 @@ class Tiles:
 
 @dataclass(frozen=True)
 class Columns:
-    """Blocks side by side, each column of a share of the width."""
+    """Blocks side by side on one page, each column of a share of the width."""
 
     columns: Sequence[Sequence[SheetBlock]]
     widths: Sequence[int] = (1, 1)

@@ -14,12 +14,11 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.evaluation.sheet_data import SensitivityCurve
 from pneutouch.mechanics.prediction import DeformedShape, SensorPrediction, SensorState
-from pneutouch.report.chart import SIZE, Note, Panel, PlotLine
+from pneutouch.report.chart import Note, Panel, PlotLine
 from pneutouch.report.style import ACCENT, FAINT, INK, LINES, MARKERS, MUTED, figure, svg
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
 
@@ -172,11 +171,13 @@ def _point(at: tuple[float, float], marker: str, size: float) -> PlotLine:
     return PlotLine((at[0],), (at[1],), dashes="", marker=marker, size=size, filled=True, over=4)
 
 
-def shapes(prediction: SensorPrediction) -> list[str]:
-    """Half sections of the deformed wall at the lowest and the highest driving pressure, shaded by stretch, as SVG.
+SHAPES_WIDE = 104.0
+"""Width of the half sections with their scale, mm: their letters can be read on a narrow screen."""
 
-    They have one frame, which is laid out once.
-    """
+
+def shapes(prediction: SensorPrediction) -> str:
+    """Half sections of the deformed wall at the lowest and the highest driving pressure, shaded by stretch, as SVG with
+    one scale."""
     from matplotlib.cm import ScalarMappable
 
     states = prediction.states[:1] + prediction.states[1:][-1:]
@@ -187,39 +188,39 @@ def shapes(prediction: SensorPrediction) -> list[str]:
     if any(shape.body is not None for _, shape in drawn_shapes):
         # So much of an object is shown above the wall.
         high *= 1.3
-    texts = []
-    with figure(SIZE[0], 0.75 * SIZE[1]) as drawn:
-        # The axes are narrower than the figure: they stand in its middle, next to their colour scale.
+    rows = len(states)
+    with figure(SHAPES_WIDE, 42.0 * rows) as drawn:
         drawn.set_layout_engine("compressed")
-        ax = drawn.add_subplot()
-        # The base plane is drawn: a second line just below it would be read as part of the sensor.
-        ax.axhline(0, color=INK, lw=0.8)
-        ax.spines["bottom"].set_visible(False)
-        ax.set(aspect="equal", xlabel="radius  (mm)", ylabel="height  (mm)", xlim=(0, right), ylim=(low, high))
-        ax.grid(False)
+        axes = drawn.subplots(rows, len(drawn_shapes) // rows, sharex=True, sharey=True, squeeze=False)
         colours = ScalarMappable(cmap="cividis_r")
         colours.set_clim(1.0, top)
-        drawn.colorbar(colours, ax=ax, label="greatest stretch  (-)", shrink=0.9)
-        for state, shape in drawn_shapes:
-            artists = _shape(ax, state, shape, colours)
-            texts.append(svg(drawn))
-            for artist in artists:
-                artist.remove()
-    return texts
+        for ax, (state, shape) in zip(axes.flat, drawn_shapes, strict=True):
+            # The base plane is drawn: a second line just below it would be read as part of the sensor.
+            ax.axhline(0, color=INK, lw=0.8)
+            ax.spines["bottom"].set_visible(False)
+            ax.set(aspect="equal", xlim=(0, right), ylim=(low, high))
+            ax.grid(False)
+            _shape(ax, state, shape, colours)
+        for ax in axes[-1]:
+            ax.set_xlabel("radius  (mm)")
+        for ax in axes[:, 0]:
+            ax.set_ylabel("height  (mm)")
+        drawn.colorbar(colours, ax=axes, label="greatest stretch  (-)", shrink=0.9)
+        return svg(drawn)
 
 
-def _shape(ax: Axes, state: SensorState, shape: DeformedShape, colours: ScalarMappable) -> list[Artist]:
-    """One deformed half section over the unloaded one, drawn into its frame; returns the artists that were added."""
+def _shape(ax: Axes, state: SensorState, shape: DeformedShape, colours: ScalarMappable) -> None:
+    """One deformed half section over the unloaded one."""
     from matplotlib.collections import PolyCollection
 
     look: dict[str, Any] = {"cmap": colours.cmap, "norm": colours.norm, "edgecolors": "face", "lw": 0.2}
     wall = PolyCollection(list(shape.cells), array=shape.stretch, **look)
     rest = PolyCollection(list(state.shapes[0].cells), facecolors="none", edgecolors=FAINT, lw=0.3, zorder=0)
-    added: list[Artist] = [ax.add_collection(rest), ax.add_collection(wall)]
+    ax.add_collection(rest)
+    ax.add_collection(wall)
     if shape.body is not None:
-        added += ax.plot(*shape.body.T, color=INK, lw=1.6)
+        ax.plot(*shape.body.T, color=INK, lw=1.6)
     elif shape.indentation:
-        added.append(ax.axhline(float(shape.cells[..., 1].max()), xmax=0.97, color=INK, lw=1.6))
+        ax.axhline(float(shape.cells[..., 1].max()), xmax=0.97, color=INK, lw=1.6)
     pressed = f", pressed {shape.indentation:.2f} mm" if shape.indentation else ""
     ax.set_title(f"{state.driving_pressure / KPA:g} kPa{pressed}", fontsize=7)
-    return added

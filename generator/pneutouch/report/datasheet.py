@@ -6,9 +6,10 @@ from pneutouch import __version__
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.export.scene import view_data
 from pneutouch.report import conditions, curves, graded, print_sheet, prose, sheet_charts, sheet_tables
-from pneutouch.report.anywhere import contact_section
+from pneutouch.report.anywhere import contact_line, contact_section
 from pneutouch.report.blocks import (
     Columns,
+    Heading,
     Items,
     Plot,
     Plots,
@@ -69,7 +70,8 @@ def described(sheet: SheetData) -> Sheet:
         blocks=(
             Text(status, "status"),
             *(Text(line, "warning") for line in sheet_tables.warnings(sheet)),
-            *_first(sheet),
+            *_front(sheet),
+            Heading("Annex: what the figures rest on, how to make and to use it", 1),
             *_performance(sheet),
             *contact_section(sheet.contact),
             *section("Graded membrane", Plots(_charts("graded", sheet))),
@@ -89,14 +91,26 @@ def _charts(name: str, sheet: SheetData) -> list[Plot]:
     return [plot for plot in drawn if plot is not None]
 
 
-def _first(sheet: SheetData) -> list[SheetBlock]:
-    """Description, picture and the figures that count."""
+def _front(sheet: SheetData) -> list[SheetBlock]:
+    """The first page: description, picture, the figures that count, drawing, ratings, and how to connect it."""
     bodies, scene = shown(sheet.assembly, _PIXELS[0]), sheet.scene
     grade = "" if scene.membrane_material.along is None else " The darker the membrane, the more of the stiff resin."
     words = "The sensor, cut open, from above and in front"
     view = View("view", view_data(bodies), picture(bodies, *_PIXELS), words, f"The sensor, cut open.{grade}")
     said = Text(prose.description(scene)), Text(prose.limits_of_use(scene), "muted")
-    return [Columns((said, (view,))), Tiles(sheet_tables.key_figures(sheet))]
+    words = "Lengths in mm; tolerances are the stated accuracies of the printers; bracketed sizes are for reference"
+    body = sheet.object_section
+    held = "; dashed above the dome: the object that presses it, at first contact" if body is not None else ""
+    drawings = [Plot(text) for text in section_drawing(sheet.assembly, body).values()]
+    ratings = section("Absolute maximum ratings", SheetTable(sheet_tables.ratings(sheet), numeric=(1,)))
+    connected = section("How to connect it", SheetTable(sheet_tables.connections(sheet)))
+    contact = section("Contact that is not central", Text(contact_line(sheet.contact)))
+    return [
+        Columns(([*said, *connected], (view,))),
+        Tiles(sheet_tables.key_figures(sheet)),
+        *section("Mechanical drawing", Plots(drawings, (112, 68), f"{words}{held}.")),
+        Columns((ratings, contact), (3, 2)),
+    ]
 
 
 def _performance(sheet: SheetData) -> list[SheetBlock]:
@@ -105,6 +119,7 @@ def _performance(sheet: SheetData) -> list[SheetBlock]:
         "Performance",
         sheet_tables.performance(sheet),
         Text(prose.PERFORMANCE, "muted"),
+        *sheet_tables.as_drawn(sheet),
         *conditions.off_axis(sheet.prediction.states),
         Items(errors),
         Plots(_charts("performance", sheet)),
@@ -119,7 +134,7 @@ def _shapes(sheet: SheetData) -> SheetBlock:
     state = sheet.prediction.states[0]
     if state.shapes:
         words = "Half sections of the deformed wall, shaded by the greatest principal stretch; thin outlines at rest."
-        return Plots([Plot(text) for text in curves.shapes(sheet.prediction)], caption=words)
+        return Plot(curves.shapes(sheet.prediction), words, mm=curves.SHAPES_WIDE)
     if state.beyond_axis is not None:
         return Text("No half sections are drawn: off the axis they do not show the deformed wall.", "muted")
     words = "The deformed wall and the contact pressure on it are drawn by the solid alone: build with model solid."
@@ -128,15 +143,13 @@ def _shapes(sheet: SheetData) -> SheetBlock:
 
 def _conditions(sheet: SheetData) -> list[SheetBlock]:
     """Limits, conditions and surroundings."""
-    ratings = SheetTable(sheet_tables.ratings(sheet), numeric=(1,))
-    operating = SheetTable(sheet_tables.operating(sheet), numeric=(1,))
-    left = [
-        *section("Absolute maximum ratings", ratings),
-        *section("What limits the driving pressure", sheet_tables.limits(sheet)),
-        *([] if sheet.rating.remedy is None else [Text(sheet_tables.rating_note(sheet))]),
-    ]
+    left = section("Operating conditions", SheetTable(sheet_tables.operating(sheet), numeric=(1,)))
     right = [
-        *section("Operating conditions", operating),
+        *section(
+            "What limits the driving pressure",
+            sheet_tables.limits(sheet),
+            Text("" if sheet.rating.remedy is None else sheet_tables.rating_note(sheet)),
+        ),
         *section("Speed of reading", SheetTable(conditions.speed_rows(sheet))),
     ]
     surroundings = SheetTable([*conditions.detection(sheet), *conditions.environment(sheet)])
@@ -144,15 +157,10 @@ def _conditions(sheet: SheetData) -> list[SheetBlock]:
 
 
 def _making(sheet: SheetData) -> list[SheetBlock]:
-    """Drawing, mould, and how the sensor is made."""
-    words = "Lengths in mm; tolerances are the stated accuracies of the printers; bracketed sizes are for reference"
-    body = sheet.object_section
-    held = "; dashed above the dome: the object that presses it, at first contact" if body is not None else ""
-    drawings = [Plot(text) for text in section_drawing(sheet.assembly, body).values()]
+    """Mould, and how the sensor is made."""
     bodies = ("Body", "Material", "Volume, mass", "Machine, mode, layer", "Support")
     findings = [[f.severity, f.rule, f.message, f.fix] for f in sheet.findings]
     return [
-        *section("Mechanical drawing", Plots(drawings, (112, 68), f"{words}{held}.")),
         *([] if sheet.assembly.mould is None else mould_section_blocks(sheet.assembly.mould)),
         *section(
             print_sheet.making_title(sheet.pour),

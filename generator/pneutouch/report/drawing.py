@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts import Assembly
 from pneutouch.parts.cast_ring import RING
+from pneutouch.parts.layout import finger_radius
 from pneutouch.report.section import (
     CENTRE,
+    HIDDEN,
     NEIGHBOUR,
     THIN,
     circle,
@@ -109,7 +112,7 @@ class _Section:
     def _widths(self) -> None:
         layout, ax, low = self.layout, self.ax, self.low
         flange, plate = layout.flange_radius, layout.plate_radius
-        horizontal(ax, low, -flange, flange, layout.plate_high, f"Ø{2 * flange:.2f} {self.soft}")
+        horizontal(ax, low, -flange, flange, layout.plate_high, f"flange\nØ{2 * flange:.2f} {self.soft}")
         horizontal(ax, low - 4.5 * self.unit, -plate, plate, layout.plate_low, f"Ø{2 * plate:.2f} {self.rigid}")
 
     def _leaders(self) -> None:
@@ -150,10 +153,34 @@ class _Section:
             height, text = layout.plate_low - 0.8 * mount.sleeve_length, f"finger Ø{mount.finger_diameter:g}"
             spot = (-0.5 * mount.finger_diameter, height)
             leader(self.ax, spot, (self.left - 0.5 * unit, height), text, "right")
+            self._set_screws(mount)
         if isinstance(mount, RobotFlange):
             text = f"centring Ø{mount.boss_diameter:g}\n{mount.boss_height:g} high"
             spot = (-0.4 * mount.boss_diameter, layout.under)
             leader(self.ax, spot, (self.left - 0.5 * unit, self.bottom - 1.5 * unit), text, "right")
+
+    def _set_screws(self, mount: Sleeve) -> None:
+        """Hole of a set screw, turned into the section on the side away from the port, and what to do with it."""
+        height, radius = self.layout.plate_low - 0.5 * mount.sleeve_length, _screw_radius(self.assembly.scene, mount)
+        inner, outer = _sleeve_radii(self.assembly.scene, mount)
+        across, along = (
+            (-outer, -inner, -inner, -outer),
+            (height - radius, height - radius, height + radius, height + radius),
+        )
+        self.ax.fill(across, along, facecolor="white", edgecolor=INK, lw=THIN)
+        text = f"{mount.set_screw_count} × Ø{2 * radius:.4g},\ntap {mount.screw}, set screws"
+        leader(self.ax, (-outer, height), (self.left - 0.5 * self.unit, height + 2 * self.unit), text, "right")
+
+
+def _sleeve_radii(scene: ResolvedDesign, mount: Sleeve) -> tuple[float, float]:
+    """Inner and outer radius of a sleeve, mm."""
+    inner = finger_radius(scene)
+    return inner, inner + mount.sleeve_wall
+
+
+def _screw_radius(scene: ResolvedDesign, mount: Sleeve) -> float:
+    """Radius of the holes for set screws as drawn, mm."""
+    return 0.5 * (mount.set_screw_core_diameter + scene.hole_undersize)
 
 
 def _plan(ax: Axes, assembly: Assembly) -> None:
@@ -194,6 +221,15 @@ def _holes(ax: Axes, assembly: Assembly, unit: float) -> None:
     """Notes on the mounting holes."""
     layout, scene = assembly.layout, assembly.scene
     mount, rigid = scene.mount, scene.connector_printer.accuracy_mm.nominal
+    if isinstance(mount, Sleeve):
+        inner, outer = _sleeve_radii(scene, mount)
+        side = _screw_radius(scene, mount)
+        for k in range(mount.set_screw_count):
+            angle = 90.0 + 360.0 * k / mount.set_screw_count
+            for off in (-side, side):
+                ends = [polar(math.hypot(r, off), angle + math.degrees(math.atan2(off, r))) for r in (inner, outer)]
+                ax.plot(*zip(*ends, strict=True), color=INK, lw=THIN, ls=HIDDEN)
+        return
     if not isinstance(mount, BoltCircle | RobotFlange):
         return
     circle(ax, 0, 0, layout.bolt_circle_radius, color=MUTED, ls=CENTRE, lw=THIN)

@@ -36,6 +36,9 @@ THIN = 0.4
 CENTRE = (0, (8, 2, 2, 2))
 """Dashes of a centre line."""
 
+HIDDEN = (0, (3, 1.5))
+"""Dashes of an edge that is not seen."""
+
 NEIGHBOUR = (0, (8, 2, 1.5, 2, 1.5, 2))
 """Dashes of a neighbouring part, which does not belong to the drawn one."""
 
@@ -183,7 +186,7 @@ def draw_bores(ax: Axes, solid: Solid, but: float | None = None, hidden: bool = 
     for bore in solid.bores:
         if but is not None and math.isclose(math.hypot(bore.x, bore.y), but):
             continue
-        look = {"ls": (0, (3, 1.5))} if hidden or bore.closed == "high" else {}
+        look = {"ls": HIDDEN} if hidden or bore.closed == "high" else {}
         circle(ax, bore.x, bore.y, bore.radius, **look)
 
 

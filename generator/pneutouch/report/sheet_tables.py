@@ -3,9 +3,10 @@
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report import prose
-from pneutouch.report.blocks import SheetTable, Tile
+from pneutouch.report.blocks import SheetBlock, SheetTable, Tile, section
 from pneutouch.report.certainty import interval
 from pneutouch.report.conditions import DASH, NOT_TESTED, gauge_range, gauge_volume
+from pneutouch.results.record import SENSITIVITY_KEY
 from pneutouch.units import KPA, ML
 
 _PERFORMANCE = (
@@ -29,10 +30,12 @@ def key_figures(sheet: SheetData) -> list[Tile]:
     mass = sum(solid.mass for solid in sheet.assembly.solids)
     wide, dead_volume_mL = 2 * sheet.assembly.layout.plate_radius, sheet.prediction.dead_volume / ML
     behind = sheet.assembly.dead_volume_note or "behind the cavity"
+    if sheet.as_drawn and (real := sheet.as_drawn[-1].sensitivity_kPa_per_N) is not None:
+        behind = f"{behind}, and the sensor then reads {real:.2f} kPa/N at {last.driving_pressure / KPA:g} kPa"
     return [
         Tile("Sensitivity", _sensitivity(first), "kPa/N", _condition(sheet, 0)),
         Tile("Sensitivity", _sensitivity(last), "kPa/N", _condition(sheet, -1)),
-        Tile("Force range", _range(last), "N", f"at {last.driving_pressure / KPA:g} kPa"),
+        Tile("Force range", _range(last), "N", _condition(sheet, -1, "force_at_range_end_N")),
         Tile("Max. driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa", sheet.rating.summary),
         Tile("Dead volume", f"{dead_volume_mL:.2f}", "mL", behind),
         Tile("Size", f"Ø{wide:.1f}", "mm", f"{mass:.1f} g without tube"),
@@ -47,10 +50,29 @@ def warnings(sheet: SheetData) -> list[str]:
     return above + [f"Warning: {e.kind} at {e.indentation:.2f} mm and {p:g} kPa: {e.message}." for p, e in left]
 
 
-def _condition(sheet: SheetData, k: int) -> str:
-    """Condition and interval of a state's sensitivity."""
-    text = f"{width} (k = 2)" if (width := interval(sheet.uncertainty[k])) else "interval not known, see Uncertainty"
+def _condition(sheet: SheetData, k: int, key: str = SENSITIVITY_KEY) -> str:
+    """Condition of a state, and the interval of one of its figures."""
+    width = interval(sheet.uncertainty[k], key)
+    text = f"{width} (k = 2)" if width else "interval not known, see Uncertainty"
     return f"at {sheet.prediction.states[k].driving_pressure / KPA:g} kPa; {text}"
+
+
+def as_drawn(sheet: SheetData) -> list[SheetBlock]:
+    """The figures with the gas of connector and tube as drawn, where the design states none."""
+    if not sheet.as_drawn:
+        return []
+    rows = [
+        [
+            f"{state.driving_pressure_kPa:g}",
+            *(DASH if v is None else f"{v:.2f}" for v in (state.sensitivity_kPa_per_N, state.stiffness_N_per_mm)),
+            DASH if state.force_range_N is None else f"0 to {state.force_range_N[1]:.1f}",
+            next((f"{e.kind}, {state.range_end_mm:.2f} mm" for e in state.events if e.ends_range), "depth"),
+        ]
+        for state in sheet.as_drawn
+    ]
+    title = f"With the {sheet.assembly.drawn_volume / ML:.2f} mL that connector and tube hold as drawn (atlas)"
+    head = ("Driving\nkPa", "Sensitivity\nkPa/N", "Stiffness\nN/mm", "Force range\nN", "Range ends at")
+    return section(title, SheetTable(rows, head, numeric=range(4), small=True), level=3)
 
 
 def ratings(sheet: SheetData) -> list[list[str]]:
@@ -63,6 +85,19 @@ def ratings(sheet: SheetData) -> list[list[str]]:
         ["Overload force", DASH, "N", NOT_TESTED],
         ["Burst pressure", DASH, "kPa", NOT_TESTED],
         ["Temperature", DASH, "°C", NOT_TESTED + "; the paper's tests ran at 18 to 26 °C"],
+    ]
+
+
+def connections(sheet: SheetData) -> list[list[str]]:
+    """What to connect: port, tube, gauge, mount, and the pressures before contact."""
+    scene = sheet.scene
+    pneumatics, tube = scene.design.pneumatics, scene.tube
+    return [
+        ["Port", scene.port.title],
+        ["Tube", f"{pneumatics.tube_length_mm:g} mm, {tube.outer_diameter:g} x {tube.inner_diameter:g} mm"],
+        ["Gauge", sheet.gauge.title if scene.gauge is not None else f"none named; the paper's, {sheet.gauge.title}"],
+        ["Mount", scene.mount.title],
+        ["Driving", f"{', '.join(f'{p:g}' for p in pneumatics.driving_pressures_kPa)} kPa, then closed"],
     ]
 
 
