@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.body.section import SolidSection, Window
+from pneutouch.body.section import SolidSection, Window, crossings, encloses, rises
 from pneutouch.catalogue import load_scene
 from pneutouch.parts import assemble
-from pneutouch.shape.meridian import Arc, Line, crossings, encloses, rises
+from pneutouch.shape.meridian import Arc, Line
 from pneutouch.spec.read import parse_changes
 
 CASES = {

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.shape.meridian import Arc, Line, Meridian, chords, sample
+from pneutouch.body.shapes import chords, sample
+from pneutouch.shape.meridian import Arc, Line, Meridian
 
 coordinate = st.floats(-20, 20)
 positive = st.floats(0.5, 20)

@@ -22,8 +22,11 @@ def ring(inner, outer, low, high, frame=None):
     return manifold(*Turned(outline, frame or Frame()).mesh(_FINE))
 
 
-def measured_volume(assembly):
-    """Volume in mm3 of the parts of the air space that end at the base plane; 0 where it leaks to the outside."""
+def measured_volume(assembly, solids=None):
+    """Volume in mm3 of the parts of the air space that end at the base plane; 0 where it leaks to the outside.
+
+    ``solids`` are those that bound it, by default all of the assembly.
+    """
     layout, port = assembly.layout, assembly.layout.port
     rear = layout.port_axis is None
     reach = layout.plate_radius + port.length + 5
@@ -31,7 +34,7 @@ def measured_volume(assembly):
     box = Manifold.cube((2 * reach, 2 * reach, -low)).translate((-reach, -reach, low))
     if not rear:
         box = box.trim_by_plane((-1, 0, 0), -(layout.plate_radius + port.length - _HAIR))
-    cuts = [manifold(body.vertices, body.triangles) for body in (s.mesh(_FINE) for s in assembly.solids)]
+    cuts = [manifold(body.vertices, body.triangles) for body in (s.mesh(_FINE) for s in solids or assembly.solids)]
     if assembly.scene.seat.family == "glued-flange":
         cuts.append(ring(layout.groove_inner, layout.inner_radius, layout.plate_high, 0.0))
         cuts.append(ring(layout.flange_radius, layout.groove_outer, layout.plate_high, 0.0))

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.parts import assemble
-from pneutouch.parts.layout import HELD
+from pneutouch.parts.membrane import HELD
 from pneutouch.printability.rules.bodies import overlap_volume, shared_area
 from pneutouch.spec.read import parse_changes
 from tests.catalogue.store import BASE, KINDS, SMALL, assembled, combinations

@@ -15,7 +15,8 @@ from pneutouch.export.step import exact_solid
 from pneutouch.parts.coupons import COUPONS, CouponContext, dumbbell, gauge
 from pneutouch.parts.coupons.leak_cap import cap
 from pneutouch.parts.coupons.volume_plug import cavity_size, cavity_volume
-from pneutouch.parts.layout import lay_out, membrane_meridian
+from pneutouch.parts.layout import lay_out
+from pneutouch.parts.membrane import membrane_meridian
 from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.shape.meridian import Arc
 from pneutouch.spec.read import parse_changes

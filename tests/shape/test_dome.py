@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from pneutouch.body.shapes import sample
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.elements import Cavity
 from pneutouch.mechanics.solid.inflate import state_at
@@ -16,7 +17,7 @@ from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.shape import SHAPES
 from pneutouch.shape.dome import DomeShape
 from pneutouch.shape.hemisphere import Hemisphere, no_hemisphere
-from pneutouch.shape.meridian import Line, Meridian, sample
+from pneutouch.shape.meridian import Line, Meridian
 from tests.shape.shapes import HalfBall, HalfHighCap, Thimble
 
 SIZE = 9.25, 1.5

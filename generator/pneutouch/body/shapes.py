@@ -1,5 +1,9 @@
 """Shapes that make up a solid: a meridian revolved about any axis, a prism on any plane, a round hole along z.
 
+A meridian is sampled to a chord tolerance. An inscribed polygon always errs to the inside and loses volume to first
+order in the tolerance. If the inner vertices of an arc are moved off it by two thirds of the sagitta, every chord
+encloses the area of its arc. The greatest error falls to two thirds, so fewer chords meet the same tolerance.
+
 A sampled meridian is revolved into a closed triangle mesh, with fewer triangles than a plain grid at the same error.
 
 Each ring has only as many vertices as its own radius needs, and its polygon is widened until it encloses the area of
@@ -16,7 +20,61 @@ from typing import Literal, Protocol
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Indices
-from pneutouch.shape.meridian import Arc, Meridian, MeridianVertex, Point, Segment, polygon, sample
+from pneutouch.shape.meridian import Arc, Meridian, Point, Segment
+
+_AXIS_TOLERANCE = 1e-9
+"""Radius (mm) below which a vertex is a pole that rounding moved off the axis."""
+
+
+@dataclass(frozen=True, slots=True)
+class MeridianVertex:
+    """A vertex of the sampled meridian: ``lean`` is the radial part of the surface normal there (0 to 1).
+
+    A ring on a face that leans little can be cut into fewer parts at the same error.
+    """
+
+    radius: float
+    height: float
+    lean: float
+
+
+def chords(arc: Arc, error: float) -> int:
+    """Number of chords that keep an arc within ``error`` mm if they preserve its area."""
+    sagitta = min(1.5 * error, arc.radius)
+    widest = 2 * math.acos(1 - sagitta / arc.radius)
+    turn = abs(arc.last - arc.first)
+    # The two end chords have one end on the arc; they span 1/sqrt(2) of the others (same mean error).
+    return max(2, math.ceil(turn / widest + 2 - math.sqrt(2)))
+
+
+def sample(meridian: Meridian, error: float) -> list[MeridianVertex]:
+    """Vertices (rings) of a meridian whose arcs stay within ``error`` mm; the first is not repeated at the end."""
+    rings: list[MeridianVertex] = []
+    for piece in meridian.pieces:
+        rings.append(MeridianVertex(*piece.start, lean=1.0))
+        if isinstance(piece, Arc):
+            rings += _inner_rings(piece, chords(piece, error))
+    if not meridian.is_ring:
+        rings.append(MeridianVertex(*meridian.end, lean=1.0))
+    return [ring if ring.radius > _AXIS_TOLERANCE else MeridianVertex(0.0, ring.height, ring.lean) for ring in rings]
+
+
+def _inner_rings(arc: Arc, count: int) -> list[MeridianVertex]:
+    turn = arc.last - arc.first
+    step = turn / (count - 2 + math.sqrt(2))
+    radius = arc.radius + 2 / 3 * arc.radius * (1 - math.cos(step / 2))
+    angles = [arc.first + step / math.sqrt(2) + k * step for k in range(count - 1)]
+    return [MeridianVertex(*arc.at(angle, radius), lean=abs(math.cos(angle))) for angle in angles]
+
+
+def polygon(outline: tuple[Segment, ...], error: float) -> list[Point]:
+    """Corners of a closed outline, with arcs within ``error`` mm and the area preserved."""
+    corners: list[Point] = []
+    for piece in outline:
+        corners.append(piece.start)
+        if isinstance(piece, Arc):
+            corners += [(ring.radius, ring.height) for ring in _inner_rings(piece, chords(piece, error))]
+    return corners
 
 
 def circle_count(radius: float, error: float, lean: float = 1.0) -> int:
@@ -255,20 +313,6 @@ class Feature:
 
     shape: Shape
     net: float
-
-
-def crossing(radius: float, bore: float) -> float:
-    """Volume in mm3 of a round bore between axis and wall of a cylinder that it crosses centrally at right angles.
-
-    Integral of sqrt(R^2 - y^2) over the disc of radius ``bore`` <= R, by Gauss-Chebyshev quadrature of the second kind
-    with 64 nodes, accurate to 1e-12 up to bore = 0.95 R.
-    """
-    if bore > radius:
-        raise ValueError("the bore must not be wider than the cylinder it crosses")
-    n = 64
-    angle = np.pi * np.arange(1, n + 1) / (n + 1)
-    weight = np.pi / (n + 1) * np.sin(angle) ** 2
-    return float(2 * bore**2 * np.sum(weight * np.sqrt(radius**2 - (bore * np.cos(angle)) ** 2)))
 
 
 def _under(piece: Segment) -> float:

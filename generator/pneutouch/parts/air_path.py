@@ -9,15 +9,22 @@ import math
 from dataclasses import dataclass
 from itertools import pairwise
 
+import numpy as np
+
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.parts.connector import plug_neck, plug_radius, side_volume
-from pneutouch.parts.layout import Layout
+from pneutouch.parts.layout import Layout, plug_neck, plug_radius
 from pneutouch.spec.part import CastRing, ClampedFlange, GluedFlange, OnePiece
 
 
 def internal_volume(scene: ResolvedDesign, layout: Layout) -> float:
     """Volume in mm3 between the base plane and the mouth of the port, with the fitting or tube in place."""
     return channel_volume(layout) + gap_volume(scene, layout) - layout.port.filled_volume()
+
+
+def side_volume(layout: Layout, across: float) -> float:
+    """Volume in mm3 of bore and port's hollow from the wall of a vertical hole of radius ``across`` to the mouth."""
+    port = layout.port
+    return port.hollow_volume(-layout.plate_radius) - crossing(across, port.passage)
 
 
 def channel_volume(layout: Layout) -> float:
@@ -156,3 +163,17 @@ def _cylinder(name: str, length: float, volume: float) -> list[AirPiece]:
         return []
     length = max(length, _NOTHING)
     return [AirPiece(name, length, math.sqrt(volume / (math.pi * length)))]
+
+
+def crossing(radius: float, bore: float) -> float:
+    """Volume in mm3 of a round bore between axis and wall of a cylinder that it crosses centrally at right angles.
+
+    Integral of sqrt(R^2 - y^2) over the disc of radius ``bore`` <= R, by Gauss-Chebyshev quadrature of the second kind
+    with 64 nodes, accurate to 1e-12 up to bore = 0.95 R.
+    """
+    if bore > radius:
+        raise ValueError("the bore must not be wider than the cylinder it crosses")
+    n = 64
+    angle = np.pi * np.arange(1, n + 1) / (n + 1)
+    weight = np.pi / (n + 1) * np.sin(angle) ** 2
+    return float(2 * bore**2 * np.sum(weight * np.sqrt(radius**2 - (bore * np.cos(angle)) ** 2)))

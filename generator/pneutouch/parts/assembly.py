@@ -10,20 +10,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.body import Body, Solid
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.air_path import glue_volume, internal_volume
-from pneutouch.parts.connector import SEAT, rigid_solids
-from pneutouch.parts.layout import Layout, lay_out, membrane_solid
+from pneutouch.parts.layout import Layout, lay_out
 from pneutouch.parts.space import check_space
 from pneutouch.spec.part import ClampedFlange, OnePiece
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.units import ML
 
 if TYPE_CHECKING:
+    from pneutouch.body import Body, Solid
     from pneutouch.parts.mould import MouldAssembly
 
-# The mould is imported only for a cast membrane: most are printed.
+# The mould is imported only for a cast membrane: most are printed. A prediction takes layout and volumes alone: the
+# solids are drawn where they are used.
 
 _MARGIN = 1.0
 """Distance in mm of the bodies from the coordinate planes of the print frame, so that all coordinates are positive."""
@@ -31,14 +31,22 @@ _MARGIN = 1.0
 
 @dataclass(frozen=True)
 class Assembly:
-    """The solids of a scene in the design frame (base plane z = 0), and their meshes. The membrane comes first."""
+    """A scene laid out in the design frame (base plane z = 0), its solids and their meshes."""
 
     scene: ResolvedDesign
     layout: Layout
-    solids: tuple[Solid, ...]
 
     def __repr__(self) -> str:
         return f"Assembly({self.scene.name!r}: {', '.join(solid.name for solid in self.solids)})"
+
+    @cached_property
+    def solids(self) -> tuple[Solid, ...]:
+        """The membrane first, then the rigid bodies."""
+        from pneutouch.parts.connector import rigid_solids
+        from pneutouch.parts.membrane import membrane_solid
+
+        membrane = membrane_solid(self.layout, self.scene.membrane_material)
+        return (membrane, *rigid_solids(self.scene, self.layout))
 
     @cached_property
     def bodies(self) -> tuple[Body, ...]:
@@ -91,6 +99,8 @@ class Assembly:
         """Area in mm2 of the faces shared by membrane and connector; 0 for a clamped flange."""
         if isinstance(self.scene.seat, ClampedFlange):
             return 0.0
+        from pneutouch.parts.connector import SEAT
+
         return sum(piece.area() for piece in self.solid("connector").meridian.tagged(SEAT))
 
     @cached_property
@@ -137,8 +147,7 @@ class Assembly:
 
 
 def assemble(scene: ResolvedDesign) -> Assembly:
-    """Draw the membrane and the rigid bodies of a scene. Raises InputError if a part has no space."""
+    """Lay out the bodies of a scene. Raises InputError if a part has no space."""
     layout = lay_out(scene)
     check_space(scene, layout)
-    membrane = membrane_solid(layout, scene.membrane_material)
-    return Assembly(scene, layout, (membrane, *rigid_solids(scene, layout)))
+    return Assembly(scene, layout)

@@ -13,11 +13,11 @@ without a further part, and it fills the connector's groove as a glued flange do
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 
-from pneutouch.body import Bore, Feature, Solid
+from pneutouch.body import Bore, Solid
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.shape.meridian import Line, Meridian, Segment, trace
+from pneutouch.errors import InputError
+from pneutouch.shape.meridian import trace
 from pneutouch.spec.material import Material
 from pneutouch.spec.part import CastRing
 
@@ -94,24 +94,6 @@ class RingSize:
         )
         return Solid(RING, RING, material, outline, self.holes())
 
-    def enclosed(self, name: str, material: Material, outline: Meridian) -> Solid:
-        """Silicone within an outline whose flange ends at the collar: without the web, but with its holes filled.
-
-        A hole is filled by the same shape that drills it: both bodies then have the same facets.
-        """
-        pieces: list[Segment] = []
-        for piece in outline.pieces:
-            upright = isinstance(piece, Line) and piece.start[0] == piece.end[0] == self.flange_radius
-            pieces += self._slot(piece.start, piece.end, piece.tag) if upright else [piece]
-        plugs = tuple(Feature(hole, hole.volume()) for hole in self.holes())
-        return Solid(name, "membrane", material, Meridian(tuple(pieces)), adds=plugs)
-
-    def _slot(self, start: tuple[float, float], end: tuple[float, float], tag: str) -> tuple[Segment, ...]:
-        """Edge of the flange from below upwards, around the web."""
-        edge, web = self.flange_radius, self.web_inner
-        corners = [start, (edge, self.web_low), (web, self.web_low), (web, self.web_high), (edge, self.web_high), end]
-        return tuple(Line(one, other, tag) for one, other in pairwise(corners))
-
 
 def ring_size(scene: ResolvedDesign, seat: CastRing, flange_radius: float, flange_thickness: float) -> RingSize:
     """Size of the ring in a scene with these flange sizes, mm; `space.check_space` checks it."""
@@ -132,3 +114,35 @@ def ring_size(scene: ResolvedDesign, seat: CastRing, flange_radius: float, flang
         hole_radius=radius,
         hole_count=count,
     )
+
+
+def least_bridge(scene: ResolvedDesign) -> float:
+    """Least width of rigid material in mm at a hole of a ring: the wall that the printer can make."""
+    wall = scene.connector_printer.smallest.wall("rigid")
+    return wall.recommended if wall.least is None else wall.least
+
+
+def check_ring(scene: ResolvedDesign, ring: RingSize) -> None:
+    """Raise InputError for a ring whose holes leave less material between or inside them than the printer can make."""
+    least, web = least_bridge(scene), scene.design.cast_ring
+    if ring.rim < least:
+        raise InputError(
+            f"the holes leave {max(ring.rim, 0.0):.2f} mm of the ring inside them; the connector's printer makes "
+            f"{least:g} mm",
+            file=scene.where,
+            key="cast_ring.width_mm",
+            value=web.width_mm,
+            remedy=f"give at least {math.ceil(100 * (web.width_mm + least - ring.rim)) / 100:g}, or smaller holes",
+        )
+    if ring.bridge < least:
+        across = (2 * ring.hole_radius + least) / (2 * ring.hole_circle)
+        most = 0 if across >= 1 else math.floor(math.pi / math.asin(across))
+        stated = web.hole_count is not None and most >= FEWEST_HOLES
+        raise InputError(
+            f"{ring.hole_count} holes leave {max(ring.bridge, 0.0):.2f} mm of the ring between them; the connector's "
+            f"printer makes {least:g} mm",
+            file=scene.where,
+            key="cast_ring.hole_count" if stated else "cast_ring.hole_diameter_mm",
+            value=web.hole_count if stated else web.hole_diameter_mm,
+            remedy=f"give at most {most}, or leave it out" if stated else "give smaller holes",
+        )

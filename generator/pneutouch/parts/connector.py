@@ -3,17 +3,15 @@
 import math
 from dataclasses import replace
 
-from pneutouch.body import Bore, Feature, Frame, Solid, Turned, crossing
+from pneutouch.body import Bore, Feature, Frame, Solid, Turned
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.parts.layout import Layout, finger_radius
+from pneutouch.parts.air_path import crossing, side_volume
+from pneutouch.parts.layout import Layout, finger_radius, plug_neck, plug_radius
 from pneutouch.parts.port import CHANNEL
 from pneutouch.shape.meridian import Meridian, Point, TracedPath, cylinder, trace
 from pneutouch.spec.part import AnySeat, BoltCircle, ClampedFlange, OnePiece, RobotFlange, Sleeve
 
 PLUG_SHOULDER = "shoulder"
-
-_UNDER_PORT = 0.3
-"""Distance in mm below the passage of a side port at which the plug becomes thinner."""
 
 
 def rigid_solids(scene: ResolvedDesign, layout: Layout) -> tuple[Solid, ...]:
@@ -93,23 +91,6 @@ def plug_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
         return trace((0.0, layout.under), [*faces[:-1], *relief])
     start, port = outward(layout)
     return trace(start, [*port, *faces, ("plug top", (layout.channel_radius, 0.0)), *_inward(layout)])
-
-
-def plug_radius(scene: ResolvedDesign, layout: Layout) -> float:
-    """Radius of the plug: the opening minus the fit clearance of two bodies from one machine."""
-    return layout.opening_radius - scene.fit_clearance
-
-
-def plug_neck(scene: ResolvedDesign, layout: Layout) -> tuple[float, float]:
-    """Radius of a plug's neck in front of a side port, and the height from which the plug is that thin.
-
-    The gap is as wide as the radius of the port's passage if that leaves a printable neck, so that an eccentric plug
-    does not close it.
-    """
-    assert layout.port_axis is not None
-    least = scene.connector_printer.smallest.wall("rigid").recommended
-    gap = max(scene.fit_clearance, min(layout.port.passage, layout.opening_radius - least))
-    return layout.opening_radius - gap, layout.port_axis - layout.port.passage - _UNDER_PORT
 
 
 def ring_meridian(seat: ClampedFlange, layout: Layout) -> Meridian:
@@ -278,12 +259,6 @@ def _side_bore(layout: Layout, across: float) -> Feature:
     faces = [("", (port.passage, low)), *(("", point) for point in reversed(port.hollow)), ("", mouth)]
     outline = trace((0.0, low), [*faces, ("", (0.0, mouth[1]))])
     return Feature(Turned(outline, _frame(layout)), side_volume(layout, across))
-
-
-def side_volume(layout: Layout, across: float) -> float:
-    """Volume in mm3 of bore and port's hollow from the wall of a vertical hole of radius ``across`` to the mouth."""
-    port = layout.port
-    return port.hollow_volume(-layout.plate_radius) - crossing(across, port.passage)
 
 
 def _faces(layout: Layout) -> list[tuple[tuple[float, float], str]]:

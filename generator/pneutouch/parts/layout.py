@@ -11,17 +11,21 @@ flange, which the seat holds, so the dome is clamped at z = 0.
                     | | | |             port: behind, or out of the plate's side
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from pneutouch.body import Solid
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.parts.cast_ring import RingSize, ring_size
 from pneutouch.parts.port import PortShape, port_shape
 from pneutouch.shape.dome import DomeShape
-from pneutouch.shape.meridian import Line, Meridian
-from pneutouch.spec.material import Material
 from pneutouch.spec.part import BoltCircle, CastRing, ClampedFlange, OnePiece, RobotFlange, Sleeve
+
+if TYPE_CHECKING:
+    from pneutouch.parts.cast_ring import RingSize
+
+# The ring is imported only for a flange that is cast around one.
 
 HEAD_GAP = 0.5
 """Space in mm around a screw head, for the driver."""
@@ -125,7 +129,11 @@ def lay_out_dome(scene: ResolvedDesign, port: PortShape, shape: DomeShape) -> La
     seat, mount = scene.seat, scene.mount
     flange, deep = _flange(scene, shape.wall_thickness)
     clearance, edge = 0.0 if isinstance(seat, OnePiece) else scene.fit_clearance, shape.outer_radius + flange
-    inside = None if not isinstance(seat, CastRing) else ring_size(scene, seat, edge, deep)
+    inside = None
+    if isinstance(seat, CastRing):
+        from pneutouch.parts.cast_ring import ring_size
+
+        inside = ring_size(scene, seat, edge, deep)
     groove = (edge if inside is None else inside.collar_radius) + clearance
     ring = _ring_radius(scene, groove, flange)
     bolts = _bolt_circle(scene, ring)
@@ -249,34 +257,22 @@ def _channel_radius(scene: ResolvedDesign, port: PortShape) -> float:
     return max(channel, port.passage + 0.25) if scene.mount.port_side == "side" else max(channel, port.passage)
 
 
-HELD = "held"
-"""Tag of the faces of the flange that the connector holds: the mechanics clamps them."""
+def plug_radius(scene: ResolvedDesign, layout: Layout) -> float:
+    """Radius of the plug: the opening minus the fit clearance of two bodies from one machine."""
+    return layout.opening_radius - scene.fit_clearance
 
 
-def membrane_meridian(layout: Layout) -> Meridian:
-    """Meridian from the inner pole, around the flange, to the outer pole.
+def plug_neck(scene: ResolvedDesign, layout: Layout) -> tuple[float, float]:
+    """Radius of a plug's neck in front of a side port, and the height from which the plug is that thin.
 
-    A cast flange widens downwards inside and outside by its draft, so that it comes off core and ring; one that is cast
-    around a ring keeps its collar, upright outside. The meridian then is the outline of silicone and web together.
+    The gap is as wide as the radius of the port's passage if that leaves a printable neck, so that an eccentric plug
+    does not close it.
     """
-    inner, outer, flange = layout.inner_radius, layout.outer_radius, layout.flange_radius
-    low, draft = -layout.flange_thickness, layout.flange_draft
-    edge = draft if layout.ring is None else 0.0
-    return Meridian(
-        (
-            *(piece.reverse() for piece in reversed(layout.shape.inner)),
-            Line((inner, 0.0), (inner + draft, low), HELD),
-            Line((inner + draft, low), (flange, low), HELD),
-            Line((flange, low), (flange - edge, 0.0), HELD),
-            Line((flange - edge, 0.0), (outer, 0.0), "flange top"),
-            *layout.shape.outer,
-        )
-    )
+    assert layout.port_axis is not None
+    least = scene.connector_printer.smallest.wall("rigid").recommended
+    gap = max(scene.fit_clearance, min(layout.port.passage, layout.opening_radius - least))
+    return layout.opening_radius - gap, layout.port_axis - layout.port.passage - _UNDER_PORT
 
 
-def membrane_solid(layout: Layout, material: Material) -> Solid:
-    """The membrane, without the volume of its flange that a ring takes."""
-    outline = membrane_meridian(layout)
-    if layout.ring is not None:
-        return layout.ring.enclosed("membrane", material, outline)
-    return Solid("membrane", "membrane", material, outline)
+_UNDER_PORT = 0.3
+"""Distance in mm below the passage of a side port at which the plug becomes thinner."""

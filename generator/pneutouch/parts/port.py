@@ -4,14 +4,19 @@ A port is drawn in (radius, height over the plate's face): heights increase away
 continues inside the plate.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
-from pneutouch.body import Prism
 from pneutouch.shape.meridian import Arc, Line, Point
 from pneutouch.spec.part import Barb, Luer, Port, PushIn, Thread, Tube
+
+if TYPE_CHECKING:
+    from pneutouch.body import Prism
 
 CHANNEL = "channel"
 """Tag of the faces that touch the air in the connector."""
@@ -130,6 +135,8 @@ def _luer(port: Luer, tube: Tube, undersize: float) -> PortShape:
 
 def _lug(port: Luer, turn: float) -> Prism:
     """A sector of a ring below the mouth, centred on the angle ``turn`` (rad)."""
+    from pneutouch.body import Prism
+
     outer, inner = 0.5 * port.lug_diameter, 0.5 * port.body_diameter - _LUG_ROOT
     half = math.radians(0.5 * port.lug_angle_deg)
     over, under = Arc((0, 0), outer, turn - half, turn + half, "lug"), Arc((0, 0), inner, turn + half, turn - half, "")

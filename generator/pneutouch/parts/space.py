@@ -4,7 +4,6 @@ import math
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError, shown
-from pneutouch.parts.cast_ring import FEWEST_HOLES, RingSize
 from pneutouch.parts.layout import HEAD_GAP, Layout, finger_radius
 from pneutouch.spec.part import BoltCircle, OnePiece, RobotFlange, Sleeve
 
@@ -18,7 +17,10 @@ def check_space(scene: ResolvedDesign, layout: Layout) -> None:
         if has < least:
             problem = f"too small for {what}: radius {has:.2f} mm, at least {least:.2f} mm"
             raise _no_space(scene, problem, "take a larger dome, another port, mount or printer")
-    _check_ring(scene, layout.ring)
+    if layout.ring is not None:
+        from pneutouch.parts.cast_ring import check_ring
+
+        check_ring(scene, layout.ring)
     mount = scene.design.connector.mount
     for what, (has, most) in _most(scene, layout).items():
         if has > most:
@@ -33,41 +35,12 @@ def space_margin(scene: ResolvedDesign, layout: Layout) -> float:
     """Least relative margin of the radii that `check_space` compares; negative if it refuses the layout."""
     small = [has / least - 1.0 for has, least in _least(scene, layout).values() if least > 0]
     large = [most / has - 1.0 for has, most in _most(scene, layout).values()]
-    ring, wall = layout.ring, _least_bridge(scene)
-    web = [] if ring is None else [ring.bridge / wall - 1.0, ring.rim / wall - 1.0]
+    web: list[float] = []
+    if layout.ring is not None:
+        from pneutouch.parts.cast_ring import least_bridge
+
+        web = [width / least_bridge(scene) - 1.0 for width in (layout.ring.bridge, layout.ring.rim)]
     return min([*small, *large, *web], default=math.inf)
-
-
-def _least_bridge(scene: ResolvedDesign) -> float:
-    """Least width of rigid material in mm at a hole of a ring: the wall that the printer can make."""
-    wall = scene.connector_printer.smallest.wall("rigid")
-    return wall.recommended if wall.least is None else wall.least
-
-
-def _check_ring(scene: ResolvedDesign, ring: RingSize | None) -> None:
-    """Raise InputError for a ring whose holes leave less material between or inside them than the printer can make."""
-    least, web = _least_bridge(scene), scene.design.cast_ring
-    if ring is not None and ring.rim < least:
-        raise InputError(
-            f"the holes leave {max(ring.rim, 0.0):.2f} mm of the ring inside them; the connector's printer makes "
-            f"{least:g} mm",
-            file=scene.where,
-            key="cast_ring.width_mm",
-            value=web.width_mm,
-            remedy=f"give at least {math.ceil(100 * (web.width_mm + least - ring.rim)) / 100:g}, or smaller holes",
-        )
-    if ring is not None and ring.bridge < least:
-        across = (2 * ring.hole_radius + least) / (2 * ring.hole_circle)
-        most = 0 if across >= 1 else math.floor(math.pi / math.asin(across))
-        stated = web.hole_count is not None and most >= FEWEST_HOLES
-        raise InputError(
-            f"{ring.hole_count} holes leave {max(ring.bridge, 0.0):.2f} mm of the ring between them; the connector's "
-            f"printer makes {least:g} mm",
-            file=scene.where,
-            key="cast_ring.hole_count" if stated else "cast_ring.hole_diameter_mm",
-            value=web.hole_count if stated else web.hole_diameter_mm,
-            remedy=f"give at most {most}, or leave it out" if stated else "give smaller holes",
-        )
 
 
 def _no_space(scene: ResolvedDesign, problem: str, remedy: str) -> InputError:

@@ -1,23 +1,18 @@
 """Meridians: closed loops of straight lines and arcs in the (r, z) plane, mm, that sweep a solid of revolution.
 
-They are sampled to a chord tolerance, and cut exactly at a level. A piece includes its lower end but not its upper end,
-and a point on a crossing counts as beyond it: of two outlines that share a piece, exactly one contains a point on it.
-
-An inscribed polygon always errs to the inside and loses volume to first order in the tolerance. If the inner vertices
-of an arc are moved off it by two thirds of the sagitta, every chord encloses the area of its arc. The greatest error
-falls to two thirds, so fewer chords meet the same tolerance.
+Volumes, areas and distances are exact.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags
+from pneutouch.arrays import Array
 
 Point = tuple[float, float]
 
@@ -173,76 +168,6 @@ class Arc:
 Segment = Line | Arc
 
 
-_ON_AXIS = 1e-9
-"""Distance from the axis (mm) within which a crossing counts as on it."""
-
-
-@dataclass(frozen=True, slots=True)
-class RisingPiece:
-    """Part of an outline between two levels, mm, that crosses each level between them exactly once."""
-
-    low: float
-    high: float
-    piece: Segment
-    side: float = 1.0
-
-    def at(self, level: Array) -> Array:
-        """First coordinate of the crossings at levels of any shape."""
-        piece = self.piece
-        if isinstance(piece, Arc):
-            inside = np.maximum(piece.radius**2 - (level - piece.centre[1]) ** 2, 0.0)
-            return np.asarray(piece.centre[0] + self.side * np.sqrt(inside))
-        (r0, z0), (r1, z1) = piece.start, piece.end
-        if r0 == r1:
-            return np.full(np.shape(level), r0)
-        # Computed from the lower end for either direction: two bodies that share the piece get the same numbers.
-        (r0, z0), (r1, z1) = sorted([(r0, z0), (r1, z1)], key=lambda point: point[1])
-        return np.asarray(r0 + (level - z0) * ((r1 - r0) / (z1 - z0)))
-
-
-def rises(outline: Sequence[Segment]) -> tuple[RisingPiece, ...]:
-    """Rising pieces of a closed outline; an outline that ends on the axis is closed along it."""
-    if math.dist(outline[0].start, outline[-1].end) > _ON_AXIS:
-        outline = [*outline, Line(outline[-1].end, outline[0].start, "axis")]
-    starts = [piece.start[1] for piece in outline]
-    pieces: list[RisingPiece] = []
-    for k, piece in enumerate(outline):
-        # Levels at which pieces meet are taken from one of them, so that rounding opens no gap.
-        for first, last, side in _monotone(piece, starts[k], starts[(k + 1) % len(starts)]):
-            if first != last:
-                pieces.append(RisingPiece(min(first, last), max(first, last), piece, side))
-    return tuple(pieces)
-
-
-def crossings(parts: Sequence[RisingPiece], level: float) -> list[float]:
-    """First coordinates at which a level crosses the outline, ascending and even in number: in, out, in, out."""
-    radii = [float(part.at(np.asarray(level))) for part in parts if part.low <= level < part.high]
-    return sorted(0.0 if abs(r) < _ON_AXIS else r for r in radii)
-
-
-def encloses(parts: Sequence[RisingPiece], along: Array, level: Array) -> Flags:
-    """True for points (along, level), arrays (n,) in mm, inside the outline."""
-    inside = np.zeros(len(along), bool)
-    for part in parts:
-        at = part.at(level)
-        at = np.where(np.abs(at) < _ON_AXIS, 0.0, at)
-        inside ^= (part.low <= level) & (level < part.high) & (along >= at)
-    return inside
-
-
-def _monotone(piece: Segment, first: float, last: float) -> list[tuple[float, float, float]]:
-    """Parts that are monotone in level: first and last level, and side of the centre; an arc is cut at its extremes."""
-    if not isinstance(piece, Arc):
-        return [(first, last, 1.0)]
-    low, high = sorted((piece.first, piece.last))
-    turns = range(math.floor(low / math.pi - 0.5) + 1, math.ceil(high / math.pi - 0.5))
-    tops = [(k + 0.5) * math.pi for k in turns]
-    angles = [piece.first, *(tops if piece.first < piece.last else reversed(tops)), piece.last]
-    levels = [first, *(piece.centre[1] + piece.radius * math.sin(a) for a in angles[1:-1]), last]
-    middles = [0.5 * (a + b) for a, b in pairwise(angles)]
-    return [(levels[k], levels[k + 1], math.copysign(1.0, math.cos(m))) for k, m in enumerate(middles)]
-
-
 _CLOSED = 1e-9
 """Greatest distance (mm) of ends that should meet: computed from the same numbers, they differ only by rounding."""
 
@@ -295,61 +220,6 @@ class Meridian:
         plane = np.column_stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]])
         nearest: Array = np.min([piece.distance(plane) for piece in self.pieces], axis=0)
         return nearest
-
-
-_AXIS_TOLERANCE = 1e-9
-"""Radius (mm) below which a vertex is a pole that rounding moved off the axis."""
-
-
-@dataclass(frozen=True, slots=True)
-class MeridianVertex:
-    """A vertex of the sampled meridian: ``lean`` is the radial part of the surface normal there (0 to 1).
-
-    A ring on a face that leans little can be cut into fewer parts at the same error.
-    """
-
-    radius: float
-    height: float
-    lean: float
-
-
-def chords(arc: Arc, error: float) -> int:
-    """Number of chords that keep an arc within ``error`` mm if they preserve its area."""
-    sagitta = min(1.5 * error, arc.radius)
-    widest = 2 * math.acos(1 - sagitta / arc.radius)
-    turn = abs(arc.last - arc.first)
-    # The two end chords have one end on the arc; they span 1/sqrt(2) of the others (same mean error).
-    return max(2, math.ceil(turn / widest + 2 - math.sqrt(2)))
-
-
-def sample(meridian: Meridian, error: float) -> list[MeridianVertex]:
-    """Vertices (rings) of a meridian whose arcs stay within ``error`` mm; the first is not repeated at the end."""
-    rings: list[MeridianVertex] = []
-    for piece in meridian.pieces:
-        rings.append(MeridianVertex(*piece.start, lean=1.0))
-        if isinstance(piece, Arc):
-            rings += _inner_rings(piece, chords(piece, error))
-    if not meridian.is_ring:
-        rings.append(MeridianVertex(*meridian.end, lean=1.0))
-    return [ring if ring.radius > _AXIS_TOLERANCE else MeridianVertex(0.0, ring.height, ring.lean) for ring in rings]
-
-
-def _inner_rings(arc: Arc, count: int) -> list[MeridianVertex]:
-    turn = arc.last - arc.first
-    step = turn / (count - 2 + math.sqrt(2))
-    radius = arc.radius + 2 / 3 * arc.radius * (1 - math.cos(step / 2))
-    angles = [arc.first + step / math.sqrt(2) + k * step for k in range(count - 1)]
-    return [MeridianVertex(*arc.at(angle, radius), lean=abs(math.cos(angle))) for angle in angles]
-
-
-def polygon(outline: tuple[Segment, ...], error: float) -> list[Point]:
-    """Corners of a closed outline, with arcs within ``error`` mm and the area preserved."""
-    corners: list[Point] = []
-    for piece in outline:
-        corners.append(piece.start)
-        if isinstance(piece, Arc):
-            corners += [(ring.radius, ring.height) for ring in _inner_rings(piece, chords(piece, error))]
-    return corners
 
 
 TracedPath = list[tuple[str, Point]]

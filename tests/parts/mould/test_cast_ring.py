@@ -18,7 +18,7 @@ from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.subject import subject_of, wetted
 from pneutouch.export.step import exact_solid
 from pneutouch.parts import Assembly, assemble
-from pneutouch.parts.layout import membrane_meridian
+from pneutouch.parts.membrane import membrane_meridian
 from pneutouch.parts.mould.pieces import silicone
 from pneutouch.printability.measure.mould import cavity_match, overlaps, undercuts
 from pneutouch.printability.rules.bodies import overlap_volume, shared_area

@@ -14,7 +14,8 @@ from pneutouch.body import Body
 from pneutouch.catalogue import DesignSource, load_scene
 from pneutouch.errors import InputError
 from pneutouch.parts import assemble
-from pneutouch.parts.layout import lay_out, membrane_meridian
+from pneutouch.parts.layout import lay_out
+from pneutouch.parts.membrane import membrane_meridian
 from pneutouch.parts.mould import MouldAssembly, mould_of, silicone_batch
 from pneutouch.parts.mould.filling import filling, release_of
 from pneutouch.parts.mould.pieces import core, lay_out_mould, mould_solids, ring, screw_places

@@ -18,7 +18,8 @@ from pneutouch.body import Body, Solid
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.parts.cast_ring import RING
-from pneutouch.parts.layout import Layout, lay_out, membrane_meridian
+from pneutouch.parts.layout import Layout, lay_out
+from pneutouch.parts.membrane import membrane_meridian
 from pneutouch.parts.mould.pieces import channels, lay_out_mould, mould_solids
 from pneutouch.parts.mould.size import FILLET, MouldShape, MouldSize
 from pneutouch.shape.meridian import Meridian

@@ -7,6 +7,7 @@ import math
 
 from pneutouch.body import Bore, Feature, Frame, Prism, Solid, Turned
 from pneutouch.parts.cast_ring import RingSize
+from pneutouch.parts.membrane import around_ring
 from pneutouch.parts.mould.size import (
     CORNER,
     FILLET,
@@ -216,7 +217,7 @@ def silicone(size: MouldSize, material: Material) -> Solid:
     """Solid of the silicone in the first cavity."""
     outline = size.faces.meridian
     if size.insert is not None:
-        return size.insert.enclosed("silicone", material, outline)
+        return around_ring(size.insert, "silicone", material, outline)
     return Solid("silicone", "membrane", material, outline)
 
 
