@@ -10,11 +10,11 @@ import numpy as np
 
 from benchmarks.scenes import Scene
 from pneutouch.arrays import Array
+from pneutouch.mechanics.atlas.coverage import outside_atlas
 from pneutouch.mechanics.atlas.press import AtlasPress, batch_of
 from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, EDGE, ENDS, OUTSIDE, respond
 from pneutouch.mechanics.atlas.table import AtlasSlices, shipped
 from pneutouch.mechanics.events import range_end
-from pneutouch.mechanics.models.atlas import outside_atlas
 from pneutouch.mechanics.models.choice import DEFAULT_TOLERANCE, models_for
 from pneutouch.mechanics.models.membrane import membrane_states
 from pneutouch.mechanics.models.solid import curve_between, reported_events

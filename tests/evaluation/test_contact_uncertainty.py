@@ -13,10 +13,11 @@ from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.charts import curve, under_contact
 from pneutouch.evaluation.result import by_model
 from pneutouch.evaluation.uncertainty import spread, uncertainties
+from pneutouch.mechanics.atlas.coverage import under_plate
 from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, DEAD, FIGURES, INPUTS, SENSITIVITY, log_figures
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.corrected import figures as corrected
-from pneutouch.mechanics.corrected.figures import CorrectedAtlas, state_logs, under_plate
+from pneutouch.mechanics.corrected.figures import CorrectedAtlas, state_logs
 from pneutouch.mechanics.models.solid import solid_states
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indenter import ball, cone

@@ -8,9 +8,9 @@ import pytest
 from pneutouch.catalogue.mixture import mixed_material
 from pneutouch.evaluation.uncertainty import GAP, STEEP_GAP, even_wall, notes_on
 from pneutouch.mechanics import Sensor
+from pneutouch.mechanics.atlas.coverage import outside_atlas
 from pneutouch.mechanics.atlas.figures import FIGURES, INPUTS, SENSITIVITY
 from pneutouch.mechanics.atlas.press import batch_of
-from pneutouch.mechanics.models.atlas import outside_atlas
 from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.uncertainty.propagate import derivatives

@@ -11,8 +11,8 @@ from pneutouch.evaluation.calibrated import check_fitted
 from pneutouch.evaluation.contact_object import object_section
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
 from pneutouch.evaluation.result import by_model
+from pneutouch.mechanics.atlas.coverage import outside_atlas
 from pneutouch.mechanics.harmonic.press import OffAxisPress
-from pneutouch.mechanics.models.atlas import outside_atlas
 from pneutouch.mechanics.models.choice import USUAL, models_for
 from pneutouch.parts import assemble
 from pneutouch.report.blocks import SheetTable, found

@@ -13,10 +13,11 @@ from scipy.interpolate import CubicSpline
 from pneutouch.errors import BeyondLimitError
 from pneutouch.evaluation.result import by_model
 from pneutouch.mechanics import predict
+from pneutouch.mechanics.atlas.coverage import meets_ring, outside_atlas
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.models.accuracy import TABULATION
-from pneutouch.mechanics.models.atlas import MODEL, SHALLOW, meets_ring, outside_atlas
+from pneutouch.mechanics.models.atlas import MODEL, SHALLOW
 from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.mechanics.solid.indenter import RigidBase

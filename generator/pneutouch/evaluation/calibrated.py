@@ -7,7 +7,8 @@ import math
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
-from pneutouch.mechanics.corrected.figures import GRIPS, outside_fit
+from pneutouch.mechanics.atlas.coverage import outside_fit
+from pneutouch.mechanics.corrected.figures import GRIPS
 from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
 from pneutouch.results.prediction import SensitivityError
 from pneutouch.spec.calibration import CalibratedResponse, SensorCalibration
@@ -20,15 +21,12 @@ BEYOND = 1.05
 """A depth up to this share above the greatest measured one counts as measured, like a driving pressure: our choice."""
 
 
-def calibrated_sensor(sensor: Sensor, scene: ResolvedDesign) -> Sensor:
-    """The sensor with the parameters of its calibration; unchanged without one.
+def calibrated_sensor(sensor: Sensor, calibration: SensorCalibration) -> Sensor:
+    """The sensor with the parameters of its calibration.
 
     Gas volumes add up: a change of the design's dead volume since the calibration, such as by a longer tube, is added
     to the fitted dead volume.
     """
-    calibration = scene.calibration
-    if calibration is None:
-        return sensor
     response = calibration.response
     friction = friction_of(calibration)
     if friction is not None:
@@ -63,8 +61,6 @@ def correction_of(calibration: SensorCalibration, response: CalibratedResponse) 
 
 def check_options(scene: ResolvedDesign, model: str, clamp: str) -> None:
     """Raise InputError for a model or a clamp that the parameters of a calibration were not fitted with."""
-    if scene.calibration is None:
-        return
     name, remedy = scene.design.calibration, "leave the calibration out with the name none"
     if model == "membrane":
         why = "its parameters and its correction are of the models atlas and solid, not of membrane"

@@ -15,11 +15,12 @@ from pneutouch.errors import ComputationError
 from pneutouch.evaluation.sheet_data import ChartPoint, SensitivityCurve, TradeOff, TuningChart
 from pneutouch.evaluation.uncertainty import spread
 from pneutouch.mechanics import Sensor, SensorState, predict
+from pneutouch.mechanics.atlas.coverage import under_plate
 from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, SENSITIVITY
 from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.atlas.respond import EDGE, OUTSIDE, respond
 from pneutouch.mechanics.atlas.table import shipped
-from pneutouch.mechanics.corrected.figures import CorrectedAtlas, pressed_logs, under_plate
+from pneutouch.mechanics.corrected.figures import CorrectedAtlas, pressed_logs
 from pneutouch.mechanics.limits import RATED_SHARE, limit_point
 from pneutouch.mechanics.models.choice import outside
 from pneutouch.mechanics.paper_sensor import material_sensor

@@ -14,7 +14,6 @@ import numpy as np
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.catalogue.library import Resins, alike, elastomers
 from pneutouch.errors import BeyondLimitError, InputError, StatedPressureError, nearest
-from pneutouch.evaluation.calibrated import assumption, calibrated_error, calibrated_sensor, check_options, unmeasured
 from pneutouch.evaluation.contact_object import check_first_touch, check_object, check_plate, contact_object, rigid_base
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
@@ -37,7 +36,7 @@ if TYPE_CHECKING:
     from pneutouch.results.printing import JobEstimate
     from pneutouch.results.uncertainty import UncertaintyRecord
 
-# The print rules and the uncertainty load where they are used: figures alone need neither.
+# Print rules, uncertainty and calibrations load where they are used: figures of a drawn sensor need none of them.
 
 CLAMPS = ("base", "flange")
 """Clamps: the faces at which the solid is held."""
@@ -201,7 +200,10 @@ def drawn(scene: ResolvedDesign, options: PredictionOptions) -> DrawnScene:
     """Draw a scene and make its sensor, without a prediction. Raises InputError if it cannot work."""
     if options.model == USUAL:
         options = replace(options, model="harmonic" if scene.design.contact.off_axis else "solid")
-    check_options(scene, options.model, options.clamp)
+    if scene.calibration is not None:
+        from pneutouch.evaluation.calibrated import check_options
+
+        check_options(scene, options.model, options.clamp)
     assembly = assemble(scene)
     sensor = sensor_of(assembly, options.clamp)
     notes: list[str] = []
@@ -239,7 +241,9 @@ def evaluate_drawn(
     check_plate(scene, prediction)
     check_first_touch(scene, prediction)
     more = [*aged]
-    if scene.calibration:
+    if scene.calibration is not None:
+        from pneutouch.evaluation.calibrated import assumption, unmeasured
+
         deepest = max(state.range_end for state in prediction.states)
         more = [assumption(scene), *unmeasured(scene, deepest), *more]
     if assembly.dead_volume_note:
@@ -251,8 +255,13 @@ def evaluate_drawn(
 
 def _sensitivity_error(scene: ResolvedDesign, sensor: Sensor, model: str, closure: str) -> SensitivityError:
     """The model's known error in sensitivity: by the calibration where there is one, else against Table S1."""
-    known = None if scene.calibration is None else calibrated_error(scene.calibration)
-    return known or sensitivity_error(scene.membrane_material, sensor, model, closure)
+    if scene.calibration is not None:
+        from pneutouch.evaluation.calibrated import calibrated_error
+
+        known = calibrated_error(scene.calibration)
+        if known is not None:
+            return known
+    return sensitivity_error(scene.membrane_material, sensor, model, closure)
 
 
 def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
@@ -277,7 +286,11 @@ def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
         base=rigid_base(assembly),
         flange=(layout.flange_width, layout.flange_thickness) if clamp == "flange" else None,
     )
-    return calibrated_sensor(sensor, assembly.scene)
+    if assembly.scene.calibration is None:
+        return sensor
+    from pneutouch.evaluation.calibrated import calibrated_sensor
+
+    return calibrated_sensor(sensor, assembly.scene.calibration)
 
 
 def _material_sensor(scene: ResolvedDesign) -> Sensor:

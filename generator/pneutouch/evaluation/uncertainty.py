@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.evaluation.calibrated import friction_spread
 from pneutouch.evaluation.contact_object import contact_notes
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
@@ -103,7 +102,7 @@ def unknown(sensor: Sensor, model: str) -> str | None:
     solid."""
     if model == "membrane":
         return _TREND
-    from pneutouch.mechanics.corrected.figures import outside_corrected
+    from pneutouch.mechanics.atlas.coverage import outside_corrected
 
     why = outside_corrected(sensor)
     return None if why is None else f"the sensor is outside the atlas: {why}"
@@ -111,8 +110,8 @@ def unknown(sensor: Sensor, model: str) -> str | None:
 
 def _softer_unknown(sensor: Sensor) -> str | None:
     """Reason why the derivatives of a wall too soft for the atlas itself are unknown, or None if they are known."""
+    from pneutouch.mechanics.atlas.coverage import outside_atlas
     from pneutouch.mechanics.atlas.figures import softer_walls
-    from pneutouch.mechanics.models.atlas import outside_atlas
 
     why = outside_atlas(sensor, softer_walls())
     return None if why is None else f"the sensor is outside the atlas: {why}"
@@ -160,8 +159,8 @@ def spread(
     error. ``states`` are those of the solid under another contact, at pressures already solved. ``anywhere`` counts an
     unknown place of contact, where the design's own contact is the central plate; ``aged`` are the years of `sources`.
     """
+    from pneutouch.mechanics.atlas.coverage import under_plate
     from pneutouch.mechanics.atlas.press import batch_of
-    from pneutouch.mechanics.corrected.figures import under_plate
     from pneutouch.mechanics.uncertainty.sources import sources
     from pneutouch.mechanics.uncertainty.sources.model_error import model_errors
 
@@ -170,7 +169,11 @@ def spread(
     if sensor.protocol.other_contact is not None:
         from pneutouch.mechanics.uncertainty.contact_model import ContactModel
 
-        of_friction = None if calibration is None else friction_spread(calibration)
+        of_friction = None
+        if calibration is not None:
+            from pneutouch.evaluation.calibrated import friction_spread
+
+            of_friction = friction_spread(calibration)
         contact = ContactModel(sensor, tuple(float(p) for p in pressures), states, fitted_spread=of_friction)
     batch = batch_of(under_plate(sensor), pressures)
     numerical = {SENSITIVITY_KEY: stated_error(model, sensor), "limit_pressure_kPa": LIMIT_DISCRETISATION}

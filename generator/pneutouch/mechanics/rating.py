@@ -6,8 +6,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.mechanics.atlas.coverage import outside_fit
 from pneutouch.mechanics.atlas.press import batch_of
-from pneutouch.mechanics.corrected.figures import outside_fit
 from pneutouch.mechanics.limits import RATED_SHARE, Limits
 from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION
 from pneutouch.mechanics.sensor import Sensor

@@ -14,9 +14,9 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.contact_object import check_shape
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.gauge import reading_of
+from pneutouch.mechanics.atlas.coverage import resin_outside_atlas
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.table import least_limit, shipped
-from pneutouch.mechanics.models.atlas import resin_outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import LIMIT_ERROR, rated_pressure
 from pneutouch.mechanics.sensor import Sensor

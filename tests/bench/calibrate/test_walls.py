@@ -9,10 +9,10 @@ from pneutouch.bench.calibrate import Injection, Observations, fit, parameters
 from pneutouch.bench.calibrate.parameters import MODULUS, WALL
 from pneutouch.catalogue import load_scene
 from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.mechanics.atlas.coverage import is_corrected, outside_fit, stand_in
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.corrected.curves import contact_ratio
-from pneutouch.mechanics.corrected.figures import is_corrected, outside_fit, stand_in
 from pneutouch.mechanics.models.solid import solid_result, solid_states
 from pneutouch.parts import assemble
 from pneutouch.units import KPA

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.mechanics.atlas.coverage import outside_atlas
 from pneutouch.mechanics.atlas.figures import FIGURES, log_figures, moved, softer_walls
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.corrected.figures import pressed_logs
-from pneutouch.mechanics.models.atlas import outside_atlas
 from pneutouch.mechanics.uncertainty.propagate import STEP
 from pneutouch.results.record import plain as data
 from tests.mechanics.test_contact import PAPER

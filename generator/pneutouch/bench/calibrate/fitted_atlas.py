@@ -28,10 +28,10 @@ from pneutouch.bench.calibrate.parameters import (
     CalibrationParameters,
 )
 from pneutouch.errors import InputError
+from pneutouch.mechanics.atlas.coverage import outside_fit, stand_in
 from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
 from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasSlices, shipped
 from pneutouch.mechanics.corrected.curves import contact_ratio, injection_ratio
-from pneutouch.mechanics.corrected.figures import outside_fit, stand_in
 from pneutouch.mechanics.sensor import Sensor
 
 _NODES = 60

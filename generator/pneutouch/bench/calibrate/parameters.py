@@ -7,11 +7,12 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.errors import InputError, nearest
+from pneutouch.mechanics.atlas.coverage import is_corrected
 from pneutouch.mechanics.atlas.figures import neighbourhood
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
 from pneutouch.mechanics.corrected.curves import NODES
-from pneutouch.mechanics.corrected.figures import GRIPS, is_corrected
+from pneutouch.mechanics.corrected.figures import GRIPS
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.contact_model import SPREAD
 from pneutouch.mechanics.uncertainty.source import UncertaintySource

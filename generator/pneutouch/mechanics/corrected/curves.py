@@ -15,7 +15,8 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
-from pneutouch.mechanics.corrected.figures import GRIPS, stand_in
+from pneutouch.mechanics.atlas.coverage import stand_in
+from pneutouch.mechanics.corrected.figures import GRIPS
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.units import KPA

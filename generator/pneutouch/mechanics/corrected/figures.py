@@ -12,12 +12,11 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
-from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, FIGURES, log_figures, softer_walls
+from pneutouch.mechanics.atlas.coverage import under_plate
+from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, FIGURES, log_figures
 from pneutouch.mechanics.atlas.press import batch_of
-from pneutouch.mechanics.models.choice import outside
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
-from pneutouch.mechanics.solid.indenter import RigidBase
 
 GRIPS = 2.0
 """Coefficient of friction from which the contact is treated as gripping: above it the sensitivity of the paper's sensor
@@ -95,57 +94,6 @@ def between(where: Array, at: Array, values: Array) -> Array:
             inside = (where >= at[good][0] - SAME) & (where <= at[good][-1] + SAME)
             row[inside] = np.interp(where[inside], at[good], line[good])
     return rows
-
-
-def under_plate(sensor: Sensor) -> Sensor:
-    """The sensor under a frictionless plate; a sufficiently wide plate takes the place of another object.
-
-    An offset, tilt or shear and an object that lies across the dome are kept: the correction is axisymmetric.
-    """
-    protocol = sensor.protocol
-    if protocol.other_contact is None or (protocol.body is not None and protocol.body.lying):
-        return sensor
-    plate = protocol.plate_radius if protocol.body is None else max(protocol.plate_radius, 2 * sensor.dome.inner_radius)
-    return sensor.replace(body=None, plate_rim=None, friction=0.0, plate_radius=plate)
-
-
-def stand_in(sensor: Sensor) -> Sensor:
-    """The sensor that a fit corrects: under a plate without friction, its wall neo-Hookean and of one modulus, its base
-    a plane without the ring that clamps the flange: presses that meet it end there."""
-    if sensor.dome.base is not None:
-        sensor = sensor.replace(base=RigidBase())
-    if sensor.wall.law is not None and sensor.wall.largest_stretch is not None:
-        sensor = sensor.replace(law=None, largest_stretch=None)
-    return under_plate(sensor.replace(grade=None))
-
-
-_DEPTH = 0.75
-"""Greatest depth in R0 that a fit uses, that of the sensitivity test (paper, section 3-B)."""
-
-
-def outside_corrected(sensor: Sensor) -> str | None:
-    """Reason why the atlas does not cover a sensor even under a frictionless plate, or None if it does."""
-    return outside("atlas", under_plate(sensor))
-
-
-def outside_fit(sensor: Sensor) -> str | None:
-    """Reason why a sensor cannot be fitted to measured runs, or None if it can: a fit uses the atlas, at depths that it
-    covers, times the solid's ratio to it where it does not cover law, grade, softness or contact."""
-    from pneutouch.mechanics.models.atlas import outside_atlas
-
-    return outside_atlas(stand_in(_shallow(sensor)), softer_walls())
-
-
-def is_corrected(sensor: Sensor) -> bool:
-    """True if a fit uses the atlas times the solid's ratio to it: the atlas does not cover the sensor, or leaves out
-    the ring that its wall meets."""
-    from pneutouch.mechanics.models.atlas import meets_ring
-
-    return outside("atlas", _shallow(sensor)) is not None or meets_ring(_shallow(sensor))
-
-
-def _shallow(sensor: Sensor) -> Sensor:
-    return sensor.replace(depth=min(sensor.protocol.depth, _DEPTH * sensor.dome.inner_radius))
 
 
 @dataclass(frozen=True)

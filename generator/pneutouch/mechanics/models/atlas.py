@@ -7,6 +7,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import BeyondLimitError
+from pneutouch.mechanics.atlas.coverage import meets_ring, outside_atlas
 from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, SensorBatch, batch_of
 from pneutouch.mechanics.atlas.recipe import FIELDS
 from pneutouch.mechanics.atlas.respond import (
@@ -22,21 +23,16 @@ from pneutouch.mechanics.atlas.respond import (
     AtlasRun,
     run,
 )
-from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, AtlasSlices, shipped
+from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasSlices, shipped
 from pneutouch.mechanics.events import CREASE, DETAIL, Event, PathPoint, crossing
 from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.models.accuracy import BODY, NOT_CHECKED, NUMERICAL, TABULATION, discretised, solid_assumptions
 from pneutouch.mechanics.models.interface import Answered, Limitation, ModelAnswer, SensorModel
 from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
-from pneutouch.mechanics.sensor import Sensor, WallMaterial
+from pneutouch.mechanics.sensor import Sensor
 from pneutouch.results.prediction import ErrorEstimate
-from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.units import KPA
-
-_BULGE, _RING_FROM, _RING_ROUND = 0.0107, 0.6, 0.04
-"""For `meets_ring`: outward bulge of the wall next to its base in R0 times wall ratio, depth from which it is counted
-(R0), and distance inside its edge at which the ring of the solid begins (R0)."""
 
 _BUCKLES = "the wall buckles inward under the plate, or its gas no longer holds it"
 _TABULATION_SUMMARY = (
@@ -47,61 +43,6 @@ _TOGETHER = 500
 """Number of sensors in one pass: more would take more memory and no less time."""
 
 _DETAIL = {EDGE: DETAIL["plate_rim"], GAUGE: DETAIL["gauge_range"], BREAK: DETAIL["break"], BUCKLING: _BUCKLES}
-
-
-def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
-    """Reason why the atlas does not cover a sensor, or None if it does. The box is in `atlas.recipe.AtlasRecipe`.
-
-    A ring that clamps the flange does not exclude a sensor: the atlas neglects the ring (`meets_ring`).
-    """
-    recipe = (atlas or shipped()).recipe
-    dome, wall = sensor.dome, sensor.wall
-    ratio, depth = dome.wall_thickness / dome.inner_radius, sensor.protocol.depth / dome.inner_radius
-    gas, nu = sensor.gas.ambient_pressure / wall.shear_modulus, recipe.poisson_ratio
-    inside = recipe.thinnest * (1 - 1e-9) <= ratio <= recipe.thickest * (1 + 1e-9)
-    reasons = [
-        (sensor.protocol.other_contact is not None, str(sensor.protocol.other_contact)),
-        (wall.grade is not None, "the wall is graded along its arc"),
-        (wall.law is not None, "the resin has a law of its own, not the neo-Hookean one"),
-        (wall.poisson_ratio != nu, f"Poisson ratio {wall.poisson_ratio:g}, not {nu:g}"),
-        (no_hemisphere(dome.shape) is not None, str(no_hemisphere(dome.shape))),
-        (dome.flange is not None, "the flange is held as printed, not the base plane"),
-        (dome.base is None, "the wall passes through its base plane"),
-        (not inside, f"wall {ratio:.3g} R0, not {recipe.thinnest:g} to {recipe.thickest:g}"),
-        (depth > recipe.deepest * (1 + 1e-9), f"depth {depth:.3g} R0, more than {recipe.deepest:g}"),
-        (
-            gas > recipe.stiffest,
-            f"the wall is too soft: the ambient pressure is {gas:.3g} times its modulus, more than {recipe.stiffest:g}",
-        ),
-    ]
-    return next((why for applies, why in reasons if applies), None)
-
-
-def resin_outside_atlas(wall: WallMaterial, ambient_pressure: float, atlas: Atlas | None = None) -> str | None:
-    """Reason why the atlas covers no dome of a resin, or None if it covers some; ``ambient_pressure`` in MPa."""
-    recipe = (atlas or shipped()).recipe
-    # A fitted law has a neo-Hookean modulus next to it, which finds designs; the solid then confirms them by the law.
-    own_law = wall.law is not None and wall.largest_stretch is None
-    if own_law or wall.poisson_ratio != recipe.poisson_ratio:
-        return "the atlas covers neither its law nor its Poisson ratio"
-    too_soft = ambient_pressure > recipe.stiffest * wall.shear_modulus
-    return "it is too soft for the atlas in so high an ambient pressure" if too_soft else None
-
-
-def meets_ring(sensor: Sensor) -> bool:
-    """True if the wall can reach the ring that clamps its flange, which is part of the solid but not of the atlas.
-
-    The wall bulges farthest without driving pressure: next to its base by at most 0.0107 R0^2/t0 at the atlas's
-    greatest depth, not at all at 0.6 R0 (solid, walls from 0.065 to 0.33 R0, ambient pressure 0.3 mu). The ring of the
-    solid is rounded over half a cell, 0.04 R0, before its edge.
-    """
-    dome, base = sensor.dome, sensor.dome.base
-    if base is None or base.ring_height == 0.0:
-        return False
-    wall, depth = dome.wall_thickness / dome.inner_radius, sensor.protocol.depth / dome.inner_radius
-    deep = max(0.0, depth - _RING_FROM) / (shipped().recipe.deepest - _RING_FROM)
-    gap = base.ring / dome.inner_radius - 1.0 - wall
-    return deep > 0.0 and gap < _BULGE * deep / wall + _RING_ROUND
 
 
 _MEETS_RING = Limitation(

@@ -10,9 +10,10 @@ from functools import cached_property
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.mechanics.atlas.coverage import under_plate
 from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, FIGURES, log_figures
 from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
-from pneutouch.mechanics.corrected.figures import GRIPS, CorrectedAtlas, between, pressed_logs, under_plate
+from pneutouch.mechanics.corrected.figures import GRIPS, CorrectedAtlas, between, pressed_logs
 from pneutouch.mechanics.sensor import Sensor
 
 SPREAD = 2.0

@@ -185,7 +185,7 @@ def relaxation(
 ) -> list[list[RelaxationRun]]:
     """Press to ``depth`` mm at ``speed`` mm/s and hold for ``times`` (ascending, s, > 0); lists by pressure, series.
 
-    The sensor's modulus must be the relaxed one, and the sensor inside the atlas (`models.atlas.outside_atlas`).
+    The sensor's modulus must be the relaxed one, and the sensor inside the atlas (`atlas.coverage.outside_atlas`).
     """
     share = np.linspace(0.0, 1.0, steps + 1)
     # The history is linear between times: intermediate times must be added to the requested ones.

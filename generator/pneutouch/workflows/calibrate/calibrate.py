@@ -17,7 +17,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.calibrated import check_fitted
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.resins import rating_of
-from pneutouch.mechanics.corrected.figures import is_corrected
+from pneutouch.mechanics.atlas.coverage import is_corrected
 from pneutouch.output.files import check_writable
 from pneutouch.parts import assemble
 from pneutouch.results.calibration import OutcomeRecord

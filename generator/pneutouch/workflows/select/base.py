@@ -19,7 +19,7 @@ from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixed_material, mix
 from pneutouch.catalogue.printers import casting_missing, made_by, makers, uncast
 from pneutouch.errors import InputError, PneutouchError, shown
 from pneutouch.evaluation.contact_object import check_shape
-from pneutouch.mechanics.models.atlas import resin_outside_atlas
+from pneutouch.mechanics.atlas.coverage import resin_outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.selection.mixes import levels
 from pneutouch.selection.problem import CandidateResin

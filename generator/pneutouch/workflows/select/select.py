@@ -13,9 +13,9 @@ from pneutouch.catalogue.library import CachedLibrary, elastomers
 from pneutouch.catalogue.printers import casting_missing
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import Evaluation
+from pneutouch.mechanics.atlas.coverage import resin_outside_atlas
 from pneutouch.mechanics.atlas.figures import softer_walls
 from pneutouch.mechanics.atlas.table import Atlas, shipped
-from pneutouch.mechanics.models.atlas import resin_outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import LIMIT_ERROR
 from pneutouch.mechanics.sensor import Sensor

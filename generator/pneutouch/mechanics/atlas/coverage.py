@@ -1,0 +1,113 @@
+"""Sensors that the atlas covers: as they are, under a plate in place of their contact, and as stand-ins in a fit."""
+
+from pneutouch.mechanics.atlas.figures import softer_walls
+from pneutouch.mechanics.atlas.table import Atlas, shipped
+from pneutouch.mechanics.sensor import Sensor, WallMaterial
+from pneutouch.mechanics.solid.indenter import RigidBase
+from pneutouch.shape.hemisphere import no_hemisphere
+
+_BULGE, _RING_FROM, _RING_ROUND = 0.0107, 0.6, 0.04
+"""For `meets_ring`: outward bulge of the wall next to its base in R0 times wall ratio, depth from which it is counted
+(R0), and distance inside its edge at which the ring of the solid begins (R0)."""
+
+
+def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
+    """Reason why the atlas does not cover a sensor, or None if it does. The box is in `atlas.recipe.AtlasRecipe`.
+
+    A ring that clamps the flange does not exclude a sensor: the atlas neglects the ring (`meets_ring`).
+    """
+    recipe = (atlas or shipped()).recipe
+    dome, wall = sensor.dome, sensor.wall
+    ratio, depth = dome.wall_thickness / dome.inner_radius, sensor.protocol.depth / dome.inner_radius
+    gas, nu = sensor.gas.ambient_pressure / wall.shear_modulus, recipe.poisson_ratio
+    inside = recipe.thinnest * (1 - 1e-9) <= ratio <= recipe.thickest * (1 + 1e-9)
+    reasons = [
+        (sensor.protocol.other_contact is not None, str(sensor.protocol.other_contact)),
+        (wall.grade is not None, "the wall is graded along its arc"),
+        (wall.law is not None, "the resin has a law of its own, not the neo-Hookean one"),
+        (wall.poisson_ratio != nu, f"Poisson ratio {wall.poisson_ratio:g}, not {nu:g}"),
+        (no_hemisphere(dome.shape) is not None, str(no_hemisphere(dome.shape))),
+        (dome.flange is not None, "the flange is held as printed, not the base plane"),
+        (dome.base is None, "the wall passes through its base plane"),
+        (not inside, f"wall {ratio:.3g} R0, not {recipe.thinnest:g} to {recipe.thickest:g}"),
+        (depth > recipe.deepest * (1 + 1e-9), f"depth {depth:.3g} R0, more than {recipe.deepest:g}"),
+        (
+            gas > recipe.stiffest,
+            f"the wall is too soft: the ambient pressure is {gas:.3g} times its modulus, more than {recipe.stiffest:g}",
+        ),
+    ]
+    return next((why for applies, why in reasons if applies), None)
+
+
+def resin_outside_atlas(wall: WallMaterial, ambient_pressure: float, atlas: Atlas | None = None) -> str | None:
+    """Reason why the atlas covers no dome of a resin, or None if it covers some; ``ambient_pressure`` in MPa."""
+    recipe = (atlas or shipped()).recipe
+    # A fitted law has a neo-Hookean modulus next to it, which finds designs; the solid then confirms them by the law.
+    own_law = wall.law is not None and wall.largest_stretch is None
+    if own_law or wall.poisson_ratio != recipe.poisson_ratio:
+        return "the atlas covers neither its law nor its Poisson ratio"
+    too_soft = ambient_pressure > recipe.stiffest * wall.shear_modulus
+    return "it is too soft for the atlas in so high an ambient pressure" if too_soft else None
+
+
+def meets_ring(sensor: Sensor) -> bool:
+    """True if the wall can reach the ring that clamps its flange, which is part of the solid but not of the atlas.
+
+    The wall bulges farthest without driving pressure: next to its base by at most 0.0107 R0^2/t0 at the atlas's
+    greatest depth, not at all at 0.6 R0 (solid, walls from 0.065 to 0.33 R0, ambient pressure 0.3 mu). The ring of the
+    solid is rounded over half a cell, 0.04 R0, before its edge.
+    """
+    dome, base = sensor.dome, sensor.dome.base
+    if base is None or base.ring_height == 0.0:
+        return False
+    wall, depth = dome.wall_thickness / dome.inner_radius, sensor.protocol.depth / dome.inner_radius
+    deep = max(0.0, depth - _RING_FROM) / (shipped().recipe.deepest - _RING_FROM)
+    gap = base.ring / dome.inner_radius - 1.0 - wall
+    return deep > 0.0 and gap < _BULGE * deep / wall + _RING_ROUND
+
+
+def under_plate(sensor: Sensor) -> Sensor:
+    """The sensor under a frictionless plate; a sufficiently wide plate takes the place of another object.
+
+    An offset, tilt or shear and an object that lies across the dome are kept: the correction is axisymmetric.
+    """
+    protocol = sensor.protocol
+    if protocol.other_contact is None or (protocol.body is not None and protocol.body.lying):
+        return sensor
+    plate = protocol.plate_radius if protocol.body is None else max(protocol.plate_radius, 2 * sensor.dome.inner_radius)
+    return sensor.replace(body=None, plate_rim=None, friction=0.0, plate_radius=plate)
+
+
+def stand_in(sensor: Sensor) -> Sensor:
+    """The sensor that a fit corrects: under a plate without friction, its wall neo-Hookean and of one modulus, its base
+    a plane without the ring that clamps the flange: presses that meet it end there."""
+    if sensor.dome.base is not None:
+        sensor = sensor.replace(base=RigidBase())
+    if sensor.wall.law is not None and sensor.wall.largest_stretch is not None:
+        sensor = sensor.replace(law=None, largest_stretch=None)
+    return under_plate(sensor.replace(grade=None))
+
+
+_DEPTH = 0.75
+"""Greatest depth in R0 that a fit uses, that of the sensitivity test (paper, section 3-B)."""
+
+
+def outside_corrected(sensor: Sensor) -> str | None:
+    """Reason why the atlas does not cover a sensor even under a frictionless plate, or None if it does."""
+    return outside_atlas(under_plate(sensor))
+
+
+def outside_fit(sensor: Sensor) -> str | None:
+    """Reason why a sensor cannot be fitted to measured runs, or None if it can: a fit uses the atlas, at depths that it
+    covers, times the solid's ratio to it where it does not cover law, grade, softness or contact."""
+    return outside_atlas(stand_in(_shallow(sensor)), softer_walls())
+
+
+def is_corrected(sensor: Sensor) -> bool:
+    """True if a fit uses the atlas times the solid's ratio to it: the atlas does not cover the sensor, or leaves out
+    the ring that its wall meets."""
+    return outside_atlas(_shallow(sensor)) is not None or meets_ring(_shallow(sensor))
+
+
+def _shallow(sensor: Sensor) -> Sensor:
+    return sensor.replace(depth=min(sensor.protocol.depth, _DEPTH * sensor.dome.inner_radius))
