@@ -27,8 +27,8 @@ from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.models.solid import curve_between, reported_events
 from pneutouch.mechanics.response import figures
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.indent import PressSettings, indent
-from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel

@@ -23,8 +23,9 @@ from pneutouch.mechanics.harmonic.press import OffAxisPress, OffAxisState
 from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.models.solid import solid_states
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.indent import PressSettings, indent
-from pneutouch.mechanics.solid.indenter import RigidBase, ball
+from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel

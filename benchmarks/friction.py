@@ -20,8 +20,8 @@ from pneutouch.catalogue import Library
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.response import figures
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent
-from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import FreeState, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel

@@ -16,9 +16,9 @@ import numpy as np
 from benchmarks.store import store, stored
 from pneutouch.errors import PneutouchError
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.elements import Regulator
 from pneutouch.mechanics.solid.indent import PressSettings, indent
-from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import Inflation, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel

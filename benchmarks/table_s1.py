@@ -25,7 +25,7 @@ from pneutouch.errors import ComputationError
 from pneutouch.evaluation.table_s1 import PRESSURES, measured
 from pneutouch.mechanics import Sensor, predict
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.solid.indenter import RigidBase
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA, ML
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
 from pneutouch.mechanics.models.choice import outside
-from pneutouch.mechanics.solid.indenter import RigidBase
+from pneutouch.mechanics.sensor import RigidBase
 from tests.refusals import refused
 
 OFF = {"contact.base": False}

@@ -19,8 +19,7 @@ from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.models.accuracy import TABULATION
 from pneutouch.mechanics.models.atlas import MODEL, SHALLOW
 from pneutouch.mechanics.models.solid import solid_result
-from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
-from pneutouch.mechanics.solid.indenter import RigidBase
+from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, RigidBase, Sensor, WallMaterial
 from pneutouch.results.record import plain as data
 from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.units import KPA, ML

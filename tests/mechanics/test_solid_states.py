@@ -12,7 +12,7 @@ from pneutouch.errors import BeyondLimitError
 from pneutouch.evaluation.result import by_model
 from pneutouch.evaluation.table_s1 import SHIPPED, compute_errors, fingerprint, sensitivity_error
 from pneutouch.mechanics import predict
-from pneutouch.mechanics.solid.indenter import RigidBase
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.results.record import plain as data
 from pneutouch.spec.material import Material
 from pneutouch.spec.values import Quantity

@@ -20,10 +20,10 @@ from pneutouch.mechanics.harmonic import model as harmonic
 from pneutouch.mechanics.harmonic.friction_path import ENDED_BEFORE, STEPS
 from pneutouch.mechanics.harmonic.press import OffAxisPath
 from pneutouch.mechanics.models.harmonic import off_axis_press
-from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, RigidBase, RigidObject, ball, cylinder, edge
+from pneutouch.mechanics.sensor import RigidBase, Sensor
+from pneutouch.mechanics.solid.indenter import RigidObject, ball, cylinder, edge
 from pneutouch.mechanics.solid.inflate import inflate, state_at
-from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.mesh import CELLS_PER_RADIUS, dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe
 from tests.stability.random_scenes import ENDS, MOST_NEWTON_STEPS, RADIUS, newton_steps, sensors

@@ -21,21 +21,12 @@ from pneutouch.catalogue import Library
 from pneutouch.errors import PneutouchError
 from pneutouch.mechanics.events import BREAKS_CURVE, DETAIL, OBJECT_EDGE
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.sensor import RigidBase, Sensor
 from pneutouch.mechanics.solid import friction_newton, newton
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent
-from pneutouch.mechanics.solid.indenter import (
-    CELLS_PER_RADIUS,
-    ProfileVertex,
-    RigidBase,
-    RigidObject,
-    ball,
-    cone,
-    profile,
-    ring,
-)
+from pneutouch.mechanics.solid.indenter import ProfileVertex, RigidObject, ball, cone, profile, ring
 from pneutouch.mechanics.solid.inflate import inflate, state_at
-from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.mesh import CELLS_PER_RADIUS, dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.shape.hemisphere import Hemisphere
 from pneutouch.spec.material import Material

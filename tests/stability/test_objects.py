@@ -6,9 +6,9 @@ import pytest
 from pneutouch.mechanics.events import BREAKS_CURVE, DETAIL, OBJECT_EDGE
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.indent import PressSettings, indent
-from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, ProfileVertex, ball, cone, profile, ring
+from pneutouch.mechanics.solid.indenter import ProfileVertex, ball, cone, profile, ring
 from pneutouch.mechanics.solid.inflate import inflate, state_at
-from pneutouch.mechanics.solid.mesh import arc_cells, dome
+from pneutouch.mechanics.solid.mesh import CELLS_PER_RADIUS, arc_cells, dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.shape.hemisphere import Hemisphere
 

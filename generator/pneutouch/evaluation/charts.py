@@ -24,8 +24,7 @@ from pneutouch.mechanics.corrected.figures import CorrectedAtlas, pressed_logs
 from pneutouch.mechanics.limits import RATED_SHARE, limit_point
 from pneutouch.mechanics.models.choice import outside
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.sensor import ResponseCorrection
-from pneutouch.mechanics.solid.indenter import RigidBase
+from pneutouch.mechanics.sensor import ResponseCorrection, RigidBase
 from pneutouch.mechanics.solid.mesh import MOST_CELLS, object_cells
 from pneutouch.mechanics.uncertainty import GasNotes, gas_notes
 from pneutouch.selection import CandidateResin, SelectionProblem

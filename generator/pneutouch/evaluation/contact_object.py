@@ -15,28 +15,16 @@ from pneutouch.arrays import Array
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.mechanics import Sensor, SensorPrediction
-from pneutouch.mechanics.solid.indenter import (
-    CELLS_PER_RADIUS,
-    ObjectShapeError,
-    ProfileVertex,
-    RigidBase,
-    RigidObject,
-    ball,
-    cone,
-    cylinder,
-    edge,
-    first_contact,
-    profile,
-    ring,
-)
-from pneutouch.mechanics.solid.mesh import MOST_CELLS, object_cells
-from pneutouch.mechanics.solid.object_contact import RIM, flat_radius
-from pneutouch.parts import Assembly
+from pneutouch.mechanics.sensor import RigidBase
+from pneutouch.mechanics.solid.mesh import CELLS_PER_RADIUS, MOST_CELLS, object_cells
+from pneutouch.mechanics.solid.object_contact import RIM, first_contact, flat_radius
 from pneutouch.shape.hemisphere import no_hemisphere
 from pneutouch.spec.part import ClampedFlange
 
 if TYPE_CHECKING:
+    from pneutouch.mechanics.solid.indenter import RigidObject
     from pneutouch.mechanics.uncertainty.contact_model import ContactModel
+    from pneutouch.parts import Assembly
 
 
 _AT_ONCE = 1e-6
@@ -50,15 +38,6 @@ _POINTS = 2001
 
 _DRAWN = 1.5
 """Radius to which an object is drawn, over that of the dome."""
-
-_MAKE = {
-    "ball": lambda sizes: ball(sizes["ball_radius_mm"]),
-    "cone": lambda sizes: cone(math.radians(sizes["cone_half_angle_deg"]), sizes["cone_tip_radius_mm"]),
-    "ring": lambda sizes: ring(sizes["ring_radius_mm"], sizes["ring_section_radius_mm"]),
-    "edge": lambda sizes: edge(sizes["edge_radius_mm"]),
-    "cylinder": lambda sizes: cylinder(sizes["cylinder_radius_mm"]),
-    "profile": lambda sizes: profile([ProfileVertex(*corner) for corner in sizes["profile_mm"]]),
-}
 
 
 def rigid_base(assembly: Assembly) -> RigidBase | None:
@@ -74,11 +53,12 @@ def rigid_base(assembly: Assembly) -> RigidBase | None:
 def contact_object(scene: ResolvedDesign) -> RigidObject | None:
     """The object of a design in mm; None for a plate. Raises InputError for a profile that is no underside."""
     contact = scene.design.contact
-    make = _MAKE.get(contact.object)
-    if make is None:
+    if contact.is_plate:
         return None
+    from pneutouch.mechanics.solid.indenter import ObjectShapeError, object_of
+
     try:
-        return dataclasses.replace(make(contact.sizes()), label=contact.label)
+        return dataclasses.replace(object_of(contact), label=contact.label)
     except ObjectShapeError as error:
         corners = contact.profile_mm or []
         key, value = f"contact.profile_mm[{error.index}]", corners[error.index]

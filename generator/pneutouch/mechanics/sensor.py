@@ -1,16 +1,40 @@
-"""A sensor as input of the mechanics: five records in mm, N and MPa, without files or printers."""
+"""A sensor as input of the mechanics: records in mm, N and MPa, without files or printers."""
 
 from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean, stiffened
-from pneutouch.mechanics.solid.indenter import RigidBase, RigidObject
 from pneutouch.shape.dome import DomeShape
+
+if TYPE_CHECKING:
+    from pneutouch.mechanics.solid.indenter import RigidObject
+
+
+@dataclass(frozen=True)
+class RigidBase:
+    """The plane z = 0 on which the dome stands, and a ring around it that opens upwards at 45 degrees; in mm.
+
+    opening: radius of the hole in the plane inside the dome.  flange: outer radius of a flange that belongs to the
+    solid, within which the outer wall does not meet this base; 0 if the wall itself is clamped at z = 0.
+    ring, ring_height: radius of the ring's inner edge at z = 0, and its height; no ring at height 0.
+    """
+
+    opening: float = 0.0
+    flange: float = 0.0
+    ring: float = 0.0
+    ring_height: float = 0.0
+
+    def __post_init__(self) -> None:
+        sizes = vars(self)
+        if not all(np.isfinite(size) and size >= 0.0 for size in sizes.values()):
+            stated = ", ".join(f"{name} {size}" for name, size in sizes.items())
+            raise ValueError(f"{stated}: the sizes of a base must be finite and not negative")
+
 
 _PLANE = RigidBase()
 

@@ -11,9 +11,9 @@ from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.mechanics.atlas.recipe import AtlasRecipe, axes
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.continuation import PathFollower, descend
 from pneutouch.mechanics.solid.elements import Gas, Liquid, Regulator, Supply
-from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, at_volume, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel

@@ -14,11 +14,13 @@ from pneutouch.mechanics.harmonic.press import OffAxisPress
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject, ProfiledObject
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.models.solid import KINDS
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.indent import PressSettings
-from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, Indenter, RigidBase, RigidObject, ball, edge
+from pneutouch.mechanics.solid.indenter import RigidObject, ball, edge
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch, inflate, state_at
-from pneutouch.mechanics.solid.mesh import arc_cells, dome
+from pneutouch.mechanics.solid.mesh import CELLS_PER_RADIUS, arc_cells, dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.object_contact import Indenter
 from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.shape.hemisphere import Hemisphere
 

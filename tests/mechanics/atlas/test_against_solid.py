@@ -16,8 +16,7 @@ from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.membrane import RISING_BRANCH
 from pneutouch.mechanics.models.solid import solid_result
 from pneutouch.mechanics.prediction import ModelResult
-from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
-from pneutouch.mechanics.solid.indenter import RigidBase
+from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, RigidBase, Sensor, WallMaterial
 from pneutouch.mechanics.solid.inflate import at_volume, inflate
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel

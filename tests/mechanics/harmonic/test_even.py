@@ -13,8 +13,9 @@ from pneutouch.mechanics.harmonic.surface import LyingObject
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.models.harmonic import EVEN_ORDERS, ORDERS, off_axis_press
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.indent import PressSettings
-from pneutouch.mechanics.solid.indenter import RigidBase, ball, edge
+from pneutouch.mechanics.solid.indenter import ball, edge
 from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel

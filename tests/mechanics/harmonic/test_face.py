@@ -12,9 +12,9 @@ from pneutouch.mechanics.harmonic.object_contact import PressedFace, face_areas,
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject, ProfiledObject
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.sensor import ResponseCorrection
+from pneutouch.mechanics.sensor import ResponseCorrection, RigidBase
 from pneutouch.mechanics.solid.indent import PressSettings, indent
-from pneutouch.mechanics.solid.indenter import RigidBase, RigidObject, ball, edge
+from pneutouch.mechanics.solid.indenter import RigidObject, ball, edge
 from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
 from pneutouch.mechanics.solid.mesh import END, START, dome
 from pneutouch.mechanics.solid.model import SolidModel

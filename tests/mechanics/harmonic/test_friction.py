@@ -12,12 +12,13 @@ from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.surface import PlacedObject
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.continuation import PlateState, descend
 from pneutouch.mechanics.solid.friction_newton import HeldState, SlidingResult
 from pneutouch.mechanics.solid.friction_path import FrictionFollower
 from pneutouch.mechanics.solid.friction_system import ContactSystem
 from pneutouch.mechanics.solid.indent import PressSettings, indent, shut_in
-from pneutouch.mechanics.solid.indenter import RigidBase, RigidObject, ball
+from pneutouch.mechanics.solid.indenter import RigidObject, ball
 from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel

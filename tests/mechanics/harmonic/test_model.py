@@ -6,8 +6,8 @@ import pytest
 from pneutouch.arrays import Array
 from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.banded import solve_definite
-from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.shape.hemisphere import Hemisphere

@@ -11,9 +11,10 @@ from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress, OffAxisState
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject, Surface
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.elements import Liquid
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent, shut_in
-from pneutouch.mechanics.solid.indenter import RigidBase, RigidObject, ball, cylinder, edge
+from pneutouch.mechanics.solid.indenter import RigidObject, ball, cylinder, edge
 from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel

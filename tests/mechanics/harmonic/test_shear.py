@@ -14,10 +14,11 @@ from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
 from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.continuation import descend
 from pneutouch.mechanics.solid.friction_newton import SlidingResult
 from pneutouch.mechanics.solid.indent import PressSettings, shut_in
-from pneutouch.mechanics.solid.indenter import RigidBase, cylinder
+from pneutouch.mechanics.solid.indenter import cylinder
 from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel

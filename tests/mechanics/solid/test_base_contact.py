@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.elements import Liquid, Regulator
 from pneutouch.mechanics.solid.indent import PressSettings, indent
-from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid import friction_newton, newton
 from pneutouch.mechanics.solid.continuation import descend
 from pneutouch.mechanics.solid.indent import PressSettings, follower_of
-from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import FreeState, first_touch, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.friction_linear import LinearContact, PiecewiseLine, PointStatus, PointTractions
 from pneutouch.mechanics.solid.friction_newton import StepSettling
 from pneutouch.mechanics.solid.indent import PressSettings, indent
-from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel

@@ -2,8 +2,7 @@
 
 from pneutouch.mechanics.atlas.figures import softer_walls
 from pneutouch.mechanics.atlas.table import Atlas, shipped
-from pneutouch.mechanics.sensor import Sensor, WallMaterial
-from pneutouch.mechanics.solid.indenter import RigidBase
+from pneutouch.mechanics.sensor import RigidBase, Sensor, WallMaterial
 from pneutouch.shape.hemisphere import no_hemisphere
 
 _BULGE, _RING_FROM, _RING_ROUND = 0.0107, 0.6, 0.04

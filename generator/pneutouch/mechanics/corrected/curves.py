@@ -17,8 +17,7 @@ from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.mechanics.atlas.coverage import stand_in
 from pneutouch.mechanics.corrected.figures import GRIPS
-from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.indenter import RigidBase
+from pneutouch.mechanics.sensor import RigidBase, Sensor
 from pneutouch.units import KPA
 
 NODES = (0.0, 0.1, 0.25, 0.45, 0.7, 1.0, 1.4, GRIPS)

@@ -19,10 +19,10 @@ from pneutouch.mechanics.harmonic.fields import AXIAL, FieldGroup, Harmonics
 from pneutouch.mechanics.harmonic.material import GradientLaw, HarmonicCavity, LawFields, NodePairOperator
 from pneutouch.mechanics.harmonic.object_contact import HarmonicContact, X, Y, Z, face_operator, upward
 from pneutouch.mechanics.harmonic.surface import revolved
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.banded import lapack
 from pneutouch.mechanics.solid.base_contact import BaseContact, BaseFace, BaseMeeting
 from pneutouch.mechanics.solid.elements import F_RR, F_RZ, HOOP, RADIAL, gauss_square, strain_operator
-from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.model import PointFields, SolidModel
 from pneutouch.mechanics.solid.newton import NewtonDirection, SolidScene, SolverState, downhill, tangent, with_contact
 from pneutouch.mechanics.solid.object_contact import ContactEvaluation

@@ -13,10 +13,9 @@ from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.harmonic.fields import FieldGroup, FieldOperator, Harmonics
 from pneutouch.mechanics.harmonic.surface import ProfiledObject, Surface, object_lines
 from pneutouch.mechanics.solid.elements import line_shapes
-from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.mesh import END, START
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.object_contact import Contact, ContactEvaluation
+from pneutouch.mechanics.solid.object_contact import Contact, ContactEvaluation, Indenter
 
 _ROWS = 96
 """Number of rows at which a wall is drawn, apart from rows added at the edge of contact."""

@@ -14,8 +14,8 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.solid.indenter import Indenter, RigidObject
-from pneutouch.mechanics.solid.object_contact import Plate
+from pneutouch.mechanics.solid.indenter import RigidObject
+from pneutouch.mechanics.solid.object_contact import Indenter, Plate
 
 
 class SurfaceHeight(NamedTuple):

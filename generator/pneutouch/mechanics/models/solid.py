@@ -28,12 +28,12 @@ from pneutouch.mechanics.models.accuracy import (
 from pneutouch.mechanics.models.interface import Answered, ModelAnswer, SensorModel, one_by_one
 from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState, WallPath
 from pneutouch.mechanics.response import figures
-from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.sensor import RigidBase, Sensor
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
-from pneutouch.mechanics.solid.indenter import Indenter, RigidBase
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch, inflate, state_at
 from pneutouch.mechanics.solid.mesh import SolidMesh, dome, nodes_along, object_cells, printed_dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.object_contact import Indenter
 from pneutouch.mechanics.solid.stress import StrainProbe, burst, met
 from pneutouch.results.prediction import ErrorEstimate
 from pneutouch.units import KPA

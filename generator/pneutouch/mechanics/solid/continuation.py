@@ -13,7 +13,6 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.elements import Supply
-from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import (
     NewtonFailure,
@@ -24,6 +23,7 @@ from pneutouch.mechanics.solid.newton import (
     minimise,
     stability,
 )
+from pneutouch.mechanics.solid.object_contact import Indenter
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.solid.friction import FrictionState

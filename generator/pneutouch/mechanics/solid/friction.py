@@ -13,9 +13,8 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.solid.elements import AXIAL, RADIAL, TermState
-from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.object_contact import Contact, ContactEvaluation
+from pneutouch.mechanics.solid.object_contact import Contact, ContactEvaluation, Indenter
 
 #: Stiffness of the friction springs over that of the normal contact.
 TANGENTIAL = 0.1

@@ -14,9 +14,9 @@ from pneutouch.mechanics.solid.elements import Supply, TermState
 from pneutouch.mechanics.solid.friction import TANGENTIAL, FrictionState, FrictionStep
 from pneutouch.mechanics.solid.friction_newton import FrictionSolver, SlidingResult
 from pneutouch.mechanics.solid.friction_system import OneSidedBlocks
-from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, NoConvergenceError, SolidScene, evaluate, stability
+from pneutouch.mechanics.solid.object_contact import Indenter
 
 #: Coefficient used for a surface that grips. A point about to leave, with a normal traction a hundredth of the
 #: tangential one, is released gradually: with an infinite coefficient it would neither stay nor leave. The paper's

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,7 +25,6 @@ from pneutouch.mechanics.events import (
 from pneutouch.mechanics.response import Figures, figures
 from pneutouch.mechanics.solid.continuation import PathFollower, PathJump, PlateState, descend
 from pneutouch.mechanics.solid.elements import Gas
-from pneutouch.mechanics.solid.indenter import RigidObject
 from pneutouch.mechanics.solid.inflate import FirstTouch, FreeState, first_touch
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import UnreachableLoadError
@@ -32,6 +32,9 @@ from pneutouch.mechanics.solid.object_contact import Footprint, Plate
 from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.mechanics.solid.sway import axisymmetry_losses
 from pneutouch.units import KPA
+
+if TYPE_CHECKING:
+    from pneutouch.mechanics.solid.indenter import RigidObject
 
 #: A pressure below absolute vacuum by less than this, in mu, is due to rounding.
 _ROUNDING = 1.0e-9

@@ -1,19 +1,21 @@
 """Rigid axisymmetric objects other than the plate: undersides of arcs and lines with a continuous slope.
 
-Also the rigid base under the dome. A sensor record refers to both, so this file does not load the solver and SciPy.
+Loaded for a sensor that such an object presses.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.spec.contact import ContactTable
 
 STEEPEST = float(np.sqrt(3.0))
 """Steepest slope of an underside: that of a flank at 60 degrees to the plate. Contact is measured vertically: the
@@ -21,36 +23,10 @@ normal contact stiffness on a flank grows with 1 + slope^2, and a vertical flank
 the force does not depend on it (`tests/mechanics/solid/test_indenter.py`)."""
 
 
-CELLS_PER_RADIUS = 4
-"""Cells of the outer wall over a length equal to the least radius of an object. With fewer the wall appears to leave a
-ball at its lowest point; with these the force is within 1 % of a refined mesh (docs/background/contact.md)."""
-
 _PER_EDGE = 4.0
 
 _FLANKS = 4.0
 """Height of a bar's sides as drawn, over the radius of its edge."""
-
-
-class Indenter(Protocol):
-    """A rigid body above the dome. All lengths in one unit: mm, or R0 inside the solver."""
-
-    @property
-    def height(self) -> float:
-        """Height of the body's lowest point."""
-        ...
-
-    @property
-    def span(self) -> tuple[float, float]:
-        """Radii between which the underside is the object's own; beyond them it turns up as a parabola."""
-        ...
-
-    def underside(self, r: Array) -> tuple[Array, Array, Array]:
-        """Height of the underside at r and its first two derivatives; all shaped like r."""
-        ...
-
-    def at(self, height: float) -> Indenter:
-        """This body at another height."""
-        ...
 
 
 class UndersidePiece(NamedTuple):
@@ -216,18 +192,26 @@ def profile(vertices: Sequence[ProfileVertex]) -> RigidObject:
     return _body("profile", pieces, inner, outer, min(followed))
 
 
+_MAKE: dict[str, Callable[[dict[str, Any]], RigidObject]] = {
+    "ball": lambda sizes: ball(sizes["ball_radius_mm"]),
+    "cone": lambda sizes: cone(math.radians(sizes["cone_half_angle_deg"]), sizes["cone_tip_radius_mm"]),
+    "ring": lambda sizes: ring(sizes["ring_radius_mm"], sizes["ring_section_radius_mm"]),
+    "edge": lambda sizes: edge(sizes["edge_radius_mm"]),
+    "cylinder": lambda sizes: cylinder(sizes["cylinder_radius_mm"]),
+    "profile": lambda sizes: profile([ProfileVertex(*corner) for corner in sizes["profile_mm"]]),
+}
+
+
+def object_of(contact: ContactTable) -> RigidObject:
+    """The object of a contact other than a plate. Raises ObjectShapeError for a profile that is no underside."""
+    return _MAKE[contact.object](contact.sizes())
+
+
 def _check_space(vertices: Sequence[ProfileVertex], reaches: Sequence[float]) -> None:
     """Raise ObjectShapeError if the arcs at both ends of a line need more length than it has."""
     for i, (a, b) in enumerate(pairwise(vertices)):
         if reaches[i] + reaches[i + 1] > (1.0 + 1e-9) * np.hypot(b.r - a.r, b.z - a.z):
             raise ObjectShapeError("its arc and that of its neighbour overlap; give smaller radii", i + 1)
-
-
-def first_contact(body: Indenter, r: Array, z: Array) -> tuple[float, float]:
-    """Height of the body at its first contact from above with points (r, z), and the radius of the contact."""
-    height = z - body.at(0.0).underside(r)[0]
-    first = int(height.argmax())
-    return float(height[first]), float(r[first])
 
 
 def _body(
@@ -299,24 +283,3 @@ def _corner(vertex: ProfileVertex, before: float, after: float) -> tuple[list[Un
     )
     r, z = float(vertex.r + reach * np.cos(high)), float(vertex.z + reach * np.sin(high))
     return [arc, UndersidePiece(r, r, z, after)], reach
-
-
-@dataclass(frozen=True)
-class RigidBase:
-    """The plane z = 0 on which the dome stands, and a ring around it that opens upwards at 45 degrees; in mm.
-
-    opening: radius of the hole in the plane inside the dome.  flange: outer radius of a flange that belongs to the
-    solid, within which the outer wall does not meet this base; 0 if the wall itself is clamped at z = 0.
-    ring, ring_height: radius of the ring's inner edge at z = 0, and its height; no ring at height 0.
-    """
-
-    opening: float = 0.0
-    flange: float = 0.0
-    ring: float = 0.0
-    ring_height: float = 0.0
-
-    def __post_init__(self) -> None:
-        sizes = vars(self)
-        if not all(np.isfinite(size) and size >= 0.0 for size in sizes.values()):
-            stated = ", ".join(f"{name} {size}" for name, size in sizes.items())
-            raise ValueError(f"{stated}: the sizes of a base must be finite and not negative")

@@ -3,15 +3,16 @@
 Also the first contact of a plate or another rigid object with an inflated dome.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.elements import Liquid, Regulator
-from pneutouch.mechanics.solid.indenter import Indenter, RigidObject, first_contact
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import (
     NewtonFailure,
@@ -23,7 +24,10 @@ from pneutouch.mechanics.solid.newton import (
     minimise,
     stability,
 )
-from pneutouch.mechanics.solid.object_contact import Plate, flat_radius, rim_radius
+from pneutouch.mechanics.solid.object_contact import Indenter, Plate, first_contact, flat_radius, rim_radius
+
+if TYPE_CHECKING:
+    from pneutouch.mechanics.solid.indenter import RigidObject
 
 #: Stiffness of volume control, in mu/R0^3: far above -dp/dV of any dome, so that the total tangent is definite.
 _LIQUID = 30.0

@@ -11,7 +11,6 @@ import numpy as np
 
 from pneutouch.arrays import Array, Index, distinct
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS
 from pneutouch.shape.dome import DomeShape
 
 #: Walls up to this share of R0 need one cell across (S within 0.2 % of a refined mesh), thicker ones two. The atlas
@@ -23,6 +22,11 @@ _ARC_CELLS = (24, 48)
 
 START, END, MIDDLE = range(3)
 """Nodes of an edge, in their order; a linear edge has no middle."""
+
+
+CELLS_PER_RADIUS = 4
+"""Cells of the outer wall over a length equal to the least radius of an object. With fewer the wall appears to leave a
+ball at its lowest point; with these the force is within 1 % of a refined mesh (docs/background/contact.md)."""
 
 
 @dataclass(frozen=True)

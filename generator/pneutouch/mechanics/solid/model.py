@@ -9,6 +9,7 @@ import numpy as np
 from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
 from pneutouch.mechanics.laws.strain import BY_A, BY_H, BY_J, BY_JH, GRADIENT, HESSIAN, VALUE, Strain
+from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.banded import AssemblyPattern, BlockEntries, FaceSums
 from pneutouch.mechanics.solid.base_contact import BaseContact, BaseFace, BaseLoad, FlangeContact, meeting_nodes
 from pneutouch.mechanics.solid.elements import (
@@ -26,7 +27,6 @@ from pneutouch.mechanics.solid.elements import (
     pressure_modes,
     strain_operator,
 )
-from pneutouch.mechanics.solid.indenter import RigidBase
 from pneutouch.mechanics.solid.mesh import SolidMesh
 from pneutouch.mechanics.solid.object_contact import Contact
 

@@ -17,9 +17,8 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.errors import BeyondLimitError, ComputationError
 from pneutouch.mechanics.solid.banded import negative_pivots, solve, solve_definite
 from pneutouch.mechanics.solid.elements import EnergyTerm, FillingState, Supply, TermState
-from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import PointFields, SolidModel
-from pneutouch.mechanics.solid.object_contact import ContactEvaluation
+from pneutouch.mechanics.solid.object_contact import ContactEvaluation, Indenter
 
 _ARMIJO = 1.0e-4
 _SHORTEST = 1.0e-6

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.solid.elements import AXIAL, RADIAL, line_shapes
-from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.mesh import END, START, SolidMesh
 
 #: Curvature radius of the plate's rim over the plate's radius (0.5 mm at 30 mm diameter, assumed: the paper has none).
@@ -26,6 +26,35 @@ def rim_radius(radius: Array, longest: Array, rim: float | None = None) -> Array
 def flat_radius(radius: Array, rim: Array) -> Array:
     """Radius up to which a plate is flat: its rim begins half the rim's radius inside its edge."""
     return np.maximum(radius - 0.5 * rim, 0.5 * radius)
+
+
+class Indenter(Protocol):
+    """A rigid body above the dome. All lengths in one unit: mm, or R0 inside the solver."""
+
+    @property
+    def height(self) -> float:
+        """Height of the body's lowest point."""
+        ...
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Radii between which the underside is the object's own; beyond them it turns up as a parabola."""
+        ...
+
+    def underside(self, r: Array) -> tuple[Array, Array, Array]:
+        """Height of the underside at r and its first two derivatives; all shaped like r."""
+        ...
+
+    def at(self, height: float) -> Indenter:
+        """This body at another height."""
+        ...
+
+
+def first_contact(body: Indenter, r: Array, z: Array) -> tuple[float, float]:
+    """Height of the body at its first contact from above with points (r, z), and the radius of the contact."""
+    height = z - body.at(0.0).underside(r)[0]
+    first = int(height.argmax())
+    return float(height[first]), float(r[first])
 
 
 @dataclass(frozen=True)

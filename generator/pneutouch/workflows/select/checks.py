@@ -32,8 +32,7 @@ from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.models.accuracy import NUMERICAL
 from pneutouch.mechanics.prediction import SensorState
-from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.indenter import RigidBase
+from pneutouch.mechanics.sensor import RigidBase, Sensor
 from pneutouch.mechanics.uncertainty import ModelErrors
 from pneutouch.mechanics.uncertainty.propagate import Budget, propagate_groups
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
