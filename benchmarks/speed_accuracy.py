@@ -26,7 +26,7 @@ from benchmarks.methods import (
 from benchmarks.scenes import SCENES, Scene
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.coverage import outside_atlas
-from pneutouch.mechanics.limits import limit_point
+from pneutouch.mechanics.membrane import limit_point
 from pneutouch.units import KPA
 
 REFINEMENTS = ((32, 2), (64, 4), (128, 8))

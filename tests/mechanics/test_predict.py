@@ -10,7 +10,7 @@ import pytest
 from pneutouch.errors import InputError
 from pneutouch.evaluation.result import by_model
 from pneutouch.mechanics import predict as predict_with
-from pneutouch.mechanics.limits import limit_point, limits
+from pneutouch.mechanics.membrane import limit_point, limits
 from pneutouch.results.record import plain as data
 from tests.mechanics.test_contact import PAPER
 from tests.mechanics.test_inflation import MODULI

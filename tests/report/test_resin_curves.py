@@ -59,7 +59,7 @@ def test_a_resin_outside_the_atlas_is_drawn_by_the_solid_and_the_caption_says_so
 
 def test_seven_resins_are_compared_and_stop_at_their_own_limits(evaluated, library):
     from pneutouch.evaluation.charts import resin_curves
-    from pneutouch.mechanics.limits import limits
+    from pneutouch.mechanics.membrane import limits
     from pneutouch.spec.material import Material
 
     sensor = evaluated("paper-dome").sensor

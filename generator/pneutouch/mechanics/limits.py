@@ -2,11 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from pneutouch.mechanics.membrane import LIMIT_HEIGHT, LIMIT_PRESSURE, pressure, thickness_stretch
-from pneutouch.mechanics.sensor import Sensor
-
 RATED_SHARE = 0.9
 """Rated pressure over the binding limit; above it a warning is given: the dome grows fast near the limit point."""
 
@@ -61,26 +56,3 @@ class Limits:
             ("gauge range", self.gauge),
         ]
         return [(name, value) for name, value in pairs if value is not None]
-
-
-def limit_point(sensor: Sensor) -> LimitPoint:
-    """The limit point of the paper's membrane: the same stretch for every resin and size."""
-    stretch = float(thickness_stretch(np.array(LIMIT_HEIGHT)))
-    apex = LIMIT_HEIGHT * sensor.dome.inner_radius
-    scale = sensor.wall.shear_modulus * sensor.dome.wall_thickness / sensor.dome.inner_radius
-    return LimitPoint(apex, apex + stretch * sensor.dome.wall_thickness, LIMIT_PRESSURE * scale, stretch)
-
-
-def limits(sensor: Sensor) -> Limits:
-    """Driving pressures at which free inflation, without contact, reaches each limit.
-
-    The break strain is a uniaxial elongation at break; comparing it with the equibiaxial stretch is an assumption,
-    stated with the figures.
-    """
-    broken = None
-    if sensor.wall.break_stretch is not None:
-        height = np.sqrt(2 * sensor.wall.break_stretch**2 - 1)
-        if height < LIMIT_HEIGHT:
-            dome = sensor.dome
-            broken = float(pressure(height, dome.inner_radius, dome.wall_thickness, sensor.wall.shear_modulus))
-    return Limits(limit_point(sensor).driving_pressure, broken, sensor.gas.gauge_limit)

@@ -32,6 +32,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import BeyondLimitError, ComputationError
+from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.sensor import Sensor
 
 _HALVINGS = 60
@@ -115,6 +116,29 @@ def relative_height(
         return np.exp(_bisect(lambda s: target - relative_pressure(np.exp(s)), low, high))
     low, high = np.ones(target.shape), np.full(target.shape, LIMIT_HEIGHT)
     return _bisect(lambda x: relative_pressure(x) - target, low, high)
+
+
+def limit_point(sensor: Sensor) -> LimitPoint:
+    """The limit point of the paper's membrane: the same stretch for every resin and size."""
+    stretch = float(thickness_stretch(np.array(LIMIT_HEIGHT)))
+    apex = LIMIT_HEIGHT * sensor.dome.inner_radius
+    scale = sensor.wall.shear_modulus * sensor.dome.wall_thickness / sensor.dome.inner_radius
+    return LimitPoint(apex, apex + stretch * sensor.dome.wall_thickness, LIMIT_PRESSURE * scale, stretch)
+
+
+def limits(sensor: Sensor) -> Limits:
+    """Driving pressures at which free inflation, without contact, reaches each limit.
+
+    The break strain is a uniaxial elongation at break; comparing it with the equibiaxial stretch is an assumption,
+    stated with the figures.
+    """
+    broken = None
+    if sensor.wall.break_stretch is not None:
+        height = np.sqrt(2 * sensor.wall.break_stretch**2 - 1)
+        if height < LIMIT_HEIGHT:
+            dome = sensor.dome
+            broken = float(pressure(height, dome.inner_radius, dome.wall_thickness, sensor.wall.shear_modulus))
+    return Limits(limit_point(sensor).driving_pressure, broken, sensor.gas.gauge_limit)
 
 
 _PRESSURE = (0.0, 0.487184, 0.816153, 1.204673, 1.398748, 1.497427, 1.546655, 1.568785, 1.57537)

@@ -6,14 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.events import events, range_end
-from pneutouch.mechanics.limits import limit_point, limits
+from pneutouch.mechanics.events import Event, range_end
 from pneutouch.mechanics.membrane import (
     LIMIT_HEIGHT,
     PressedStates,
     TrappedGas,
     height_errors,
+    limit_point,
     limit_point_errors,
+    limits,
     press,
     pressure,
     relative_height,
@@ -33,6 +34,9 @@ _ASSUMPTIONS = (
     "R0 is the inner radius; outer heights add the thinned wall",
     "uniaxial elongation at break is set against the equibiaxial stretch",
 )
+
+_NEAR_BASE = 0.98
+"""Share of R0 at which the contact counts as having reached the base: beyond it no space is left for the free arc."""
 
 _NO_LAW = Limitation("it covers neither other laws, nor a clamped flange", False)
 
@@ -130,7 +134,7 @@ def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> t
 
     fine = np.linspace(0.0, sensor.protocol.depth, _FINE * sensor.protocol.steps + 1)
     curve = pressed(fine)
-    happened = [events(sensor, fine, curve.row(k), closure) for k in range(len(apex))]
+    happened = [_events(sensor, fine, curve.row(k), closure) for k in range(len(apex))]
     ends = np.array([range_end(passed, sensor.protocol.depth) for passed in happened])
     grid = np.linspace(0.0, 1.0, sensor.protocol.steps + 1) * ends[:, None]
     fitted = pressed(grid)
@@ -152,3 +156,40 @@ def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> t
         )
         for k, p in enumerate(driving_pressures)
     )
+
+
+def _events(sensor: Sensor, indentation: Array, pressed: PressedStates, closure: str) -> list[Event]:
+    """The events of one pressed curve, in the order of the plate's travel."""
+    stretch, radius, gauge = pressed.thickness_stretch**-0.5, pressed.contact_radius, sensor.gas.gauge_limit
+    beyond_gauge = f"the cavity pressure leaves the gauge's range of {1e3 * gauge:g} kPa"
+    at_base = "the contact reaches the base circle, where a cap of constant curvature ends"
+    slack = "the wall is shorter than unloaded: a real membrane wrinkles, this theory does not"
+    margins: list[tuple[str, Array, bool, str]] = [
+        ("gauge range", pressed.pressure - gauge, True, beyond_gauge),
+        ("plate edge", radius - sensor.protocol.plate_radius, True, "the contact reaches the edge of the plate"),
+        ("contact at base", radius - _NEAR_BASE * sensor.dome.inner_radius, True, at_base),
+        ("slack wall", 1 - 1e-9 - stretch, False, slack),
+    ]
+    if sensor.wall.break_stretch is not None:
+        text = f"the stretch reaches the resin's least elongation at break, {sensor.wall.break_stretch - 1:.0%}"
+        margins.append(("break strain", stretch - sensor.wall.break_stretch, True, text))
+    if closure == "printed":
+        falling = np.concatenate([[-1.0], -np.diff(pressed.contact_radius)])
+        text = "the contact radius falls as the plate advances: the printed equations describe no contact"
+        margins.append(("contact radius falls", falling, True, text))
+    happened = [
+        Event(kind, _crossing(indentation, margin), ends, text)
+        for kind, margin, ends, text in margins
+        if np.any(margin[1:] > 0)
+    ]
+    return sorted(happened, key=lambda event: event.indentation)
+
+
+def _crossing(indentation: Array, margin: Array) -> float:
+    """Indentation at which the margin turns positive, by linear interpolation between the steps."""
+    after = int(np.argmax(margin > 0)) if margin[0] <= 0 else 1 + int(np.argmax(margin[1:] > 0))
+    before, here = margin[after - 1], margin[after]
+    if before > 0 or here == before:
+        return float(indentation[after - 1])
+    share = -before / (here - before)
+    return float(indentation[after - 1] + share * (indentation[after] - indentation[after - 1]))
