@@ -48,7 +48,7 @@ def test_a_key_as_long_as_a_file_is_refused_without_counting_its_parts_in_pairs(
 
 @pytest.mark.parametrize("text", ["a" * 990_000, '"' * 990_000, "1.5, " * 190_000, ". " * 490_000, "a " * 490_000])
 def test_no_text_makes_the_look_for_long_keys_long(text):
-    from pneutouch.spec.toml_text import _LONG_KEY
+    from pneutouch.spec.read import _LONG_KEY
 
     assert _LONG_KEY.search(text) is None
 

@@ -9,8 +9,7 @@ import pytest
 
 from pneutouch.errors import InputError
 from pneutouch.spec.files import design_inside, inside, read_bytes
-from pneutouch.spec.read import read_toml
-from pneutouch.spec.toml_text import toml_value
+from pneutouch.spec.read import read_toml, toml_value
 from pneutouch.spec.values import file_name, name_of, plain_name
 from tests.refusals import refused
 

@@ -18,8 +18,7 @@ from pneutouch.mechanics.models.accuracy import NUMERICAL
 from pneutouch.mechanics.uncertainty.sources.calibrated import FORCE_GAUGE
 from pneutouch.mechanics.uncertainty.sources.model_error import GAUGE
 from pneutouch.spec.options import CalibrationOptions, SimulationOptions
-from pneutouch.spec.read import assignments
-from pneutouch.spec.toml_text import toml_text
+from pneutouch.spec.toml_text import assignments, toml_text
 from pneutouch.workflows.calibrate.calibrate import run_calibration
 from pneutouch.workflows.simulate import simulate
 

@@ -12,8 +12,7 @@ import pytest
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.spec.options import CalibrationOptions, SimulationOptions
-from pneutouch.spec.read import assignments
-from pneutouch.spec.toml_text import toml_text
+from pneutouch.spec.toml_text import assignments, toml_text
 from pneutouch.workflows.calibrate.calibrate import run_calibration
 from pneutouch.workflows.export_reader import make_reader
 from pneutouch.workflows.simulate import simulate

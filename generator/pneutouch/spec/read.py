@@ -1,7 +1,4 @@
-"""Read a TOML file into a model, or report which key is wrong and the correct form.
-
-Explanation of an error in a TOML file, in plain words, with the line and a caret under the place.
-"""
+"""Read a TOML file into a model, or report which key is wrong and the correct form."""
 
 import re
 import tomllib
@@ -14,62 +11,52 @@ from pydantic import BaseModel, ValidationError
 from pneutouch.errors import InputError, joined, nearest
 from pneutouch.spec.fields import is_one_of_list, table_of
 from pneutouch.spec.files import read_bytes
-from pneutouch.spec.toml_text import toml_content, toml_value, value_text
-
-_PLAIN = {
-    "Invalid value": "this is no value; text stands in double quotes, and true and false are in small letters",
-    "Invalid statement": "this is neither a key nor a table; write key = value, or [table]",
-    "Expected '=' after a key in a key/value pair": "a key is followed by = and a value",
-    "Expected newline or end of document after a statement": "only one key = value stands on a line",
-    "Expected ']' at the end of a table declaration": "the name of a table ends with ]",
-    "Expected ']]' at the end of an array declaration": "the name of a list of tables ends with ]]",
-    "Invalid initial character for a key part": "a key has letters, digits, - and _, or stands in double quotes",
-    "Unclosed array": "a list ends with ], its values with commas between",
-    "Unclosed inline table": "a table on one line ends with }, its keys with commas between",
-    "Unterminated string": "text ends with the quote that it begins with, on the same line",
-    "Unescaped '\\' in a string": "a backslash in text is written twice",
-    "Invalid hex value": "a code after \\u has four hexadecimal digits, after \\U eight",
-    "Escaped character is not a Unicode scalar value": "this code is no character",
-    "Invalid date or datetime": "there is no such date",
-    "Cannot overwrite a value": "this key or table is there twice",
-}
-_BEGINNINGS = {
-    "Cannot declare": "this table is there twice",
-    "Cannot redefine namespace": "this table is there twice",
-    "Cannot mutate immutable namespace": "this key is there twice",
-    "Duplicate inline table key": "this key is there twice",
-    "Found invalid character": "this character cannot stand in a file of text",
-    "Illegal character": "text is on one line, without control characters",
-    "Expected": "a character is missing",
-}
-_PLACE = re.compile(
-    r"^(?P<problem>.*) \(at (?:line (?P<line>\d+), column (?P<column>\d+)|end of document)\)$", re.DOTALL
-)
-_WIDEST = 100
-
-
-def toml_problem(text: str, error: tomllib.TOMLDecodeError) -> str:
-    """The problem with its line, the line itself, and a caret under the column where reading stopped."""
-    place = _PLACE.match(str(error))
-    if place is None:
-        return f"not valid TOML: {error}"
-    problem, lines = _plain(place["problem"]), text.splitlines() or [""]
-    number = int(place["line"]) if place["line"] else len(lines)
-    line = lines[min(number, len(lines)) - 1]
-    column = int(place["column"]) - 1 if place["column"] else len(line)
-    first = max(0, column - _WIDEST + 1)
-    shown = "".join(c if c.isprintable() else " " for c in line[first : first + _WIDEST])
-    return f"line {number}, column {column + 1}: {problem}\n  {shown}\n  {' ' * (column - first)}^"
-
-
-def _plain(problem: str) -> str:
-    """The parser's words as a user of the file would put them."""
-    if problem in _PLAIN:
-        return _PLAIN[problem]
-    return next((plain for start, plain in _BEGINNINGS.items() if problem.startswith(start)), problem)
-
 
 Model = TypeVar("Model", bound=BaseModel)
+
+
+_LONG = re.compile(r"[0-9a-fA-F_]{16}|[01_]{60}")
+"""Digits of which a whole number may be too long: TOML has 64 bits, Python has no bound, and a float overflows."""
+
+
+_LONG_KEY = re.compile(r"""(?:(?:(?<![\w-])[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){32}""")
+"""A key of more than 32 parts: tomllib takes the square of their number, an hour for those of 1 MB. No file has ten."""
+
+
+_QUOTED = re.compile(r""""(?:\\.|[^"\\])*"|'[^']*'""")
+
+
+_ODD_NUMBER = re.compile(r"(?<![\w.-])[+-]?(?:\d[\d.eE+-]*_[\d_.eE+-]*|0[xob]\w+)(?![\w-])")
+"""Numbers of TOML with underscores, or not decimal: on a command line ``1_0`` is a slip of the keyboard, not ten."""
+
+
+def toml_content(text: str) -> dict[str, Any]:
+    """Content that TOML reads from a text. Raises ValueError, of which TOMLDecodeError is one, and RecursionError."""
+    if _LONG_KEY.search(text):
+        raise ValueError("a key of more than 32 parts with points between")
+    content = tomllib.loads(text)
+    if _LONG.search(text) and not _is_64_bit(content):
+        raise ValueError("a whole number of more than 64 bits")
+    return content
+
+
+def toml_value(text: str) -> Any:
+    """The value that TOML reads from a text; the very same text where it is a bare word, or has a number with ``_``."""
+    if _ODD_NUMBER.search(_QUOTED.sub("", text)):
+        return text
+    try:
+        content = toml_content(f"value = {text}")
+    except (ValueError, RecursionError):
+        return text
+    return content["value"] if set(content) == {"value"} else text
+
+
+def _is_64_bit(value: Any) -> bool:
+    if isinstance(value, Mapping):
+        return all(map(_is_64_bit, value.values()))
+    if isinstance(value, list):
+        return all(map(_is_64_bit, value))
+    return not isinstance(value, int) or -(2**63) <= value < 2**63
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -81,6 +68,8 @@ def read_toml(path: Path) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         raise InputError(f"not UTF-8 text (byte {error.start})", file=path, remedy="a TOML file is UTF-8") from None
     except tomllib.TOMLDecodeError as error:
+        from pneutouch.spec.explain import toml_problem
+
         raise InputError(toml_problem(text, error), file=path) from None
     except RecursionError:
         raise InputError("nested too deep", file=path, remedy="a TOML file of this kind has tables of values") from None
@@ -150,11 +139,11 @@ def parse_changes(assignments: Iterable[str], keys: Collection[str] = ("calibrat
         key, equals, value = (part.strip() for part in text.partition("="))
         if not equals or (key.count(".") != 1 and key not in keys):
             raise InputError("write table.key=value, such as membrane.material=FLX9960", key="set", value=text)
-        changes[key] = _bare_list(value)
+        changes[key] = bare_value(value)
     return changes
 
 
-def _bare_list(text: str) -> Any:
+def bare_value(text: str) -> Any:
     """A value of TOML or a bare word; numbers with commas between are a list without its brackets."""
     value = toml_value(text)
     if value != text or "," not in text:
@@ -163,13 +152,3 @@ def _bare_list(text: str) -> Any:
     listed = toml_value(f"[{value}]")
     is_numbers = isinstance(listed, list) and all(type(item) in (int, float) for item in listed)
     return listed if is_numbers else value
-
-
-def assignments(changes: Changes) -> list[str]:
-    """Changes as texts that `parse_changes` reads, words bare where they can be."""
-    return [f"{key}={value if _is_bare(value) else value_text(value)}" for key, value in changes.items()]
-
-
-def _is_bare(value: Any) -> bool:
-    """True if a text reads as itself without quotes."""
-    return isinstance(value, str) and value == value.strip() and _bare_list(value) == value

@@ -1,55 +1,25 @@
 """Data as TOML text: plain values first, then tables, then arrays of tables.
 
-A commented design file, written from the declarations.
+Changes as assignments, and a commented design file, written from the declarations.
 """
 
 import datetime
 import json
 import re
 import textwrap
-import tomllib
 from collections.abc import Mapping
 from typing import Any
 
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import Declaration, declarations, table_of
+from pneutouch.spec.read import Changes, bare_value
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
-_LONG = re.compile(r"[0-9a-fA-F_]{16}|[01_]{60}")
-"""Digits of which a whole number may be too long: TOML has 64 bits, Python has no bound, and a float overflows."""
-
-_LONG_KEY = re.compile(r"""(?:(?:(?<![\w-])[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){32}""")
-"""A key of more than 32 parts: tomllib takes the square of their number, an hour for those of 1 MB. No file has ten."""
-
-_QUOTED = re.compile(r""""(?:\\.|[^"\\])*"|'[^']*'""")
-_ODD_NUMBER = re.compile(r"(?<![\w.-])[+-]?(?:\d[\d.eE+-]*_[\d_.eE+-]*|0[xob]\w+)(?![\w-])")
-"""Numbers of TOML with underscores, or not decimal: on a command line ``1_0`` is a slip of the keyboard, not ten."""
 
 
 def toml_text(content: Mapping[str, Any]) -> str:
     """TOML of nested tables, lists, text, numbers, booleans and dates; None is left out."""
     return "\n\n".join(_blocks(content, ())) + "\n"
-
-
-def toml_content(text: str) -> dict[str, Any]:
-    """Content that TOML reads from a text. Raises ValueError, of which TOMLDecodeError is one, and RecursionError."""
-    if _LONG_KEY.search(text):
-        raise ValueError("a key of more than 32 parts with points between")
-    content = tomllib.loads(text)
-    if _LONG.search(text) and not _is_64_bit(content):
-        raise ValueError("a whole number of more than 64 bits")
-    return content
-
-
-def toml_value(text: str) -> Any:
-    """The value that TOML reads from a text; the very same text where it is a bare word, or has a number with ``_``."""
-    if _ODD_NUMBER.search(_QUOTED.sub("", text)):
-        return text
-    try:
-        content = toml_content(f"value = {text}")
-    except (ValueError, RecursionError):
-        return text
-    return content["value"] if set(content) == {"value"} else text
 
 
 def value_text(value: Any) -> str:
@@ -93,20 +63,22 @@ def _blocks(content: Mapping[str, Any], path: tuple[str, ...], head: str = "") -
     return blocks
 
 
-def _is_64_bit(value: Any) -> bool:
-    if isinstance(value, Mapping):
-        return all(map(_is_64_bit, value.values()))
-    if isinstance(value, list):
-        return all(map(_is_64_bit, value))
-    return not isinstance(value, int) or -(2**63) <= value < 2**63
-
-
 def _is_tables(value: Any) -> bool:
     return isinstance(value, list) and bool(value) and all(isinstance(item, Mapping) for item in value)
 
 
 def _dotted(path: tuple[str, ...]) -> str:
     return ".".join(key_text(key) for key in path)
+
+
+def assignments(changes: Changes) -> list[str]:
+    """Changes as texts that `parse_changes` reads, words bare where they can be."""
+    return [f"{key}={value if _is_bare(value) else value_text(value)}" for key, value in changes.items()]
+
+
+def _is_bare(value: Any) -> bool:
+    """True if a text reads as itself without quotes."""
+    return isinstance(value, str) and value == value.strip() and bare_value(value) == value
 
 
 def design_template(title: str, values: Mapping[str, Any] | None = None, note: str | None = None) -> str:

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, mo
 from pneutouch.errors import InputError, shown
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, number
-from pneutouch.spec.toml_text import toml_value
+from pneutouch.spec.read import toml_value
 from pneutouch.spec.values import is_finite
 
 LEAST_COPIES, MOST_COPIES = 1, 200

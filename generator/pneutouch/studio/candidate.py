@@ -17,7 +17,8 @@ from pneutouch.output.new import free_name
 from pneutouch.rounding import tenths_below
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import Table
-from pneutouch.spec.read import assignments, validate
+from pneutouch.spec.read import validate
+from pneutouch.spec.toml_text import assignments
 from pneutouch.studio.form import PAGE, Question, version_of
 from pneutouch.units import KPA
 from pneutouch.workflows.select.checks import assigned

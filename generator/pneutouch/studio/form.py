@@ -26,8 +26,9 @@ from pneutouch.spec.fields import Declaration, declarations, table_of
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
-from pneutouch.spec.read import assignments, override, parse_changes, read_toml
+from pneutouch.spec.read import override, parse_changes, read_toml
 from pneutouch.spec.target import Target
+from pneutouch.spec.toml_text import assignments
 from pneutouch.spec.values import plain_name
 from pneutouch.studio.guard import ChangedFileError
 

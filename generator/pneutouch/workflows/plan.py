@@ -36,7 +36,8 @@ from pneutouch.results.plan import (
 from pneutouch.results.record import plain
 from pneutouch.spec.campaign import Campaign, CampaignRun, Rig, RunKind
 from pneutouch.spec.options import PlanOptions
-from pneutouch.spec.read import Changes, assignments, read_toml, validate
+from pneutouch.spec.read import Changes, read_toml, validate
+from pneutouch.spec.toml_text import assignments
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.plan_expected import (
     curve_warnings,

@@ -37,8 +37,8 @@ from pneutouch.results.record import plain
 from pneutouch.results.simulation import CampaignTruth, ParameterValue, SimulatedPopulation, SimulatedSpecimen
 from pneutouch.spec.campaign import Campaign, CampaignRun, Rig
 from pneutouch.spec.options import SimulationOptions
-from pneutouch.spec.read import Changes, assignments, validate
-from pneutouch.spec.toml_text import toml_text
+from pneutouch.spec.read import Changes, validate
+from pneutouch.spec.toml_text import assignments, toml_text
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.simulate_inputs import (
     KINDS,

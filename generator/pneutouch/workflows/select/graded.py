@@ -34,8 +34,9 @@ from pneutouch.selection.problem import SelectionProblem
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
-from pneutouch.spec.read import Changes, assignments
+from pneutouch.spec.read import Changes
 from pneutouch.spec.target import Target
+from pneutouch.spec.toml_text import assignments
 from pneutouch.units import KPA
 from pneutouch.workflows.select.base import ResinPair, base_scene, requested_pair, setting_changes
 from pneutouch.workflows.select.checks import judge, other_contact, source_of, without_plate

@@ -28,9 +28,9 @@ from pneutouch.selection.contact_search import ContactSelection, choose_by_solid
 from pneutouch.selection.mixes import met_by_fraction
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
-from pneutouch.spec.read import Changes, assignments
+from pneutouch.spec.read import Changes
 from pneutouch.spec.target import Target
-from pneutouch.spec.toml_text import value_text
+from pneutouch.spec.toml_text import assignments, value_text
 from pneutouch.units import KPA
 from pneutouch.workflows.select.base import (
     ResinPair,
