@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.catalogue.library import Library
-from pneutouch.catalogue.printers import cannot_run
 from pneutouch.errors import InputError, shown
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import MaterialKind
@@ -222,6 +221,8 @@ def _check_runs(
     scene: ResolvedDesign, key: str, printer: Printer, name: str | None, material: Material, library: Library | None
 ) -> None:
     if printer.mode_for(material) is None:
+        from pneutouch.catalogue.printers import cannot_run
+
         table, field = key.split(".")
         value = getattr(getattr(scene.design, table), field)
         raise cannot_run(printer, name, material, library, f"{key} =", file=scene.where, key=key, value=value)

@@ -12,8 +12,8 @@ from pneutouch.arrays import Array, Flags, Index, distinct
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import ENDS, respond
 from pneutouch.mechanics.corrected.designs import ContactFigures
+from pneutouch.mechanics.uncertainty.contact_model import place_uncertainties
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE
-from pneutouch.mechanics.uncertainty.sources.place import place_uncertainties
 from pneutouch.selection.candidates import (
     REQUIREMENTS,
     CandidatePool,

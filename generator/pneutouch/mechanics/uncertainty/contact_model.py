@@ -2,6 +2,9 @@
 
 The atlas gives the derivatives by wall, radius, gas and driving pressure. The solid gives the derivatives by the
 friction and by the modulus, by far the most uncertain input, under the contact itself (docs/background/contact.md).
+
+Its sources: unknown friction, the part of another contact that the derivatives for the plate do not include, and an
+unknown place of contact.
 """
 
 from dataclasses import dataclass
@@ -10,11 +13,20 @@ from functools import cached_property
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.mechanics.anywhere.reading import (
+    FARTHEST,
+    SMALLEST_BALL,
+    STEEPEST_TILT,
+    batch_conditions,
+    place_uncertainty,
+)
 from pneutouch.mechanics.atlas.coverage import under_plate
-from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, FIGURES, log_figures
+from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, FIGURES, SENSITIVITY, log_figures
 from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
+from pneutouch.mechanics.atlas.respond import AtlasResponse, respond
 from pneutouch.mechanics.corrected.figures import GRIPS, CorrectedAtlas, between, pressed_logs
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.uncertainty.source import CORRECTION, FIGURE, FRICTION, PLACE, UncertaintySource, counting
 
 SPREAD = 2.0
 """Factor by which a stated coefficient may be off in either direction, uniform in its logarithm: an assumption. Dry
@@ -153,3 +165,67 @@ class ContactModel(CorrectedAtlas):
         """True if no event ends the range: the travel at an event would change from pressure to pressure."""
         ends = np.abs([*(solved[_RANGE] - np.log(self.sensor.protocol.depth)), *changes[_RANGE]])
         return bool((ends < _SAME_END).all())
+
+
+WALL_GAP, OBJECT_WALL_GAP = 0.4, 0.7
+"""Greatest differences found in d ln figure / d ln wall between the frictionless plate and a plate with friction, and
+between the frictionless plate and other objects (docs/background/contact.md)."""
+
+
+def contact_sources(contact: ContactModel, others: list[UncertaintySource]) -> list[UncertaintySource]:
+    """Sources for the contact of n sensors; those of ``others`` on the wall act by the derivative for the plate."""
+    size, source_list = len(contact.pressures), []
+    friction = contact.friction
+    if friction is not None:
+        for figure in CONTACT_FIGURES:
+            known = np.isfinite(friction.standard[figure])
+            source_list.append(
+                UncertaintySource(
+                    FRICTION,
+                    FIGURE,
+                    np.where(known, friction.standard[figure], 0.0),
+                    "log-rectangular",
+                    counting(size, only=(figure,)) & known,
+                    friction.origin,
+                    False,
+                )
+            )
+    walls = np.zeros(size)
+    for source in others:
+        walls = np.hypot(walls, source.moves.get("wall_thickness", 0.0))
+    return [*source_list, _of_wall(contact, walls)]
+
+
+def _of_wall(contact: ContactModel, walls: Array) -> UncertaintySource:
+    gap = WALL_GAP if contact.sensor.protocol.body is None else OBJECT_WALL_GAP
+    return UncertaintySource(
+        CORRECTION,
+        FIGURE,
+        gap * walls / np.sqrt(3.0),
+        "rectangular",
+        counting(walls.size, only=CONTACT_FIGURES[:-1]),
+        f"the derivative by the wall is that of a plate without friction; greatest difference found {gap:g} "
+        f"(d ln {FIGURES[0]} / d ln wall)",
+        True,
+    )
+
+
+_ORIGIN = (
+    f"assumed (Type B, JCGM 100, 4.3.7): a ball of {SMALLEST_BALL:g} R0 radius or more, its curvature even, its axis "
+    f"even over the disc of {FARTHEST:g} R0; a plate tilted by up to {np.degrees(STEEPEST_TILT):.0f} degrees; root "
+    "mean square of the logarithm of the force read over the true one"
+)
+
+
+def place_sources(batch: SensorBatch) -> list[UncertaintySource]:
+    """Source for n sensors; it counts for those that the table of contact anywhere covers."""
+    standard = place_uncertainties(batch, respond(batch))
+    known = np.isfinite(standard)
+    counts = counting(standard.size, only=(SENSITIVITY,)) & known
+    return [UncertaintySource(PLACE, FIGURE, np.where(known, standard, 0.0), "lognormal", counts, _ORIGIN, False)]
+
+
+def place_uncertainties(batch: SensorBatch, response: AtlasResponse) -> Array:
+    """Relative standard uncertainties (n,) of sensors with their atlas responses; NaN outside the table."""
+    domes = batch_conditions(batch, response.limit_pressure, response.cavity_volume)
+    return place_uncertainty(domes, response.range_end / batch.inner_radius)

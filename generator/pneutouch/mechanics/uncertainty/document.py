@@ -18,9 +18,8 @@ from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.line.elements import ADIABATIC, REFERENCE_TEMPERATURE
 from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget, propagate
-from pneutouch.mechanics.uncertainty.source import FIGURE, JOINT, UncertaintySource
+from pneutouch.mechanics.uncertainty.source import FIGURE, FRICTION, JOINT, PLACE, UncertaintySource
 from pneutouch.mechanics.uncertainty.sources import sources
-from pneutouch.mechanics.uncertainty.sources.model_error import FRICTION, PLACE
 from pneutouch.mechanics.uncertainty.sources.modulus import AGEING
 from pneutouch.results.uncertainty import FigureRecord, IntervalRecord, UncertaintyRecord
 from pneutouch.spec.material import Material

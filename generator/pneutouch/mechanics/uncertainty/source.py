@@ -18,6 +18,9 @@ FIGURE = "figure"
 JOINT = "parameters"
 """Value of ``acts_on`` for several inputs with correlated deviations."""
 
+FRICTION, CORRECTION, PLACE = "friction", "contact correction", "place of contact"
+"""Names of the sources of `contact_model`."""
+
 Distribution = Literal["normal", "rectangular", "lognormal", "log-rectangular"]
 
 

@@ -13,7 +13,6 @@ from pneutouch.mechanics.uncertainty.source import UncertaintySource
 from pneutouch.mechanics.uncertainty.sources.model_error import (
     ModelErrors,
     build_sources,
-    contact_sources,
     model_sources,
     numerical_sources,
 )
@@ -52,7 +51,7 @@ def sources(
         calibration: Calibration of the sensor in hand; its parameters and its model error replace those of design and
             resin.
         contact: Contact at the n driving pressures, if it is not a frictionless plate.
-        anywhere: True if object and place of contact are unknown; see `sources.place`.
+        anywhere: True if object and place of contact are unknown; see `contact_model.place_sources`.
 
     Raises:
         InputError: ``numerical`` names an unknown figure.
@@ -61,6 +60,8 @@ def sources(
     near = np.broadcast_to(np.asarray(near_paper, dtype=bool), size)
     source_list = [*modulus_sources(material, near & bool(errors.resin_errors)), *build_sources(batch, printer)]
     if contact is not None:
+        from pneutouch.mechanics.uncertainty.contact_model import contact_sources
+
         source_list += contact_sources(contact, source_list)
     model_error, remaining = model_sources(near, errors), 1.0
     if calibration is not None:
@@ -82,6 +83,6 @@ def sources(
 
 def _of_place(batch: SensorBatch) -> list[UncertaintySource]:
     # Its table of presses loads where a design asks for it.
-    from pneutouch.mechanics.uncertainty.sources.place import place_sources
+    from pneutouch.mechanics.uncertainty.contact_model import place_sources
 
     return place_sources(batch)

@@ -9,8 +9,16 @@ import numpy as np
 from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
 from pneutouch.mechanics.atlas.press import SensorBatch
-from pneutouch.mechanics.uncertainty.source import FIGURE, JOINT, Distribution, UncertaintySource, counting
-from pneutouch.mechanics.uncertainty.sources.model_error import CORRECTION, FRICTION, GAUGE, MODEL_CORRELATION
+from pneutouch.mechanics.uncertainty.source import (
+    CORRECTION,
+    FIGURE,
+    FRICTION,
+    JOINT,
+    Distribution,
+    UncertaintySource,
+    counting,
+)
+from pneutouch.mechanics.uncertainty.sources.model_error import GAUGE, MODEL_CORRELATION
 from pneutouch.spec.calibration import CalibratedResponse, SensorCalibration
 from pneutouch.units import KPA, ML
 

@@ -1,9 +1,6 @@
 """The uncertainty of the model itself: its errors against the paper's Table S1, and its numerical errors.
 
 Also the uncertainty of the print and its surroundings: wall, radius, air behind the cavity, weather, driving pressure.
-
-Also the uncertainty of the contact: unknown friction, and the part of another contact that the derivatives for the
-plate do not include.
 """
 
 from __future__ import annotations
@@ -11,13 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.errors import InputError, shown
-from pneutouch.mechanics.atlas.figures import CONTACT_FIGURES, FIGURES, SENSITIVITY
+from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
 from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
@@ -26,9 +22,6 @@ from pneutouch.mechanics.uncertainty.source import FIGURE, Distribution, Uncerta
 from pneutouch.spec.material import Material, PaperMeasurements
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
-
-if TYPE_CHECKING:
-    from pneutouch.mechanics.uncertainty.contact_model import ContactModel
 
 UNEXPLAINED = 1.5
 """Factor beyond which all errors of a resin must lie for it to be left out of the pool and named: a choice of this
@@ -214,53 +207,3 @@ def build_sources(batch: SensorBatch, printer: Printer) -> list[UncertaintySourc
         source("weather", "ambient_pressure", ambient, _BAROMETER, True),
         source("driving pressure", "driving_pressure", driving, _GAUGE_DATA, False),
     ]
-
-
-FRICTION, CORRECTION = "friction", "contact correction"
-"""Names of the sources of `contact_sources`."""
-
-WALL_GAP, OBJECT_WALL_GAP = 0.4, 0.7
-"""Greatest differences found in d ln figure / d ln wall between the frictionless plate and a plate with friction, and
-between the frictionless plate and other objects (docs/background/contact.md)."""
-
-
-def contact_sources(contact: ContactModel, others: list[UncertaintySource]) -> list[UncertaintySource]:
-    """Sources for the contact of n sensors; those of ``others`` on the wall act by the derivative for the plate."""
-    size, source_list = len(contact.pressures), []
-    friction = contact.friction
-    if friction is not None:
-        for figure in CONTACT_FIGURES:
-            known = np.isfinite(friction.standard[figure])
-            source_list.append(
-                UncertaintySource(
-                    FRICTION,
-                    FIGURE,
-                    np.where(known, friction.standard[figure], 0.0),
-                    "log-rectangular",
-                    counting(size, only=(figure,)) & known,
-                    friction.origin,
-                    False,
-                )
-            )
-    walls = np.zeros(size)
-    for source in others:
-        walls = np.hypot(walls, source.moves.get("wall_thickness", 0.0))
-    return [*source_list, _of_wall(contact, walls)]
-
-
-def _of_wall(contact: ContactModel, walls: Array) -> UncertaintySource:
-    gap = WALL_GAP if contact.sensor.protocol.body is None else OBJECT_WALL_GAP
-    return UncertaintySource(
-        CORRECTION,
-        FIGURE,
-        gap * walls / np.sqrt(3.0),
-        "rectangular",
-        counting(walls.size, only=CONTACT_FIGURES[:-1]),
-        f"the derivative by the wall is that of a plate without friction; greatest difference found {gap:g} "
-        f"(d ln {FIGURES[0]} / d ln wall)",
-        True,
-    )
-
-
-PLACE = "place of contact"
-"""Name of the source of `place_sources`."""
