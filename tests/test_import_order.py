@@ -12,7 +12,7 @@ from tests.trees import nodes_of, tree_of
 PACKAGE = Path(pneutouch.__file__).parent
 
 LAYERS = [
-    {"errors", "formats", "wording", "stopping", "units", "arrays", "rounding", "packing", "tables"},
+    {"errors", "formats", "wording", "stopping", "units", "arrays", "packing", "tables"},
     {"shape"},
     {"spec"},
     {"results"},

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 WATCHED = ["pneutouch", "tomllib", "nptdms"]
 """Packages whose branches are counted."""
 
-COMPUTING = ("mechanics", "meridian", "body", "parts", "printability", "selection", "report", "evaluation", "rounding")
+COMPUTING = ("mechanics", "meridian", "body", "parts", "printability", "selection", "report", "evaluation")
 """Parts of ours that are left out: what computes and draws, and reads nothing."""
 
 DAMAGED = {".toml": damaged_toml, ".json": damaged_toml, ".csv": damaged_csv}

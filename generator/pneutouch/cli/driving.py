@@ -23,7 +23,7 @@ from pneutouch.results.driving import (
     UnknownLeak,
 )
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY, plain
-from pneutouch.rounding import tenths_below
+from pneutouch.wording import tenths_below
 
 
 def report_driving(

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 from pneutouch.cli.terminal import table_text
 from pneutouch.mechanics.events import LOBES, SWAY
 from pneutouch.results.record import SENSITIVITY_KEY
-from pneutouch.rounding import tenths_below
-from pneutouch.wording import SIMULATED, counted
+from pneutouch.wording import SIMULATED, counted, tenths_below
 
 if TYPE_CHECKING:
     from pneutouch.printability import Finding

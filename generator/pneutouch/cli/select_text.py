@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneutouch.cli.terminal import table_text
-from pneutouch.rounding import tenths_below
 from pneutouch.selection import Candidate
 from pneutouch.units import KPA
+from pneutouch.wording import tenths_below
 from pneutouch.workflows.select.document import (
     Typed,
     change_lines,

@@ -16,7 +16,7 @@ from pneutouch.cli.complete import assignment, names
 from pneutouch.cli.terminal import bar, echo, notify, report_next, table_text
 from pneutouch.errors import InputError
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
-from pneutouch.rounding import tenths_below
+from pneutouch.wording import tenths_below
 
 if TYPE_CHECKING:
     from pneutouch.workflows.sweep import SweepPlan, SweepResult

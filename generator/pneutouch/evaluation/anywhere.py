@@ -24,9 +24,9 @@ from pneutouch.mechanics.anywhere.reading import (
 )
 from pneutouch.mechanics.anywhere.table import ContactPlaces, DomeConditions
 from pneutouch.results.behaviour import ContactAnywhere, ContactErrors, ContactPlace
-from pneutouch.rounding import rounded
 from pneutouch.spec.contact import ContactKind
 from pneutouch.units import KPA
+from pneutouch.wording import rounded
 
 _READINGS = (1.0 / 3.0, 2.0 / 3.0)
 """Shares of the range's travel whose readings are tabulated; the first is drawn."""

@@ -31,7 +31,7 @@ from pneutouch.results.comparison import (
     ValueRecord,
 )
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY, extended
-from pneutouch.rounding import rounded
+from pneutouch.wording import rounded
 
 if TYPE_CHECKING:
     from pneutouch.parts import Assembly

@@ -13,8 +13,8 @@ from pneutouch.mechanics.line.transient import BandFigures, StepFigures, band_fi
 from pneutouch.mechanics.viscous.prony import Prony, prony_series
 from pneutouch.parts.air_path import AirPiece, air_path
 from pneutouch.results.behaviour import DynamicRecord, Dynamics, LinePiece
-from pneutouch.rounding import rounded
 from pneutouch.units import KPA, ML
+from pneutouch.wording import rounded
 
 if TYPE_CHECKING:
     from pneutouch.catalogue import ResolvedDesign

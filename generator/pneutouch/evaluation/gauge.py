@@ -11,8 +11,8 @@ from pneutouch.mechanics import SensorPrediction, SensorState
 from pneutouch.mechanics.gauge_reading import SIGMAS, GaugeReading, gauge_reading
 from pneutouch.mechanics.line.elements import REFERENCE_TEMPERATURE
 from pneutouch.results.behaviour import GaugeFigures, GaugeState
-from pneutouch.rounding import rounded
 from pneutouch.units import KPA
+from pneutouch.wording import rounded
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.evaluate import Evaluation

@@ -9,9 +9,9 @@ import numpy as np
 from pneutouch.mechanics import Sensor, SensorPrediction
 from pneutouch.mechanics.viscous.prony import unknown
 from pneutouch.results.behaviour import BySource, Hold, Loop, Viscous, ViscousState, WholeLoop
-from pneutouch.rounding import rounded
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
+from pneutouch.wording import rounded
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.viscous.describe import ViscousRuns

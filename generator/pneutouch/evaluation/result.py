@@ -35,8 +35,8 @@ from pneutouch.results.prediction import (
     ShearRecord,
     StateRecord,
 )
-from pneutouch.rounding import rounded
 from pneutouch.units import KPA, ML
+from pneutouch.wording import rounded
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.evaluate import Evaluation

@@ -24,11 +24,11 @@ from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION, NUMERICAL
 from pneutouch.mechanics.models.choice import stated_error
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.results.uncertainty import FigureRecord, SampledInterval, SampleRecord, UncertaintyRecord
-from pneutouch.rounding import rounded
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
+from pneutouch.wording import rounded
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.atlas.press import SensorBatch

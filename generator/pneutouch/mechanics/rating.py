@@ -12,11 +12,11 @@ from pneutouch.mechanics.limits import RATED_SHARE, Limits
 from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.propagate import COUPON, COVERAGE, limit_spread
-from pneutouch.rounding import tenths_below
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
+from pneutouch.wording import tenths_below
 
 LIMIT_ERROR = LIMIT_DISCRETISATION
 """Greatest relative numerical error of the limit pressure by solid and atlas."""

@@ -4,8 +4,7 @@ from itertools import groupby
 
 from pneutouch.report.pages import filled
 from pneutouch.results.plan import ExpectedPoint, PlannedCampaign, PlannedRun
-from pneutouch.rounding import tenths_below
-from pneutouch.wording import counted
+from pneutouch.wording import counted, tenths_below
 
 _WORDS = {
     "leak": "Leak",

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal, Self, get_args
 
-from pneutouch.rounding import rounded
+from pneutouch.wording import rounded
 
 Severity = Literal["error", "warning", "note"]
 

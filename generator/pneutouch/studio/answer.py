@@ -25,9 +25,9 @@ from pneutouch.mechanics import SensorState
 from pneutouch.mechanics.models.choice import USUAL, outside
 from pneutouch.parts import Assembly, assemble
 from pneutouch.results.record import plain
-from pneutouch.rounding import rounded
 from pneutouch.shape.meridian import Meridian
 from pneutouch.units import KPA
+from pneutouch.wording import rounded
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -14,13 +14,13 @@ from pneutouch.catalogue import DesignSource, Library
 from pneutouch.cli.select import saving_command
 from pneutouch.errors import InputError
 from pneutouch.output.new import free_name
-from pneutouch.rounding import tenths_below
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import Table
 from pneutouch.spec.read import validate
 from pneutouch.spec.toml_text import assignments
 from pneutouch.studio.form import PAGE, Question, version_of
 from pneutouch.units import KPA
+from pneutouch.wording import tenths_below
 from pneutouch.workflows.select.checks import assigned
 
 if TYPE_CHECKING:

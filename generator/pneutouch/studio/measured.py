@@ -18,13 +18,13 @@ from pneutouch.report.measured.tables import some
 from pneutouch.report.numbers import overlap
 from pneutouch.results.measured import DoubtfulPart, RunOfSensor
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
-from pneutouch.rounding import rounded
 from pneutouch.spec.campaign import CAMPAIGN, CampaignRun
 from pneutouch.spec.options import CalibrationOptions, option_words
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.studio.form import Question
 from pneutouch.units import KPA
+from pneutouch.wording import rounded
 from pneutouch.workflows.characterize import CharacterizationResult
 from pneutouch.workflows.characterize.predicted import doubtful, of_run
 

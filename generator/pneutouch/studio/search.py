@@ -16,12 +16,12 @@ from pneutouch.cli.select import typed
 from pneutouch.cli.select_text import graded_lines, graded_table, processes_lines, processes_table
 from pneutouch.errors import InputError, PneutouchError, shown
 from pneutouch.results.record import extended, plain
-from pneutouch.rounding import rounded
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, parse_changes, validate
 from pneutouch.spec.target import Target
 from pneutouch.studio.candidate import CandidateCard, CandidateStates, candidate_figures, grade_figures
 from pneutouch.studio.form import PAGE, Question
+from pneutouch.wording import rounded
 from pneutouch.workflows.select.charts import tradeoff
 from pneutouch.workflows.select.document import dropped_lines, headline, missed_text, remarks, search_notes
 from pneutouch.workflows.select.graded import GradedSelectionRun

@@ -31,8 +31,8 @@ from pneutouch.output.files import write_folder as write_files
 from pneutouch.output.recipe import BuildRecipe
 from pneutouch.results.reader import ReaderRecord, ReaderSource, SimulatedState, SimulatorRecord, TableError
 from pneutouch.results.record import plain
-from pneutouch.rounding import rounded
 from pneutouch.units import KPA
+from pneutouch.wording import rounded
 
 
 @dataclass(frozen=True)

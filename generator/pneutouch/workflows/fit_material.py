@@ -23,13 +23,13 @@ from pneutouch.output.files import check_writable, digest, json_bytes, replace_f
 from pneutouch.report.fit_charts import LawCurve, law_chart
 from pneutouch.results.fit import LawRecord, MaterialFit, PulledSpecimen, TriedLaw
 from pneutouch.results.record import plain
-from pneutouch.rounding import rounded
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.material import HyperelasticLaw, Material, density_problem
 from pneutouch.spec.options import FitOptions
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.spec.values import Quantity, file_name, plain_name
+from pneutouch.wording import rounded
 
 HARDNESS_SHARE = (0.4, 0.65)
 """Young's modulus over that of Gent's relation where nothing is odd: TangoPlus by the paper's modulus has 0.49, five

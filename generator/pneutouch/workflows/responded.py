@@ -16,8 +16,8 @@ from pneutouch.output.recipe import BuildRecipe
 from pneutouch.report.fit_charts import GainCurve, TimeCurves, response_chart
 from pneutouch.results.record import plain
 from pneutouch.results.response import LoadResponse, StateResponse
-from pneutouch.rounding import rounded
 from pneutouch.units import KPA
+from pneutouch.wording import rounded
 from pneutouch.workflows.respond import BEFORE, Load, RespondRun, StateSignal
 
 _DIGITS = 6

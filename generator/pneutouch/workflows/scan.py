@@ -24,7 +24,6 @@ from pneutouch.mechanics.uncertainty.propagate import limit_spread
 from pneutouch.parts import assemble
 from pneutouch.parts.specimen.bars import places
 from pneutouch.results.scan import FavouringState, SeparatingDome, SeparationRecord, TellablePattern
-from pneutouch.rounding import rounded, tenths_below
 from pneutouch.spec.material import Material
 from pneutouch.spec.options import ScanOptions
 from pneutouch.spec.read import Changes
@@ -35,6 +34,7 @@ from pneutouch.texture.signal import Signal, read_signal
 from pneutouch.texture.sliding import NOISE, PreloadContact, Recorder, ScanPath, TextureScan, scan, touch
 from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate
 from pneutouch.units import KPA
+from pneutouch.wording import rounded, tenths_below
 from pneutouch.workflows.specimen import ResolvedSpecimen, draw, load_specimen
 
 KEPT = 20.0

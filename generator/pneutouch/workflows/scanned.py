@@ -13,7 +13,6 @@ from pneutouch.output.files import check_writable, json_bytes, with_manifest, wr
 from pneutouch.report.scalogram import ScannedState, scalogram_chart
 from pneutouch.results.record import plain
 from pneutouch.results.scan import BarsRecord, ScanRecord, SignalRecord, SimulatedSignal, SoughtPattern
-from pneutouch.rounding import rounded
 from pneutouch.texture.detect import Detection
 from pneutouch.texture.scalogram import scalogram
 from pneutouch.texture.separate import noise_amplitude
@@ -21,6 +20,7 @@ from pneutouch.texture.signal import Signal, decimated
 from pneutouch.texture.sliding import NOISE, RATE, STEP, pressure_amplitude
 from pneutouch.texture.substrate import FIRST_ZERO, BarRow, patch_filter
 from pneutouch.units import KPA
+from pneutouch.wording import rounded
 from pneutouch.workflows.scan import AnalysedSignal, ScanRun
 from pneutouch.workflows.specimen import inputs as specimen_inputs
 

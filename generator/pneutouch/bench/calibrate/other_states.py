@@ -15,8 +15,8 @@ from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.membrane import limits
 from pneutouch.mechanics.uncertainty.propagate import COUPON
-from pneutouch.rounding import tenths_below
 from pneutouch.units import KPA
+from pneutouch.wording import tenths_below
 
 CALIPER = 0.05 / np.sqrt(3.0)
 """Standard deviation of a soft wall's thickness by caliper, mm: even within 0.05 mm, our choice; the caliper itself is

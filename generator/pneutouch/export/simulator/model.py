@@ -16,9 +16,9 @@ from pneutouch.body import Body, Solid
 from pneutouch.export.scene import stl
 from pneutouch.results.reader import DomePress, DomeTable
 from pneutouch.results.record import plain
-from pneutouch.rounding import rounded
 from pneutouch.shape.dome import DomeShape
 from pneutouch.shape.meridian import Segment
+from pneutouch.wording import rounded
 
 _KG, _M = 1e-3, 1e-3
 

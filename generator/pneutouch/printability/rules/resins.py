@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from pneutouch.mechanics.prediction import CurveOutcome
 from pneutouch.printability.view import PrintJob, PrintView
 from pneutouch.results.printing import Excess, Finding
-from pneutouch.rounding import tenths_below
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.units import KPA
+from pneutouch.wording import tenths_below
 
 _FIX = "take resins that the machine runs together, or print the bodies one after the other"
 

@@ -22,12 +22,12 @@ from pneutouch.formats import format_of, versioned
 from pneutouch.output.files import check_writable, json_bytes, with_manifest, write_folder
 from pneutouch.report.fit_charts import residual_chart
 from pneutouch.results.record import plain
-from pneutouch.rounding import rounded
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.spec.values import NAME_RULE, plain_name
 from pneutouch.units import KPA, ML
+from pneutouch.wording import rounded
 from pneutouch.workflows.calibrate.fit import Calibration
 from pneutouch.workflows.coupons import MeasuredProfile, write_profiles
 

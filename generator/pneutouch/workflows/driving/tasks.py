@@ -32,10 +32,10 @@ from pneutouch.results.driving import (
     TaskSolution,
     UnknownLeak,
 )
-from pneutouch.rounding import rounded
 from pneutouch.spec.read import Changes
 from pneutouch.spec.tasks import TASK_FIGURES, DrivingTask
 from pneutouch.units import KPA, ML
+from pneutouch.wording import rounded
 from pneutouch.workflows.driving.pressures import (
     BUDGET_KEYS,
     DrivingSolution,

@@ -26,13 +26,13 @@ from pneutouch.results.selection import (
     SingleChange,
     SolidCheck,
 )
-from pneutouch.rounding import tenths_below
 from pneutouch.selection import Candidate, DroppedRequirement
 from pneutouch.selection.choose import missed_percent
 from pneutouch.selection.graded import GradeTrial, shares
 from pneutouch.spec.target import Target
 from pneutouch.spec.toml_text import value_text
 from pneutouch.units import KPA, ML
+from pneutouch.wording import tenths_below
 from pneutouch.workflows.select.checks import RejectedDesign, contact_notes, contact_text
 from pneutouch.workflows.select.graded import GradedSelectionRun
 from pneutouch.workflows.select.select import Confirmation, SelectionRun

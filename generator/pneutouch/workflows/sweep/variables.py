@@ -18,7 +18,7 @@ from pneutouch.mechanics.atlas.figures import SENSITIVITY
 from pneutouch.mechanics.uncertainty.propagate import propagate_groups
 from pneutouch.results.prediction import PredictionRecord, StateRecord
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
-from pneutouch.rounding import rounded
+from pneutouch.wording import rounded
 
 Interval = tuple[float, float] | None
 
