@@ -5,7 +5,6 @@ from dataclasses import dataclass
 RATED_SHARE = 0.9
 """Rated pressure over the binding limit; above it a warning is given: the dome grows fast near the limit point."""
 
-
 LAW_RANGE = "law range"
 """Name of the limit and event beyond which the wall is stretched further than the data its law was fitted to."""
 

@@ -167,7 +167,6 @@ class Arc:
 
 Segment = Line | Arc
 
-
 _CLOSED = 1e-9
 """Greatest distance (mm) of ends that should meet: computed from the same numbers, they differ only by rounding."""
 

@@ -44,7 +44,6 @@ _TOGETHER = 500
 
 _DETAIL = {EDGE: DETAIL["plate_rim"], GAUGE: DETAIL["gauge_range"], BREAK: DETAIL["break"], BUCKLING: _BUCKLES}
 
-
 _MEETS_RING = Limitation(
     "in a deep press the wall meets the ring that clamps its flange, which the atlas leaves out: its sensitivity is up "
     "to 10% too high without driving pressure",

@@ -22,7 +22,6 @@ STEEPEST = float(np.sqrt(3.0))
 normal contact stiffness on a flank grows with 1 + slope^2, and a vertical flank has no gap to measure. Up to this slope
 the force does not depend on it (`tests/mechanics/solid/test_indenter.py`)."""
 
-
 _PER_EDGE = 4.0
 
 _FLANKS = 4.0

@@ -19,7 +19,6 @@ _THIN = 0.055
 _TO_BENDING_LENGTH = 3.0
 _ARC_CELLS = (24, 48)
 
-
 START, END, MIDDLE = range(3)
 """Nodes of an edge, in their order; a linear edge has no middle."""
 

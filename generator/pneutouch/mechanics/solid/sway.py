@@ -7,10 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.banded import is_definite, softest
 from pneutouch.mechanics.solid.continuation import PlateState
-from pneutouch.mechanics.solid.inflate import FreeState, Inflation, at_volume, between, pressure_between
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolverState, minimise
 from pneutouch.mechanics.solid.second_variation import HarmonicSolid
@@ -21,8 +19,6 @@ MOST_WAVES = 8
 _TRAVEL = 0.25
 #: Accuracy of the height of a loss, in R0.
 _WITHIN = 5.0e-4
-#: Accuracy of a loss between two states of a free dome, as a share of the path between them.
-_FREE_WITHIN = 2.0e-3
 _SETTLED = 6.0
 _MOST_SOLVES = 12
 
@@ -35,23 +31,9 @@ class AxisymmetryLoss:
     height: float
 
 
-@dataclass(frozen=True)
-class FreeLoss:
-    """The dome without contact is unstable beyond a gauge pressure (MPa) for n ``waves`` around the axis."""
-
-    waves: int
-    pressure: float
-
-
 def unstable_waves(harmonic: HarmonicSolid, state: SolverState, numbers: tuple[int, ...]) -> tuple[int, ...]:
     """Numbers of waves, among those given, for which the second variation at a state is not positive definite."""
     return tuple(n for n, band in harmonic.bands(state, numbers).items() if not is_definite(band))
-
-
-def softest_mode(harmonic: HarmonicSolid, state: SolverState, n: int) -> tuple[float, Array]:
-    """Eigenvalue nearest zero of the second variation for n waves, and its displacements a, b, c (n_nodes, 3)."""
-    mode = softest(harmonic.bands(state, (n,))[n])
-    return mode.value, harmonic.expand(n, mode.vector)
 
 
 def axisymmetry_losses(solid: SolidModel, path: list[PlateState], most: int = MOST_WAVES) -> list[AxisymmetryLoss]:
@@ -102,29 +84,6 @@ def _located(harmonic: HarmonicSolid, n: int, path: list[PlateState]) -> float:
         return _between(before, after, before.height - share * span)
 
     return before.height - span * _root(harmonic, n, values, solve, _WITHIN / span)
-
-
-def free_loss(solid: SolidModel, run: Inflation, most: int = MOST_WAVES) -> FreeLoss | None:
-    """First instability, with 1 to ``most`` waves, of a dome filled or emptied without contact; None if stable."""
-    harmonic, waves = HarmonicSolid(solid), tuple(range(1, most + 1))
-    for before, after in zip(run.states, run.states[1:], strict=False):
-        lost = unstable_waves(harmonic, after.unit, waves)
-        if lost:
-            losses = [_free_place(harmonic, n, before, after) for n in lost]
-            return min(losses, key=lambda loss: abs(loss.pressure))
-    return None
-
-
-def _free_place(harmonic: HarmonicSolid, n: int, before: FreeState, after: FreeState) -> FreeLoss:
-    solid, (a, b) = harmonic.solid, (before.unit.volume, after.unit.volume)
-    values = {0.0: _eigenvalue(harmonic, n, before.unit), 1.0: _eigenvalue(harmonic, n, after.unit)}
-
-    def solve(share: float) -> SolverState | None:
-        volume = a + share * (b - a)
-        state = at_volume(solid, [before], volume, between(before, after, volume))
-        return None if isinstance(state, NewtonFailure) else state.unit
-
-    return FreeLoss(n, pressure_between(before, after, _root(harmonic, n, values, solve, _FREE_WITHIN)))
 
 
 def _eigenvalue(harmonic: HarmonicSolid, n: int, state: SolverState) -> float:
