@@ -102,18 +102,9 @@ def unknown(sensor: Sensor, model: str) -> str | None:
     solid."""
     if model == "membrane":
         return _TREND
-    from pneutouch.mechanics.atlas.coverage import outside_corrected
+    from pneutouch.mechanics.atlas.coverage import outside_atlas, under_plate
 
-    why = outside_corrected(sensor)
-    return None if why is None else f"the sensor is outside the atlas: {why}"
-
-
-def _softer_unknown(sensor: Sensor) -> str | None:
-    """Reason why the derivatives of a wall too soft for the atlas itself are unknown, or None if they are known."""
-    from pneutouch.mechanics.atlas.coverage import outside_atlas
-    from pneutouch.mechanics.atlas.figures import softer_walls
-
-    why = outside_atlas(sensor, softer_walls())
+    why = outside_atlas(under_plate(sensor))
     return None if why is None else f"the sensor is outside the atlas: {why}"
 
 
@@ -195,9 +186,13 @@ def spread(
 def why_unknown(sensor: Sensor, model: str) -> str | None:
     """`unknown`, but None for a wall too soft for the atlas if the derivatives of its tables still hold."""
     why = unknown(sensor, model)
-    if why is not None and model == "solid" and sensor.protocol.other_contact is None:
-        return _softer_unknown(sensor)
-    return why
+    if why is None or model != "solid" or sensor.protocol.other_contact is not None:
+        return why
+    from pneutouch.mechanics.atlas.coverage import outside_atlas
+    from pneutouch.mechanics.atlas.figures import softer_walls
+
+    why = outside_atlas(sensor, softer_walls())
+    return None if why is None else f"the sensor is outside the atlas: {why}"
 
 
 def uncertainties(

@@ -33,6 +33,9 @@ HEAD_GAP = 0.5
 CLAMPED_SHARE = 0.5
 """Share of the flange's width that a ring presses on; the rest leaves the dome space to bulge."""
 
+_UNDER_PORT = 0.3
+"""Distance in mm below the passage of a side port at which the plug becomes thinner."""
+
 
 @dataclass(frozen=True, slots=True)
 class Layout:
@@ -272,7 +275,3 @@ def plug_neck(scene: ResolvedDesign, layout: Layout) -> tuple[float, float]:
     least = scene.connector_printer.smallest.wall("rigid").recommended
     gap = max(scene.fit_clearance, min(layout.port.passage, layout.opening_radius - least))
     return layout.opening_radius - gap, layout.port_axis - layout.port.passage - _UNDER_PORT
-
-
-_UNDER_PORT = 0.3
-"""Distance in mm below the passage of a side port at which the plug becomes thinner."""

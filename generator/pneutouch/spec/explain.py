@@ -213,7 +213,6 @@ _PLAIN = {
     "Cannot overwrite a value": "this key or table is there twice",
 }
 
-
 _BEGINNINGS = {
     "Cannot declare": "this table is there twice",
     "Cannot redefine namespace": "this table is there twice",
@@ -224,11 +223,9 @@ _BEGINNINGS = {
     "Expected": "a character is missing",
 }
 
-
 _PLACE = re.compile(
     r"^(?P<problem>.*) \(at (?:line (?P<line>\d+), column (?P<column>\d+)|end of document)\)$", re.DOTALL
 )
-
 
 _WIDEST = 100
 

@@ -91,11 +91,6 @@ _DEPTH = 0.75
 """Greatest depth in R0 that a fit uses, that of the sensitivity test (paper, section 3-B)."""
 
 
-def outside_corrected(sensor: Sensor) -> str | None:
-    """Reason why the atlas does not cover a sensor even under a frictionless plate, or None if it does."""
-    return outside_atlas(under_plate(sensor))
-
-
 def outside_fit(sensor: Sensor) -> str | None:
     """Reason why a sensor cannot be fitted to measured runs, or None if it can: a fit uses the atlas, at depths that it
     covers, times the solid's ratio to it where it does not cover law, grade, softness or contact."""

@@ -22,7 +22,6 @@ _ARC_CELLS = (24, 48)
 START, END, MIDDLE = range(3)
 """Nodes of an edge, in their order; a linear edge has no middle."""
 
-
 CELLS_PER_RADIUS = 4
 """Cells of the outer wall over a length equal to the least radius of an object. With fewer the wall appears to leave a
 ball at its lowest point; with these the force is within 1 % of a refined mesh (docs/background/contact.md)."""

@@ -76,13 +76,10 @@ def sources(
         *(ageing_sources(material, size, ahead) if ahead > 0.0 else []),
         *model_error,
         *numerical_sources(size, numerical),
-        *(_of_place(batch) if anywhere else []),
     ]
+    if anywhere:
+        # Its table of presses loads where a design asks for it.
+        from pneutouch.mechanics.uncertainty.contact_model import place_sources
+
+        source_list += place_sources(batch)
     return [source for source in source_list if source.counts.any()]
-
-
-def _of_place(batch: SensorBatch) -> list[UncertaintySource]:
-    # Its table of presses loads where a design asks for it.
-    from pneutouch.mechanics.uncertainty.contact_model import place_sources
-
-    return place_sources(batch)
