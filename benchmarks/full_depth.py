@@ -13,9 +13,10 @@ from benchmarks.store import store
 from pneutouch.mechanics.models.solid import KINDS, curve_between
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import RigidBase
+from pneutouch.mechanics.solid.flange import printed_dome
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import state_at
-from pneutouch.mechanics.solid.mesh import dome, printed_dome
+from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.units import KPA
 

@@ -14,9 +14,9 @@ from benchmarks.store import LIBRARY, store
 from pneutouch.bench.tensile.law_fit import LawForm
 from pneutouch.errors import BeyondLimitError
 from pneutouch.evaluation.evaluate import evaluate
-from pneutouch.mechanics.limits import Limits
 from pneutouch.mechanics.models.solid import press_settings, solid_probe, solid_result
 from pneutouch.mechanics.paper_sensor import material_sensor, young_modulus
+from pneutouch.mechanics.prediction import Limits
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indent import indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at

@@ -8,8 +8,8 @@ import pytest
 from pneutouch.evaluation.result import rating_record
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.atlas.press import batch_of
-from pneutouch.mechanics.limits import Limits
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.prediction import Limits
 from pneutouch.mechanics.rating import Rating, rated_pressure, rating
 from pneutouch.mechanics.uncertainty import ModelErrors, budget
 from pneutouch.mechanics.uncertainty.propagate import LIMIT

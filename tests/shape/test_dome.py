@@ -11,8 +11,9 @@ import pytest
 from pneutouch.body.shapes import sample
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.elements import Cavity
+from pneutouch.mechanics.solid.flange import printed_dome
 from pneutouch.mechanics.solid.inflate import state_at
-from pneutouch.mechanics.solid.mesh import dome, nodes_along, printed_dome
+from pneutouch.mechanics.solid.mesh import dome, nodes_along
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.shape import SHAPES
 from pneutouch.shape.dome import DomeShape

@@ -21,10 +21,10 @@ from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.atlas.respond import EDGE, OUTSIDE, respond
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.corrected.figures import CorrectedAtlas, pressed_logs
-from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.membrane import limit_point
 from pneutouch.mechanics.models.choice import outside
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.rating import RATED_SHARE
 from pneutouch.mechanics.sensor import ResponseCorrection, RigidBase
 from pneutouch.mechanics.solid.mesh import MOST_CELLS, object_cells
 from pneutouch.mechanics.uncertainty import GasNotes, gas_notes

@@ -40,9 +40,8 @@ from pneutouch.wording import rounded
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.evaluate import Evaluation
-    from pneutouch.mechanics.limits import LimitPoint, Limits
     from pneutouch.mechanics.off_axis_curve import OffAxisCurve, ShearCurve
-    from pneutouch.mechanics.prediction import CurveOutcome, SensorPrediction, SensorState
+    from pneutouch.mechanics.prediction import CurveOutcome, LimitPoint, Limits, SensorPrediction, SensorState
     from pneutouch.mechanics.rating import Rating
     from pneutouch.results.behaviour import ContactAnywhere
 
@@ -217,7 +216,7 @@ def _limits(limits: Limits) -> LimitsRecord:
 
 def rating_record(rating: Rating, driving_pressures: Sequence[float]) -> RatingRecord:
     """The rating in boundary units, with its findings on driving pressures (MPa)."""
-    from pneutouch.mechanics.limits import RATED_SHARE
+    from pneutouch.mechanics.rating import RATED_SHARE
     from pneutouch.mechanics.uncertainty.propagate import COVERAGE
 
     limit, remedy = rating.limit, rating.remedy

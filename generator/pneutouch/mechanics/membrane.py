@@ -32,7 +32,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import BeyondLimitError, ComputationError
-from pneutouch.mechanics.limits import LimitPoint, Limits
+from pneutouch.mechanics.prediction import LimitPoint, Limits
 from pneutouch.mechanics.sensor import Sensor
 
 _HALVINGS = 60

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.events import LOBES, SWAY, Event
-from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.response import Figures
 from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.results.prediction import ErrorEstimate
@@ -46,6 +45,58 @@ class WallPath:
     inner: Array
     outer: Array
     objects: tuple[Array, ...] = ()
+
+
+LAW_RANGE = "law range"
+"""Name of the limit and event beyond which the wall is stretched further than the data its law was fitted to."""
+
+
+@dataclass(frozen=True, slots=True)
+class LimitPoint:
+    """The maximum of the inflation curve: apex heights in mm, driving pressure in MPa."""
+
+    apex_inner: float
+    apex_outer: float
+    driving_pressure: float
+    thickness_stretch: float
+
+    @property
+    def membrane_stretch(self) -> float:
+        """In-plane stretch."""
+        return float(self.thickness_stretch**-0.5)
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Driving pressures (MPa) at which each limit is met; None if it is not met before the limit point.
+
+    ``law_range``: pressure at which the wall leaves the stretches that its law was fitted over, if the law states them.
+    """
+
+    limit_point: float | None
+    break_strain: float | None
+    gauge: float
+    law_range: float | None = None
+
+    @property
+    def binding(self) -> str:
+        """Name of the limit met first."""
+        return min(self.named(), key=lambda item: item[1])[0]
+
+    @property
+    def lowest(self) -> float:
+        """The driving pressure at which the first limit is met, MPa."""
+        return min(value for _, value in self.named())
+
+    def named(self) -> list[tuple[str, float]]:
+        """The limits that are met, with their names."""
+        pairs = [
+            ("limit point", self.limit_point),
+            ("break strain", self.break_strain),
+            (LAW_RANGE, self.law_range),
+            ("gauge range", self.gauge),
+        ]
+        return [(name, value) for name, value in pairs if value is not None]
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,8 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.coverage import outside_fit
 from pneutouch.mechanics.atlas.press import batch_of
-from pneutouch.mechanics.limits import RATED_SHARE, Limits
 from pneutouch.mechanics.models.accuracy import LIMIT_DISCRETISATION
+from pneutouch.mechanics.prediction import Limits
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.propagate import COUPON, COVERAGE, limit_spread
 from pneutouch.spec.calibration import SensorCalibration
@@ -17,6 +17,10 @@ from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
 from pneutouch.wording import tenths_below
+
+RATED_SHARE = 0.9
+"""Rated pressure over the binding limit; above it a warning is given: the dome grows fast near the limit point."""
+
 
 LIMIT_ERROR = LIMIT_DISCRETISATION
 """Greatest relative numerical error of the limit pressure by solid and atlas."""

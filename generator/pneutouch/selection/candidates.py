@@ -15,8 +15,7 @@ import numpy as np
 from pneutouch.arrays import Array, Flags, Index, distinct
 from pneutouch.mechanics.atlas.respond import BREAK, EDGE, OUTSIDE, AtlasResponse, respond
 from pneutouch.mechanics.atlas.table import least_limit
-from pneutouch.mechanics.limits import RATED_SHARE
-from pneutouch.mechanics.rating import rated_pressure
+from pneutouch.mechanics.rating import RATED_SHARE, rated_pressure
 from pneutouch.mechanics.response import Figures
 from pneutouch.selection.problem import SelectionProblem
 

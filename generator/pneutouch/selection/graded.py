@@ -12,7 +12,8 @@ from pneutouch.arrays import Array
 from pneutouch.catalogue.mixture import ResolvedMixingCurve
 from pneutouch.errors import ComputationError
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.limits import RATED_SHARE, Limits
+from pneutouch.mechanics.prediction import Limits
+from pneutouch.mechanics.rating import RATED_SHARE
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.selection.mixes import greatest
 from pneutouch.selection.problem import CandidateResin, SelectionProblem

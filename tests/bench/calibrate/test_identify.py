@@ -10,8 +10,8 @@ from pneutouch.bench.calibrate.goodness import misses
 from pneutouch.bench.calibrate.notes import fit_notes
 from pneutouch.bench.calibrate.other_states import further_tests
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET, WALL
-from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.membrane import limits
+from pneutouch.mechanics.rating import RATED_SHARE
 from pneutouch.units import KPA
 from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, injections, other
 

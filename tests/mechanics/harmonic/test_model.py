@@ -118,7 +118,7 @@ def test_the_wall_at_rest_is_stable() -> None:
 
 
 def test_a_wall_on_its_flange_is_refused() -> None:
-    from pneutouch.mechanics.solid.mesh import printed_dome
+    from pneutouch.mechanics.solid.flange import printed_dome
 
     mesh = printed_dome(Hemisphere(9.25, 1.5), 3.0, 1.5, arc=8, through=1)
     with pytest.raises(ValueError, match="flange"):

@@ -6,7 +6,8 @@ import pytest
 from pneutouch.mechanics.laws import neo_hookean, ogden
 from pneutouch.mechanics.solid.banded import negative_pivots
 from pneutouch.mechanics.solid.elements import Cavity, Gas, Liquid, TermState
-from pneutouch.mechanics.solid.mesh import dome, printed_dome
+from pneutouch.mechanics.solid.flange import printed_dome
+from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
 from pneutouch.mechanics.solid.object_contact import Plate

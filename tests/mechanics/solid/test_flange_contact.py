@@ -5,11 +5,11 @@ import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.sensor import RigidBase
-from pneutouch.mechanics.solid.base_contact import cardinal_splines, evaluated, meeting_nodes, top_nodes
 from pneutouch.mechanics.solid.elements import Liquid
+from pneutouch.mechanics.solid.flange import cardinal_splines, evaluated, meeting_nodes, printed_dome, top_nodes
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import state_at
-from pneutouch.mechanics.solid.mesh import dome, printed_dome
+from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
 from pneutouch.mechanics.solid.second_variation import HarmonicSolid

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.solid.flange import printed_dome
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
-from pneutouch.mechanics.solid.mesh import dome, printed_dome
+from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.shape.hemisphere import Hemisphere
 

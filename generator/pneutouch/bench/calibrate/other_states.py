@@ -12,8 +12,8 @@ from pneutouch.bench.calibrate.observations import ATLAS_FORCE, ATLAS_PRESSURE, 
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, NAMES, WALL
 from pneutouch.bench.indents import REPETITIONS, SHARE
 from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
-from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.membrane import limits
+from pneutouch.mechanics.rating import RATED_SHARE
 from pneutouch.mechanics.uncertainty.propagate import COUPON
 from pneutouch.units import KPA
 from pneutouch.wording import tenths_below

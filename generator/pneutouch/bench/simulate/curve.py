@@ -14,8 +14,7 @@ from pneutouch.arrays import Array
 from pneutouch.bench.simulate.rig import parameter
 from pneutouch.errors import InputError
 from pneutouch.mechanics import Sensor, SensorState, predict
-from pneutouch.mechanics.limits import Limits
-from pneutouch.mechanics.prediction import InflationCurve
+from pneutouch.mechanics.prediction import InflationCurve, Limits
 from pneutouch.units import KPA
 
 STEPS = 56

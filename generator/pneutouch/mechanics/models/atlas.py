@@ -25,10 +25,9 @@ from pneutouch.mechanics.atlas.respond import (
 )
 from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasSlices, shipped
 from pneutouch.mechanics.events import CREASE, DETAIL, Event, PathPoint, crossing
-from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.models.accuracy import BODY, NOT_CHECKED, NUMERICAL, TABULATION, discretised, solid_assumptions
 from pneutouch.mechanics.models.interface import Answered, Limitation, ModelAnswer, SensorModel
-from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
+from pneutouch.mechanics.prediction import InflationCurve, LimitPoint, Limits, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.results.prediction import ErrorEstimate

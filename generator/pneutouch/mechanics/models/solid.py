@@ -15,7 +15,6 @@ import numpy as np
 
 from pneutouch.arrays import Array, distinct, hermite
 from pneutouch.mechanics.events import LOBES, SWAY, Event, SolidEvent, range_end
-from pneutouch.mechanics.limits import LAW_RANGE, LimitPoint, Limits
 from pneutouch.mechanics.models.accuracy import (
     BODY,
     LIMIT_DISCRETISATION,
@@ -26,12 +25,21 @@ from pneutouch.mechanics.models.accuracy import (
     solid_assumptions,
 )
 from pneutouch.mechanics.models.interface import Answered, ModelAnswer, SensorModel, one_by_one
-from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState, WallPath
+from pneutouch.mechanics.prediction import (
+    LAW_RANGE,
+    DeformedShape,
+    InflationCurve,
+    LimitPoint,
+    Limits,
+    ModelResult,
+    SensorState,
+    WallPath,
+)
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import RigidBase, Sensor
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, first_touch, inflate, state_at
-from pneutouch.mechanics.solid.mesh import SolidMesh, dome, nodes_along, object_cells, printed_dome
+from pneutouch.mechanics.solid.mesh import SolidMesh, dome, nodes_along, object_cells
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.object_contact import Indenter
 from pneutouch.mechanics.solid.stress import StrainProbe, burst, met
@@ -188,7 +196,12 @@ def solid_states(sensor: Sensor, driving_pressures: Array) -> tuple[SensorState,
 def solid_probe(sensor: Sensor, cells: int | None = None) -> StrainProbe:
     """Model of the sensor's wall for the solid, with the probe of its strains."""
     shape, flange, cells = sensor.dome.shape, sensor.dome.flange, cells or object_cells(sensor)
-    mesh = dome(shape, arc=cells) if flange is None else printed_dome(shape, *flange, arc=cells)
+    if flange is None:
+        mesh = dome(shape, arc=cells)
+    else:
+        from pneutouch.mechanics.solid.flange import printed_dome
+
+        mesh = printed_dome(shape, *flange, arc=cells)
     return StrainProbe(SolidModel(mesh, sensor.wall.hyperelastic, grade=_grade(sensor), base=_base(sensor)))
 
 

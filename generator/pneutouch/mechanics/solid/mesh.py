@@ -1,7 +1,5 @@
 """Meridian meshes: quadrilaterals in the (r, z) half plane with named boundaries.
 
-Also the mesh of the dome on its printed flange, held where the connector holds it.
-
 Also the number of cells that resolve the object that presses a sensor.
 """
 
@@ -135,7 +133,7 @@ def arc_cells(arc: float, wall_ratio: Array) -> Array:
     return np.asarray(np.clip(np.ceil(_TO_BENDING_LENGTH * arc / np.sqrt(wall_ratio)), *_ARC_CELLS))
 
 
-def _cells(shape: DomeShape, arc: int | None, through: int | None) -> tuple[int, int]:
+def cell_counts(shape: DomeShape, arc: int | None, through: int | None) -> tuple[int, int]:
     """Numbers of cells along the arc and across the wall: as requested, else the default of a shape."""
     ratio = shape.wall_thickness / shape.scale
     along = int(arc_cells(shape.arcs[0] / shape.scale, np.array(ratio)))
@@ -165,7 +163,7 @@ def dome(
     size = shape.inner_radius, shape.wall_thickness
     if not (np.isfinite(size).all() and min(size) > 0.0):
         raise ValueError("inner_radius {} and wall_thickness {} must be positive and finite".format(*size))
-    arc, through = _cells(shape, arc, through)
+    arc, through = cell_counts(shape, arc, through)
     grid = shape.points(with_middles(graded(arc, base_ratio)), with_middles(np.linspace(0.0, 1.0, through + 1)))
     mesh = _from_grid(grid, arc, through, order, (shape.scale, shape.wall_thickness))
     if not slides:
@@ -179,68 +177,6 @@ def nodes_along(edges: Index) -> Index:
     return np.append(inward.ravel(), edges[-1, END])
 
 
-_CELLS_PER_WALL = 2
-_COINCIDE = 1e-9
-"""Nodes closer than this share of the wall coincide."""
-
-
-def printed_dome(
-    shape: DomeShape, flange_width: float, flange_thickness: float, arc: int | None = None, through: int | None = None
-) -> SolidMesh:
-    """Mesh of a dome whose rim continues below z = 0 as a flange (mm), clamped on its inside, underside and outside.
-
-    The flange's top is free, as in the connector's groove, so the foot of the wall yields slightly. Nine-node cells;
-    ``arc`` and ``through`` as for ``dome``.
-    """
-    n, m = _cells(shape, arc, through)
-    wall, outer = shape.wall_thickness, shape.outer_radius
-    rim = outer + flange_width
-    cap = shape.points(with_middles(graded(n, 1.0)), with_middles(np.linspace(0.0, 1.0, m + 1)))
-    cap[-1, :, 0] = 0.0
-    across = cap[0, :, 0]
-    deep, wide = (max(2, round(_CELLS_PER_WALL * size / wall)) for size in (flange_thickness, flange_width))
-    down = with_middles(np.linspace(-flange_thickness, 0.0, 1 + deep))
-    out = with_middles(np.linspace(outer, rim, 1 + wide))
-    blocks = [cap, _rectangle(across, down), _rectangle(out, down)]
-    nodes, cells, first = _merge(blocks, _COINCIDE * wall)
-    height = cap.shape[1]
-    r, z = nodes.T
-    high = np.flatnonzero((np.abs(z) <= _COINCIDE * wall) & (r >= outer - _COINCIDE * wall))
-    high = high[np.argsort(r[high])]
-    top = np.stack([high[:-2:2], high[2::2], high[1:-1:2]], axis=1).astype(np.intp)
-    faces = (r <= shape.inner_radius + _COINCIDE) | (z <= _COINCIDE - flange_thickness) | (r >= rim - _COINCIDE)
-    return SolidMesh(
-        nodes,
-        cells,
-        inner=first[boundary(n, height, 0)],
-        outer=first[boundary(n, height, height - 1)],
-        clamped=np.flatnonzero((z <= _COINCIDE) & faces).astype(np.intp),
-        axis=first[np.arange(height) + 2 * n * height],
-        sliding=np.zeros(0, np.intp),
-        length=shape.scale,
-        wall=wall,
-        flange=top,
-    )
-
-
-def _rectangle(r: Array, z: Array) -> Array:
-    """Points of a rectangular block, columns along z and rows along r as in the dome; (len(z), len(r), 2)."""
-    return np.stack(np.broadcast_arrays(r[None, :], z[:, None]), axis=-1)
-
-
-def _merge(blocks: list[Array], gap: float) -> tuple[Array, Index, Index]:
-    """Join blocks whose points coincide within ``gap``: nodes (n, 2), cells (m, 9), node numbers of the first block."""
-    points = np.concatenate([block.reshape(-1, 2) for block in blocks])
-    _, kept, number = np.unique(np.round(points / gap), axis=0, return_index=True, return_inverse=True)
-    number = number.reshape(-1)
-    starts = np.cumsum([0, *(block.shape[0] * block.shape[1] for block in blocks)])
-    cells = [
-        number[start + grid_cells(block.shape[0] // 2, block.shape[1] // 2, 9)]
-        for start, block in zip(starts, blocks, strict=False)
-    ]
-    return points[kept], np.concatenate(cells).astype(np.intp), number[: starts[1]].astype(np.intp)
-
-
 MOST_CELLS = 192
 """Greatest number of cells along the arc to resolve an object; with more, a prediction takes minutes."""
 
@@ -251,4 +187,4 @@ def object_cells(sensor: Sensor) -> int | None:
         return None
     shape, smallest = sensor.dome.shape, sensor.protocol.body.smallest
     cells = int(np.ceil(CELLS_PER_RADIUS * shape.arcs[1] / smallest))
-    return cells if cells > _cells(shape, None, None)[0] else None
+    return cells if cells > cell_counts(shape, None, None)[0] else None

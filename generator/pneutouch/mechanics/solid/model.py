@@ -1,8 +1,11 @@
 """The discrete body: energy, forces and stiffness of a wall, with lengths in R0 and stresses in mu."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,7 +14,7 @@ from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
 from pneutouch.mechanics.laws.strain import BY_A, BY_H, BY_J, BY_JH, GRADIENT, HESSIAN, VALUE, Strain
 from pneutouch.mechanics.sensor import RigidBase
 from pneutouch.mechanics.solid.banded import AssemblyPattern, BlockEntries, FaceSums
-from pneutouch.mechanics.solid.base_contact import BaseContact, BaseFace, BaseLoad, FlangeContact, meeting_nodes
+from pneutouch.mechanics.solid.base_contact import BaseContact, BaseFace, BaseLoad
 from pneutouch.mechanics.solid.elements import (
     DEFAULT_SCHEME,
     F_RR,
@@ -29,6 +32,9 @@ from pneutouch.mechanics.solid.elements import (
 )
 from pneutouch.mechanics.solid.mesh import SolidMesh
 from pneutouch.mechanics.solid.object_contact import Contact
+
+if TYPE_CHECKING:
+    from pneutouch.mechanics.solid.flange import FlangeContact
 
 ModulusField = Callable[[Array, Array], Array]
 
@@ -85,7 +91,12 @@ class SolidModel:
     def _assemble(self, base: RigidBase | None) -> None:
         """Number the unknowns, and build contact, cavity and supports on the faces."""
         mesh = self.mesh
-        meeting = self.meeting = meeting_nodes(mesh) if base is not None else np.zeros((0, 0), np.intp)
+        meeting = np.zeros((0, 0), np.intp)
+        if base is not None and mesh.flange.size:
+            from pneutouch.mechanics.solid.flange import meeting_nodes
+
+            meeting = meeting_nodes(mesh)
+        self.meeting = meeting
         self.dofs = _number_dofs(mesh, meeting)
         flat = self.dofs.ravel()
         self.size = int((flat >= 0).sum())
@@ -96,10 +107,11 @@ class SolidModel:
         self.cavity = Cavity(mesh.inner)
         self.contact = Contact(mesh, self.rest, float(self.relative.max()) * CONTACT_STIFFNESS / self.wall)
         self.base = None if base is None else BaseContact(*self._base_faces(base), self.faces)
-        fold = FlangeContact(meeting, self.rest, self.contact, self.faces) if folding.size else None
-        self.supports: tuple[BaseContact | FlangeContact, ...] = tuple(
-            part for part in (self.base, fold) if part is not None
-        )
+        self.supports: tuple[BaseContact | FlangeContact, ...] = () if self.base is None else (self.base,)
+        if folding.size:
+            from pneutouch.mechanics.solid.flange import FlangeContact
+
+            self.supports += (FlangeContact(meeting, self.rest, self.contact, self.faces),)
 
     def _patterns(
         self, width: int = 0, folding: Index | None = None, forms: Mapping[int, BlockEntries] = MappingProxyType({})

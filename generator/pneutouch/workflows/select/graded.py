@@ -10,8 +10,8 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.charts import in_resin
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics.atlas.table import shipped
-from pneutouch.mechanics.limits import Limits
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.prediction import Limits
 from pneutouch.mechanics.rating import rating
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.parts import assemble
