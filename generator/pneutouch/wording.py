@@ -1,4 +1,7 @@
-"""Numbers as documents and texts give them: rounded, counted and listed; and the mark of simulated data."""
+"""Numbers as documents and texts give them: rounded, counted and listed; and the mark of simulated data.
+
+They are rounded because the last bits differ between processors, and no figure needs them.
+"""
 
 import math
 from collections.abc import Sequence
@@ -14,10 +17,7 @@ _Json = TypeVar("_Json")
 
 
 def rounded(value: _Json, digits: int, nothing: float = 0.0) -> _Json:
-    """A JSON value with every float to ``digits`` significant digits; those below ``nothing`` are 0.
-
-    The last bits differ between processors, and no figure needs them.
-    """
+    """A JSON value with every float to ``digits`` significant digits; those below ``nothing`` are 0."""
     result: Any = value
     if isinstance(value, float):
         result = float(f"{value:.{digits}g}") + 0.0 if abs(value) >= nothing else 0.0

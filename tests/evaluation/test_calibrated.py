@@ -10,7 +10,7 @@ import pytest
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.uncertainty import spread
 from pneutouch.mechanics.atlas.figures import FIGURES
-from pneutouch.mechanics.uncertainty import monte_carlo
+from pneutouch.mechanics.uncertainty.document import monte_carlo
 from pneutouch.results.record import SENSITIVITY_KEY as SENSITIVITY
 from pneutouch.results.record import plain as data
 from pneutouch.units import KPA, ML

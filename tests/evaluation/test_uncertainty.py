@@ -13,7 +13,8 @@ from pneutouch.evaluation.uncertainty import uncertainties
 from pneutouch.mechanics.atlas.figures import FIGURES
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.models.accuracy import NUMERICAL
-from pneutouch.mechanics.uncertainty import budget, gas_text, model_errors
+from pneutouch.mechanics.uncertainty.document import budget, gas_text
+from pneutouch.mechanics.uncertainty.sources.model_error import model_errors
 from pneutouch.output.files import json_bytes
 from pneutouch.results.record import plain as data
 from pneutouch.spec.material import Material

@@ -11,8 +11,9 @@ from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.prediction import Limits
 from pneutouch.mechanics.rating import Rating, rated_pressure, rating
-from pneutouch.mechanics.uncertainty import ModelErrors, budget
+from pneutouch.mechanics.uncertainty.document import budget
 from pneutouch.mechanics.uncertainty.propagate import LIMIT
+from pneutouch.mechanics.uncertainty.sources.model_error import ModelErrors
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.units import KPA
 from tests.mechanics.uncertainty.designs import NUMERICAL, materials

@@ -126,7 +126,7 @@ def test_intervals_on_the_sheet_are_those_of_the_budget(built, html, pdf_text):
 
 def test_the_air_on_the_sheet_is_computed_and_no_longer_a_fixed_factor(evaluated, html):
     from pneutouch.mechanics.atlas.press import batch_of
-    from pneutouch.mechanics.uncertainty import gas_notes
+    from pneutouch.mechanics.uncertainty.document import gas_notes
 
     evaluation = evaluated("paper-dome")
     gas = gas_notes(batch_of(evaluation.sensor, [s.driving_pressure for s in evaluation.prediction.states]))

@@ -11,7 +11,7 @@ import pytest
 
 from pneutouch.cli.app import app
 from pneutouch.errors import InputError
-from pneutouch.mechanics.uncertainty import measured_errors
+from pneutouch.mechanics.uncertainty.sources.model_error import measured_errors
 from pneutouch.selection.candidates import margins
 from pneutouch.selection.choose import choose, places, searched
 from pneutouch.spec.material import Material

@@ -27,7 +27,7 @@ from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import RATED_SHARE
 from pneutouch.mechanics.sensor import ResponseCorrection, RigidBase
 from pneutouch.mechanics.solid.mesh import MOST_CELLS, object_cells
-from pneutouch.mechanics.uncertainty import GasNotes, gas_notes
+from pneutouch.mechanics.uncertainty.document import GasNotes, gas_notes
 from pneutouch.selection import CandidateResin, SelectionProblem
 from pneutouch.selection.candidates import CandidatePool
 from pneutouch.selection.contact_search import SolveCandidate, SolvedStates

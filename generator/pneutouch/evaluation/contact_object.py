@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.uncertainty.contact_model import ContactModel
     from pneutouch.parts import Assembly
 
-
 _AT_ONCE = 1e-6
 """Indentation, as a share of R0, up to which contact that reaches an edge does so at first touch."""
 

@@ -258,8 +258,7 @@ def _sensitivity_error(scene: ResolvedDesign, sensor: Sensor, model: str, closur
     if scene.calibration is not None:
         from pneutouch.evaluation.calibrated import calibrated_error
 
-        known = calibrated_error(scene.calibration)
-        if known is not None:
+        if (known := calibrated_error(scene.calibration)) is not None:
             return known
     return sensitivity_error(scene.membrane_material, sensor, model, closure)
 

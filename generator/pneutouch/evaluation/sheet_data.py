@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.prediction import CurveOutcome, SensorPrediction, SensorState
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.response import Figures
-    from pneutouch.mechanics.uncertainty import GasNotes
+    from pneutouch.mechanics.uncertainty.document import GasNotes
     from pneutouch.mechanics.viscous.describe import ViscousRuns
     from pneutouch.parts import Assembly
     from pneutouch.parts.mould.assembly import SiliconeBatch

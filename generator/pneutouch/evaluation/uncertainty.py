@@ -32,10 +32,9 @@ from pneutouch.wording import rounded
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.atlas.press import SensorBatch
-    from pneutouch.mechanics.uncertainty import Budget
     from pneutouch.mechanics.uncertainty.contact_model import ContactModel
+    from pneutouch.mechanics.uncertainty.propagate import Budget
     from pneutouch.mechanics.uncertainty.source import UncertaintySource
-
 
 GAP, STEEP_GAP = 0.2, 0.45
 """Distance of the derivatives d ln sensitivity / d ln modulus and wall of the even wall from those of the graded solid,
@@ -48,7 +47,6 @@ _NOTE = (
     f"6 times as stiff as the other; {STEEP_GAP:g} for 13 times); all of the wall is taken stiffer, or all of it "
     "softer, than its mixing curve states"
 )
-
 
 _LAW_NOTE = (
     "the wall has a fitted law: the figures are the solid's, their relative uncertainty is that of the neo-Hookean "
@@ -215,7 +213,7 @@ def uncertainties(
     if unknown(sensor, model) is not None:
         notes_of_wall += (_soft_note(sensor),)
     from pneutouch.mechanics.atlas.figures import FIGURES
-    from pneutouch.mechanics.uncertainty import document, gas_text, text
+    from pneutouch.mechanics.uncertainty.document import document, gas_text, text
 
     pressures, materials = [state.driving_pressure for state in states], list(resins().values())
     calibrated = scene.calibration is not None
@@ -276,7 +274,7 @@ def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float
 def _sampled(estimate: SensorBudget, row: int, samples: int, figures: Mapping[str, FigureRecord]) -> SampleRecord:
     """The 95.45 % intervals of the samples about the model's figures, and the share of samples without a figure."""
     from pneutouch.mechanics.atlas.figures import FIGURES
-    from pneutouch.mechanics.uncertainty import monte_carlo
+    from pneutouch.mechanics.uncertainty.document import monte_carlo
 
     budget = estimate.budget
     drawn = monte_carlo(estimate.batch, budget.sources, row, samples, shift=budget.shift)

@@ -21,7 +21,6 @@ from pneutouch.wording import tenths_below
 RATED_SHARE = 0.9
 """Rated pressure over the binding limit; above it a warning is given: the dome grows fast near the limit point."""
 
-
 LIMIT_ERROR = LIMIT_DISCRETISATION
 """Greatest relative numerical error of the limit pressure by solid and atlas."""
 

@@ -17,12 +17,10 @@ Model = TypeVar("Model", bound=BaseModel)
 _LONG = re.compile(r"[0-9a-fA-F_]{16}|[01_]{60}")
 """Digits of which a whole number may be too long: TOML has 64 bits, Python has no bound, and a float overflows."""
 
-
 _LONG_KEY = re.compile(r"""(?:(?:(?<![\w-])[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){32}""")
 """A key of more than 32 parts: tomllib takes the square of their number, an hour for those of 1 MB. No file has ten."""
 
 _QUOTED = re.compile(r""""(?:\\.|[^"\\])*"|'[^']*'""")
-
 
 _ODD_NUMBER = re.compile(r"(?<![\w.-])[+-]?(?:\d[\d.eE+-]*_[\d_.eE+-]*|0[xob]\w+)(?![\w-])")
 """Numbers of TOML with underscores, or not decimal: on a command line ``1_0`` is a slip of the keyboard, not ten."""

@@ -7,7 +7,9 @@ from typing import Any, NamedTuple
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.atlas.press import SensorBatch, batch_of
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.uncertainty import Budget, budget, model_errors
+from pneutouch.mechanics.uncertainty.document import budget
+from pneutouch.mechanics.uncertainty.propagate import Budget
+from pneutouch.mechanics.uncertainty.sources.model_error import model_errors
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 

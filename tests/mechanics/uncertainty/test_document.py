@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.atlas.press import batch_of
-from pneutouch.mechanics.uncertainty import document, gas_text, text
+from pneutouch.mechanics.uncertainty.document import document, gas_text, text
 from pneutouch.results.record import plain as data
 from tests.mechanics.test_contact import PAPER
 from tests.mechanics.uncertainty.designs import budget_for

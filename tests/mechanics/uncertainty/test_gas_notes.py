@@ -12,8 +12,7 @@ from scipy.optimize import brentq
 
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.uncertainty import gas_notes
-from pneutouch.mechanics.uncertainty.document import ADIABATIC, REFERENCE_TEMPERATURE
+from pneutouch.mechanics.uncertainty.document import ADIABATIC, REFERENCE_TEMPERATURE, gas_notes
 from tests.mechanics.test_contact import PAPER
 
 

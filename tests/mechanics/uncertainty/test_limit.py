@@ -8,10 +8,11 @@ import pytest
 from pneutouch.mechanics.atlas.figures import INPUTS, neighbourhood
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.table import shipped
-from pneutouch.mechanics.uncertainty import COVERAGE, ModelErrors, monte_carlo
-from pneutouch.mechanics.uncertainty.propagate import COUPON, LIMIT, limit_spread, wall_slope
+from pneutouch.mechanics.uncertainty.document import monte_carlo
+from pneutouch.mechanics.uncertainty.propagate import COUPON, COVERAGE, LIMIT, limit_spread, wall_slope
 from pneutouch.mechanics.uncertainty.source import FIGURE
 from pneutouch.mechanics.uncertainty.sources import sources
+from pneutouch.mechanics.uncertainty.sources.model_error import ModelErrors
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from tests.mechanics.uncertainty.designs import TEN, batch_for, budget_for, materials

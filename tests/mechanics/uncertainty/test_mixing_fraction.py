@@ -10,7 +10,8 @@ from pneutouch.catalogue.mixture import mixed_material
 from pneutouch.mechanics.atlas.figures import FIGURES
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.uncertainty import budget, model_errors
+from pneutouch.mechanics.uncertainty.document import budget
+from pneutouch.mechanics.uncertainty.sources.model_error import model_errors
 from pneutouch.mechanics.uncertainty.sources.modulus import modulus_sources
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
-from pneutouch.mechanics.uncertainty import monte_carlo
+from pneutouch.mechanics.uncertainty.document import monte_carlo
 from tests.mechanics.uncertainty.designs import TEN, batch_for, budget_for
 
 FLOOR = 0.01

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from pneutouch.mechanics.atlas.figures import FIGURES, SENSITIVITY
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.uncertainty import COVERAGE, model_errors
-from pneutouch.mechanics.uncertainty.propagate import propagate, propagate_groups
+from pneutouch.mechanics.uncertainty.propagate import COVERAGE, propagate, propagate_groups
+from pneutouch.mechanics.uncertainty.sources.model_error import model_errors
 from tests.mechanics.test_contact import PAPER
 from tests.mechanics.uncertainty.designs import TEN, batch_for, budget_for, materials
 

@@ -9,9 +9,10 @@ from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.figures import FIGURES, INPUTS, SENSITIVITY
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.paper_sensor import logarithmic_change, material_sensor
-from pneutouch.mechanics.uncertainty import budget, model_errors
+from pneutouch.mechanics.uncertainty.document import budget
 from pneutouch.mechanics.uncertainty.source import UncertaintySource, counting
 from pneutouch.mechanics.uncertainty.sources import modulus
+from pneutouch.mechanics.uncertainty.sources.model_error import model_errors
 from pneutouch.spec.values import Quantity
 from tests.mechanics.uncertainty.designs import budget_for, materials
 

@@ -33,10 +33,10 @@ from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.models.accuracy import NUMERICAL
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.sensor import RigidBase, Sensor
-from pneutouch.mechanics.uncertainty import ModelErrors
 from pneutouch.mechanics.uncertainty.propagate import Budget, propagate_groups
 from pneutouch.mechanics.uncertainty.source import PLACE, UncertaintySource
 from pneutouch.mechanics.uncertainty.sources import sources
+from pneutouch.mechanics.uncertainty.sources.model_error import ModelErrors
 from pneutouch.output.new import write_design
 from pneutouch.parts import Assembly, assemble
 from pneutouch.parts.layout import lay_out_dome

@@ -19,8 +19,8 @@ from pneutouch.mechanics.atlas.table import Atlas, shipped
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import LIMIT_ERROR
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.uncertainty import measured_errors
 from pneutouch.mechanics.uncertainty.propagate import limit_spread
+from pneutouch.mechanics.uncertainty.sources.model_error import measured_errors
 from pneutouch.results.selection import GaugeTrial
 from pneutouch.selection import Candidate, CandidateResin, SelectionProblem, SelectionResult, choose
 from pneutouch.selection.choose import Refine
