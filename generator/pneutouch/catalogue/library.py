@@ -18,7 +18,6 @@ from pydantic import BaseModel
 from pneutouch.errors import InputError, nearest, one_line
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.files import exists, is_file
-from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.grade import MixingCurve
 from pneutouch.spec.material import Material
 from pneutouch.spec.part import MOUNTS, PORTS, SEATS, Tube
@@ -145,6 +144,12 @@ def _calibration(content: dict[str, Any], where: str) -> BaseModel:
     return validate(SensorCalibration, content, where)
 
 
+def _gauge(content: dict[str, Any], where: str) -> BaseModel:
+    from pneutouch.spec.gauge import Gauge
+
+    return validate(Gauge, content, where)
+
+
 def _by_family(models: Mapping[str, type[BaseModel]]) -> ValidateFile:
     """Validator of files that have the keys of the family that they name."""
 
@@ -164,7 +169,7 @@ KINDS: dict[str, FileKind] = {
     "materials": FileKind(_one(Material), "printprofiles/materials"),
     "mixing": FileKind(_one(MixingCurve), "printprofiles/mixing"),
     "printers": FileKind(_one(Printer), "printprofiles"),
-    "gauges": FileKind(_one(Gauge), "printprofiles/gauges"),
+    "gauges": FileKind(_gauge, "printprofiles/gauges"),
     "tubes": FileKind(_one(Tube), "parts/tubes", part=True),
     "ports": FileKind(_by_family(PORTS), "parts/ports", part=True),
     "seats": FileKind(_by_family(SEATS), "parts/seats", part=True),

@@ -11,7 +11,6 @@ from pneutouch.catalogue.library import Library
 from pneutouch.errors import InputError, shown
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import MaterialKind
-from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.part import AnyMount, AnySeat, CastRing, GluedFlange, OnePiece, PerforatedRing, Port, Sleeve, Tube
@@ -21,6 +20,7 @@ from pneutouch.spec.values import name_of
 
 if TYPE_CHECKING:
     from pneutouch.spec.calibration import SensorCalibration
+    from pneutouch.spec.gauge import Gauge
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,6 @@ from pneutouch.mechanics.models.choice import DEFAULT_TOLERANCE, USUAL
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.viscous.prony import AGED, ageing_ratio
 from pneutouch.parts import Assembly, assemble
-from pneutouch.results.prediction import SensitivityError
 from pneutouch.spec.read import Changes
 from pneutouch.units import KPA
 
@@ -236,31 +235,22 @@ def evaluate_drawn(
         if error.file is None and (error.key or "").startswith("contact."):
             error.file = scene.where
         raise
-    known = _sensitivity_error(scene, sensor, prediction.model, options.closure)
+    known, more = None, [*aged]
+    if scene.calibration is not None:
+        from pneutouch.evaluation.calibrated import assumption, calibrated_error, unmeasured
+
+        known = calibrated_error(scene.calibration)
+        deepest = max(state.range_end for state in prediction.states)
+        more = [assumption(scene), *unmeasured(scene, deepest), *more]
+    known = known or sensitivity_error(scene.membrane_material, sensor, prediction.model, options.closure)
     prediction = replace(prediction, error_estimate=prediction.error_estimate.with_sensitivity(known))
     check_plate(scene, prediction)
     check_first_touch(scene, prediction)
-    more = [*aged]
-    if scene.calibration is not None:
-        from pneutouch.evaluation.calibrated import assumption, unmeasured
-
-        deepest = max(state.range_end for state in prediction.states)
-        more = [assumption(scene), *unmeasured(scene, deepest), *more]
     if assembly.dead_volume_note:
         more.append(f"dead volume of 0 mL is {assembly.dead_volume_note}")
     if more:
         prediction = replace(prediction, assumptions=(*prediction.assumptions, *more))
     return Evaluation(scene, assembly, sensor, prediction, options, find_resins)
-
-
-def _sensitivity_error(scene: ResolvedDesign, sensor: Sensor, model: str, closure: str) -> SensitivityError:
-    """The model's known error in sensitivity: by the calibration where there is one, else against Table S1."""
-    if scene.calibration is not None:
-        from pneutouch.evaluation.calibrated import calibrated_error
-
-        if (known := calibrated_error(scene.calibration)) is not None:
-            return known
-    return sensitivity_error(scene.membrane_material, sensor, model, closure)
 
 
 def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:

@@ -1,11 +1,16 @@
 """Reading of a pressure gauge: its range, noise, steps and rate as the mechanics uses them."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from pneutouch.spec.gauge import Gauge
 from pneutouch.spec.values import Quantity
 from pneutouch.units import GAUGE_LIMIT, KPA
+
+if TYPE_CHECKING:
+    from pneutouch.spec.gauge import Gauge
 
 RECORDER_STEP_V = 20.0 / 2**16
 """Step of the recorder of an analog gauge, V: 16 bits over +-10 V (NI's USB-6341, paper, Supplement C; range from NI's
