@@ -31,7 +31,7 @@ def test_a_studio_that_was_stopped_and_another_at_its_port(pages):
     move(page, "Wall thickness, mm", 290)
     until(page, f"{_STATUS}.includes('does not answer: it was stopped')")
     assert page.locator("#status").text_content().count(f"--port {first.port} ") == 1
-    assert page.evaluate("document.getElementById('results').classList.contains('stale')")
+    assert page.evaluate("document.getElementById('area-design').classList.contains('stale')")
     with served("--port", str(first.port)) as (address, _):
         # It knows nothing of the old page, which says so.
         move(page, "Wall thickness, mm", 280)
@@ -43,7 +43,7 @@ def test_a_studio_that_was_stopped_and_another_at_its_port(pages):
         # The user comes back from the other tab: the design that was left is answered, without another move.
         page.evaluate("window.dispatchEvent(new Event('focus'))")
         solved(page, left)
-        assert not page.evaluate("document.getElementById('results').classList.contains('stale')")
+        assert not page.evaluate("document.getElementById('area-design').classList.contains('stale')")
         move(page, "Wall thickness, mm", 300)
         until(page, f"location.hash !== {left!r} && document.body.dataset.solved === location.hash && {SOLVED}")
 

@@ -253,7 +253,7 @@ def test_a_page_says_that_another_one_saved_its_design(own, pages, home):
     said = "document.getElementById('status').textContent"
     until(second, f"{said}.includes('was changed since this page read it')")
     assert second.evaluate(wall) == "1.5"
-    assert second.evaluate("document.getElementById('results').classList.contains('stale')")
+    assert second.evaluate("document.getElementById('area-design').classList.contains('stale')")
     shown(second).get_by_label("Name").last.fill("shared")
     second.get_by_role("button", name="Save", exact=True).click()
     until(second, "document.getElementById('save-problems').textContent.includes('was changed since')")

@@ -252,7 +252,7 @@ class DrawnDesign:
     bodies: list[DrawnBody]
     inner_radius_mm: float
     wall_thickness_mm: float
-    flange_diameter_mm: float
+    diameter_mm: float
     size_mm: list[float]
     low_mm: float
     high_mm: float
@@ -303,7 +303,7 @@ def _drawn_design(assembly: Assembly) -> DrawnDesign:
         bodies=bodies,
         inner_radius_mm=layout.inner_radius,
         wall_thickness_mm=layout.wall,
-        flange_diameter_mm=2 * layout.flange_radius,
+        diameter_mm=2 * layout.plate_radius,
         size_mm=[round(float(value), _DRAWN_DIGITS) for value in high - low],
         low_mm=round(float(low[2]), _DRAWN_DIGITS),
         high_mm=round(float(high[2]), _DRAWN_DIGITS),

@@ -1,6 +1,6 @@
 // Charts of what the studio answered; nothing is computed here.
 import uPlot from "/vendor/uPlot.esm.js";
-import { byId, colour, short } from "./dom.js";
+import { byId, colour, rated, short } from "./dom.js";
 
 const HEIGHT = 270;
 const drawn = new Map();
@@ -81,6 +81,9 @@ function markers(host) {
   };
 }
 
+/** Both ends of the interval, whose lines follow one another: one entry of the legend. */
+const ends = (chart, high, at) => (at === null || high === null || high === undefined ? "" : `${read(chart.data[3][at])} to ${read(high)}`);
+
 // What a chart keeps of its options stands here: a function made inside `show` would keep the chart before, and that the one before it.
 const reading = (_, value) => read(value);
 const upwards = (_, low, high) => [Math.min(0, low ?? 0), (high ?? 1) * 1.06 || 1];
@@ -112,6 +115,8 @@ export function show(id, across, up, lines, data, { bands = [], marks = [], poin
     cursor: { drag: { x: false, y: false } },
     hooks: { draw: [markers(host)] },
     legend: { show: legend, live: true },
+    // Points between pixels: rounded to them, a slow curve would have steps.
+    pxAlign: 0,
   };
   if (points) options.series[points].points = { show: true, size: 8 };
   entry.chart = new uPlot(options, data, host);
@@ -121,7 +126,7 @@ export function show(id, across, up, lines, data, { bands = [], marks = [], poin
   canvas.setAttribute("aria-label", `${up} over ${across}: ${lines.map((one) => one.label).join(", ")}`);
 }
 
-export const tone = (number) => colour(`series-${1 + (number % 7)}`);
+export const tone = (number) => colour(`series-${1 + (number % 8)}`);
 
 /** Sensitivity over driving pressure: this design with its band, its states, every resin, and a pinned design. */
 export function drawSensitivity(answer, pinned) {
@@ -140,8 +145,8 @@ export function drawSensitivity(answer, pinned) {
     const nothing = own.driving_pressure_kPa.map(() => null);
     const edge = { width: 1, dash: [2, 3] };
     if (own.low_kPa_per_N || answer.pending) {
-      add(own.driving_pressure_kPa, own.high_kPa_per_N ?? nothing, series("interval, k = 2: to", colour("accent"), edge));
-      add(own.driving_pressure_kPa, own.low_kPa_per_N ?? nothing, series("from", colour("accent"), edge));
+      add(own.driving_pressure_kPa, own.high_kPa_per_N ?? nothing, series("interval, k = 2", colour("accent"), { ...edge, value: (chart, high, _, at) => ends(chart, high, at) }));
+      add(own.driving_pressure_kPa, own.low_kPa_per_N ?? nothing, series("interval, lower end", colour("accent"), { ...edge, class: "unlisted" }));
       bands.push({ series: [2, 3], fill: colour("band") });
     }
   }
@@ -154,16 +159,16 @@ export function drawSensitivity(answer, pinned) {
   const material = answer.drawing.bodies.find((body) => body.role === "membrane").material;
   // The design's own resin is drawn already.
   answer.curves.resins.filter((resin) => !own || !material.startsWith(resin.title)).forEach((resin, k) => {
-    add(resin.driving_pressure_kPa, resin.sensitivity_kPa_per_N, series(resin.title, tone(k % 6 + 1), { width: 1.3, dash: k < 6 ? undefined : [7, 3] }));
+    add(resin.driving_pressure_kPa, resin.sensitivity_kPa_per_N, series(resin.title, tone(k % 7 + 1), { width: 1.3, dash: k < 7 ? undefined : [7, 3] }));
   });
   if (pinned && pinned.curves && pinned.curves.design) {
     const { driving_pressure_kPa: pressures, sensitivity_kPa_per_N: values } = pinned.curves.design;
     add(pressures, values, series("pinned", colour("ink"), { dash: [6, 4] }));
   }
-  const rated = { at: answer.prediction.rating.rated_pressure_kPa, words: "rated", colour: "warning" };
+  const limit = { at: answer.prediction.rating.rated_pressure_kPa, words: "rated", colour: "warning" };
   show("sensitivity", "driving pressure, kPa", "sensitivity, kPa/N", lines, uPlot.join(tables), {
     bands,
-    marks: [rated],
+    marks: [limit],
     points: marked,
   });
 }
@@ -192,7 +197,7 @@ export function drawInflation(answer) {
     highest = Math.max(highest, pressure);
   });
   const pick = (name) => rising.map((k) => inflation[name][k]);
-  const marks = [{ at: rating.rated_pressure_kPa, words: `rated ${short(rating.rated_pressure_kPa, 3)} kPa`, colour: "warning" }];
+  const marks = [{ at: rating.rated_pressure_kPa, words: `rated ${rated(rating)} kPa`, colour: "warning" }];
   if (limits.limit_point_kPa !== null) {
     marks.push({ at: limits.limit_point_kPa, words: `limit point ${short(limits.limit_point_kPa, 3)} kPa`, colour: "error" });
   }

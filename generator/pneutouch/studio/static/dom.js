@@ -31,6 +31,9 @@ export function short(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
+/** A rated pressure as the commands print it: never rounded up. */
+export const rated = (rating) => (Math.floor(10 * rating.rated_pressure_kPa + 1e-9) / 10).toFixed(1);
+
 export function interval(figure, digits = 3) {
   return figure ? `${short(figure.low, digits)} to ${short(figure.high, digits)}` : "";
 }

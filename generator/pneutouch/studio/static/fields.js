@@ -69,7 +69,7 @@ export class Fields {
 
   more(name, fields) {
     if (!fields.length) return null;
-    const title = name.charAt(0).toUpperCase() + name.slice(1);
+    const title = (name.charAt(0).toUpperCase() + name.slice(1)).replaceAll("_", " ");
     const folded = element("details", {}, element("summary", {}, `${title}: more`), ...fields.map((field) => this.row(field)));
     this.folded.set(name, folded);
     return folded;

@@ -28,7 +28,7 @@ function dimension([x0, z0], [x1, z1], tick) {
 
 function dimensions(drawing, size, tick) {
   const { inner_radius_mm: inner, wall_thickness_mm: wall, low_mm: low, high_mm: high } = drawing;
-  const half = drawing.size_mm[0] / 2;
+  const half = drawing.diameter_mm / 2;
   const at = (radius, angle) => [radius * Math.cos(angle), radius * Math.sin(angle)];
   const arm = 1.05;
   const place = [half + 2.5 * size, high];
@@ -75,18 +75,21 @@ export function drawSection(drawing, pinned, pressed) {
     width = byId("section").clientWidth;
     measured.observe(byId("section"));
   }
-  const half = drawing.size_mm[0] / 2;
+  const half = drawing.diameter_mm / 2;
+  // A port at the side stands out to the right.
+  const out = Math.max(0, drawing.size_mm[0] - drawing.diameter_mm);
   const usual = 0.068 * Math.max(half, 0.6 * (drawing.high_mm - drawing.low_mm));
   // On a narrow screen letters of about 11 pixels, as far as there is space for them.
   const size = Math.max(usual, Math.min((22 * half) / Math.max(1, width - 176), 0.13 * half));
   const low = drawing.low_mm - 4 * size;
-  const box = [-half - 7 * size, -drawing.high_mm - 2 * size, 2 * half + 16 * size, drawing.high_mm - low + 2 * size];
+  const box = [-half - 7 * size, -drawing.high_mm - 2 * size, 2 * half + Math.max(16 * size, out + 2 * size), drawing.high_mm - low + 2 * size];
   const words = drawing.bodies.map((body) => `${body.name} of ${body.material}`).join(", ");
   const svg = element(
     "svg:svg",
     { viewBox: box.join(" "), role: "img", "aria-label": `Section through ${words}, ${drawing.size_mm.map((v) => short(v)).join(" by ")} mm` },
     ...drawing.bodies.map((body) =>
-      element("svg:path", { d: outline([body]), class: `outline ${body.role === "membrane" ? "membrane" : "rigid"}` }),
+      // Pressed, the wall as printed is an outline behind the pressed one.
+      element("svg:path", { d: outline([body]), class: `outline ${body.role !== "membrane" ? "rigid" : pressed ? "resting" : "membrane"}` }),
     ),
     ...pressedWall(pressed, half),
     pinned ? element("svg:path", { d: outline(pinned.bodies), class: "pinned" }) : null,

@@ -55,12 +55,16 @@ function show() {
   parts.form.show(page.state, files.plain[page.state.base] ?? page.quick);
 }
 
+/** A design in the list: the one that is open says so where it differs from its file. */
+const named = ({ value, selected }) => (selected && Object.keys(page.state.values).length ? `${value}, changed` : value);
+
 /** Request the answers to the state as it is now: what is quick, and after its answer to the last move the solid. */
 function update(settled = true) {
   show();
   buttons();
   report("Computing.", true);
   byId("base").value = page.state.base;
+  for (const option of byId("base").options) option.textContent = named(option);
   address.note(page.state, settled ? 0 : SETTLED);
   document.dispatchEvent(new Event("design"));
   clearTimeout(parts.soon);
@@ -112,7 +116,7 @@ function changed(name, text, settled) {
 function problems(list) {
   const without = parts.form.wrong(list);
   byId("problems").replaceChildren(...without.map((message) => element("li", {}, message)));
-  byId("results").classList.toggle("stale", list.length > 0);
+  byId("area-design").classList.toggle("stale", list.length > 0);
 }
 
 /** Draw the prediction: that of the quick answer, with its intervals once they are there, or the solid's in its place. */
@@ -144,6 +148,9 @@ function draw() {
   else tables.showComparison(page.pinned, answer);
 }
 
+/** The curve of a resin whose sensitivities are not known yet. */
+const unknown = (resin) => ({ ...resin, sensitivity_kPa_per_N: resin.sensitivity_kPa_per_N.map(() => null) });
+
 function quickly(question, status, content) {
   owed.send = null;
   page.outdated = status === CHANGED;
@@ -158,13 +165,13 @@ function quickly(question, status, content) {
   problems([]);
   question = files.answered(question, content);
   parts.pressed.show(null);
-  // Curves of the resins stay those of the design before until the next ones are there.
-  if (content.curves) content.curves.resins = page.quick?.curves?.resins ?? [];
+  // The resins keep their lines, without points until those of this design are there.
+  if (content.curves) content.curves.resins = (page.quick?.curves?.resins ?? []).map(unknown);
   page.quick = { ...content, base: question.base, pending: true };
   page.solved = null;
   parts.form.usual(content);
   show();
-  byId("results").classList.toggle("stale", !content.prediction);
+  byId("area-design").classList.toggle("stale", !content.prediction);
   draw();
   tables.showFindings(null);
   tables.showPrint(null);
@@ -202,7 +209,7 @@ function solved(question, status, content) {
   }
   if (!page.quick) return;
   page.solved = { ...content, pending: false };
-  byId("results").classList.remove("stale");
+  byId("area-design").classList.remove("stale");
   predicted(current());
   charts.complete();
   parts.pressed.show(content);
@@ -224,7 +231,7 @@ function replaced(question) {
 function failed(question, error) {
   owed.send = error instanceof Stopped ? () => update() : null;
   report(error instanceof Stopped ? error.message : `The page has a fault: ${error.message}`);
-  byId("results").classList.add("stale");
+  byId("area-design").classList.add("stale");
   if (!(error instanceof Stopped)) throw error;
 }
 
@@ -237,6 +244,14 @@ function pin() {
 async function copy() {
   const words = address.options(page.state, desk.words(page.state.base));
   report((await copied(words)) ? `Copied: ${words}` : words);
+}
+
+/** On a narrow screen the figures come first, and the form opens below them. */
+function fold() {
+  const beside = matchMedia("(min-width: 900px)");
+  const set = () => (byId("change").open = beside.matches);
+  beside.addEventListener("change", set);
+  set();
 }
 
 function listen() {
@@ -291,6 +306,7 @@ async function start() {
   parts.shapes = new Line("/api/view", (_, status, content) => status === 200 && parts.view.show(content.bodies), failed);
   page.state = address.read(location.hash) ?? { base: declared.first, values: {} };
   byId("base").value = page.state.base;
+  fold();
   listen();
   parts.areas = new Areas(desk, MODULES);
   listenForFiles(desk);

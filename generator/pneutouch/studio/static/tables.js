@@ -1,5 +1,5 @@
 // Figures, findings and what the print takes, as text.
-import { byId, element, interval, short } from "./dom.js";
+import { byId, element, interval, rated, short } from "./dom.js";
 
 const cell = (tag, words, scope) => element(tag, { scope }, words);
 
@@ -22,6 +22,9 @@ function tile(words, value, unit, more = "") {
   return element("div", { class: "tile" }, element("small", {}, words), element("b", {}, value, element("small", {}, ` ${unit}`)), element("small", {}, more));
 }
 
+/** How far a port at the side stands out. */
+const sideways = ({ size_mm: [wide], diameter_mm: across }) => (wide > across + 0.01 ? `, ${short(wide, 3)} mm with its port` : "");
+
 export function showTiles(answer, solved) {
   const { prediction } = answer;
   const state = prediction.states.at(-1);
@@ -30,9 +33,9 @@ export function showTiles(answer, solved) {
   const sensitivity = state.uncertainty?.figures?.sensitivity_kPa_per_N;
   byId("tiles").replaceChildren(
     tile(`Sensitivity at ${short(state.driving_pressure_kPa)} kPa`, short(state.sensitivity_kPa_per_N, 3), "kPa/N", interval(sensitivity)),
-    tile("Rated pressure", short(prediction.rating.rated_pressure_kPa, 3), "kPa", `limit: ${prediction.rating.limit}`),
+    tile("Rated pressure", rated(prediction.rating), "kPa", `limit: ${prediction.rating.limit}`),
     tile("Limit point", short(prediction.limits.limit_point_kPa, 3), "kPa", prediction.limit_point ? `apex at ${short(prediction.limit_point.apex_height_outer_mm, 3)} mm outside` : ""),
-    tile("Size", size ? short(size.size_mm[0], 3) : "–", "mm across", size ? `${short(size.size_mm[2], 3)} mm high` : ""),
+    tile("Size", size ? short(size.diameter_mm, 3) : "–", "mm across", size ? `${short(size.size_mm[2], 3)} mm high${sideways(size)}` : ""),
     tile("Membrane", membrane ? short(membrane.mass_g, 3) : "–", "g", answer.drawing?.bodies[0].material ?? ""),
   );
 }
@@ -114,8 +117,7 @@ export function showComparison(pinned, answer) {
       if (!other) continue;
       for (const [key, label] of COLUMNS.slice(0, 4)) rows.push([`${label}, at ${short(pressure)} kPa`, figure(other, key), figure(state, key)]);
     }
-    const rated = (prediction) => short(prediction.rating.rated_pressure_kPa);
-    rows.push(["rated pressure, kPa", rated(pinned.prediction), rated(answer.prediction)]);
+    rows.push(["rated pressure, kPa", rated(pinned.prediction.rating), rated(answer.prediction.rating)]);
   }
   byId("comparison").replaceChildren(table(["field or figure", `pinned: ${pinned.name}`, `now: ${answer.name}`], rows));
 }

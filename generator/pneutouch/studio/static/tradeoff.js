@@ -1,7 +1,7 @@
 // The trade-off chart: fronts of the resins, the window of the target, and the candidates to choose from. It draws alone.
 import { element, short } from "./dom.js";
 
-const HEIGHT = 400;
+const LEAST_HEIGHT = 400;
 const EDGE = { left: 58, top: 14, bottom: 46 };
 const LABEL = 19;
 const DASHES = ["", "9 4", "2 3", "9 3 2 3", "16 4", "5 3", "9 3 2 3 2 3", "3 7"];
@@ -96,7 +96,9 @@ export class TradeOff {
     const names = this.width > 520;
     const longest = Math.max(0, ...this.cards.map((card) => this.label(card, names).length));
     const right = this.width - 16 - 7.2 * longest - (longest ? 26 : 0);
-    this.area = { left: EDGE.left, right, top: EDGE.top, bottom: HEIGHT - EDGE.bottom };
+    // The labels of all candidates stand beside the chart.
+    const height = Math.max(LEAST_HEIGHT, EDGE.top + EDGE.bottom + LABEL * this.cards.length);
+    this.area = { left: EDGE.left, right, top: EDGE.top, bottom: height - EDGE.bottom };
     const [x, y] = this.limits();
     const scale = ([low, high], from, to) => (value) => from + ((to - from) * Math.log(value / low)) / Math.log(high / low);
     this.x = scale(x, this.area.left, this.area.right);
@@ -104,7 +106,7 @@ export class TradeOff {
     const inside = svg("g", { "clip-path": "url(#plot-area)" }, this.window(x, y), this.gauge(x), ...this.fronts());
     const picture = svg(
       "svg",
-      { width: this.width, height: HEIGHT, role: "group", "aria-label": "Trade-off chart: force range in N over sensitivity in kPa/N, with the candidates to choose from" },
+      { width: this.width, height, role: "group", "aria-label": "Trade-off chart: force range in N over sensitivity in kPa/N, with the candidates to choose from" },
       svg("defs", {}, svg("clipPath", { id: "plot-area" }, svg("rect", this.box()))),
       svg("g", { "aria-hidden": "true" }, ...this.grid(x, y), inside, ...this.words()),
       this.marks(names),
