@@ -11,6 +11,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.bench.record import BlockCollector, Blocks, SuspectInterval
+from pneutouch.bench.run_warnings import lagging
 from pneutouch.bench.source import MeasuredFile
 from pneutouch.bench.statistics import Mean
 from pneutouch.errors import InputError
@@ -45,13 +46,6 @@ PLATE, HAND, LEAK = ("time", "position", "force", "pressure"), ("time", "force",
 _COPIED = 1e-6
 """Difference, as a share of its span, up to which a channel is a copy of another (rounding): our choice. No two
 instruments agree so closely."""
-
-_BEND, _MOST_LAG = 0.2, 0.6
-"""Distance over which a bend of force or pressure is measured, and greatest lag that is looked for, s: our choice."""
-
-_MATCHED, _BLURRED, _LAG_COUNTS = 0.9, 0.5, 0.01
-"""Correlation of the bends from which their lag is known, greatest one at other lags, and change of the rise at its
-steepest, as a share of its span, from which a lag is asked about: our choice."""
 
 _EXACT = 1e-9
 """Relative difference up to which two blocks hold the same number: summing rounds."""
@@ -91,7 +85,7 @@ def read_blocks(
     end = float(blocks.time[-1])
     warnings = [SuspectInterval(end, end, "last row left out: no line end, so its last number may be cut", False)][:cut]
     if pressed:
-        warnings += _lagging(blocks)
+        warnings += lagging(blocks)
         _check_apart(blocks, names)
         if "position" in keys:
             _check_alive(blocks, names)
@@ -173,42 +167,6 @@ def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
         close = _EXACT * float(np.abs(values).max())
         if spread[moving].max() <= close and np.ptp(values[moving]) <= close:
             raise InputError(f"column {names[key]}: {problem} whenever the plate moves{question}", file=blocks.file)
-
-
-def _lagging(blocks: Blocks) -> list[SuspectInterval]:
-    """Doubt about the time between force and pressure: both bend where the plate turns, so the bends must coincide."""
-    step = float(np.median(np.diff(blocks.time)))
-    even = np.arange(blocks.time[0], blocks.time[-1], step)
-    force, rise = (np.interp(even, blocks.time, values) for values in (blocks.force, blocks.pressure))
-    lag = _lag(force, rise, step)
-    span = float(np.ptp(rise))
-    if abs(lag) < 2 * step or float(np.abs(np.diff(rise)).max()) * abs(lag) / step < _LAG_COUNTS * span:
-        return []
-    first, later = ("pressure", "force") if lag < 0 else ("force", "pressure")
-    why = f"{later} turns {abs(lag):.2g} s after the {first}: does a filter or another clock delay one of the channels?"
-    return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True, "asked")]
-
-
-def _lag(force: Array, rise: Array, step: float) -> float:
-    """Time in s by which the bends of the rise follow those of the force, both (n,) at even times; 0 if not known.
-
-    The second differences over `_BEND` are correlated. A smooth press or a resin that relaxes fast has no sharp
-    maximum."""
-    half, reach = max(round(_BEND / step), 2), round(_MOST_LAG / step)
-    if force.size < 8 * half or reach < 2:
-        return 0.0
-    bends = [x[2 * half :] - 2 * x[half:-half] + x[: -2 * half] for x in (force, rise)]
-    of_force, of_rise = (bend - bend.mean() for bend in bends)
-    scale = math.sqrt(float((of_force**2).sum() * (of_rise**2).sum()))
-    if scale == 0.0:
-        return 0.0
-    lags = np.arange(-3 * reach, 3 * reach + 1)
-    size = 2 ** (of_force.size + lags.size).bit_length()
-    match = np.fft.irfft(np.fft.rfft(of_rise, size) * np.conj(np.fft.rfft(of_force, size)), size)[lags] / scale
-    near = np.abs(lags) <= reach
-    best = int(np.argmax(np.where(near, match, -1.0)))
-    known = match[best] >= _MATCHED and float(np.abs(match[~near]).max()) <= _BLURRED
-    return step * float(lags[best]) if known else 0.0
 
 
 def _clipped(

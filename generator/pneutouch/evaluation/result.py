@@ -86,7 +86,7 @@ def as_drawn(evaluation: Evaluation) -> tuple[StateRecord, ...]:
         drawn = predict(prediction.design, sensor, [s.driving_pressure for s in prediction.states], model="atlas")
     except InputError:
         return ()
-    return by_model(drawn, curves=False).states
+    return by_model(drawn).states
 
 
 def _anywhere(evaluation: Evaluation) -> ContactAnywhere:

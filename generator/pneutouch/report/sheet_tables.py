@@ -30,8 +30,10 @@ def key_figures(sheet: SheetData) -> list[Tile]:
     mass = sum(solid.mass for solid in sheet.assembly.solids)
     wide, dead_volume_mL = 2 * sheet.assembly.layout.plate_radius, sheet.prediction.dead_volume / ML
     behind = sheet.assembly.dead_volume_note or "behind the cavity"
-    if sheet.as_drawn and (real := sheet.as_drawn[-1].sensitivity_kPa_per_N) is not None:
-        behind = f"{behind}, and the sensor then reads {real:.2f} kPa/N at {last.driving_pressure / KPA:g} kPa"
+    if sheet.as_drawn and (drawn_kPa_per_N := sheet.as_drawn[-1].sensitivity_kPa_per_N) is not None:
+        behind = (
+            f"{behind}, and the sensor then reads {drawn_kPa_per_N:.2f} kPa/N at {last.driving_pressure / KPA:g} kPa"
+        )
     return [
         Tile("Sensitivity", _sensitivity(first), "kPa/N", _condition(sheet, 0)),
         Tile("Sensitivity", _sensitivity(last), "kPa/N", _condition(sheet, -1)),
@@ -89,7 +91,7 @@ def ratings(sheet: SheetData) -> list[list[str]]:
 
 
 def connections(sheet: SheetData) -> list[list[str]]:
-    """What to connect: port, tube, gauge, mount, and the pressures before contact."""
+    """Things to connect: port, tube, gauge, mount, and the pressures before contact."""
     scene = sheet.scene
     pneumatics, tube = scene.design.pneumatics, scene.tube
     return [

@@ -128,6 +128,9 @@ export function show(id, across, up, lines, data, { bands = [], marks = [], poin
 
 export const tone = (number) => colour(`series-${1 + (number % 8)}`);
 
+/** The curve of a resin whose sensitivities are not known yet: its line stays, so that the chart is not made again. */
+export const withoutPoints = (resin) => ({ ...resin, sensitivity_kPa_per_N: resin.sensitivity_kPa_per_N.map(() => null) });
+
 /** Sensitivity over driving pressure: this design with its band, its states, every resin, and a pinned design. */
 export function drawSensitivity(answer, pinned) {
   const states = answer.prediction.states.filter((state) => state.sensitivity_kPa_per_N !== null);

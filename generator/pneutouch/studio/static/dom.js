@@ -15,6 +15,11 @@ export function element(tag, attributes = {}, ...children) {
 
 export const byId = (id) => document.getElementById(id);
 
+/** The chosen option says so where it differs from what it names. */
+export function mark(select, changed) {
+  for (const option of select.options) option.textContent = option.selected && changed ? `${option.value}, changed` : option.value;
+}
+
 /** Put words into the clipboard; false where the browser does not let the page. */
 export async function copied(words) {
   try {

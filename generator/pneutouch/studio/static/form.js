@@ -34,6 +34,7 @@ export class Form extends Fields {
     main.splice(main.indexOf("contact.object") + 1, 0, ...measures);
     byId("form").replaceChildren(...this.rows(main));
     byId("form").addEventListener("submit", (event) => event.preventDefault());
+    fold();
   }
 
   slides(field) {
@@ -92,4 +93,12 @@ export class Form extends Fields {
     const dead = answer.prediction ? short(answer.prediction.dead_volume_mL) : "";
     this.fields.get("pneumatics.dead_volume_mL").input.placeholder = dead;
   }
+}
+
+/** On a narrow screen the figures come first, and the form opens below them. */
+function fold() {
+  const beside = matchMedia("(min-width: 900px)");
+  const set = () => (byId("change").open = beside.matches);
+  beside.addEventListener("change", set);
+  set();
 }

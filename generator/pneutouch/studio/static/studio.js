@@ -3,7 +3,7 @@ import * as address from "./address.js";
 import { Areas } from "./areas.js";
 import { Line, send, Stopped, unlock } from "./requests.js";
 import * as charts from "./charts.js";
-import { byId, copied, element } from "./dom.js";
+import { byId, copied, element, mark } from "./dom.js";
 import { Following } from "./following.js";
 import { Form } from "./form.js";
 import { listenForFiles } from "./opening.js";
@@ -55,16 +55,13 @@ function show() {
   parts.form.show(page.state, files.plain[page.state.base] ?? page.quick);
 }
 
-/** A design in the list: the one that is open says so where it differs from its file. */
-const named = ({ value, selected }) => (selected && Object.keys(page.state.values).length ? `${value}, changed` : value);
-
 /** Request the answers to the state as it is now: what is quick, and after its answer to the last move the solid. */
 function update(settled = true) {
   show();
   buttons();
   report("Computing.", true);
   byId("base").value = page.state.base;
-  for (const option of byId("base").options) option.textContent = named(option);
+  mark(byId("base"), Object.keys(page.state.values).length > 0);
   address.note(page.state, settled ? 0 : SETTLED);
   document.dispatchEvent(new Event("design"));
   clearTimeout(parts.soon);
@@ -148,9 +145,6 @@ function draw() {
   else tables.showComparison(page.pinned, answer);
 }
 
-/** The curve of a resin whose sensitivities are not known yet. */
-const unknown = (resin) => ({ ...resin, sensitivity_kPa_per_N: resin.sensitivity_kPa_per_N.map(() => null) });
-
 function quickly(question, status, content) {
   owed.send = null;
   page.outdated = status === CHANGED;
@@ -165,8 +159,7 @@ function quickly(question, status, content) {
   problems([]);
   question = files.answered(question, content);
   parts.pressed.show(null);
-  // The resins keep their lines, without points until those of this design are there.
-  if (content.curves) content.curves.resins = (page.quick?.curves?.resins ?? []).map(unknown);
+  if (content.curves) content.curves.resins = (page.quick?.curves?.resins ?? []).map(charts.withoutPoints);
   page.quick = { ...content, base: question.base, pending: true };
   page.solved = null;
   parts.form.usual(content);
@@ -246,14 +239,6 @@ async function copy() {
   report((await copied(words)) ? `Copied: ${words}` : words);
 }
 
-/** On a narrow screen the figures come first, and the form opens below them. */
-function fold() {
-  const beside = matchMedia("(min-width: 900px)");
-  const set = () => (byId("change").open = beside.matches);
-  beside.addEventListener("change", set);
-  set();
-}
-
 function listen() {
   byId("undo").onclick = () => step("past", "future");
   byId("redo").onclick = () => step("future", "past");
@@ -306,7 +291,6 @@ async function start() {
   parts.shapes = new Line("/api/view", (_, status, content) => status === 200 && parts.view.show(content.bodies), failed);
   page.state = address.read(location.hash) ?? { base: declared.first, values: {} };
   byId("base").value = page.state.base;
-  fold();
   listen();
   parts.areas = new Areas(desk, MODULES);
   listenForFiles(desk);
