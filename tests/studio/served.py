@@ -84,7 +84,8 @@ def solved(page: Page, design: str) -> None:
 
 
 def move(page: Page, label: str, place: float) -> None:
-    """Move the slider of a name to a place and let it go."""
+    """Move the slider of a name to a place and let it go; on a narrow screen the form is opened."""
+    page.evaluate("document.getElementById('change').open = true")
     page.get_by_role("slider", name=label, exact=True).evaluate(
         "(slider, place) => { slider.value = place; slider.dispatchEvent(new Event('input'));"
         "slider.dispatchEvent(new Event('change')); }",

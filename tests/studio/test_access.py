@@ -13,7 +13,7 @@ _WRONG = "#paper-dome&membrane.wall_thickness_mm=14"
 
 def _pinned_and_wrong(page) -> None:
     """Pin the design and go to one that cannot work: all that the page has is shown then."""
-    page.get_by_role("button", name="Pin").click()
+    page.get_by_role("button", name="Pin", exact=True).click()
     move(page, "Wall thickness, mm", 290)
     until(page, f"document.querySelectorAll('#comparison tbody tr').length > 5 && {SOLVED}")
     page.evaluate(f"location.hash = {_WRONG!r}")
@@ -37,7 +37,7 @@ def test_every_state_breaks_no_rule_at_every_width_in_light_and_dark(width, dark
     solved(page, "#paper-dome")
     page.evaluate("document.querySelectorAll('details').forEach((each) => (each.open = true))")
     assert violations(page) == []
-    page.get_by_role("button", name="Pin").click()
+    page.get_by_role("button", name="Pin", exact=True).click()
     until(page, "!document.getElementById('compared').hidden")
     assert violations(page) == []
     page.get_by_role("button", name="Unpin").click()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 
 import pytest
 
@@ -126,3 +127,26 @@ def test_without_webgl_the_section_stands_alone():
         process.wait(60)
         move(plain, "Wall thickness, mm", 290)
         until(plain, "document.getElementById('status').textContent.includes('was stopped')")
+
+
+def test_on_a_narrow_screen_the_figures_come_before_the_form(open_studio):
+    narrow = open_studio(width=400)
+    top = "document.getElementById({!r}).getBoundingClientRect().top"
+    assert not narrow.evaluate("document.getElementById('change').open")
+    assert narrow.evaluate(f"{top.format('tiles')} < {top.format('change')} && {top.format('change')} < {top.format('section')}")
+    narrow.get_by_text("Change the design").click()
+    assert narrow.get_by_role("slider", name="Wall thickness, mm").is_visible()
+
+
+def test_a_changed_design_says_so_in_the_list_and_a_port_at_the_side_in_its_size(open_studio):
+    page = open_studio("#paper-dome&connector.mount=finger-16&membrane.inner_radius_mm=6&membrane.wall_thickness_mm=1")
+    assert page.evaluate("document.getElementById('base').selectedOptions[0].textContent") == "paper-dome, changed"
+    size = page.locator(".tile", has_text="Size").inner_text()
+    assert re.search(r"22\.6\s+mm across", size) and re.search(r"with its port", size)
+
+
+def test_a_chart_lists_an_interval_once_and_not_its_axis(screen):
+    shown = "[...document.querySelectorAll('#sensitivity .u-series')].filter(e => e.offsetParent).map(e => e.textContent)"
+    entries = screen.evaluate(shown)
+    assert sum("interval" in entry for entry in entries) == 1
+    assert not any("driving pressure, kPa" in entry for entry in entries)

@@ -108,9 +108,9 @@ def test_where_nothing_is_found_it_says_so_in_the_words_of_select(command):
 @pytest.mark.slow
 def test_what_one_change_makes_possible_is_a_card_whose_state_has_the_change():
     content = asked({"target.sensitivity_kPa_per_N": "8"})
-    (said,) = content["selection"]["single_changes"]
-    (card,) = [card for card in content["cards"] if card["kind"] == "changed"]
-    assert said["field"] == "setting.tube_length_mm"
+    said, process = content["selection"]["single_changes"]
+    card, _ = [card for card in content["cards"] if card["kind"] == "changed"]
+    assert (said["field"], process["field"]) == ("setting.tube_length_mm", "setting.processes")
     assert float(card["state"]["values"]["pneumatics.tube_length_mm"]) == said["value"]
 
 
