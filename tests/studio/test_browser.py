@@ -133,7 +133,9 @@ def test_on_a_narrow_screen_the_figures_come_before_the_form(open_studio):
     narrow = open_studio(width=400)
     top = "document.getElementById({!r}).getBoundingClientRect().top"
     assert not narrow.evaluate("document.getElementById('change').open")
-    assert narrow.evaluate(f"{top.format('tiles')} < {top.format('change')} && {top.format('change')} < {top.format('section')}")
+    assert narrow.evaluate(
+        f"{top.format('tiles')} < {top.format('change')} && {top.format('change')} < {top.format('section')}"
+    )
     narrow.get_by_text("Change the design").click()
     assert narrow.get_by_role("slider", name="Wall thickness, mm").is_visible()
 
@@ -146,7 +148,9 @@ def test_a_changed_design_says_so_in_the_list_and_a_port_at_the_side_in_its_size
 
 
 def test_a_chart_lists_an_interval_once_and_not_its_axis(screen):
-    shown = "[...document.querySelectorAll('#sensitivity .u-series')].filter(e => e.offsetParent).map(e => e.textContent)"
+    shown = (
+        "[...document.querySelectorAll('#sensitivity .u-series')].filter(e => e.offsetParent).map(e => e.textContent)"
+    )
     entries = screen.evaluate(shown)
     assert sum("interval" in entry for entry in entries) == 1
-    assert not any("driving pressure, kPa" in entry for entry in entries)
+    assert not [entry for entry in entries if entry.startswith("driving")]

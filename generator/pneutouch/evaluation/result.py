@@ -70,10 +70,16 @@ def predicted(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
         contact=contact_document(evaluation.scene).get("contact"),
         rating=rating_record(evaluation.rating, [state.driving_pressure for state in evaluation.prediction.states]),
         dead_volume_note=evaluation.assembly.dead_volume_note or None,
-        dead_volume_as_drawn_mL=evaluation.assembly.drawn_volume / ML if evaluation.assembly.dead_volume_note else None,
+        dead_volume_as_drawn_mL=_drawn_mL(evaluation),
         as_drawn=as_drawn(evaluation),
         contact_anywhere=anywhere,
     )
+
+
+def _drawn_mL(evaluation: Evaluation) -> float | None:
+    """The gas of connector and tube as drawn, where the design states none."""
+    assembly = evaluation.assembly
+    return float(rounded(assembly.drawn_volume / ML, _MODEL_DIGITS)) if assembly.dead_volume_note else None
 
 
 def as_drawn(evaluation: Evaluation) -> tuple[StateRecord, ...]:
