@@ -47,6 +47,14 @@ function dimensions(drawing, size, tick) {
   ];
 }
 
+/** The membrane below the base plane, which stays where it is. */
+function flange(drawing) {
+  const [across] = drawing.size_mm;
+  const below = element("svg:clipPath", { id: "below" }, element("svg:rect", { x: -across, y: 0, width: 2 * across, height: across }));
+  const bodies = drawing.bodies.filter((body) => body.role === "membrane");
+  return [below, element("svg:path", { d: outline(bodies), class: "outline membrane", "clip-path": "url(#below)" })];
+}
+
 /** The pressed wall and what presses it over the section; a plate is drawn as its lower face. */
 function pressedWall(pressed, half) {
   if (!pressed) return [];
@@ -91,6 +99,7 @@ export function drawSection(drawing, pinned, pressed) {
       // Pressed, the wall as printed is an outline behind the pressed one.
       element("svg:path", { d: outline([body]), class: `outline ${body.role !== "membrane" ? "rigid" : pressed ? "resting" : "membrane"}` }),
     ),
+    ...(pressed ? flange(drawing) : []),
     ...pressedWall(pressed, half),
     pinned ? element("svg:path", { d: outline(pinned.bodies), class: "pinned" }) : null,
     ...dimensions(drawing, size, 0.35 * size),

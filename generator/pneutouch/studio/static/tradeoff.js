@@ -17,7 +17,7 @@ const SHAPES = [
 ];
 const STEPS = [[1], [1, 2, 5], [1, 1.5, 2, 3, 4, 5, 6, 8], [1, 1.2, 1.4, 1.6, 1.8, 2, 2.2, 2.5, 3, 3.5, 4, 4.5, 5, 6, 7, 8, 9]];
 
-const tone = (k) => `tone-${1 + (k % 7)}`;
+const tone = (k) => `tone-${1 + (k % 8)}`;
 const svg = (tag, attributes, ...children) => element(`svg:${tag}`, attributes, ...children);
 
 function ticks([low, high]) {
