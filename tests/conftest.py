@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
@@ -21,6 +23,9 @@ from tests.running import Shared, in_new_process, in_process
 
 ROOT = Path(__file__).resolve().parents[1]
 
+# Tests and package are compiled once for the next run and for the processes that tests start, whatever the environment says.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 os.environ.pop("PNEUTOUCH_HOME", None)
 # The workers of a run, which start with this environment, take the cores: a second thread each would wait for the others.
 os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
@@ -29,6 +34,13 @@ settings.register_profile("everyday", deadline=None, max_examples=40, derandomiz
 settings.load_profile("everyday")
 
 Command = Callable[..., subprocess.CompletedProcess[str]]
+
+
+def pytest_collection_finish() -> None:
+    """Leave what was imported and collected to the end of the run: no search for garbage goes through it again."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 20)
 
 
 @pytest.fixture(scope="session")
