@@ -10,12 +10,12 @@ import re
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from tests.trees import tree_of
+from tests.trees import nodes_of
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "generator" / "pneutouch"
@@ -43,10 +43,6 @@ def lines_of(paths: list[Path]) -> int:
     return sum(path.read_text(encoding="utf-8").count("\n") for path in paths)
 
 
-def trees(folder: Path) -> Iterator[ast.Module]:
-    return (tree_of(path) for path in sources(folder))
-
-
 def package_lines() -> int:
     return lines_of(sources(PACKAGE))
 
@@ -62,7 +58,7 @@ def benchmark_lines() -> int:
 def dictionaries() -> int:
     """Functions of the package, waited for or not, that return a dictionary of anything, or that or nothing."""
     kinds = ast.FunctionDef | ast.AsyncFunctionDef
-    functions = (node for tree in trees(PACKAGE) for node in ast.walk(tree) if isinstance(node, kinds))
+    functions = (node for path in sources(PACKAGE) for node in nodes_of(path) if isinstance(node, kinds))
     return sum(
         node.returns is not None and "dict[str, Any]" in ast.unparse(node.returns).split(" | ") for node in functions
     )
@@ -75,8 +71,8 @@ def files_with_the_key() -> int:
 def classes_with_a_sensitivity() -> int:
     """Classes between solver and sheet that have a field of the sensitivity, by its name inside or outside."""
     paths = (path for name in COMPUTING for path in sources(PACKAGE / name))
-    passed = (tree_of(path) for path in paths if path.relative_to(PACKAGE).as_posix() not in ELSEWHERE)
-    classes = (node for tree in passed for node in ast.walk(tree) if isinstance(node, ast.ClassDef))
+    passed = (path for path in paths if path.relative_to(PACKAGE).as_posix() not in ELSEWHERE)
+    classes = (node for path in passed for node in nodes_of(path) if isinstance(node, ast.ClassDef))
     return sum(
         any(isinstance(one, ast.AnnAssign) and ast.unparse(one.target) in (KEY, "sensitivity") for one in node.body)
         for node in classes

@@ -43,6 +43,7 @@ def test_what_pages_state_follows_from_the_stored_measurements(name, key, reduce
     assert json.loads(json.dumps(reduced())) == (known if key is None else known[key])
 
 
+@pytest.mark.slow
 def test_every_model_meets_table_s1_as_stored(library):
     found, known = paper.contact(library), stored("paper")["contact"]
     for key in ("median_of_twelve", "median_of_ten", "median_of_fourteen"):

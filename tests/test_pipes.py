@@ -17,7 +17,7 @@ from pneutouch.spec.coupon import read_results
 from pneutouch.spec.tasks import read_tasks
 from pneutouch.workflows.sweep.dataset import stored_dataset, stored_fingerprint
 from tests.refusals import refused
-from tests.running import in_new_process
+from tests.running import in_process
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
 
@@ -112,7 +112,7 @@ def campaign(shared) -> Path:
     words = "simulate paper-dome --specimens 1 --runs 1 --kinds steps --pressures 0,12 --model atlas --out made"
 
     def fill(folder: Path) -> None:
-        done = in_new_process(words.split(), folder)
+        done = in_process(words.split(), folder)
         assert done.returncode == 0, done.stderr
 
     return shared.folder("piped-campaign", fill) / "made/paper-dome-campaign"

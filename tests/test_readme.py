@@ -27,10 +27,12 @@ SERVING = [line for line in COMMANDS if line.startswith("pneutouch studio ")]
 
 
 def cost(line):
-    """The command as a parameter; those that take seconds are left to the slow run."""
-    return pytest.param(
-        line, marks=pytest.mark.slow if line.split()[1] in ("plan", "scan", "build", "simulate") else ()
+    """The command as a parameter; those that take long, and other figures of a command, are left to the slow run."""
+    verb, *more = shlex.split(line, comments=True)[1:]
+    dear = verb in ("plan", "scan", "build", "simulate", "select", "check") or (
+        verb == "predict" and more != ["paper-dome"]
     )
+    return pytest.param(line, marks=pytest.mark.slow if dear else ())
 
 
 @pytest.mark.parametrize("line", [cost(line) for line in COMMANDS if line not in SERVING])

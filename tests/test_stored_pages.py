@@ -9,7 +9,7 @@ from stored_pages import DOCS, change, fixed, hundredths, percent, render, short
 
 from tests.drawings import same_drawing
 
-_SLOW = {"graded", "texture-scan", "hard-resins"}
+_SLOW = {"contact", "dither", "graded", "hard-resins", "speed-against-accuracy", "texture", "texture-scan", "validity"}
 
 
 @pytest.mark.parametrize("path", stored_pages.paths())

@@ -12,6 +12,7 @@ from tests.catalogue.store import ROOT, SMALL, STORED, assembled, combinations, 
 LIBRARY = Library((ROOT,))
 EXPECTED = json.loads(STORED.read_text(encoding="utf-8"))
 PARTS = combinations(LIBRARY)
+DEAR = {"cast-dome", "graded-dome", "soft-pad"}
 SHAPES = ("volume_mm3", "mesh_volume_mm3")
 
 
@@ -27,7 +28,10 @@ def test_stored_figures_cover_exactly_what_is_registered():
     assert set(EXPECTED["parts"]) == {" ".join(parts) for parts in PARTS}
 
 
-@pytest.mark.parametrize("design", LIBRARY.paths("designs"))
+@pytest.mark.parametrize(
+    "design",
+    [pytest.param(name, marks=pytest.mark.slow) if name in DEAR else name for name in LIBRARY.paths("designs")],
+)
 def test_figures_of_designs_are_the_stored_ones(design):
     found, expected = design_figures(LIBRARY, design), EXPECTED["designs"][design]
     assert found["findings"] == expected["findings"]

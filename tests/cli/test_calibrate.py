@@ -90,6 +90,7 @@ def test_a_calibrated_comparison_leads_to_the_reader_and_another_design_gets_non
     assert not [path for path in (place / "out").iterdir() if path.name.endswith("-reader")]
 
 
+@pytest.mark.slow
 def test_a_part_of_the_parameters_says_what_else_counts(campaign, place):
     words = ("calibrate", str(campaign), "--design", "mine", "--fit", "modulus,dead-volume", "--out", "out", "--json")
     counted, bare = (json.loads(run(*words, *more).stdout) for more in ((), ("--no-priors", "--save", "bare")))

@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+from functools import cache
 
 import pytest
 
@@ -189,6 +190,7 @@ def test_an_output_that_is_a_file_is_refused_before_any_work(command, tmp_path, 
     assert "Traceback" not in result.stderr
 
 
+@cache
 def modules_after(*words):
     """Names of all modules that a command has loaded when it ends."""
     code = f"import sys; sys.argv = {['pneutouch', *words]!r}\nfrom pneutouch.cli import run\ntry: run()\nexcept SystemExit: pass\nprint('MODULES', *sys.modules)"

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from pneutouch.output.files import with_manifest, write_folder
-from tests.running import in_new_process
+from tests.running import in_process
 
 LINES = {
     "plan paper-dome": "paper-dome-plan",
@@ -35,7 +35,7 @@ def campaign(shared) -> Path:
     words = "simulate paper-dome --specimens 1 --runs 1 --kinds steps --pressures 0,12 --model atlas --out made"
 
     def fill(folder: Path) -> None:
-        done = in_new_process(words.split(), folder)
+        done = in_process(words.split(), folder)
         assert done.returncode == 0, done.stderr
 
     return shared.folder("own-files-campaign", fill) / "made/paper-dome-campaign"
@@ -119,6 +119,7 @@ def test_no_material_is_written_without_the_folder_of_its_fit(command, tmp_path)
     assert everything(tmp_path) == before
 
 
+@pytest.mark.slow
 def test_a_measured_run_in_a_simulated_campaign_survives(command, tmp_path):
     """The run under the name of a simulated one, and one that the next simulation would write for the first time."""
     words = ["simulate", "paper-dome", "--runs", "1", "--kinds", "steps", "--pressures", "0", "--model", "atlas"]

@@ -114,6 +114,7 @@ def test_held_force_and_speed(tmp_path):
     assert all(pattern["model_amplitude_kPa"] == 0 for state in said["states"] for pattern in state["patterns"])
 
 
+@pytest.mark.slow
 def test_text_names_patterns_and_folder(again):
     text, folder = again
     assert "surface pattern" in text and "note: 22 kPa: pitches 3, 6 mm" in text
@@ -192,7 +193,7 @@ def test_specimens_that_cannot_be_scanned(tmp_path, length, kind, period, more, 
         ([*ASKED, "--speed", "0"], "--speed 0"),
         ([*ASKED, "--noise", "-1"], "noise"),
         ([*ASKED, "--control", "forc"], 'must be "height" or "force"'),
-        ([*ASKED, "--data", "nowhere.csv"], "nowhere.csv: no such file"),
+        pytest.param([*ASKED, "--data", "nowhere.csv"], "nowhere.csv: no such file", marks=pytest.mark.slow),
         ([*ASKED, "--separate", "3@0"], "PITCH1@DEPTH1"),
         ([*ASKED, "--separate", "3@0,3@0"], "the same"),
         ([*ASKED, "--separate", "3@0,6@20"], "block's 8 mm"),

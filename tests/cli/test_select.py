@@ -78,6 +78,7 @@ def test_an_impossible_target_exits_1_and_says_what_to_give_up():
     assert "without the requirement on force range alone a design fits" in result.stdout
 
 
+@pytest.mark.slow
 def test_a_target_file_with_flags_over_it(tmp_path):
     path = tmp_path / "target.toml"
     path.write_text(
@@ -122,7 +123,7 @@ def test_a_bad_target_file_is_named_with_its_key(tmp_path, content, said):
         (["--tolerance", "0"], "--tolerance 0"),
         (["--tolerance", "much"], "--tolerance much"),
         (["--material", "Tango"], "--material Tango: no such name"),
-        (["--pick", "99"], "--pick 99"),
+        pytest.param(["--pick", "99"], "--pick 99", marks=pytest.mark.slow),  # known after the search
         (["--write", "bad name"], "--write bad name"),
     ],
 )

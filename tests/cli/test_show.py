@@ -85,6 +85,7 @@ def test_build_from_a_3mf_gives_the_same_bytes_in_a_folder_whose_library_changed
     assert {p.relative_to(again): p.read_bytes() for p in again.rglob("*") if p.is_file()} == ours
 
 
+@pytest.mark.slow
 def test_another_version_is_said_on_stderr(command, built_file, tmp_path, monkeypatch):
     """What a rebuild writes is tested elsewhere: here nothing is written."""
     monkeypatch.setattr("pneutouch.workflows.build.build", lambda evaluation, out, report: out / evaluation.scene.name)

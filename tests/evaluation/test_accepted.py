@@ -24,8 +24,8 @@ def test_every_key_is_a_rule():
     assert {key.replace("_", " ") for key in Accepted.model_fields} <= RULES.keys() | MOULD_RULES.keys()
 
 
-def test_an_accepted_warning_is_a_note_with_the_reason_and_others_stay(library):
-    before, after = findings(library), findings(library, walls=REASON)
+def test_an_accepted_warning_is_a_note_with_the_reason_and_others_stay(library, evaluated):
+    before, after = evaluated("paper-dome", model="atlas").findings, findings(library, walls=REASON)
     warned = [one for one in before if one.severity == "warning"]
     assert "walls" in [one.rule for one in warned] and len(warned) > 1
     assert [one for one in after if one.severity == "warning"] == [one for one in warned if one.rule != "walls"]

@@ -152,6 +152,7 @@ def test_between_the_pressures_that_are_solved_the_derivatives_are_the_solids(ev
     np.testing.assert_allclose(found[1:3], direct[1:3], atol=0.015)
 
 
+@pytest.mark.slow
 def test_the_limit_pressure_and_the_height_know_of_no_friction(rough):
     smooth = evaluate("paper-dome", {"membrane.material": "FLX9970", "pneumatics.driving_pressures_kPa": [22.0]})
     for name in ("limit_pressure_kPa", "apex_height_outer_mm"):

@@ -25,8 +25,8 @@ def gauge(name: str) -> Gauge:
 
 
 @pytest.fixture(scope="module")
-def bare():
-    return evaluate("paper-dome", model="atlas")
+def bare(evaluated):
+    return evaluated("paper-dome", model="atlas")
 
 
 @pytest.fixture(scope="module")

@@ -28,8 +28,8 @@ from tests.mechanics.viscous.tables import PAPER_RESINS, agilus_table, friction_
 
 
 @pytest.fixture(scope="module")
-def agilus(library):
-    return evaluate("agilus-dome", model="atlas", library=library)
+def agilus(evaluated):
+    return evaluated("agilus-dome", model="atlas")
 
 
 def test_every_state_has_figures_of_both_sources(agilus):

@@ -8,22 +8,23 @@ from __future__ import annotations
 import csv
 import json
 import lzma
-import os
 import shutil
 import subprocess
 import sys
 import tempfile
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from math import fsum
 from pathlib import Path
 from typing import Any
 
 from tests.figures.compare import plain
+from tests.running import in_new_process
 
 ROOT = Path(__file__).resolve().parents[2]
 STORE = Path(__file__).with_name("before.json.xz")
 EXAMPLES = ROOT / "docs" / "examples"
+Runner = Callable[[Sequence[str], Path], "subprocess.CompletedProcess[str]"]
 
 # The commands of one group run one after another in one empty folder.
 EVERYDAY = {
@@ -68,10 +69,14 @@ GROUPS = EVERYDAY | {(f"{name}, other models" if name in EVERYDAY else name): ru
 ROWS = 100  # kept of a long table, evenly; sums stand for the others
 
 
-def collect(group: str) -> dict[str, Any]:
+def by_itself(words: Sequence[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run ``pneutouch WORDS`` as a process, with one thread: the order of the sums of a threaded matrix product is not fixed."""
+    environment = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    return in_new_process(words, folder, environment)
+
+
+def collect(group: str, run_in: Runner = by_itself) -> dict[str, Any]:
     """One document a command of the group: exit code, its JSON and the numbers of every file that it wrote."""
-    # One thread: the order of the sums of a threaded matrix product is not fixed.
-    environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "COLUMNS": "200"}
     documents: dict[str, Any] = {}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -79,8 +84,7 @@ def collect(group: str) -> dict[str, Any]:
             shutil.copy(example, folder)
         for run in GROUPS[group]:
             before = set(folder.rglob("*"))
-            words = [sys.executable, "-m", "pneutouch", *run.split(), "--json"]
-            done = subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+            done = run_in([*run.split(), "--json"], folder)
             written = {path.relative_to(folder).as_posix(): read(path) for path in written_since(before, folder)}
             documents[run] = {"exit": done.returncode, "json": parsed(done), "files": written}
     return documents

@@ -43,6 +43,7 @@ def test_the_corpus_is_small_and_of_known_targets():
     assert sum(path.stat().st_size for path in CORPUS.rglob("*") if path.is_file()) < 700_000
 
 
+@pytest.mark.slow
 def test_a_fault_is_a_finding(tmp_path):
     from tests.fuzzing.targets import Target
 

@@ -33,7 +33,7 @@ def thinnest(shape: Manifold, kind: str, **more):
     return found[0]
 
 
-@settings(max_examples=20)
+@settings(max_examples=12)
 @given(SIZES, ANGLES)
 def test_a_plate_measures_its_thickness_in_any_position(thickness, angles):
     found = places(box(15, 12, thickness).rotate(angles))
@@ -41,7 +41,7 @@ def test_a_plate_measures_its_thickness_in_any_position(thickness, angles):
     assert found[0].size == pytest.approx(thickness, abs=EXACT)
 
 
-@settings(max_examples=20)
+@settings(max_examples=12)
 @given(SIZES, ANGLES)
 def test_a_rod_measures_its_diameter_in_any_position(diameter, angles):
     solid = box(8, 8, 4) + rod(0.5 * diameter, 8, (4.0, 4.0, 3.0))
@@ -52,7 +52,7 @@ def test_a_rod_measures_its_diameter_in_any_position(diameter, angles):
     assert found[0].length == pytest.approx(7.0, rel=0.15)
 
 
-@settings(max_examples=20)
+@settings(max_examples=12)
 @given(SIZES, ANGLES)
 def test_a_square_pin_measures_its_side_in_any_position(side, angles):
     found = places((box(8, 8, 4) + box(side, side, 8, (4.0, 4.0, 3.0))).rotate(angles))
@@ -60,7 +60,7 @@ def test_a_square_pin_measures_its_side_in_any_position(side, angles):
     assert found[0].size == pytest.approx(side, abs=EXACT)
 
 
-@settings(max_examples=20)
+@settings(max_examples=12)
 @given(SIZES, ANGLES)
 def test_a_bore_measures_its_diameter_and_length_in_any_position(diameter, angles):
     found = places((box(8, 8, 6) - rod(0.5 * diameter, 8, (4.0, 4.0, -1.0))).rotate(angles))
@@ -69,7 +69,7 @@ def test_a_bore_measures_its_diameter_and_length_in_any_position(diameter, angle
     assert found[0].length == pytest.approx(6.0, rel=0.1)
 
 
-@settings(max_examples=20)
+@settings(max_examples=12)
 @given(SIZES, ANGLES)
 def test_a_slot_measures_its_width_in_any_position(width, angles):
     found = places((box(12, 12, 8) - box(width, 14, 4, (6.0, -1.0, 4.5))).rotate(angles))
@@ -77,7 +77,7 @@ def test_a_slot_measures_its_width_in_any_position(width, angles):
     assert found[0].size == pytest.approx(width, abs=EXACT)
 
 
-@settings(max_examples=20)
+@settings(max_examples=12)
 @given(st.floats(0.2, 0.45), st.floats(0.45, 0.9), ANGLES)
 def test_a_ridge_and_a_groove_measure_width_and_height_in_any_position(width, height, angles):
     ridge = box(12, 12, 5) + box(8, width, height + 1, (2.0, 6.0, 4.0))

@@ -17,6 +17,7 @@ from pneutouch.report.measured.plots import loops, responses
 from pneutouch.report.measured.sheet import described, measured_datasheet, tiles, whole_verdict
 from pneutouch.report.measured.tables import MOST, groups_of, lists, resin_section, specimen_section
 from pneutouch.report.numbers import MINUS, between, difference, number, signed
+from pneutouch.report.pages import html
 from pneutouch.results.measured import Verdict
 
 from .campaign import INJECTIONS, RESINS, VERDICTS, measured_of
@@ -151,8 +152,8 @@ def test_head_counts_specimens_runs_and_resins(sheet):
     assert facts["Design"].startswith("paper-dome")
 
 
-def test_page_is_self_contained_and_draws_every_plot_once(files):
-    page = files["measured-datasheet.html"].decode()
+def test_page_is_self_contained_and_draws_every_plot_once(sheet):
+    page = html(sheet)
     assert re.findall(r"""(?:src|href)=["']?(https?://[^"'>]+)""", page) == []
     assert page.count("<svg") == len(PLOTS)
     assert "url(data:font/otf;base64," in page

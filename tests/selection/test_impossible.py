@@ -30,7 +30,7 @@ KEYS = {"sensitivity": "sensitivity_kPa_per_N", "force range": "force_range_N", 
 @pytest.mark.parametrize(
     "wanted",
     [
-        {**FINGERTIP, "force_range_N": 150.0},
+        pytest.param({**FINGERTIP, "force_range_N": 150.0}, marks=pytest.mark.slow),
         pytest.param({**FINGERTIP, "sensitivity_kPa_per_N": 20.0}, marks=pytest.mark.slow),
         pytest.param({**FINGERTIP, "max_diameter_mm": 12.0}, marks=pytest.mark.slow),
     ],
@@ -46,6 +46,7 @@ def test_the_wish_said_to_be_in_the_way_is(wanted):
             assert answer(rest).answer.designs, f"{dropped.requirement} given up, and still nothing"
 
 
+@pytest.mark.slow
 def test_round_sizes_of_a_given_wall_stay_inside_the_atlas():
     """A radius rounded down would make the thickest wall too thick."""
     problem = answer({"sensitivity_kPa_per_N": 1.4}, given={"wall_thickness_mm": 2.5}).problem

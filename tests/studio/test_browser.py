@@ -20,6 +20,7 @@ _REFUSED = "document.getElementById('status').textContent.includes('pneutouch st
 _WALL = "document.getElementById('field-membrane-wall_thickness_mm')"
 
 
+@pytest.mark.slow
 def test_the_address_opens_in_one_browser_once_and_stays_open_there(pages, tmp_path):
     leave_out_or_fail(FOUND, os.environ)
     with served() as (address, _):

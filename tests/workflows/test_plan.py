@@ -197,6 +197,7 @@ def test_soft_sensor_is_saturated_at_no_more_than_its_driving_pressures(library)
     assert tests["saturation"][1] == (0.0, 4.0) and tests["relaxation"][1] == (0.0, 4.0)
 
 
+@pytest.mark.slow
 def test_what_the_plan_chooses_stays_below_the_rating_and_the_design_s_own_pressures_are_kept(subject, library):
     """A wall half as thick halves the rating, to below the 12 kPa of the paper's saturation test."""
     tests = plated_tests(subject, subject.rating.pressure_kPa)

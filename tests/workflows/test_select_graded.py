@@ -150,10 +150,10 @@ def measured_softer(library: Library, folder: Path) -> Library:
     return Library((folder, *library.folders))
 
 
-def test_an_unreachable_target_exits_1_with_the_nearest_and_why(monkeypatch):
+def test_an_unreachable_target_exits_1_with_the_nearest_and_why(shallow, monkeypatch):
     monkeypatch.setattr("pneutouch.workflows.select.graded._TRIALS", 3)
     monkeypatch.setattr("pneutouch.workflows.select.graded._catalogue", lambda *_: ([], {}))
-    flags = [*FLAT[:3], "9", *FLAT[4:]]
+    flags = [*FLAT[:3], "9", *FLAT[4:-1], shallow]
     result = run(*flags)
     assert result.exit_code == 1
     assert "no grade of this size meets the target; the nearest" in result.stdout
@@ -249,6 +249,7 @@ def test_a_grade_that_meets_the_target_is_judged_as_check_does(short, monkeypatc
     assert judged.rejected is None if said is None else said in judged.rejected
 
 
+@pytest.mark.slow
 def test_a_rejected_grade_is_shown_and_neither_saved_nor_returned(short, monkeypatch, tmp_path):
     _rejected(short, monkeypatch)
     for more in ((), ("--write", "flat", "--out", str(tmp_path))):

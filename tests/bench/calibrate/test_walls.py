@@ -81,6 +81,7 @@ def test_modulus_and_wall_are_found_by_injected_air_alone(library, design):
     assert product == pytest.approx(modulus * wall, rel=0.02)
 
 
+@pytest.mark.slow
 def test_the_ring_ends_the_ratio_at_a_finite_travel(library):
     """Between two driving pressures the end lies between theirs, also where one does not reach it."""
     sensor = sensor_of(assemble(load_scene("cast-dome", {}, library))).replace(waves=0)
