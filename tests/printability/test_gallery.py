@@ -21,7 +21,7 @@ def findings(name):
     return tuple(check(BAD[name].make()))
 
 
-@pytest.mark.parametrize("name", BAD)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n == "meander" else n for n in BAD])
 def test_a_bad_part_breaks_the_rules_it_was_made_for_and_no_other(name):
     found = findings(name)
     assert {finding.rule: finding.severity for finding in reversed(found)} == BAD[name].breaks, found
@@ -59,7 +59,10 @@ def bottle(share):
         ("edges", lambda angle: one(taper(angle, 0.0)), (29, 31), ("warning", None)),
         ("cleaning", bore, (10.3, 9.7), ("warning", None)),
         # The neck is measured by cubes of 0.25 mm.
-        ("cleaning", bottle, (0.46, 0.54, 0.66, 0.74), ("error", "warning", "warning", None)),
+        pytest.param(
+            *("cleaning", bottle, (0.46, 0.54, 0.66, 0.74), ("error", "warning", "warning", None)),
+            marks=pytest.mark.slow,
+        ),
     ],
     ids=["walls", "pins", "holes", "gaps", "edges", "bores", "necks"],
 )

@@ -82,7 +82,9 @@ def test_findings_come_errors_first_and_repeat():
     assert found == check(parts)
 
 
-@pytest.mark.parametrize("turn", [(90, 0, 0), (0, 37, 11), (12, 34, 56)])
+@pytest.mark.parametrize(
+    "turn", [*(pytest.param(t, marks=pytest.mark.slow) for t in ((90, 0, 0), (0, 37, 11))), (12, 34, 56)]
+)
 def test_findings_do_not_depend_on_the_position(turn):
     for name in ("thin fin", "needle", "capillary", "saw cut", "hairline", "knife", "bubble"):
         plain = BAD[name].make().items[0]

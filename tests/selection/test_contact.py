@@ -158,6 +158,7 @@ def test_the_corrected_curve_has_the_corrected_slope():
         assert slope == pytest.approx(corrected.lines.sensitivity[row], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_sample_that_is_known_or_has_no_figures_adds_nothing():
     _, response, factors, where = _samples()
     first = response.take(np.array([0]))

@@ -129,8 +129,14 @@ def test_marked_meshes_stay_closed_and_differ_by_the_mark_alone(drawn, seat, mou
             assert narrowest(area) >= least - 3e-3
 
 
-@pytest.mark.parametrize("seat", SEATS[:2])
-@pytest.mark.parametrize("marks", ["engraved", "raised"])
+@pytest.mark.parametrize(
+    ("marks", "seat"),
+    [
+        ("engraved", SEATS[0]),
+        ("raised", SEATS[1]),
+        *(pytest.param(*pair, marks=pytest.mark.slow) for pair in (("engraved", SEATS[1]), ("raised", SEATS[0]))),
+    ],
+)
 def test_marks_are_a_fifth_larger_than_the_least_detail(drawn, seat, marks):
     """Depth of letters, and the width of a tally's narrowest groove; a print of the recommended detail is at its limit."""
     assembly = drawn(f"connector.seat={seat}", "membrane.wall_thickness_mm=2")
