@@ -15,6 +15,7 @@ import pytest
 from hypothesis import settings
 
 from pneutouch.catalogue import Library
+from pneutouch.catalogue.library import CachedLibrary
 from pneutouch.evaluation import Evaluation, evaluate
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.build import build
@@ -50,7 +51,7 @@ def root() -> Path:
 
 @pytest.fixture(scope="session")
 def library() -> Library:
-    return Library((ROOT,))
+    return CachedLibrary((ROOT,))
 
 
 @pytest.fixture(scope="session")
@@ -96,6 +97,18 @@ def built(
         return folder / "sensors" / name
 
     return run
+
+
+@pytest.fixture(scope="session")
+def campaign_of_steps(shared: Shared) -> Path:
+    """The simulated runs of one sensor at two pressures: to be read or copied, not written."""
+    words = "simulate paper-dome --specimens 1 --runs 1 --kinds steps --pressures 0,12 --model atlas --out made"
+
+    def fill(folder: Path) -> None:
+        done = in_process(words.split(), folder)
+        assert done.returncode == 0, done.stderr
+
+    return shared.folder("campaign-of-steps", fill) / "made/paper-dome-campaign"
 
 
 @pytest.fixture

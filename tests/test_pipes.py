@@ -17,7 +17,6 @@ from pneutouch.spec.coupon import read_results
 from pneutouch.spec.tasks import read_tasks
 from pneutouch.workflows.sweep.dataset import stored_dataset, stored_fingerprint
 from tests.refusals import refused
-from tests.running import in_process
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
 
@@ -106,26 +105,14 @@ def test_a_command_refuses_a_pipe_and_names_it(line, name, command, tmp_path):
     assert not made, made
 
 
-@pytest.fixture(scope="module")
-def campaign(shared) -> Path:
-    """The simulated runs of one sensor at two pressures."""
-    words = "simulate paper-dome --specimens 1 --runs 1 --kinds steps --pressures 0,12 --model atlas --out made"
-
-    def fill(folder: Path) -> None:
-        done = in_process(words.split(), folder)
-        assert done.returncode == 0, done.stderr
-
-    return shared.folder("piped-campaign", fill) / "made/paper-dome-campaign"
-
-
 RUN = "runs/TangoPlus-1-0kPa-steps-1"
 
 
 @pytest.fixture
-def piped(campaign, tmp_path, request) -> Iterator[Path]:
+def piped(campaign_of_steps, tmp_path, request) -> Iterator[Path]:
     """A campaign of two runs, one of them a pipe."""
     folder, suffix = tmp_path / "folder", request.param
-    shutil.copytree(campaign, folder)
+    shutil.copytree(campaign_of_steps, folder)
     file = folder / "campaign.toml"
     file.write_text(file.read_text().replace(f"{RUN}.csv", f"{RUN}.{suffix}"))
     with pipe(folder / f"{RUN}.{suffix}"):
@@ -144,9 +131,9 @@ def test_a_sensor_is_calibrated_without_a_run_that_is_a_pipe(piped, command):
     assert done.returncode == 3 and RUN in done.stdout, done
 
 
-def test_a_target_that_is_a_pipe(campaign, tmp_path):
+def test_a_target_that_is_a_pipe(campaign_of_steps, tmp_path):
     with pipe(tmp_path / "target.toml") as path, refused(None, file=path):
-        pt.characterize(campaign, target=path, model="atlas")
+        pt.characterize(campaign_of_steps, target=path, model="atlas")
 
 
 @pytest.mark.parametrize("read", [stored_dataset, stored_fingerprint, read_stack, read_results, read_tasks])

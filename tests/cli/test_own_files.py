@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from pneutouch.output.files import with_manifest, write_folder
-from tests.running import in_process
 
 LINES = {
     "plan paper-dome": "paper-dome-plan",
@@ -27,18 +26,6 @@ LINES = {
     "fit-material tension.csv --name Ours --like DragonSkin20": "fit-Ours",
 }
 """Commands, and the folders that they write."""
-
-
-@pytest.fixture(scope="session")
-def campaign(shared) -> Path:
-    """The simulated runs of one sensor."""
-    words = "simulate paper-dome --specimens 1 --runs 1 --kinds steps --pressures 0,12 --model atlas --out made"
-
-    def fill(folder: Path) -> None:
-        done = in_process(words.split(), folder)
-        assert done.returncode == 0, done.stderr
-
-    return shared.folder("own-files-campaign", fill) / "made/paper-dome-campaign"
 
 
 def everything(folder: Path) -> dict[str, bytes | None]:
@@ -68,9 +55,9 @@ def given(campaign: Path, folder: Path) -> None:
 @pytest.mark.parametrize(
     "line", [*list(LINES)[:3], *(pytest.param(line, marks=pytest.mark.slow) for line in list(LINES)[3:])]
 )
-def test_a_command_replaces_no_file_that_a_person_changed(line, campaign, command, tmp_path):
+def test_a_command_replaces_no_file_that_a_person_changed(line, campaign_of_steps, command, tmp_path):
     sheet = annotated(tmp_path / "made" / LINES[line])
-    given(campaign, tmp_path)
+    given(campaign_of_steps, tmp_path)
     before = everything(tmp_path)
     done = command(*line.split(), "--out", "made")
     assert done.returncode == 2, done.stderr
@@ -81,8 +68,8 @@ def test_a_command_replaces_no_file_that_a_person_changed(line, campaign, comman
 
 @pytest.mark.slow
 @pytest.mark.parametrize("line", LINES)
-def test_a_command_writes_the_same_again_over_its_own_output(line, campaign, command, tmp_path):
-    given(campaign, tmp_path)
+def test_a_command_writes_the_same_again_over_its_own_output(line, campaign_of_steps, command, tmp_path):
+    given(campaign_of_steps, tmp_path)
     first = command(*line.split(), "--out", "made")
     before = everything(tmp_path)
     assert before.keys() > {f"made/{LINES[line]}", f"made/{LINES[line]}/manifest.json"}, first.stderr

@@ -11,7 +11,7 @@ from pneutouch import __version__
 from pneutouch.export.threemf import threemf
 from tests.export.threemf_files import with_metadata, with_recipe
 
-NAME = "fingertip-dome"
+NAME = "paper-dome"
 
 
 @pytest.fixture

@@ -64,6 +64,7 @@ def test_the_even_walls_derivatives_are_near_the_graded_solids(
     assert found[INPUTS.index(name), SENSITIVITY, 0] == pytest.approx(solid, abs=gap)
 
 
+@pytest.mark.slow
 def test_a_factor_on_the_whole_modulus_is_a_factor_on_the_limit_pressure(evaluated):
     """Neo-Hookean: exactly, whatever the course along the arc; so the even wall's derivative of 1 is the graded one's."""
     sensor = evaluated("graded-dome").sensor

@@ -79,6 +79,7 @@ def test_check_and_datasheet_set_the_curves_side_by_side(graded):
     assert document[1]["rated_pressure_kPa"] == pytest.approx(1e3 * graded.rating.pressure, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_a_fraction_beyond_the_stiffest_curve_is_a_warning():
     evaluation = mixed(fraction="0.25")
     (warning,) = finding(evaluation)

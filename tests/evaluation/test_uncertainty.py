@@ -32,7 +32,9 @@ def own_budget(evaluation, library, near):
     )
 
 
-@pytest.mark.parametrize(("name", "near"), [("paper-dome", True), ("long-tube", False)])
+@pytest.mark.parametrize(
+    ("name", "near"), [("paper-dome", True), pytest.param("long-tube", False, marks=pytest.mark.slow)]
+)
 def test_widths_are_the_budgets_and_values_the_models(evaluated, library, name, near):
     evaluation = evaluated(name)
     batch, found = own_budget(evaluation, library, near)

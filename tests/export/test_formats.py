@@ -16,7 +16,7 @@ from pneutouch.export.step import canonical, exact_solid, step
 from pneutouch.export.threemf import threemf
 
 lib3mf = pytest.importorskip("lib3mf")
-NAMES = ["paper-dome", "fingertip-dome"]
+NAMES = ["paper-dome", pytest.param("fingertip-dome", marks=pytest.mark.slow)]
 
 
 @pytest.fixture(scope="module", params=NAMES)

@@ -14,6 +14,7 @@ from tests.export.test_threemf import material, tetrahedron, written
 from tests.export.threemf_files import with_model
 
 
+@pytest.mark.slow
 def test_what_was_built_comes_back(built, evaluated):
     evaluation = evaluated("fingertip-dome")
     package = read_threemf(built("fingertip-dome") / "fingertip-dome.3mf")

@@ -24,6 +24,7 @@ def with_chart(monkeypatch):
     monkeypatch.setattr(datasheet, "CHARTS", (*datasheet.CHARTS, ("performance", volumes)))
 
 
+@pytest.mark.slow
 def test_an_added_chart_stands_on_page_and_pdf_with_its_caption(with_chart, evaluated):
     data = sheet_data(evaluated("paper-dome", model="atlas"), "0")
     drawn = volumes(data)

@@ -117,6 +117,7 @@ def test_charts_of_a_selection_are_written_whole_and_repeat(selection, library, 
         write_charts(selection, tmp_path / "file", library=library)
 
 
+@pytest.mark.slow
 def test_a_target_out_of_reach_still_shows_the_fronts_and_the_window(library, tmp_path, axes):
     far = {**TARGET, "target": {**TARGET["target"], "sensitivity_kPa_per_N": 500}}
     selection = select(Target.model_validate(far), "test", library)

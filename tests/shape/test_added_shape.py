@@ -122,7 +122,7 @@ def test_the_usual_shape_is_left_out_of_dumps():
     assert Membrane(shape="half-ball").model_dump()["shape"] == "half-ball"
 
 
-@pytest.mark.parametrize("kind", [HalfHighCap, Thimble])
+@pytest.mark.parametrize("kind", [HalfHighCap, pytest.param(Thimble, marks=pytest.mark.slow)])
 def test_other_shapes_are_drawn_solved_and_pressed(kind):
     """Gas, apexes and print mesh are those of the shape; a cell across the joint of two pieces costs 4e-6 of the gas."""
     evaluation = evaluate("paper-dome", {SHAPE: kind.key, "pneumatics.driving_pressures_kPa": [0.0]})
