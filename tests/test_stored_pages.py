@@ -9,7 +9,18 @@ from stored_pages import DOCS, change, fixed, hundredths, percent, render, short
 
 from tests.drawings import same_drawing
 
-_SLOW = {"contact", "dither", "graded", "hard-resins", "speed-against-accuracy", "texture", "texture-scan", "validity"}
+_SLOW = {
+    "contact",
+    "dither",
+    "graded",
+    "hard-resins",
+    "meshing",
+    "speed-accuracy",
+    "speed-against-accuracy",
+    "texture",
+    "texture-scan",
+    "validity",
+}
 
 
 @pytest.mark.parametrize("path", stored_pages.paths())

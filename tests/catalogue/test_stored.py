@@ -12,7 +12,7 @@ from tests.catalogue.store import ROOT, SMALL, STORED, assembled, combinations, 
 LIBRARY = Library((ROOT,))
 EXPECTED = json.loads(STORED.read_text(encoding="utf-8"))
 PARTS = combinations(LIBRARY)
-DEAR = {"cast-dome", "graded-dome", "long-tube", "soft-pad", "stiff-dome"}
+DEAR = {"agilus-dome", "cast-dome", "graded-dome", "long-tube", "soft-pad", "stiff-dome"}
 SHAPES = ("volume_mm3", "mesh_volume_mm3")
 
 

@@ -225,7 +225,7 @@ def test_figures_alone_load_neither_print_rules_nor_drawings(model):
 
 
 def test_the_solid_loads_lapack_without_the_packages_around_it():
-    loaded = modules_after("predict", "paper-dome")
+    loaded = modules_after("predict", "paper-dome", "--model", "solid")
     assert "pneutouch.mechanics.solid.banded" in loaded
     assert not {"scipy.linalg", "scipy.sparse", "scipy.interpolate", "scipy.optimize", "numpy.f2py"} & loaded
 

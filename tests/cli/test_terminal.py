@@ -141,8 +141,8 @@ def test_lines_are_wrapped_with_the_indent_and_commands_stay_whole():
 @pytest.mark.parametrize(
     ("shell", "code"),
     [
-        ("{python} -m pneutouch list 2>&-", 0),
-        ("{python} -m pneutouch list >&-", 0),
+        pytest.param("{python} -m pneutouch list 2>&-", 0, marks=pytest.mark.slow),
+        pytest.param("{python} -m pneutouch list >&-", 0, marks=pytest.mark.slow),
         ("{python} -m pneutouch list 2>&- >&-", 0),
         ("{python} -m pneutouch list | head -1; exit ${{PIPESTATUS[0]}}", 0),
         ("{python} -m pneutouch list >/dev/full", 3),

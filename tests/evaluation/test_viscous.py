@@ -129,6 +129,7 @@ def test_the_flag_reaches_the_prediction(command):
     assert any(line.startswith("aged one year") for line in found["assumptions"])
 
 
+@pytest.mark.slow
 def test_the_sheets_section_has_the_figures_of_the_prediction(agilus):
     sheet = sheet_data(agilus, "")
     section = relaxation.viscous_section(sheet)

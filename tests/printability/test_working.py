@@ -94,7 +94,7 @@ def test_a_dome_meets_a_body_from_a_twentieth_of_a_millimetre_on(depth, expected
     assert [finding.excess.measured for finding in rules.check_freedom(view)] == pytest.approx(expected, abs=1e-3)
 
 
-@pytest.mark.parametrize("wall", [1.5, 1.488, 0.6, 0.73, 2.345])
+@pytest.mark.parametrize("wall", [1.5, 0.6, *(pytest.param(t, marks=pytest.mark.slow) for t in (1.488, 0.73, 2.345))])
 def test_the_wall_that_is_advised_is_no_finding_any_more(wall):
     """One wall for the pole and the rim, near the drawn one."""
     for finding in of(working([0], wall=wall), "layers"):

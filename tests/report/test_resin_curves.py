@@ -41,6 +41,7 @@ def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library
         np.testing.assert_allclose(sensitivity, own.lines.sensitivity, rtol=1e-3)
 
 
+@pytest.mark.slow
 def test_a_resin_outside_the_atlas_is_drawn_by_the_solid_and_the_caption_says_so(evaluated, library):
     from pneutouch.evaluation.charts import resin_curves
     from pneutouch.spec.material import Material

@@ -11,7 +11,7 @@ from pneutouch.workflows.build_voxels import plan_voxels, write_voxels
 from tests.export.voxels.small import small_assembly
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def written(tmp_path_factory, library):
     plan = plan_voxels(small_assembly(), mode="High Mix", library=library)
     folder, notes = write_voxels(plan, tmp_path_factory.mktemp("stack"), "abc")

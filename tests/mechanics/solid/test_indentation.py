@@ -39,7 +39,8 @@ def test_the_plate_is_not_penetrated():
     assert run.column("penetration").max() < 1e-4 * 1.5
 
 
-def test_axial_balance_of_the_thin_membrane():
+@pytest.mark.parametrize("pressure", [0.022, pytest.param(0.035, marks=pytest.mark.slow)])
+def test_axial_balance_of_the_thin_membrane(pressure):
     # Exact pressed membrane by shooting (mu t0 held, wall thinned): p_II, F, rho at 22 and 35 kPa
     thin = 9.25 * 0.01
     mu = 0.17 * 1.5 / thin
@@ -48,14 +49,13 @@ def test_axial_balance_of_the_thin_membrane():
         0.022: {2.0: (25.37169, 1.46845, 4.2922), 4.0: (36.03323, 5.43614, 6.9298), 5.0: (46.71956, 9.48173, 8.0375)},
         0.035: {2.0: (38.90945, 1.87926, 3.9209), 4.0: (48.47384, 6.23693, 6.3997), 5.0: (56.72326, 10.02554, 7.5006)},
     }
-    for pressure, rows in table.items():
-        run = indent(solid, state_at(solid, pressure), PressSettings(5.0, steps=5))
-        for state in run.states:
-            row = rows.get(round(state.indentation, 6))
-            if row:
-                assert 1e3 * state.pressure == pytest.approx(row[0], rel=0.01)
-                assert state.force == pytest.approx(row[1], rel=0.02)
-                assert state.contact_radius == pytest.approx(row[2], rel=0.03)
+    run = indent(solid, state_at(solid, pressure), PressSettings(5.0, steps=5))
+    for state in run.states:
+        row = table[pressure].get(round(state.indentation, 6))
+        if row:
+            assert 1e3 * state.pressure == pytest.approx(row[0], rel=0.01)
+            assert state.force == pytest.approx(row[1], rel=0.02)
+            assert state.contact_radius == pytest.approx(row[2], rel=0.03)
 
 
 def test_step_size_does_not_matter():

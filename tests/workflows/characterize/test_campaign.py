@@ -128,7 +128,9 @@ def test_an_injection_in_absolute_pressure_fails_alone(folder, library):
     ("column", "change", "key"),
     [
         ("force_N", lambda values: values * 185, "columns.force.unit"),
-        ("pressure_kPa", lambda values: values + 101.325, "driving_pressure_kPa = 0"),
+        pytest.param(
+            "pressure_kPa", lambda values: values + 101.325, "driving_pressure_kPa = 0", marks=pytest.mark.slow
+        ),
         pytest.param("pressure_kPa", lambda values: values + 22.0, "driving_pressure_kPa = 0", marks=pytest.mark.slow),
     ],
 )

@@ -15,6 +15,18 @@ from pneutouch.workflows.characterize.load import load_curves
 from tests.bench.reads import refuse
 from tests.bench.recordings import CLEAR, DEEP, READ, Recording, by_hand, plain, presses, spiked, true_figures, truth
 
+VARIANTS = {
+    "footer",
+    "hold of ten seconds",
+    "milliseconds",
+    "overshoot",
+    "single press",
+    "slow",
+    "stairs without return",
+    "stopped in the second press",
+}
+"""Recordings of which the everyday run reads others that are nearly alike."""
+
 NAMES = {"position": "position_mm", "force": "force_N", "pressure": "pressure_kPa"}
 
 
@@ -29,7 +41,7 @@ def figures(measured):
     return group.figures
 
 
-@pytest.mark.parametrize("name", READ)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n in VARIANTS else n for n in READ])
 def test_every_figure_is_that_of_the_truth(name, tmp_path):
     recording = READ[name]
     measured = read(tmp_path, recording)

@@ -133,7 +133,8 @@ def test_a_specimen_is_known_by_its_block():
     assert LIBRARY.specimen_file("no-such-thing") is None
 
 
-@pytest.mark.parametrize("kind", [pytest.param("octet", marks=pytest.mark.slow), "gyroid"])
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["octet", "gyroid"])
 def test_a_lattice_is_built_whole(kind, tmp_path):
     layer = f'[[layer]]\nkind = "{kind}"\ncell_mm = 5\nvolume_fraction = 0.4\ndepth_mm = 1\nheight_mm = 5\n'
     block = "length_mm = 10\nwidth_mm = 8\n"

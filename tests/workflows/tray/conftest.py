@@ -23,6 +23,11 @@ def folder(seven, tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def seats(library, tmp_path_factory):
-    laid = flags(library, ["stiff-dome"], ["connector.seat=glued-flange,one-piece,clamped-flange-M2"], 2)
+def laid_seats(library):
+    return flags(library, ["stiff-dome"], ["connector.seat=glued-flange,one-piece,clamped-flange-M2"], 2)
+
+
+@pytest.fixture(scope="session")
+def seats(laid_seats, tmp_path_factory):
+    laid = laid_seats
     return laid, Path(write_tray(laid, tmp_path_factory.mktemp("outputs") / "seats").folder)

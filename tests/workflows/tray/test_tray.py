@@ -115,11 +115,10 @@ def test_the_recipe_says_all_that_the_tray_follows_from(seven):
     assert tray_record(seven, Path("x")).parts == 21
 
 
-def test_a_part_is_a_subject_for_the_print_rules(seats):
-    laid, _ = seats
-    (job,) = laid.jobs
+def test_a_part_is_a_subject_for_the_print_rules(laid_seats):
+    (job,) = laid_seats.jobs
     part = next(part for part in job.parts if len(part.bodies) == 2)
-    found = subject(part, laid.printer, job.mode)
+    found = subject(part, laid_seats.printer, job.mode)
     assert [item.body.name for item in found.items] == ["B1-membrane", "B1-connector"]
     assert {item.job for item in found.items} == {"B1"}
 
