@@ -53,7 +53,7 @@ def launched(*options: str) -> Iterator[Browser]:
 
 
 class SharedBrowser:
-    """A browser for all tests of a session, whose event loop counts as running only while a test uses it.
+    """A browser for the tests of a file, whose event loop counts as running only while a test uses it.
 
     Playwright leaves its loop marked as running in the thread, and ``asyncio.run`` of other tests would refuse to start.
     """

@@ -142,9 +142,9 @@ def say(capsys: pytest.CaptureFixture[str]) -> Callable[[str], None]:
     return line
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def chromium() -> Iterator[SharedBrowser]:
-    """One browser, with WebGL, for every test of a worker; tests take their pages from `pages`."""
+    """One browser, with WebGL, for the tests of a file, as it draws on when idle; tests take their pages from `pages`."""
     leave_out_or_fail(FOUND, os.environ)
     with launched(*WITH_WEBGL) as browser:
         shared = SharedBrowser(browser)

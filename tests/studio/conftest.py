@@ -13,7 +13,7 @@ Without a server, as the browser that was given its address: ``client``. And in 
     def test_no_rule_of_accessibility_is_broken(screen):
         assert violations(screen) == []                       # tests/studio/access.py
 
-One browser and one studio serve every test of a worker; each page has a profile of its own. After each test the fixtures require that
+One browser serves the tests of a file, one studio every test of a worker; each page has a profile of its own. After each test the fixtures require that
 no script failed, that the Content-Security-Policy was kept and that no request left the studio.
 """
 
