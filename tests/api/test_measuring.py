@@ -8,6 +8,7 @@ import signal
 import pytest
 
 import pneutouch as pt
+from pneutouch.api import measuring
 from pneutouch.workflows.calibrate import calibrate as calibrating
 from pneutouch.workflows.calibrate.calibration_files import write_calibration
 
@@ -54,6 +55,15 @@ def test_figures_of_measured_runs_are_the_command_lines(campaign, printed, tmp_p
     assert (found.save(tmp_path / "ours") / "figures.json").is_file()
     own = pt.characterize(campaign, pt.load("paper-dome").replace(wall_thickness_mm=2.0), model="atlas")
     assert own.to_dict() != found.to_dict()
+
+
+def test_columns_are_given_as_a_table_or_in_the_words_of_the_command():
+    table = {"force": {"name": "load", "unit": "N", "sign": -1}}
+    for given in (table, "force=-load:N", ["force=-load:N"]):
+        assert measuring._reading(given, None) == {"columns": table, "format": {}}
+    with pytest.raises(pt.InputError) as caught:
+        measuring._reading("load", None)
+    assert (caught.value.key, caught.value.value) == ("columns", "load")
 
 
 @pytest.mark.slow

@@ -95,6 +95,10 @@ def simulate(
         return run(source_of(design), Path(out), None, options)
 
 
+Columns = Mapping[str, Mapping[str, Any]] | str | Sequence[str] | None
+"""Columns of a recording, as a table or as texts ``channel=NAME:UNIT``."""
+
+
 def characterize(
     data: str | Path,
     design: Design | str | Path | None = None,
@@ -102,14 +106,15 @@ def characterize(
     target: str | Path | None = None,
     model: str | None = None,
     evidence: str = "doubtful",
-    columns: Mapping[str, Mapping[str, Any]] | None = None,
+    columns: Columns = None,
     file_format: Mapping[str, Any] | None = None,
     kind: RunKind | None = None,
 ) -> Result:
     """Figures of measured runs (a campaign's folder, its file or one run's) compared with the predicted ones.
 
     ``columns`` and ``file_format`` are the tables [columns] and [format] of a campaign file, such as ``{"force":
-    {"name": "Load", "unit": "N"}}`` and ``{"decimal": ","}``; what they leave out is as the campaign gives it, else
+    {"name": "Load", "unit": "N"}}`` and ``{"decimal": ","}``; ``columns`` may be texts as well, as the command takes
+    them, such as ``"force=-Load:N"``; what they leave out is as the campaign gives it, else
     found from each file. ``target`` is a target file to compare with; ``evidence`` selects the runs whose evidence
     `Result.save` plots:
     "doubtful", "all" or "none". ``model`` None: the solid, and harmonic for contact off the axis. ``kind`` of a single
@@ -166,7 +171,7 @@ def calibrate(
     save: str | None = None,
     replace: bool = False,
     out: str | Path = "outputs",
-    columns: Mapping[str, Mapping[str, Any]] | None = None,
+    columns: Columns = None,
     file_format: Mapping[str, Any] | None = None,
 ) -> FittedSensor:
     """Fit the model to the runs of one sensor of a campaign; write the fit into ``out``, the calibration for designs.
@@ -184,10 +189,12 @@ def calibrate(
         return FittedSensor(run_calibration(campaign, source, options, Path(out), reading=reading))
 
 
-def _reading(
-    columns: Mapping[str, Mapping[str, Any]] | None, file_format: Mapping[str, Any] | None
-) -> dict[str, Mapping[str, Any]]:
-    return {"columns": columns or {}, "format": file_format or {}}
+def _reading(columns: Columns, file_format: Mapping[str, Any] | None) -> dict[str, Mapping[str, Any]]:
+    from pneutouch.workflows.characterize.load import parse_columns
+
+    given = columns or {}
+    table = given if isinstance(given, Mapping) else parse_columns([given] if isinstance(given, str) else list(given))
+    return {"columns": table, "format": file_format or {}}
 
 
 def respond(
