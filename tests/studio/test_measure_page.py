@@ -83,6 +83,12 @@ def test_files_that_are_dropped_are_recognised(tmp_path, open_studio):
     ]
     assert page.get_by_label("driving pressure in kPa of Prüfung 1.csv").input_value() == "12"
     assert violations(page) == []
+    page.get_by_role("button", name="turn the sign of the force").click()
+    until(page, "document.querySelector('#measure-columns td:nth-child(4)').textContent === '−force_N N'")
+    page.get_by_label("unit of the position").select_option("um")
+    until(page, "document.querySelector('#measure-columns td:nth-child(3)').textContent === 'position_mm um'")
+    stated = "time=time_s:s, position=position_mm:um, force=-force_N:N, pressure=pressure_kPa:kPa"
+    assert page.locator("[name=columns]").input_value() == stated
     page.get_by_role("button", name="Clear").click()
     assert page.locator("#measure-files").text_content() == "No files yet."
     assert page.get_by_role("button", name="Characterize").is_disabled()

@@ -4,7 +4,7 @@ import contextlib
 import shutil
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, get_args
 
@@ -31,6 +31,7 @@ from pneutouch.studio.measured import (
     placed,
     write_runs,
 )
+from pneutouch.tables.unit_words import UNITS
 from pneutouch.workflows.calibrate.calibrate import CalibrationOutcome, run_calibration
 from pneutouch.workflows.characterize import Reading, load_curves, parse_columns, read_as, recognise
 from pneutouch.workflows.characterize.campaign import characterize as run_characterize
@@ -53,7 +54,7 @@ _CHECK, _READ = "finding columns, files", "reading runs, MB"
 class RecognisedRuns:
     """The runs of the files that the page was given; ``planned`` if a campaign file lists them.
 
-    ``read_as`` are lines for a campaign file, ``unused`` the files that are no runs.
+    ``read_as`` are lines for a campaign file, ``unused`` the files that are no runs, ``units`` those of a channel.
     """
 
     title: str
@@ -65,6 +66,10 @@ class RecognisedRuns:
     read_as: str
     unused: list[str]
     kinds: tuple[str, ...]
+    units: dict[str, list[str]] = field(
+        default_factory=lambda: {channel: list(known) for channel, known in UNITS.items()}
+    )
+    """Units that a column may have, by channel."""
 
 
 @dataclass(frozen=True, slots=True)

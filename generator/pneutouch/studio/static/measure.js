@@ -18,7 +18,7 @@ const labelled = (words, input, help = null) =>
 class Measure {
   constructor(root, page) {
     Object.assign(this, { root, page, files: new Map(), job: null, found: null, failed: [] });
-    this.table = new RunsTable();
+    this.table = new RunsTable((words) => this.restate(words));
     this.measured = new Measured();
     this.fitting = new Fitting(this);
     root.append(element("div", { class: "work" }, this.form(), this.results()));
@@ -195,6 +195,14 @@ class Measure {
       this.job = null;
       this.refresh();
     }
+  }
+
+  /** Read the files again, with columns in other words. */
+  restate(words) {
+    const given = this.reading.querySelector("[name=columns]");
+    given.value = words;
+    this.reading.open = true;
+    return this.recognise();
   }
 
   async recognise(problems = []) {

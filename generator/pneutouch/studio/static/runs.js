@@ -24,7 +24,9 @@ const named = (column) =>
   column ? element("span", { class: column.found ? "found" : "" }, `${column.sign < 0 ? "−" : ""}${column.name}`, element("small", {}, ` ${column.unit}`)) : "";
 
 export class RunsTable {
-  constructor() {
+  /** `restated(words)`: columns were given another sign or unit, in the words of the field Columns. */
+  constructor(restated) {
+    this.restated = restated;
     this.columns = element("div");
     this.list = element("div", { class: "runs" });
     this.notes = element("div");
@@ -40,7 +42,7 @@ export class RunsTable {
 
   show(found) {
     this.root.hidden = false;
-    this.showColumns(found.runs);
+    this.showColumns(found.runs, found.units);
     this.kept.hidden = !found.read_as;
     this.kept.querySelector("pre").textContent = found.read_as;
     if (found.planned) this.showPlanned(found.runs);
@@ -50,7 +52,7 @@ export class RunsTable {
   }
 
   /** Files whose columns are alike, and which column is which channel in which unit. */
-  showColumns(runs) {
+  showColumns(runs, units) {
     const alike = new Map();
     for (const run of runs.filter((one) => one.columns.length)) {
       const key = JSON.stringify([run.columns, run.format]);
@@ -63,7 +65,24 @@ export class RunsTable {
     });
     const any = runs.some((run) => run.columns.some((column) => column.found));
     const note = any ? element("p", { class: "muted" }, element("span", { class: "found" }, "Underlined"), ": found by its header or its unit.") : "";
-    this.columns.replaceChildren(rows.length ? scroll("Recognised columns", table(["columns of", ...CHANNELS], rows, { id: "measure-columns" })) : "", note);
+    const shown = rows.length ? scroll("Recognised columns", table(["columns of", ...CHANNELS], rows, { id: "measure-columns" })) : "";
+    const one = alike.size === 1 ? [...alike.values()][0][0].columns : [];
+    this.columns.replaceChildren(shown, note, one.length ? this.turns(one, units) : "");
+  }
+
+  /** Another sign or unit of a column, where all files have the same columns. */
+  turns(columns, units) {
+    const said = (changed) => {
+      const all = columns.map((column) => ({ ...column, ...(column.channel === changed.channel ? changed : {}) }));
+      this.restated(all.map(({ channel, sign, name, unit }) => `${channel}=${sign < 0 ? "-" : ""}${name}:${unit}`).join(", "));
+    };
+    const parts = columns.map(({ channel, sign, unit }) => {
+      const options = units[channel].map((each) => element("option", { value: each, selected: each === unit }, each));
+      const chosen = element("select", { "aria-label": `unit of the ${channel}`, onchange: (event) => said({ channel, unit: event.target.value }) }, ...options);
+      const turn = { type: "button", "aria-label": `turn the sign of the ${channel}`, onclick: () => said({ channel, sign: -sign }) };
+      return element("span", { class: "turn" }, `${channel} `, chosen, channel === "time" ? "" : element("button", turn, "±"));
+    });
+    return element("p", { class: "turns", id: "measure-turns" }, ...parts);
   }
 
   showPlanned(runs) {
