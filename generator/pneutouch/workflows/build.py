@@ -65,7 +65,8 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
         "prediction.json": json_bytes(versioned("prediction", plain(predicted_in_full(evaluation))))
     }
     progress("3MF")
-    files[f"{scene.name}.3mf"] = threemf(scene.name, bodies, _metadata(evaluation, bodies), _thumbnail(evaluation))
+    thumbnail = picture(shown(assembly, _THUMBNAIL_PIXELS), _THUMBNAIL_PIXELS, _THUMBNAIL_PIXELS)
+    files[f"{scene.name}.3mf"] = threemf(scene.name, bodies, _metadata(evaluation, bodies), thumbnail)
     progress("STL")
     files |= {f"stl/{body.name}.stl": stl(body) for body in bodies}
     progress("GLB")
@@ -120,11 +121,6 @@ def _metadata(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, str
 def _and(bodies: tuple[Body, ...]) -> str:
     *first, last = [body.name for body in bodies]
     return f"{', '.join(first)} and {last}" if first else last
-
-
-def _thumbnail(evaluation: Evaluation) -> bytes:
-    """PNG of the bodies cut open."""
-    return picture(shown(evaluation.assembly, _THUMBNAIL_PIXELS), _THUMBNAIL_PIXELS, _THUMBNAIL_PIXELS)
 
 
 def _meshes(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, BodyMesh]:
@@ -253,14 +249,10 @@ def exploded(mould: MouldAssembly) -> tuple[Body, ...]:
         "mould-core": 0.0,
         "mould-base": -_APART * (size.foot + size.shape.wall),
     }
-    apart = [body.moved(np.array([0.0, 0.0, lifts[_part(body.name)]])) for body in mould.closed]
+    # A numbered copy, such as mould-core-2, is lifted as its part.
+    apart = [body.moved(np.array([0.0, 0.0, lifts[body.name.rstrip("-0123456789")]])) for body in mould.closed]
     low = np.min([body.bounds[0] for body in apart], axis=0)
     return tuple(body.moved(-low) for body in apart)
-
-
-def _part(name: str) -> str:
-    """Name of the part that a numbered body is a copy of: ``mould-core`` of ``mould-core-2``."""
-    return name.rstrip("0123456789").rstrip("-")
 
 
 def _plates(mould: MouldAssembly) -> list[list[TrayItem]]:

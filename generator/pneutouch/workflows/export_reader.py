@@ -1,7 +1,4 @@
-"""A design's sensor as its pressure-to-force model for a microcontroller, for Python and for a simulator.
-
-Tabulate the press at its driving pressures, compare the table with the full model, and write it in the forms used.
-"""
+"""A design's sensor as its pressure-to-force model for a microcontroller, for Python and for a simulator."""
 
 from __future__ import annotations
 
@@ -69,13 +66,10 @@ def make_reader(evaluation: Evaluation, aged: float | None = None) -> ReaderResu
     )
     document = versioned("reader", plain(record))
     calibration, gauge = evaluation.scene.design.calibration_name, evaluation.scene.gauge
-    name = evaluation.scene.name if calibration is None else _calibrated(evaluation, calibration)
-    return ReaderResult(f"{name}-reader", record, document, reader_files(document, name, gauge), sketch_note(gauge))
-
-
-def _calibrated(evaluation: Evaluation, calibration: str) -> str:
     name = evaluation.scene.name
-    return calibration if calibration.startswith(name) else f"{name}-{calibration}"
+    if calibration is not None:
+        name = calibration if calibration.startswith(name) else f"{name}-{calibration}"
+    return ReaderResult(f"{name}-reader", record, document, reader_files(document, name, gauge), sketch_note(gauge))
 
 
 def _source(evaluation: Evaluation, age_days: float) -> str:

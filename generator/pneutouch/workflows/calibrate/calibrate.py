@@ -1,7 +1,4 @@
-"""The command behind ``pneutouch calibrate``: a campaign's folder in, its calibration and files out.
-
-Further tests of a calibrated sensor, at no more than its rated pressure.
-"""
+"""The command behind ``pneutouch calibrate``: a campaign's folder in, its calibration and files out."""
 
 import hashlib
 from collections.abc import Sequence
@@ -54,34 +51,16 @@ from pneutouch.workflows.characterize import (
 
 
 def with_further_tests(calibration: Calibration, source: CampaignSource) -> Calibration:
-    """The calibration with the further tests that would reduce its uncertainty most."""
-    return replace(calibration, further=further_tests(calibration.fit, _rated(calibration, source)))
-
-
-def _rated(calibration: Calibration, source: CampaignSource) -> float:
-    """The rated pressure of the calibrated sensor, MPa; as designed where the fit cannot be a calibration."""
-    scene = calibration.scene
+    """The calibration with the further tests that would reduce its uncertainty most, at no more than its rated
+    pressure: as designed where the fit cannot be a calibration."""
     try:
         known = KINDS["calibrations"].validate(savable(calibration, source), "calibration")
     except InputError:
         known = None
     assert known is None or isinstance(known, SensorCalibration)
-    scene = replace(scene, calibration=known)
-    return rating_of(scene, sensor_of(assemble(scene))).pressure
-
-
-@dataclass(frozen=True, slots=True)
-class CalibrationJob:
-    """A calibration to make: the campaign's folder or file, the design (None: the campaign's), the folder of the fit.
-
-    ``root`` is the folder that the calibration goes into, below ``calibrations``.
-    """
-
-    data: Path
-    design: str | DesignSource | None
-    out: Path
-    options: CalibrationOptions
-    root: Path
+    scene = replace(calibration.scene, calibration=known)
+    rated = rating_of(scene, sensor_of(assemble(scene))).pressure
+    return replace(calibration, further=further_tests(calibration.fit, rated))
 
 
 @dataclass(frozen=True)
@@ -119,9 +98,9 @@ def run_calibration(
     the record's ``calibration`` is None and its last note says why. Raises InputError.
     """
     library = library or Library.default()
-    job = CalibrationJob(data, design, out, options, user_folder() if root is None else root)
+    root = user_folder() if root is None else root
     if options.save is not None:
-        check_place(options.save, job.root)
+        check_place(options.save, root)
     loaded = load_curves(data, progress=progress, reading=reading)
     sensor = chosen_sensor(loaded.campaign, options.sensor)
     design = design or known_design(loaded.campaign, loaded.folder, library)
@@ -141,7 +120,11 @@ def run_calibration(
     notes = [*notes, *(f"{file}: {text}" for file, text in questions if file in used_files)]
     source = _source(data, loaded, sensor, observations)
     name = options.save or default_name(scene.name, sensor)
-    _check_places(job, name, folder_of(scene.name, sensor, out), source)
+    # What could not be written is refused before the fit; an unknown parameter by the fit, before it computes.
+    check_writable(folder_of(scene.name, sensor, out))
+    path = check_place(name, root)
+    if not options.replace and set(options.fit) <= set(NAMES):
+        check_unlike(path, source.digest, options.fit, options.hold_out_kPa)
     calibration = calibrate(
         observations,
         scene,
@@ -153,7 +136,7 @@ def run_calibration(
         notes=notes,
     )
     calibration = with_further_tests(calibration, source)
-    written, unsaved = _write(job, calibration, name, source)
+    written, unsaved = _write(calibration, data, options, out, root, name, source)
     record = extended(
         OutcomeRecord,
         calibration.record,
@@ -163,7 +146,8 @@ def run_calibration(
         failures=(*loaded.failures, *refused),
         read_as=read_as(undisputed(loaded.sources, refused), len(loaded.campaign.runs)),
     )
-    return CalibrationOutcome(record, calibration, source, _named(design), loaded.campaign.assignments)
+    named = design.name if isinstance(design, DesignSource) else split_calibration(design, Library.default())[0]
+    return CalibrationOutcome(record, calibration, source, named, loaded.campaign.assignments)
 
 
 def _check_left(
@@ -179,7 +163,13 @@ def _check_left(
 
 
 def _write(
-    job: CalibrationJob, calibration: Calibration, name: str, source: CampaignSource
+    calibration: Calibration,
+    data: Path,
+    options: CalibrationOptions,
+    out: Path,
+    root: Path,
+    name: str,
+    source: CampaignSource,
 ) -> tuple[list[Path], list[str]]:
     """Write the fit's report and the calibration together: the written files, and a note if there is no calibration.
 
@@ -190,34 +180,19 @@ def _write(
         savable(calibration, source)
     except InputError as error:
         unsaved.append(f"no calibration was saved: {error.problem}; {error.remedy}")
-        if job.options.save is not None:
-            folder = write_calibration(calibration, job.out, source, unsaved)
+        if options.save is not None:
+            folder = write_calibration(calibration, out, source, unsaved)
             problem = f"{error.problem} (the fit is in {folder})"
-            file = None if error.key else job.data
+            file = None if error.key else data
             raise InputError(problem, file=file, key=error.key, remedy=error.remedy) from None
-    saved = None if unsaved else prepare(calibration, name, job.root, source, replace=job.options.replace)
+    saved = None if unsaved else prepare(calibration, name, root, source, replace=options.replace)
     # Neither is left without the other by a stop.
     with uninterrupted():
-        written = [write_calibration(calibration, job.out, source, unsaved)]
+        written = [write_calibration(calibration, out, source, unsaved)]
         if saved is not None:
             save(saved)
             written.append(saved.path)
     return written, unsaved
-
-
-def _check_places(job: CalibrationJob, name: str, folder: Path, source: CampaignSource) -> None:
-    """Raise InputError, before the fit, where its output or its calibration could not be written."""
-    check_writable(folder)
-    path = check_place(name, job.root)
-    # An unknown parameter is refused by the fit, before it computes.
-    if not job.options.replace and set(job.options.fit) <= set(NAMES):
-        check_unlike(path, source.digest, job.options.fit, job.options.hold_out_kPa)
-
-
-def _saved(calibration: Calibration, name: str, root: Path, source: CampaignSource, *, replace: bool) -> Path:
-    saved = prepare(calibration, name, root, source, replace=replace)
-    save(saved)
-    return saved.path
 
 
 def save_calibration(outcome: CalibrationOutcome, name: str | None = None, *, replace: bool = False) -> Path:
@@ -227,12 +202,9 @@ def save_calibration(outcome: CalibrationOutcome, name: str | None = None, *, re
     """
     calibration = outcome.calibration
     name = name or outcome.record.calibration or default_name(calibration.scene.name, calibration.sensor)
-    return _saved(calibration, name, user_folder(), outcome.source, replace=replace)
-
-
-def _named(design: str | DesignSource) -> str:
-    """The design as a command takes it, without a calibration."""
-    return design.name if isinstance(design, DesignSource) else split_calibration(design, Library.default())[0]
+    saved = prepare(calibration, name, user_folder(), outcome.source, replace=replace)
+    save(saved)
+    return saved.path
 
 
 def _source(data: Path, loaded: CampaignData, sensor: str, observations: Observations) -> CampaignSource:

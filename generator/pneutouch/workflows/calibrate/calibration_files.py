@@ -1,7 +1,4 @@
-"""A calibration as files: its folder, and the calibration file that a design names.
-
-The place of a calibration in the user's folder, checked before anything is computed for it.
-"""
+"""A calibration as files: its folder, and the calibration file that a design names."""
 
 import os
 import re
@@ -19,20 +16,17 @@ from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, KEYS, MODULUS, 
 from pneutouch.catalogue import KINDS
 from pneutouch.errors import InputError
 from pneutouch.formats import format_of, versioned
-from pneutouch.output.files import check_writable, json_bytes, with_manifest, write_folder
+from pneutouch.output.files import check_writable, json_bytes, replace_files, with_manifest, write_folder
 from pneutouch.report.fit_charts import residual_chart
 from pneutouch.results.record import plain
 from pneutouch.spec.calibration import SensorCalibration
+from pneutouch.spec.design import NO_CALIBRATION
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.spec.values import NAME_RULE, plain_name
 from pneutouch.units import KPA, ML
 from pneutouch.wording import rounded
 from pneutouch.workflows.calibrate.fit import Calibration
-from pneutouch.workflows.coupons import MeasuredProfile, write_profiles
-
-_NO_CALIBRATION = "none"
-"""Name of a calibration that leaves the calibration of a design out."""
 
 
 def check_place(name: str, root: Path) -> Path:
@@ -42,8 +36,8 @@ def check_place(name: str, root: Path) -> Path:
     written.
     """
     # DESIGN@NAME is a path where it ends with .toml.
-    if plain_name(name, key="save") == _NO_CALIBRATION or name.endswith(".toml"):
-        remedy = f"{NAME_RULE}; not {_NO_CALIBRATION}, and not ending with .toml"
+    if plain_name(name, key="save") == NO_CALIBRATION or name.endswith(".toml"):
+        remedy = f"{NAME_RULE}; not {NO_CALIBRATION}, and not ending with .toml"
         raise InputError("cannot be the name of a calibration", key="save", value=name, remedy=remedy)
     path = root / KINDS["calibrations"].folder / f"{name}.toml"
     if path.is_symlink() or (path.exists() and not path.is_file()):
@@ -205,7 +199,7 @@ def _check_friction(calibration: Calibration) -> None:
 def save(saved: SavedCalibration) -> None:
     """Write the files that `prepare` made. Raises InputError if the folder cannot be written."""
     try:
-        write_profiles([MeasuredProfile(saved.path, saved.text, [])])
+        replace_files({saved.path: saved.text.encode()})
     except InputError as error:
         # The remedy there is of an output folder; the problem names the file.
         raise InputError(error.problem, remedy="take a user's folder you may write to") from None
@@ -232,11 +226,8 @@ def calibration_content(calibration: Calibration, source: CampaignSource) -> dic
             "driving_pressures_kPa": [] if gap is None else [*gap.driving_pressures_kPa],
             "ambient_pressure_kPa": observations.ambient / KPA,
             "age_days": float(source.age_days),
-            **(
-                {}
-                if gap is None
-                else {"depth_mm": gap.depth, "plate_diameter_mm": float(design.indentation.plate_diameter_mm)}
-            ),
+            "depth_mm": None if gap is None else gap.depth,
+            "plate_diameter_mm": None if gap is None else float(design.indentation.plate_diameter_mm),
             **({} if design.contact.is_atlas_plate else {"contact": design.contact.words}),
         },
         "design": {

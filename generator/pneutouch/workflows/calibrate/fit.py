@@ -1,7 +1,4 @@
-"""A campaign and a design to the sensor in hand: modulus, wall, dead volume and contact offset, each uncertain.
-
-The parts of a calibration as records.
-"""
+"""A campaign and a design to the sensor in hand: modulus, wall, dead volume and contact offset, each uncertain."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -108,10 +105,6 @@ def _response(gap: ResponseGap | None) -> tuple[FittedResponse, ...]:
     return tuple(FittedResponse(*row) for row in rows)
 
 
-def _residual(run: RunResiduals) -> ResidualRecord:
-    return ResidualRecord(run.label, *map(_number, (run.driving_pressure_kPa, run.force_error, run.rise_error)))
-
-
 def _correlated(group: CorrelatedParameters) -> CorrelatedRecord:
     return CorrelatedRecord(
         tuple(NAMES[k] for k in group.members),
@@ -204,7 +197,10 @@ class Calibration:
             correlation=_correlation(self.fit),
             fit=_goodness(self.fit),
             response=_response(self.gap),
-            residuals=tuple(_residual(run) for run in self.residuals),
+            residuals=tuple(
+                ResidualRecord(run.label, *map(_number, (run.driving_pressure_kPa, run.force_error, run.rise_error)))
+                for run in self.residuals
+            ),
             misses=tuple(self.misses),
             strongly_correlated=tuple(_correlated(group) for group in self.identified.ambiguities),
             unidentified=tuple(NAMES[k] for k in self.identified.unseen),
