@@ -1,7 +1,4 @@
-"""A design as an object: keyword arguments in, predictions, findings and print files out.
-
-Drawings of a design for your own figures: its section, and that of the mould it is cast in.
-"""
+"""A design as an object: keyword arguments in, predictions, findings and print files out."""
 
 from __future__ import annotations
 

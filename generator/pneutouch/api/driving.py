@@ -1,5 +1,4 @@
-"""Driving pressures as an object: the figure that a task asks for, the pressure that gives it, and the gas needed for
-it."""
+"""Driving pressures as an object: the figure of a task, the pressure that gives it, and the gas needed for it."""
 
 from __future__ import annotations
 

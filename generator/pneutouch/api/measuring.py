@@ -1,9 +1,4 @@
-"""Scans, and campaigns: planned, simulated, read and fitted.
-
-Simulated signals of a step or a sine.
-
-A material of a laboratory's own, from its tensile or puck test.
-"""
+"""Scans, signals and campaigns: planned, simulated, read and fitted; and a material of a laboratory's own."""
 
 from __future__ import annotations
 

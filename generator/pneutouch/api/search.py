@@ -1,7 +1,4 @@
-"""Many designs: those that meet a target, and all those of a grid.
-
-The module also states in short lines why a selection found no design, and takes a base design as an object.
-"""
+"""Many designs: those that meet a target, and all those of a grid."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Text and pictures of objects in a notebook: at most ten lines of text, or a table with a picture.
-
-Names of the designs, calibrations, materials, printers and gauges that a user can give.
-"""
+"""Text and pictures of objects in a notebook: at most ten lines of text, or a table with a picture."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Pucks and dumbbells: hardness, density and shear modulus of one resin.
-
-Coupons of two resins in known fractions: the modulus of each mix, by dumbbells or by hardness ratio.
-"""
+"""Pucks and dumbbells: hardness, density and shear modulus of a resin, and the modulus of mixes of two."""
 
 import math
 from collections.abc import Sequence

@@ -1,9 +1,4 @@
-"""Results of measured coupons: quantities of profiles, figures for the reader, and notes.
-
-Gauges and step blocks: small features and lengths as one printer makes them.
-
-Caps and plugs: leak rate and dead volume of one design.
-"""
+"""Results of measured coupons: quantities of profiles, figures and notes; of gauges, step blocks, caps and plugs."""
 
 import datetime
 import math

@@ -1,7 +1,4 @@
-"""Figures of a measured run, computed by the same `mechanics.response` as those of predicted curves.
-
-Runs of one resin, age and driving pressure form a group: its figures are pooled and have intervals.
-"""
+"""Figures of a run, by the same `mechanics.response` as those of predicted curves, and of groups of runs, pooled."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,4 @@
-"""Columns of a measured file: the channel and the unit of each, and how the file is written.
-
-Recognition of channel and unit from a column's name.
-"""
+"""Columns of a measured file: the channel and the unit of each, by its name, and how the file is written."""
 
 import re
 from collections.abc import Sequence

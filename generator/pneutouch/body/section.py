@@ -2,8 +2,6 @@
 
 An outline is cut exactly at a level. A piece includes its lower end but not its upper end, and a point on a crossing
 counts as beyond it: where two bodies meet, a point belongs to exactly one of them.
-
-Also the section of a solid through its axis, in the plane y = 0.
 """
 
 import math

@@ -1,7 +1,4 @@
-"""A material mixed from two base resins, by a mixing curve and the catalogue's materials.
-
-A quantity along the arc of the dome: values at knots, monotone cubic between them.
-"""
+"""A material mixed from two base resins, by a mixing curve and the catalogue's materials."""
 
 from dataclasses import dataclass
 from itertools import pairwise

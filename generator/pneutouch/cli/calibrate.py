@@ -1,7 +1,4 @@
-"""``pneutouch calibrate``: fit the model to the sensor in hand.
-
-A calibration as text for people.
-"""
+"""``pneutouch calibrate``: fit the model to the sensor in hand."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any

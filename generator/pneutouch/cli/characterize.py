@@ -1,7 +1,4 @@
-"""``pneutouch characterize``: measured data to figures, compared with the predicted ones.
-
-A characterization as text.
-"""
+"""``pneutouch characterize``: measured data to figures, compared with the predicted ones."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,7 +1,4 @@
-"""The commands by groups, and how a command is found, run and ended.
-
-Options that are numbers take only plain digits: ``1_0`` is a slip of the keyboard, not ten.
-"""
+"""The commands by groups, and how a command is found, run and ended."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager

@@ -1,7 +1,4 @@
-"""Completion of names and keys after a tab: files of the library are listed and none is read, so it takes no time.
-
-Options in per cent: ``5%``, ``5`` and ``0.05`` are the same; below 1 a note says so.
-"""
+"""Completion of names and keys after a tab: files of the library are listed and none is read, so it takes no time."""
 
 from collections.abc import Callable
 

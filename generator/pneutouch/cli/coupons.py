@@ -1,7 +1,4 @@
-"""``pneutouch coupons``: test prints, and what a lab measured on them.
-
-Measurements of coupons, as text for people.
-"""
+"""``pneutouch coupons``: test prints, and what a lab measured on them."""
 
 from __future__ import annotations
 

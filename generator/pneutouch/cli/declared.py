@@ -1,7 +1,4 @@
-"""Options of a command made from its declared options, or the fields of a file: unit, type and help stand once.
-
-Options of the commands that read measured files, and the text on how they read them.
-"""
+"""Options of a command made from its declared options, or the fields of a file: unit, type and help stand once."""
 
 import inspect
 import operator

@@ -1,7 +1,4 @@
-"""``pneutouch predict DESIGN --for FIGURE=VALUE``: the driving pressure that gives a figure.
-
-Driving pressures as text.
-"""
+"""``pneutouch predict DESIGN --for FIGURE=VALUE``: the driving pressure that gives a figure."""
 
 from __future__ import annotations
 

@@ -1,9 +1,4 @@
-"""``pneutouch export-reader``: the sensor's force over pressure, for microcontrollers, for Python and as data.
-
-Output of ``pneutouch export-reader`` for people.
-
-Output of ``pneutouch export-reader --simulator`` for people.
-"""
+"""``pneutouch export-reader``: the sensor's force over pressure, for microcontrollers, for Python and as data."""
 
 from collections.abc import Mapping
 from dataclasses import fields

@@ -1,7 +1,4 @@
-"""``pneutouch fit-material``: a laboratory's tensile or puck test to a material file.
-
-A fitted material as text for people.
-"""
+"""``pneutouch fit-material``: a laboratory's tensile or puck test to a material file."""
 
 from __future__ import annotations
 

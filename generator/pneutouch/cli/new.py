@@ -1,7 +1,4 @@
-"""``pneutouch new``: a design file to start from, or a copy of what is shipped.
-
-Lines after a copy of a printer profile, a gauge or a material: numbers to put in, and the next command.
-"""
+"""``pneutouch new``: a design file to start from, or a copy of what is shipped."""
 
 from pathlib import Path
 from typing import Annotated

@@ -1,7 +1,4 @@
-"""``pneutouch plan``: a test plan for the laboratory.
-
-A test plan as text for people.
-"""
+"""``pneutouch plan``: a test plan for the laboratory."""
 
 from dataclasses import replace
 from pathlib import Path

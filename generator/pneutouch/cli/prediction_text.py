@@ -1,7 +1,4 @@
-"""Output of the commands for people: plain text tables that fit a terminal.
-
-Speed of a sensor's reading, as text for people.
-"""
+"""Output of the commands for people: plain text tables that fit a terminal."""
 
 from __future__ import annotations
 

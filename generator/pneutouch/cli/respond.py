@@ -1,7 +1,4 @@
-"""``pneutouch respond``: a step or a sine of force or travel through the whole sensor, as a simulated signal.
-
-A simulated signal as text for people.
-"""
+"""``pneutouch respond``: a step or a sine of force or travel through the whole sensor, as a simulated signal."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""``pneutouch scan``: a sensor slides over a specimen, and its spectrum is read.
-
-A scan as text for people.
-"""
+"""``pneutouch scan``: a sensor slides over a specimen, and its spectrum is read."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""``pneutouch select``: the inverse problem, from a target to designs.
-
-The options of ``select``: a flag for each field of a target, and a target as the words that give it.
-"""
+"""``pneutouch select``: the inverse problem, from a target to designs."""
 
 from __future__ import annotations
 

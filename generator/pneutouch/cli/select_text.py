@@ -1,7 +1,4 @@
-"""The answer to a target as text for people.
-
-With ``--process`` the best design of each process, with ``--graded`` a grade with its cost.
-"""
+"""The answer to a target as text for people."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""``pneutouch show``: what a 3MF or a voxel stack holds.
-
-The content of a 3MF or of a voxel stack as text.
-"""
+"""``pneutouch show``: what a 3MF or a voxel stack holds."""
 
 from collections.abc import Mapping
 from functools import partial

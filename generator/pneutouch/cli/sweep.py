@@ -1,7 +1,4 @@
-"""``pneutouch sweep``: many designs to one dataset.
-
-Output of ``sweep`` for people: the first rows of its table.
-"""
+"""``pneutouch sweep``: many designs to one dataset."""
 
 from __future__ import annotations
 

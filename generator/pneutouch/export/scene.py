@@ -1,7 +1,4 @@
-"""GLB and binary STL through trimesh, and bodies cut open for pictures.
-
-Meshes of the 3D view of a page, with a normal and a colour at every corner, as a short text.
-"""
+"""GLB and binary STL through trimesh, bodies cut open for pictures, and the meshes of the 3D view of a page."""
 
 from __future__ import annotations
 

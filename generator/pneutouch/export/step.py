@@ -2,11 +2,7 @@
 
 CadQuery, which brings the kernel, is an extra; `step_obstacle` says why there is no STEP file without it.
 
-Exact solids as boundary representations of Open CASCADE, CadQuery's kernel: revolved, extruded, joined and cut.
-
 The kernel is called through its own binding (OCP), which loads in half the time of CadQuery around it.
-
-Put the text of a STEP file into one canonical form.
 
 Open CASCADE writes the time into the header, numbers occurrences by a counter that runs on through the
 process, and orders styles by memory address. Nothing of that is content, so it is taken out: entities are

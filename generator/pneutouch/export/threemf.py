@@ -5,19 +5,14 @@ components object; a material's name gives the intent and its display colour is 
 whose mix is known is a composite of its base resins, any other material a base material. Bodies lie in one assembly
 because tray software rejects separate objects whose bounding boxes overlap.
 
-Materials of a 3MF: a base material per body, or a composite of base resins where the mix is known.
-
-Metadata of a 3MF model or object: well-known names, and our own in a declared namespace.
 
 lib3mf 2.5 cannot read a model back whose XML has a text of 65536 bytes or more, nor one in which an escape such as
 ``&quot;`` lies across a multiple of 65536 bytes (both measured; tests/export/test_threemf_read.py). Our own values are
 therefore percent-encoded where XML would escape, continued in further entries where they are long, and the longest
 stand last.
 
-3MF of a tray through lib3mf: every part an object of its own with its material, one build item each, placed.
-
-Materials sit on mesh objects, never on components objects (3MF core 1.4). Bodies that grow in one print are the
-components of one object: tray software rejects separate objects whose bounding boxes overlap.
+On a tray every part is an object of its own, placed by one build item; bodies that grow in one print are the components
+of one object.
 """
 
 import ctypes

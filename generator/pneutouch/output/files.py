@@ -1,7 +1,4 @@
-"""Write a file or an output folder whole or not at all: written next to its place, then renamed into it.
-
-The manifest of an output folder: its inputs, the versions that made it, and the digest of every file in it.
-"""
+"""Write a file or an output folder whole or not at all: written next to its place, then renamed into it."""
 
 import contextlib
 import ctypes

@@ -1,7 +1,4 @@
-"""Write a new file to start from: a commented design, or a copy of a design, a specimen, an example or a profile.
-
-Start of a new design of a given process or resin: a profile that runs it, a seat, pressures.
-"""
+"""Write a new file to start from: a commented design, or a copy of a design, a specimen, an example or a profile."""
 
 import os
 from dataclasses import dataclass, replace

@@ -1,8 +1,6 @@
 """The air's path from the base plane to the end of the tube, as round ducts in series with volumes connected to them.
 
 Its volume is `internal_volume` plus the tube, from which the dead volume of the sensor is computed.
-
-Also the exact gas volume behind the cavity: channel, port and the gaps open to it, minus inserted parts.
 """
 
 import math

@@ -1,7 +1,4 @@
-"""Run every rule over a subject, and refuse a print with errors.
-
-Rules on the mould of a cast membrane: each part on its printer, and the mould's functions: fill, close, let go.
-"""
+"""Run every rule over a subject, or over the mould of a cast membrane, and refuse a print with errors."""
 
 from collections.abc import Callable, Iterable
 from os import PathLike

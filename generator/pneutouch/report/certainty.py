@@ -1,7 +1,4 @@
-"""The section "Uncertainty" of a datasheet: intervals, sources and the model, as plain data.
-
-Shares of the sources of uncertainty in the variance of a sensitivity, as bars.
-"""
+"""The section "Uncertainty" of a datasheet: intervals, sources and the model, as plain data."""
 
 from collections.abc import Sequence
 from typing import Any

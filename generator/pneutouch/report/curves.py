@@ -1,7 +1,4 @@
-"""Force, rise, sensitivity and inflation curves: one function each, for predictions and measurements alike.
-
-Deformed shapes of the wall.
-"""
+"""Force, rise, sensitivity and inflation curves: one function each, for predictions and measurements alike."""
 
 from __future__ import annotations
 

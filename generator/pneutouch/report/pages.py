@@ -1,5 +1,4 @@
-"""A sheet as a page, as a PDF and as Markdown: Jinja writes the page, the source of the PDF, which Typst sets, and the
-Markdown for people who print and measure."""
+"""A sheet as a page, a PDF and Markdown: Jinja writes the page, the source that Typst sets, and the Markdown."""
 
 from __future__ import annotations
 

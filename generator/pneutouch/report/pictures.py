@@ -1,10 +1,6 @@
 """A shaded picture of the sensor, cut open, drawn with a depth buffer: no display, no graphics driver.
 
 Used for the PDF and the README, where a page cannot turn.
-
-The pressed dome in three dimensions, in the colours of its contact pressure, under the outline of the object.
-
-The sensor as it is shown in pictures and in the 3D view: cut open, a graded membrane in the colours of its grade.
 """
 
 from __future__ import annotations

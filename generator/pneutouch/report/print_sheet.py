@@ -1,9 +1,4 @@
-"""The print sheet: which body takes which resin, on which machine, in which orientation, and how to clean it.
-
-Instructions to make a sensor, step by step: printed or cast, cleaned, joined and mounted.
-
-The ordering code: every field of a part number has a meaning that can be read back.
-"""
+"""The print sheet: which body takes which resin on which machine, how it is made step by step, and its order code."""
 
 from collections.abc import Mapping
 

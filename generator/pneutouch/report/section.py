@@ -1,9 +1,4 @@
-"""The section through the x axis, of the solids as designed.
-
-Pieces of a technical drawing: dimensions, leaders, centre lines. Lengths in the drawing's data units (mm).
-
-Notes on a port for drawing, print sheet and datasheet.
-"""
+"""The section through the x axis, of the solids as designed, with the pieces and notes of a technical drawing."""
 
 from __future__ import annotations
 

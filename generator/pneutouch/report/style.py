@@ -1,7 +1,4 @@
-"""Style of all figures: one font, one line width family, readable in grayscale, the same bytes every time.
-
-The bands of intervals around curves: each is hatched in its own direction, so that they stay apart in grayscale.
-"""
+"""Style of all figures: one font, one line width family, readable in grayscale, the same bytes every time."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""The pictures of a sweep: a figure over each swept parameter, lines with bands, and a map over two.
-
-Contour maps of a figure over two parameters, hatched by reason where it is missing.
-"""
+"""The pictures of a sweep: a figure over each swept parameter, lines with bands, and a map over two."""
 
 from __future__ import annotations
 

@@ -1,9 +1,4 @@
-"""Candidates with their predicted figures, and how far each is inside or outside every limit.
-
-The rated pressure of candidates, as `check` and the datasheet state it for a design.
-
-Candidates over all resins and all that is free: a coarse scan; the sensitivity met exactly along one direction.
-"""
+"""Candidates over all resins: a coarse scan, figures and rated pressures, and the margin to every limit."""
 
 from __future__ import annotations
 

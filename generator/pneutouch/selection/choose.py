@@ -1,7 +1,4 @@
-"""From candidates to an answer: the few best of each resin, or the requirements that prevent one.
-
-Distance of a candidate from its requirements, in percent of the required value.
-"""
+"""From candidates to an answer: the few best of each resin, or the requirements that prevent one."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

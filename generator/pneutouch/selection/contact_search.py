@@ -1,8 +1,6 @@
 """The search under a contact that the atlas does not cover: the atlas corrected by the solid.
 
 Space mapping: each round searches the atlas times the factors that the solid gave so far, and solves what it finds.
-
-A candidate that the solid answered under a contact that the atlas does not cover.
 """
 
 from __future__ import annotations

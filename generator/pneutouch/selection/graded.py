@@ -1,7 +1,4 @@
-"""Graded membranes against constant ones: the solid's figures of each, and the constant mix nearest to a target.
-
-The search for a grade: fractions at pole and rim that meet a target, by as few solid solves as possible.
-"""
+"""Graded membranes against constant ones: the solid's figures of each, and the constant mix nearest to a target."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

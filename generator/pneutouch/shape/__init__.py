@@ -1,7 +1,4 @@
-"""Form of a membrane: one meridian, from which solid, print mesh, mould and finite elements are derived.
-
-Shapes of the dome: one file for each, and one line in `SHAPES`.
-"""
+"""Form of a membrane: one meridian, from which solid, print mesh, mould and finite elements are derived."""
 
 from pneutouch.shape.dome import DomeShape
 from pneutouch.shape.hemisphere import Hemisphere

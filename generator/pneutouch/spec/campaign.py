@@ -1,7 +1,4 @@
-"""A measurement campaign: which file holds which run of which sensor, on which rig. One TOML file by the runs.
-
-The file of a campaign: which runs its folder holds, and the design that it names.
-"""
+"""A measurement campaign: which file holds which run of which sensor, on which rig. One TOML file by the runs."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""The design file: the TOML file that a user writes, one a design. Defaults are the paper's sensor.
-
-[mould]: the mould of a cast membrane, printed on a machine of its own. It matters where the membrane is cast.
-"""
+"""The design file: the TOML file that a user writes, one a design. Defaults are the paper's sensor."""
 
 from __future__ import annotations
 

@@ -1,9 +1,4 @@
-"""Explanation of a value that pydantic refuses: the problem, and what would be right.
-
-An error of a TOML file in plain words, with the line and a caret under the place.
-
-The form of a table as a message shows it: ``{ value = ..., source = "..." }``.
-"""
+"""Explanation of a value that pydantic refuses: the problem, and what would be right."""
 
 import math
 import re

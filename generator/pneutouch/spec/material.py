@@ -1,9 +1,4 @@
-"""A cured material: every number with its source.
-
-Mixing, pouring and curing of a resin that is cast, as its vendor's sheet gives them.
-
-Relaxation of a resin's modulus as a Prony series, with its source.
-"""
+"""A cured material: every number with its source; how its resin is cast, and how it relaxes."""
 
 from __future__ import annotations
 

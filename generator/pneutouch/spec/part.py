@@ -1,7 +1,4 @@
-"""Catalogue parts of the connector: tubes, ports, seats and mounts, each one TOML with its source. Lengths in mm.
-
-[cast_ring]: the perforated ring that the flange of a cast membrane is cast around. It matters for such a seat.
-"""
+"""Catalogue parts of the connector: tubes, ports, seats and mounts, each one TOML with its source. Lengths in mm."""
 
 from __future__ import annotations
 

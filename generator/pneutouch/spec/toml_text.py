@@ -1,7 +1,4 @@
-"""Data as TOML text: plain values first, then tables, then arrays of tables.
-
-Changes as assignments, and a commented design file, written from the declarations.
-"""
+"""Data as TOML text: plain values first, then tables, then arrays of tables."""
 
 import datetime
 import json

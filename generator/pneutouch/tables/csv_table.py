@@ -1,7 +1,4 @@
-"""Text tables in chunks of bytes that end at a line end, so that every row and every fault has its row number.
-
-Also the output of CSV that spreadsheets open as data: no text in it is taken for a formula.
-"""
+"""Text tables in chunks of bytes that end at a line end, so that every row and every fault has its row number."""
 
 import csv
 import io

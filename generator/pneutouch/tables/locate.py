@@ -1,7 +1,5 @@
 """Place of the table in the rows of a file: its header, a row of units, and the first numbers.
 
-Also the self-describing headers of some makers' text files: LabVIEW measurement files and MTS exports.
-
 Sources: NI, Specification for the LabVIEW Measurement File (.lvm), ni.com/tutorial/4139; MTS Series 793 Application
 manual, MultiPurpose TestWare, page 136, How to parse the MPT specimen data file.
 """

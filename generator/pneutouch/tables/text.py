@@ -1,7 +1,4 @@
-"""Text files of any encoding: detection of the encoding, their first lines, and their bytes in UTF-8.
-
-Also the format of a text file of numbers: encoding, delimiter, decimal mark and the rows before the header.
-"""
+"""Text files of any encoding: detection of the encoding, their first lines, and their bytes in UTF-8."""
 
 import codecs
 import io

@@ -1,7 +1,5 @@
 """Detection of a pattern at a target frequency: amplitude over the noise floor, and how often noise alone reaches it.
 
-The noise of a signal without its lines: a smooth spectrum, and records drawn from it.
-
 Shuffled samples give white noise, against which every peak of a red spectrum seems significant. A record with
 randomised phases (Theiler et al. 1992, doi 10.1016/0167-2789(92)90102-S) keeps its lines, so that no line ever stands
 out. Shuffled blocks whiten everything slower than a block, including the tested pattern, or keep the pattern. So

@@ -1,9 +1,4 @@
-"""Designs, builds and measurements side by side.
-
-Compare the things that a user names: designs, builds and measurements, in columns of one kind.
-
-A predicted column of a comparison: a design evaluated now, or the recorded prediction of a build.
-"""
+"""Designs, builds and measurements side by side, in columns of one kind."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Measured columns of a comparison: the groups of a folder that ``characterize`` wrote, one for each resin and age.
-
-An output folder read back: the files that its manifest lists, as they were written.
-"""
+"""Measured columns of a comparison: the groups of a folder that ``characterize`` wrote, one for each resin and age."""
 
 import csv
 import io

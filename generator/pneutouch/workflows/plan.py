@@ -1,9 +1,4 @@
-"""Plan of the measurement of a printed sensor, with the expected figures.
-
-A test plan: every run of a campaign in order, its expected readings, and the places where the rig cannot follow.
-
-The steps of a planned run: the work of rig and hand, and its duration.
-"""
+"""Plan of a measurement: every run of a campaign, its steps, its expected readings, and what the rig cannot follow."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

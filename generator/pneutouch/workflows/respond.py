@@ -1,11 +1,7 @@
 """A step or a sine of force or of travel through a sensor: wall, gas, line and gauge.
 
-A load through the whole chain: the curve of the slow press, wall and gas in time, the line, and the gauge's samples.
-
 The slow reading is that of the predicted curve. Wall, gas and line act on it as a linear system about half of the load,
 with the compliance that the wall has there: found from a second press of the same model with more gas behind it.
-
-The load of a simulated signal: a step or a sine of force or of travel.
 """
 
 from __future__ import annotations

@@ -1,9 +1,4 @@
-"""Content of a 3MF or of a voxel stack.
-
-Content of a 3MF, as data.
-
-Content of a voxel stack, as data and as a picture.
-"""
+"""Content of a 3MF, as data, or of a voxel stack, as data and as a picture."""
 
 from pathlib import Path
 

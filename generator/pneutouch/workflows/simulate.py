@@ -1,7 +1,4 @@
-"""Simulated measurements of a design.
-
-A campaign that was never measured: simulated runs of known sensors in a folder that reads like a measured one.
-"""
+"""A campaign that was never measured: simulated runs of known sensors in a folder that reads like a measured one."""
 
 import zlib
 from collections.abc import Callable, Iterator

@@ -1,9 +1,4 @@
-"""The runs that are simulated: those of a plan, or those that options request.
-
-The design of a campaign: by its name, or as a file in the campaign's folder, which holds all that its file names.
-
-A plan in place of a design: its campaign file names the design, and every run that is simulated.
-"""
+"""The runs that are simulated, of a plan or as options request them, and the design of their campaign."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Values of the atlas at the measured travels and volumes, for many sets of parameters in one batch.
 
-Air injected into the closed sensor: the pressure at which wall and gas are in equilibrium.
-
 Model discrepancy, common to all runs, and the error of the first contact of each run.
 
 Both are unknowns with a standard deviation, estimated with the parameters. The first is the model discrepancy of

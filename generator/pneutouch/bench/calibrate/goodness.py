@@ -1,9 +1,5 @@
 """Goodness of the fit: residuals by run, and deviations that every run shares.
 
-Misfit of the model to the runs as a whole, and the test that it is a model of the sensor at all.
-
-Correction of the fitted model by its error in the curves: factors on force and pressure by driving pressure.
-
 The sensitivity of a soft dome hardly depends on modulus, wall and dead volume, so a fit of them does not remove the
 model's error in it. That error, as the runs show it, is corrected at the measured driving pressures and between them.
 """

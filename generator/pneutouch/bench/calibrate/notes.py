@@ -1,9 +1,4 @@
-"""Notes on a calibration: data left out, undetermined parameters, further tests, and deviations of the model.
-
-Errors that all runs share and that no interval holds, such as a gauge that reads too much.
-
-Cross-validation: fit without a driving pressure, predict it, compare.
-"""
+"""Notes on a calibration: data left out, undetermined parameters, further tests, deviations, held-out pressures."""
 
 from collections.abc import Sequence
 

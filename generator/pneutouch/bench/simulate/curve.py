@@ -1,8 +1,6 @@
 """The pressed curve of one specimen, as the simulator and the test plan read it.
 
 Deviations of a simulated sensor from its model, so that a calibration does not meet the very model that it fits.
-
-Air pushed in with a syringe: the expected pressure in the closed line alone and in the sensor.
 """
 
 from collections.abc import Sequence

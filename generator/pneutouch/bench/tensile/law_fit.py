@@ -1,7 +1,5 @@
 """A hyperelastic law fitted to curves of tension by least squares of the relative difference.
 
-A measured curve of uniaxial tension, and its slack, which is taken off before a fit.
-
 Nominal stress of the hyperelastic laws in uniaxial tension, incompressible: P = dW/dlambda (Treloar 1975, ch. 5).
 """
 

@@ -1,7 +1,4 @@
-"""A tensile file, read and checked: stretch and nominal stress, in order, in units that an elastomer can have.
-
-Columns of a tensile file recognised by their names: stretch, strain or travel, and stress or force.
-"""
+"""A tensile file, read and checked: stretch and nominal stress, in order, in units that an elastomer can have."""
 
 import re
 from collections.abc import Sequence

@@ -1,7 +1,4 @@
-"""The files of a reader from its document: bytes by file name.
-
-Reading of a gauge by an Arduino: over the bus or with its converter, as far as that is known.
-"""
+"""The files of a reader from its document, with the sketch that reads its gauge: bytes by file name."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""The manifest of a stack, ``stack.json``: what every colour and number in it stands for.
-
-Read a stack back, and hold it to the rules of the voxel print utility and to its own manifest.
-"""
+"""The manifest of a stack, ``stack.json``, and the check of a stack that is read back by it."""
 
 import hashlib
 import json

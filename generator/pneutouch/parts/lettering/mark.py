@@ -4,8 +4,6 @@ A tally is a part mark for a narrow ring: grooves along the flange, counted like
 
 It is read counter-clockwise, looking onto the dome. A long groove is the start; then follow a group of grooves for the
 value, a wider gap, and a group for the copy. A narrow groove counts one, a middle one five. A is 1, B is 2 and so on.
-
-Also the flat faces that may carry a mark: away from seals, glue, screw heads and the dome, with solid behind them.
 """
 
 import math

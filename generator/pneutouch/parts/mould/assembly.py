@@ -1,9 +1,4 @@
-"""The mould of a cast membrane: its parts, their numbers, and its bodies as closed and as printed.
-
-Also the mass of silicone in a batch, and its division into the parts to be mixed.
-
-Also the check that a mould has space for its details: channels within the flange, fillets within its thickness.
-"""
+"""The mould of a cast membrane: its parts, their numbers, its bodies as closed and as printed, and its silicone."""
 
 from __future__ import annotations
 

@@ -3,8 +3,6 @@
 Slow flow of a Newtonian liquid: the pour channel by Hagen and Poiseuille (pipe of varying radius, 8 mu L / (pi r^4)
 integrated along it), the dome's wall by the flow between parallel faces (12 mu ds / (w h^3), with the circumference at
 half the arc as width w). Batchelor, An Introduction to Fluid Dynamics (1967), sections 4.2 and 4.8.
-
-Also the stretch that a cured membrane needs to come off its core.
 """
 
 import math

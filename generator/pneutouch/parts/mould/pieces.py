@@ -1,7 +1,4 @@
-"""The parts of a mould as exact solids: cap, ring, core and base; ring and core are those of one cavity.
-
-Also the sizes of the mould, from a membrane and the mould's entries in a design.
-"""
+"""The parts of a mould as exact solids: cap, ring, core and base; ring and core are those of one cavity."""
 
 import math
 

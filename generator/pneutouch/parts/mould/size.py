@@ -12,8 +12,6 @@ upside down, with the flange's underside up: air leaves there, and the sensing f
     core     /_____|________|_____\       the foot's cone centres the core in the cap
     base     |______| window |______|     presses the foot; its window holds what runs over
 
-Also the screws that hold a mould closed.
-
 Also open moulds of flat coupons: a tray whose top is the plane along which a straight edge strikes off the silicone.
 
 Their walls are upright, without draft, which would change a measured cross-section; a cured coupon of silicone is

@@ -1,7 +1,4 @@
-"""Interface of a family of patterns: its input and output.
-
-Also meshes without a material, and boxes.
-"""
+"""Interface of a family of patterns: its input and output."""
 
 from __future__ import annotations
 

@@ -8,8 +8,6 @@ boolean.
 A strut is the convex hull of two balls. All balls of a lattice are the same polyhedron in the same orientation. The
 octant is made with a side of one, with its nodes and balls on a grid of 2^-20: sums are exact, and struts that join at
 a node have identical facets there, not only nearly identical ones.
-
-Also the family of strut lattices: checked, sized to the required volume fraction, and drawn.
 """
 
 from __future__ import annotations

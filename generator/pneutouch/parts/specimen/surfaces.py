@@ -4,8 +4,6 @@ Level sets of a function on a grid by marching tetrahedra end exactly on the sid
 
 Each cube of the grid is six tetrahedra about its diagonal, the same six everywhere, so neighbours match and no case is
 ambiguous: a level set is closed except for its rim on the box, and two level sets of one function never touch.
-
-Also the family of minimal surfaces: checked, set to the required volume fraction or thickness, and drawn.
 """
 
 import itertools

@@ -4,8 +4,6 @@ From points all over the surface a line is cast along the normal, into the body 
 that looks back, within 40 degrees, its length is a thickness of the body or a width of the air. Lines across the middle
 then show whether the place is thin in one direction (a wall, a gap) or in two (a pin, a hole), and lines along the
 flank how high the flank is (a ridge or a groove on a face).
-
-Rays through a mesh.
 """
 
 from __future__ import annotations

@@ -2,8 +2,6 @@
 
 With NumPy only: SciPy's `csgraph` and `ndimage` give the same in as much time (test_joined.py), but loading both takes
 half as long as `import numpy, scipy.linalg`, longer than these rules take on a dome and its connector.
-
-Closed hollows: shells of a solid that face inwards.
 """
 
 from __future__ import annotations

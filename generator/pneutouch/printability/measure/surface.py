@@ -1,7 +1,4 @@
-"""Faces, edges and smooth face groups of a triangle mesh.
-
-Points spread over a surface, the same ones every time.
-"""
+"""Faces, edges and smooth face groups of a triangle mesh."""
 
 from dataclasses import dataclass
 from functools import cached_property

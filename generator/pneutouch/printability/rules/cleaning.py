@@ -1,7 +1,4 @@
-"""Removal of support: hollows behind necks, corners out of sight and long thin channels cannot be washed out.
-
-Closed hollows: support cannot be removed from them, and they cannot be inspected.
-"""
+"""Removal of support: hollows behind necks, corners out of sight and long thin channels cannot be washed out."""
 
 import numpy as np
 

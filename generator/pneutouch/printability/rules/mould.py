@@ -1,7 +1,4 @@
-"""Rules on a liquid silicone in a thin wall, and on the mould that it fills, cures in and leaves.
-
-The mould's void is the membrane, its parts stay apart, nothing is undercut, and its walls are even.
-"""
+"""Rules on a liquid silicone in a thin wall, and on the mould that it fills, cures in and leaves."""
 
 import numpy as np
 

@@ -1,8 +1,5 @@
 """Write a set of coupons: STL, 3MF, the print-and-measure sheet, the results file to fill in, and a manifest.
 
-The print-and-measure sheet: pieces and settings of the print, quantities and instruments, cells to fill,
-formulas.
-
 Coupons on a printer's tray: side by side in rows, never turned, because a gauge's x and y are the machine's.
 """
 

@@ -1,9 +1,4 @@
-"""Order of coupons: those that the user asked for, each on its machine and in its material.
-
-Mixes of two resins in known fractions, to be printed as coupons.
-
-The results file to fill in: every nominal listed, every reading empty.
-"""
+"""Order of coupons: those that the user asked for, each on its machine and in its material; and the results file."""
 
 import textwrap
 from collections.abc import Mapping, Sequence

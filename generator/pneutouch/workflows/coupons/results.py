@@ -1,9 +1,4 @@
-"""Evaluation of measured coupons into figures and into profiles of the lab's own.
-
-The lab's own mixing curve, from coupons of two resins mixed in known fractions.
-
-A lab's own profile: the shipped one with measured numbers in place of quoted ones.
-"""
+"""Measured coupons as figures, as profiles of the lab's own, and as its own mixing curve."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,9 +1,4 @@
-"""The figures of a sensor over the driving pressure, from vented to just below its least limit.
-
-Driving pressures at which a figure has a required value, and the band in which the sensor in hand may have it.
-
-The leak of a sensor as it was measured: by the leak-test cap, or by the leak runs of a campaign.
-"""
+"""Figures of a sensor over the driving pressure, pressures that give a required value, and a measured leak."""
 
 from __future__ import annotations
 

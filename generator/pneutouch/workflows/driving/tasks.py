@@ -1,9 +1,4 @@
-"""Driving pressures for the tasks of a sensor, with the gas that each takes and how long it stays.
-
-The answer as a record, in the units of its names.
-
-Changes of a design whose driving pressure alone does not reach a required figure.
-"""
+"""Driving pressures for the tasks of a sensor, the gas of each and how long it stays; or changes of the design."""
 
 from __future__ import annotations
 

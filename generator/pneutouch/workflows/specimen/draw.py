@@ -1,7 +1,4 @@
-"""A specimen drawn: its patterns, and the two or three closed bodies that share their faces.
-
-A specimen's file with every name resolved: its materials, its printer and the context of its patterns.
-"""
+"""A specimen drawn: its patterns, and the two or three closed bodies that share their faces."""
 
 from dataclasses import dataclass
 from functools import cached_property

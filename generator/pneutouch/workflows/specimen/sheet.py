@@ -1,9 +1,4 @@
-"""The print sheet of a specimen: resins, orientation, cleaning, layers with their frequencies, findings.
-
-One page: the specimen cut along the path, its layers with pitch, depth and frequency, axes in mm.
-
-True patterns of a specimen: the ground truth that a scan is compared with.
-"""
+"""The print sheet of a specimen, its drawing on one page, and its true patterns, which a scan is compared with."""
 
 from __future__ import annotations
 

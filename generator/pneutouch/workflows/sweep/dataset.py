@@ -1,8 +1,6 @@
 """Conversion of records to one xarray dataset, and of the dataset to the bytes of a netCDF file.
 
 netCDF-3 with 64-bit offsets, by scipy: it needs no further library here, every tool reads it, and it holds no clock.
-
-Files next to a dataset: its table as CSV, and its pictures; its contour maps in a folder.
 """
 
 from __future__ import annotations

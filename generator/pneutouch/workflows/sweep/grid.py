@@ -1,9 +1,4 @@
-"""A plan: the varied fields of a design, their values, and the points of the sweep.
-
-A plan from a sweep file or from the flags of the command line.
-
-The kinds of value that a field of the design takes, for the axes of a sweep; the fields that a map is drawn over.
-"""
+"""A sweep's plan, from a file or from flags: the varied fields of a design, their values, and the points."""
 
 import math
 from collections.abc import Mapping, Sequence

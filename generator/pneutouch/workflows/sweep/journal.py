@@ -2,8 +2,6 @@
 
 A line is ``checksum json``. What does not agree with its checksum was torn by a kill or damaged since: it is dropped
 and its points are computed again.
-
-The work folder next to the output: one process at a time, and nothing left of it at the end.
 """
 
 from __future__ import annotations

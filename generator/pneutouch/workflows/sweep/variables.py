@@ -1,7 +1,4 @@
-"""The variables of a sweep's dataset: each declared once, with its place in a prediction, unit and meaning.
-
-The figures that are mapped, and short words for the message of a missing state.
-"""
+"""The variables of a sweep's dataset: each declared once, with its place in a prediction, unit and meaning."""
 
 import re
 from collections.abc import Callable, Sequence

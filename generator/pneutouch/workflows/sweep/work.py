@@ -1,7 +1,4 @@
-"""The work itself: a chunk of points in, a list of records out. Runs in this process, in others, or on a cluster.
-
-A plan with every name in it resolved: checked before any work starts, and carrying all that the work reads.
-"""
+"""The work itself: a chunk of points in, a list of records out. Runs in this process, in others, or on a cluster."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Chunks computed on an existing Dask cluster.
-
-Chunks computed on this machine: in this process, or in a pool of others.
-"""
+"""Chunks computed in this process, in a pool of others on this machine, or on an existing Dask cluster."""
 
 from __future__ import annotations
 

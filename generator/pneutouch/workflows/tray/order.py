@@ -1,9 +1,4 @@
-"""Order of a tray, from a tray file or from the flags of the command line.
-
-A tray's entries as designs, one a value, and the bodies of each that the tray's printer prints.
-
-Resin changes: which materials can share a job of a printer, in how few jobs, and in which order.
-"""
+"""Order of a tray, from a file or from flags: its designs, the bodies that its printer prints, and their jobs."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
