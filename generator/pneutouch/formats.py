@@ -65,10 +65,7 @@ def versioned(name: str, document: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def problem_of(name: str, stated: object) -> tuple[str, str] | None:
-    """Problem with the format that a file gives and its remedy; None for a file that can be read.
-
-    ``stated`` is None for a file without the key.
-    """
+    """Problem with the format ``stated`` by a file (None: no key) and its remedy; None for a file that can be read."""
     match = _STATED.fullmatch(stated) if isinstance(stated, str) else None
     if match is None or match[1] != name:
         problem = "missing" if stated is None else "not the format of this file"

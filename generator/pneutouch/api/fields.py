@@ -58,10 +58,7 @@ def _of_keyword(name: str, value: Any) -> Any:
 
 
 def numbers_of(values: Any, name: str, *, alone: bool = False) -> tuple[float, ...]:
-    """Finite numbers that were given as the keyword ``name``. Raises InputError.
-
-    With ``alone`` a single number counts as a list of one.
-    """
+    """Finite numbers given as the keyword ``name``; with ``alone`` a single one counts as a list. Raises InputError."""
     given = _of_keyword(name, values)
     if not isinstance(given, list):
         if alone and is_finite(given):

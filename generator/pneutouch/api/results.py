@@ -13,10 +13,7 @@ from pneutouch.results.prediction import ByMixingCurve
 
 @dataclass(frozen=True, repr=False)
 class CheckResult(show.Documented):
-    """The findings of a check; it is ``passed`` where none of them is an error.
-
-    ``curves`` are the figures by every mixing curve of a mix.
-    """
+    """The findings of a check, ``passed`` without an error; ``curves``: the figures by every mixing curve of a mix."""
 
     name: str
     findings: tuple[Finding, ...]

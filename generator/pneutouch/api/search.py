@@ -194,8 +194,7 @@ def select(target: str | Path | None = None, **fields: Any) -> Selection:
 
 
 def _selected(goal: Target, choice: FoundChoice) -> Design:
-    """The design of a search result: its base with the changes that were found, named after the base if the target
-    names one."""
+    """The design of a search result: its base with the changes found, named after the base if the target has one."""
     name = f"{choice.base.name if goal.setting.base else 'selected'}-{choice.label}"
     return Design.of(DesignSource(name, assigned(choice.base.design, choice.assignments, name), WHERE))
 

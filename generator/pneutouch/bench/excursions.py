@@ -1,7 +1,4 @@
-"""The plate's excursions: clear of the sensor, going in, staying, coming out; and the kind of run that they make.
-
-They are found from the position only.
-"""
+"""The plate's excursions: clear, going in, staying, coming out, by its position alone; and the kind of run they are."""
 
 from __future__ import annotations
 

@@ -152,8 +152,7 @@ def onsets(
 
 
 def _presses(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign: int, onset: float) -> bool:
-    """True if a hold presses, judged by the mean of its later half, although no single block of the loading shows
-    it."""
+    """True if a hold presses, by the mean of its later half, although no single block of the loading shows it."""
     at = slice((one.hold[0] + one.hold[1]) // 2, one.hold[1])
     force = sign * (blocks.force[at] - base.mean[0])
     count = min(force.size, base.end - base.start)

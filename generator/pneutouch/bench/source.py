@@ -144,8 +144,7 @@ _PLAIN = {"delimiter": ",", "decimal": ".", "encoding": "utf-8"}
 
 @dataclass(frozen=True, slots=True)
 class MeasuredFile:
-    """A file with its columns and its layout; ``guessed`` are the channels and the keys of its format that were not
-    stated."""
+    """A file with its columns and layout; ``guessed`` are the channels and keys of its format that were not stated."""
 
     path: Path
     columns: ColumnMap

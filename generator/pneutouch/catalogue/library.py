@@ -84,8 +84,7 @@ def examples() -> dict[str, Example]:
 
 
 def example_remedy(name: str) -> str | None:
-    """Command that copies the example of this name, given when a file was expected; None if there is no such
-    example."""
+    """Command that copies the example of this name, given when a file was expected; None if there is none."""
     name = name.removesuffix(".toml")
     example = examples().get(name)
     if example is None:
@@ -257,8 +256,7 @@ def is_specimen(content: dict[str, Any]) -> bool:
 
 @dataclass(frozen=True)
 class CachedLibrary(Library):
-    """A library over ``folders`` that do not change while it is used; the objects that it returns are immutable and
-    shared."""
+    """A library over ``folders`` that do not change while it is used; what it returns is immutable and shared."""
 
     _files: dict[str, dict[str, Path]] = field(default_factory=dict, repr=False, compare=False)
     _things: dict[tuple[str, str], Any] = field(default_factory=dict, repr=False, compare=False)

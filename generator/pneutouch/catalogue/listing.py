@@ -85,10 +85,7 @@ def _title(thing: Any) -> str:
 
 
 def known_design(campaign: Campaign, folder: Path, library: Library) -> str | None:
-    """The design that a campaign names, as a command takes it; None if it names none.
-
-    Raises InputError, with the campaign's file and key, if that design does not exist.
-    """
+    """The design that a campaign names, as a command takes it, or None. Raises InputError if it does not exist."""
     name = design_of(campaign, folder)
     if name is not None:
         try:

@@ -67,8 +67,7 @@ class ResolvedDesign:
 
     @property
     def hole_undersize(self) -> float:
-        """Difference in diameter, mm, by which the connector's printer makes holes too small; fits are drawn wider by
-        it."""
+        """Difference in diameter, mm, by which the connector's printer makes holes too small; fits are drawn wider."""
         return self.connector_printer.hole_undersize_mm.nominal
 
     @property

@@ -313,8 +313,7 @@ def joined(pieces: Sequence[str], at: int) -> tuple[list[str], int, str]:
 
 @contextmanager
 def words_of_bash(write: Callable[[str], object]) -> Iterator[None]:
-    """Complete whole words where bash requests completions in the block, and ``write`` the words that bash may
-    insert."""
+    """Complete whole words where bash requests completions, and ``write`` the words that bash may insert."""
     requested = os.environ.get("_PNEUTOUCH_COMPLETE") == "complete_bash"
     try:
         pieces, at = shlex.split(os.environ["COMP_WORDS"]), int(os.environ["COMP_CWORD"])

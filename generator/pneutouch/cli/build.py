@@ -254,8 +254,7 @@ def _write_voxels(plan: VoxelPlan, evaluation: Evaluation, out: Path) -> Path:
 
 
 def _from_3mf(file: str, context: typer.Context, name: str | None) -> Evaluation:
-    """Evaluate the recipe of a 3MF; reports on stderr the programs and libraries that had another version when it was
-    made."""
+    """Evaluate the recipe of a 3MF; reports on stderr programs and libraries of another version when it was made."""
     from pneutouch.export.threemf_read import read_threemf
     from pneutouch.output.recipe import evaluate_recipe, other_versions, read_recipe
     from pneutouch.spec.values import plain_name

@@ -15,8 +15,7 @@ _AGAIN = 0.25
 
 
 class StopSignals:
-    """The handler of the stop signals, which keeps the first one in ``received``: a library may swallow the
-    exception."""
+    """The handler of stop signals; it keeps the first in ``received``, for a library may swallow the exception."""
 
     def __init__(self) -> None:
         self.received: int | None = None

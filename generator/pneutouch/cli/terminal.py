@@ -87,8 +87,7 @@ def _fitted(text: str, stream: TextIO) -> str:
 
 
 def _wrapped(line: str, columns: int) -> str:
-    """A line wrapped to ``columns``, its further lines indented. Commands and TOML, which people copy, stay on one
-    line."""
+    """A line wrapped to ``columns``, further lines indented; commands and TOML, which people copy, stay on one."""
     if len(line) <= columns or _COPIED.match(line):
         return line
     indent = line[: len(line) - len(line.lstrip())] + "  "

@@ -274,10 +274,7 @@ def step_files(name: str, solids: tuple[Solid, ...], offset: Array) -> tuple[dic
 # The kernel crashes the process where an interrupt cuts it short.
 @uninterrupted()
 def step(name: str, solids: tuple[Solid, ...], offset: Array) -> bytes:
-    """Write the solids, shifted by ``offset`` (3,) into the print frame, as one assembly called ``name``.
-
-    Raises ComputationError if the kernel writes nothing.
-    """
+    """The solids, shifted by ``offset`` (3,), as one assembly ``name``. Raises ComputationError if the kernel fails."""
     from OCP.IFSelect import IFSelect_ReturnStatus
     from OCP.Interface import Interface_Static
     from OCP.Message import Message, Message_Gravity

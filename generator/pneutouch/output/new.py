@@ -109,8 +109,7 @@ def new_from(source: str, name: str | None = None, out: Path | None = None, chan
 
 
 def change_of_copy(source: str) -> str:
-    """Remedy that shows how to change a copy of a name. Raises InputError as `new_from` does for a name of two
-    kinds."""
+    """Remedy that shows how to change a copy. Raises InputError as `new_from` does for a name of two kinds."""
     kind = _profile_kind(source, Library.default())
     return "change it with `set`" if kind is None else f"it is one of the {kind}: change the file of the copy"
 

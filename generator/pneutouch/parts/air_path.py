@@ -123,8 +123,7 @@ def _gap(scene: ResolvedDesign, layout: Layout) -> list[AirPiece]:
 
 
 def _channel_length(layout: Layout) -> float:
-    """Length of the channel from the base plane, or from the wall of a plug's opening, to the beginning of the port or
-    its bore."""
+    """Length of the channel from the base plane, or the wall of a plug's opening, to the port or its bore."""
     if layout.port_axis is None:
         return layout.port.hollow[-1][1] - layout.under
     if layout.opening_radius:

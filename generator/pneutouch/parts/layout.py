@@ -164,8 +164,7 @@ def lay_out_dome(scene: ResolvedDesign, port: PortShape, shape: DomeShape) -> La
 
 
 def _flange(scene: ResolvedDesign, wall: float) -> tuple[float, float]:
-    """Width and thickness of the flange: one length for both, or those needed by the web of a ring and the silicone
-    around it."""
+    """Width and thickness of the flange: one length for both, or those of the web of a ring and silicone around it."""
     seat, web = scene.seat, scene.design.cast_ring
     least = max(seat.least_flange_mm, seat.flange_over_wall * wall)
     if not isinstance(seat, CastRing):

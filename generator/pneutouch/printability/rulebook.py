@@ -68,8 +68,7 @@ _HINTS = {
 """Remedies in the design for findings of the printing rules on parts of a mould."""
 
 _LEFT_TO_RAYS = ("edges", "mesh")
-"""Printing rules of which only errors count for a mould: its edges close on one another, and `mould` measures its
-meshes."""
+"""Printing rules of which only errors count for a mould: its edges close, and `mould` measures its meshes."""
 
 
 def mould_subject(mould: MouldAssembly) -> PrintSubject:

@@ -27,8 +27,7 @@ if TYPE_CHECKING:
 
 
 class WettedSurface(NamedTuple):
-    """Surface that a silicone is poured against: the body's name, its material's label and the process it is printed
-    by."""
+    """Surface that a silicone is poured against: the body's name, its material's label and its print process."""
 
     body: str
     material: str

@@ -1,7 +1,4 @@
-"""Rows of a datasheet: temperature, speed, humidity and ageing, the gauge, contact off the axis, and mixing curves.
-
-Calculated or quoted, never guessed.
-"""
+"""Rows on conditions, the gauge, contact off the axis and mixing curves: calculated or quoted, never guessed."""
 
 from collections.abc import Sequence
 

@@ -173,8 +173,7 @@ SHAPES_WIDE = 104.0
 
 
 def shapes(prediction: SensorPrediction) -> str:
-    """Half sections of the deformed wall at the lowest and the highest driving pressure, shaded by stretch, as SVG with
-    one scale."""
+    """Half sections of the wall at the lowest and highest driving pressure, shaded by stretch, as SVG to one scale."""
     from matplotlib.cm import ScalarMappable
 
     states = prediction.states[:1] + prediction.states[1:][-1:]

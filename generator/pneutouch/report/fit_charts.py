@@ -106,8 +106,7 @@ def _scattered(k: int, runs: Sequence[tuple[Array, Array]], label: str) -> list[
 
 @dataclass(frozen=True, slots=True)
 class TimeCurves:
-    """Curves over time (s): pressure rise (MPa) of a slow press, at the gauge, and the gauge's output (times,
-    rises)."""
+    """Curves over time (s): pressure rise (MPa) of a slow press, at the gauge, and its output (times, rises)."""
 
     time: Array
     slow: Array

@@ -49,10 +49,7 @@ def difference(measured: float, predicted: float) -> float | None:
 
 
 def overlap(measured: Bounds, predicted: Bounds) -> bool | None:
-    """True if a measured interval and a predicted band share a value; None without the band.
-
-    A measured value without an interval counts as itself.
-    """
+    """True if a measured interval, or value without one, and a predicted band share a value; None without the band."""
     value, low, high = measured
     _, least, most = predicted
     if least is None or most is None:

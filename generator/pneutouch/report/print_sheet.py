@@ -202,10 +202,7 @@ def _fields(scene: ResolvedDesign) -> list[tuple[str, str]]:
 
 
 def print_sheet(sheet: SheetData, left_out: Mapping[str, str]) -> str:
-    """Markdown for the operator. Print files carry names and colours; the resin is chosen at the machine.
-
-    ``left_out`` are files that were not written, and why.
-    """
+    """Markdown for the operator, who chooses resins at the machine; ``left_out``: files not written, and why."""
     scene, assembly, mould = sheet.scene, sheet.assembly, sheet.assembly.mould
     glue_mL = assembly.glue_volume / ML
     return filled(

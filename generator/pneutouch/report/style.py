@@ -81,8 +81,7 @@ def _hundredths(number: re.Match[str]) -> str:
 
 
 def _named_by_content(text: str) -> str:
-    """Clip paths named by their content as printed: their own names follow digits of the layout that no drawing
-    repeats."""
+    """Clip paths named by their content as printed: their own names follow digits that no drawing repeats."""
     names = {
         old: "p" + hashlib.sha256(" ".join(content.split()).encode()).hexdigest()[:10]
         for old, content in re.findall(r'<clipPath id="(p[0-9a-f]+)">(.*?)</clipPath>', text, re.DOTALL)

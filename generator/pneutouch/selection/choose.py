@@ -169,10 +169,7 @@ def least_margin(margin_of: dict[str, Array]) -> Array:
 def shortlist(
     pool: CandidatePool, margin_of: dict[str, Array], fits: Flags, each: int = EACH, preferred: Array | None = None
 ) -> Index:
-    """For each resin a few candidates that are not nearly the same, those with the greatest margin first.
-
-    ``preferred`` (n,) is added to the margin.
-    """
+    """For each resin a few unlike candidates, those of the greatest margin, plus ``preferred`` (n,), first."""
     least = least_margin(margin_of) + 0.5 * margin_of.get("sensitivity", np.zeros_like(pool.radius))
     least = least if preferred is None else least + preferred
     chosen: list[int] = []
@@ -325,10 +322,7 @@ _MOST = ("outer diameter", "footprint", "break strain", "gauge range")
 
 
 def missed_percent(problem: SelectionProblem, candidate: Candidate) -> dict[str, float | None]:
-    """Requirements and limits that are broken, and how far each value is off, in percent of the required one.
-
-    None if the value is not known.
-    """
+    """Broken requirements and limits, and how far each value is off, percent of the required one, None if not known."""
     broken = {name: margin for name, margin in candidate.margins.items() if margin < 0}
     return {
         name: _off(problem, candidate, name, margin) if np.isfinite(margin) else None for name, margin in broken.items()

@@ -210,10 +210,7 @@ class ContactFronts(NamedTuple):
 
 
 def contact_front(problem: SelectionProblem, solve: SolveCandidate) -> ContactFronts:
-    """`front` under the contact of the solver: its sensitivities and forces are the atlas's times the solid's factors.
-
-    A place that the solid cannot answer corrects nothing.
-    """
+    """`front` times the solid's factors for its contact; a place that the solid cannot answer corrects nothing."""
     factors, fronts = ContactFactors.none(), _fronts(problem, ContactFactors.none())
     open_, errors, presses = list(range(len(fronts))), [], 0
     for count, shares in enumerate(_SHARES):
@@ -235,8 +232,7 @@ def contact_front(problem: SelectionProblem, solve: SolveCandidate) -> ContactFr
 
 
 def _off(one: TradeOffFront, row: int, trial: ContactTrial) -> float:
-    """The larger relative difference of sensitivity and force between a place of a front and the solid's answer
-    there."""
+    """The larger relative difference of sensitivity and force between a place of a front and the solid there."""
     exact = trial.pool.figures
     return float(max(abs(one.sensitivity[row] / exact.sensitivity - 1.0), abs(one.force[row] / exact.reach - 1.0)))
 

@@ -1,7 +1,4 @@
-"""Meridians: closed loops of straight lines and arcs in the (r, z) plane, mm, that sweep a solid of revolution.
-
-Volumes, areas and distances are exact.
-"""
+"""Meridians: closed loops of lines and arcs in (r, z), mm, swept into solids; exact volumes, areas and distances."""
 
 from __future__ import annotations
 

@@ -228,10 +228,7 @@ def _reason(rule: str) -> Any:
 
 
 class Accepted(Table):
-    """[accepted]: print rules whose warnings are known and accepted, each with the reason; they become notes.
-
-    Errors cannot be accepted.
-    """
+    """[accepted]: print rules whose warnings, not errors, are accepted with a reason each; they become notes."""
 
     mesh: Reason = _reason("mesh")
     walls: Reason = _reason("walls")

@@ -88,8 +88,7 @@ def _unlike(detail: Any, owner: type[BaseModel] | None, path: list[str]) -> tupl
 
 
 def _is_sentence(right: str) -> bool:
-    """True if the description of the right value is the help of a field without bounds, which is a sentence of its
-    own."""
+    """True if the right value is described by the help of a field without bounds, a sentence of its own."""
     return right[:1].isupper() or right.startswith("one ")
 
 

@@ -200,10 +200,7 @@ class Printer(Table):
         return CAST_STEP_SOURCE if self.resolution is None else self.resolution.source
 
     def mode_for(self, *materials: Material) -> Mode | None:
-        """The finest mode that makes the materials in one job, or None if there is none.
-
-        Casting makes what has a table [casting] alone.
-        """
+        """The finest mode that makes the materials in one job, if any; casting makes what has a table [casting]."""
         if self.is_casting and not all(material.is_cast for material in materials):
             return None
         resins = {resin for material in materials for resin in material.base_resins}

@@ -126,10 +126,7 @@ def override(content: Mapping[str, Any], changes: Changes, model: type[BaseModel
 
 
 def parse_changes(assignments: Iterable[str], keys: Collection[str] = ("calibration",)) -> dict[str, Any]:
-    """Changes from texts ``table.key=value``, whose values are TOML or bare words. Raises InputError.
-
-    ``keys`` are those outside the tables, written without one.
-    """
+    """Changes from ``table.key=value`` in TOML or bare words; ``keys`` stand outside the tables. Raises InputError."""
     changes = {}
     for text in assignments:
         key, equals, value = (part.strip() for part in text.partition("="))

@@ -77,8 +77,7 @@ def is_finite(value: object) -> bool:
 
 
 def finite_numbers(values: Iterable[object], key: str) -> list[float]:
-    """The values as floats: 0 and 0.0 are written differently. Raises InputError with ``key`` if one is no finite
-    number."""
+    """The values as floats: 0 and 0.0 are written differently. Raises InputError with ``key`` for no finite one."""
     numbers = []
     for value in values:
         if not is_finite(value):
@@ -116,8 +115,7 @@ def plain_name(name: str, *, key: str | None = None, file: str | PathLike[str] |
 
 
 def name_of(path: Path) -> str:
-    """The name that a file gives its content: its own without the suffix. Raises InputError for a file name that is no
-    name."""
+    """The name that a file gives its content: its own without suffix. Raises InputError if that is no name."""
     try:
         return plain_name(path.stem)
     except InputError:

@@ -102,18 +102,14 @@ class FullAnswer(NamedDesign):
 
 
 class Answers:
-    """Answers of the atlas, given at once for the designs ``bases``. The last design is kept: its intervals are asked
-    for next."""
+    """Answers of the atlas for designs ``bases``; the last design is kept, for its intervals are asked for next."""
 
     def __init__(self, bases: Mapping[str, str], library: Library) -> None:
         self._bases, self._library = bases, library
         self._last: tuple[Question, Evaluation] | None = None
 
     def quick(self, question: Question) -> QuickAnswer:
-        """Drawing, prediction and the design's curve without intervals, where the atlas has an answer.
-
-        Raises InputError naming the field.
-        """
+        """Drawing, prediction and curve without intervals, if the atlas answers. Raises InputError naming the field."""
         source, version = question.read(self._bases, self._library)
         scene = load_scene(source, {}, self._library)
         assembly = assemble(scene)
@@ -135,10 +131,7 @@ class Answers:
         return answer(outside=None, prediction=prediction, curves=curves)
 
     def intervals(self, question: Question) -> PredictedDesign:
-        """The prediction with the intervals of its figures, the design's curve with its band, and the other resins'.
-
-        Raises InputError naming the field.
-        """
+        """Prediction with intervals, the design's curve and band, other resins'. Raises InputError naming the field."""
         source, version = question.read(self._bases, self._library)
         question = replace(question, version=version)
         if self._last is None or self._last[0] != question:

@@ -208,10 +208,7 @@ class BuiltDesign:
 def build_design(
     arguments: Mapping[str, Any], folder: Path, report: Callable[[int, int, str | None], None]
 ) -> BuiltDesign:
-    """Build the design of ``question`` into ``folder``, under ``name`` if one is given.
-
-    Raises InputError that names the field, and RuleBrokenError if a rule is broken.
-    """
+    """Build ``question`` into ``folder``, as ``name`` if given. Raises InputError at the field, and RuleBrokenError."""
     question, library = Question.of(arguments.get("question")), Library.default()
     source = question.source(arguments["bases"], library)
     name = arguments.get("name") or calibrated_name(source, {})

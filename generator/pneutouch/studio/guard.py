@@ -49,10 +49,7 @@ class Uploads:
         return self._files[number]
 
     async def add(self, name: str, stream: AsyncIterator[bytes]) -> int:
-        """Keep a file; returns its number.
-
-        Raises InputError if the name is no file name, the file is too large, or too many come at once.
-        """
+        """Keep a file; returns its number. Raises InputError for a bad name, and for too large a file or too many."""
         if not _NAME.fullmatch(name) or len(name) > _LONGEST_NAME:
             remedy = "use letters, digits and . _ - + = @ ( ) , alone, and begin with a letter or a digit"
             raise InputError("not a name for a file", key="name", value=name[:_LONGEST_NAME], remedy=remedy)

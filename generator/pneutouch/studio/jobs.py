@@ -83,10 +83,7 @@ class Job:
 
     @property
     def record(self) -> JobRecord:
-        """The state of the job for the page.
-
-        A cancelled job counts as running until its process has ended: only then another can begin.
-        """
+        """The job for the page: a cancelled one runs until its process has ended, for only then another can begin."""
         files = [JobFile(name, path.stat().st_size) for name, path in self.files().items()]
         state = "running" if self.runs else self.state
         return JobRecord(self.number, self.ticket, self.kind, state, self.progress, self.status, self.content, files)

@@ -210,10 +210,7 @@ def _proposed(given: _Given, source: DesignSource, report: Report) -> Recognised
 
 
 def characterize(arguments: Mapping[str, Any], folder: Path, report: Report) -> CharacterizedCampaign:
-    """Run the command ``characterize`` on the campaign; the measured sheet and its files go into ``folder``.
-
-    Raises InputError as the command does.
-    """
+    """The command ``characterize``, its sheet and files into ``folder``. Raises InputError as the command does."""
     with _given(arguments, folder) as given:
         _plan(given, arguments)
         outcome = run_characterize(

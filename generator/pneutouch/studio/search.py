@@ -98,8 +98,7 @@ def _by_process(selection: ProcessSelection, document: Mapping[str, Any], page: 
 
 
 def _card(process: str, run: SelectionRun, page: CandidateStates, row: int | None) -> CandidateCard | None:
-    """The best design of a process, in ``row`` of the table, or the nearest one with its misses; None without
-    either."""
+    """The best design of a process, in ``row`` of the table, or the nearest with its misses; None without either."""
     choice = run.answer.nearest if row is None else run.answer.designs[0]
     if choice is None:
         return None
@@ -123,10 +122,7 @@ _CHANGES = "setting.assignments"
 
 
 def target_of(question: Question, bases: Mapping[str, str]) -> Target:
-    """The target that the fields of a question state, with its base looked up by the page's name for it.
-
-    Raises InputError naming key and value.
-    """
+    """The target of a question's fields, its base by the page's name. Raises InputError naming key and value."""
     given = [f"{name}={text}" for name, text in question.values.items() if text is not None]
     content = override({"target": {}}, parse_changes(given), Target)
     base = content.get("setting", {}).get("base")
@@ -156,10 +152,7 @@ _CHART = "trade-off chart"
 
 
 def search(arguments: Mapping[str, Any], folder: Path, report: Report) -> PageSelection:
-    """Search for the target that ``values`` state; its designs change its base, or ``base`` if it has none.
-
-    Raises InputError naming the field.
-    """
+    """Search for the target of ``values``, from its base, else ``base``. Raises InputError naming the field."""
     library, bases = CachedLibrary(Library.default().folders), arguments["bases"]
     question = Question.of({key: arguments.get(key) for key in ("base", "values")})
     with at_its_fields():
@@ -196,8 +189,7 @@ def _selected(
 
 
 def _cards(run: SelectionRun, found: TargetAnswer, page: CandidateStates) -> list[CandidateCard]:
-    """The designs by rank; if there are none, the nearest, and those that fit with one change or without one of the
-    requirements."""
+    """The designs by rank; else the nearest, and those that fit with one change or without one requirement."""
 
     def card(
         choice: Candidate, kind: str, label: str, *, rank: int | None = None, note: str = "", run: SelectionRun = run

@@ -202,8 +202,7 @@ def _parse(data: bytes, row: int, reader: _Reader) -> tuple[Array, Array, int]:
 
 
 def _check_widths(data: bytes, row: int, reader: _Reader) -> Array:
-    """Indices of the lines that are neither empty nor comments. Raises InputError for a line with too few or too many
-    fields."""
+    """Indices of lines neither empty nor comments. Raises InputError for one of too few or too many fields."""
     kept = []
     # Only line feeds end rows: the other line ends of Unicode belong to the cell.
     for k, line in enumerate(data.decode("utf-8").split("\n")[:-1]):

@@ -156,9 +156,7 @@ class RowChunk(NamedTuple):
 
 
 def places(path: Path, layout: TableLayout, names: Sequence[str]) -> list[int]:
-    """Indices of the columns in a table; #2 is the second one, whatever its name.
-
-    Raises InputError for a column that is missing or occurs twice."""
+    """Indices of columns; #2 is the second, whatever its name. Raises InputError for one missing or there twice."""
     header, indices = layout.names, []
     for name in names:
         if header.count(name) > 1:

@@ -109,9 +109,7 @@ def encoding_of(path: Path, start: bytes) -> tuple[str, bool]:
 
 
 def head_lines(path: Path, encoding: str | None) -> tuple[list[str], str, bool]:
-    """First lines, without line ends; the encoding, and True if that was guessed. Raises InputError.
-
-    The last line is omitted if it is not complete."""
+    """First whole lines without line ends, the encoding, and True if that was guessed. Raises InputError."""
     with path.open("rb") as stream:
         guessed = False
         if encoding is None:

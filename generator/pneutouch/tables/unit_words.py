@@ -1,7 +1,4 @@
-"""Units of measured columns, and the words that instruments write for them.
-
-This file does not import numpy, because the completion of command lines reads it.
-"""
+"""Units of measured columns, as instruments write them; without numpy, because command-line completion reads it."""
 
 import re
 

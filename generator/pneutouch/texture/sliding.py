@@ -300,8 +300,7 @@ def pressure_amplitude(
 
 
 def scan(touch: PreloadContact, substrate: Substrate, path: ScanPath, recorder: Recorder = Recorder()) -> TextureScan:
-    """Slide a dome over a specimen. Raises InputError for an impossible path, and if the dome's indentation leaves its
-    curve."""
+    """Slide a dome over a specimen. Raises InputError for an impossible path or indentation beyond its curve."""
     _check(touch, substrate, path, recorder)
     time = (
         np.arange(int(np.floor((path.end - path.start) / path.speed * recorder.rate * (1 + 1e-12))) + 1) / recorder.rate

@@ -161,8 +161,7 @@ CONTENTS: tuple[tuple[tuple[str, ...], str], ...] = (
     (("print-sheet.md",), "which body takes which resin, orientation, cleaning, fits"),
     (("manifest.json",), "inputs, versions, measured mesh deviation, SHA-256 of every file"),
 )
-"""Files of an output folder that belong together, by patterns of their names, with a description; as in
-docs/reference/files.md."""
+"""Files of an output folder by patterns of names, with a description, as in docs/reference/files.md."""
 
 
 def described(names: Iterable[str], design: str) -> list[tuple[list[str], str]]:

@@ -45,10 +45,7 @@ class ReaderResult:
 
 
 def make_reader(evaluation: Evaluation, aged: float | None = None) -> ReaderResult:
-    """The reader of an evaluated design; ``aged`` as in `reader_tables`.
-
-    Raises InputError and ComputationError as `evaluation.reader.reader_grid`.
-    """
+    """The reader of a design; ``aged`` as in `reader_tables`. Raises what `evaluation.reader.reader_grid` does."""
     grid = reader_grid(evaluation)
     tables = reader_tables(evaluation, grid, aged)
     known = reader_difference(evaluation, grid, versioned("reader", plain(tables)))

@@ -53,8 +53,7 @@ _REST = (("wait", 0.2), ("vent", 0.2), ("set_pressure", 0.2), ("wait", 0.4))
 
 
 def steps_of(test: RunProtocol, pressure_kPa: float, rig: Rig) -> list[PlannedStep]:
-    """Steps of rig and hand in one run with a plate; travels count from first contact, below zero the plate is
-    clear."""
+    """Steps of one run with a plate; travels count from first contact, below zero the plate is clear."""
     steps = [PlannedStep("record", rig.rate_Hz, "Hz", 0.0)]
     for k, depth in enumerate(test.depths):
         if test.reset:

@@ -118,10 +118,7 @@ def run_scan(
 def _load_both(
     specimen: str, design: str | DesignSource, changes: Changes | None, library: Library, scanned: bool = True
 ) -> tuple[ResolvedSpecimen, ResolvedDesign, Sensor]:
-    """A specimen and a sensor; one that is ``scanned`` is checked as it is for printing.
-
-    Raises InputError, also if the design is a specimen.
-    """
+    """A specimen, checked as for printing if ``scanned``, and a sensor. Raises InputError, also for two specimens."""
     context = load_specimen(specimen, None, library)
     if isinstance(design, str) and library.specimen_file(design) is not None:
         raise InputError(

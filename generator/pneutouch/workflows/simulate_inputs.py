@@ -90,8 +90,7 @@ def _keys(
 
 
 def named_design(design: str | DesignSource, library: Library) -> tuple[str, dict[str, bytes]]:
-    """Name of the design in a campaign; for a design that was given by a path also its copy for the campaign's
-    folder."""
+    """Name of the design in a campaign; for one given by a path also its copy for the campaign's folder."""
     if isinstance(design, DesignSource):
         return design.name, {}
     plain, calibration = split_calibration(design, library)

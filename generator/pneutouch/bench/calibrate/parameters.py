@@ -165,10 +165,7 @@ def _friction_prior(sensor: Sensor, *, fitted: bool) -> tuple[float, str]:
 def _priors(
     sensor: Sensor, material: Material, printer: Printer, *, fitted: bool
 ) -> tuple[Array, Flags, tuple[str, ...]]:
-    """Prior standard deviations, flags of uniform priors, and origins, from the sources of a prediction's uncertainty.
-
-    ``fitted`` is True if the friction is fitted.
-    """
+    """Prior standard deviations, flags of uniform priors, and origins; ``fitted`` is True if the friction is fitted."""
     built = build_sources(batch_of(sensor, [0.0]), printer)
     groups = (
         modulus_sources(material, np.zeros(1, dtype=bool)),

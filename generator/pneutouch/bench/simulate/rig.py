@@ -245,10 +245,7 @@ class RigModel:
         return cls(**{one.name: unlimited.get(one.name, 0.0) for one in fields(cls)})
 
     def with_gauge(self, reading: GaugeReading) -> RigModel:
-        """The rig with a gauge's noise, step and range, where this rig still has the paper's values.
-
-        A noise or step that the gauge does not state stays the paper's.
-        """
+        """The rig with what a gauge states of noise, step and range, where this rig still has the paper's values."""
         paper = RigModel()
         gauge = {"pressure_noise": reading.noise, "pressure_step": reading.step, "pressure_range": reading.limit}
         changed = {

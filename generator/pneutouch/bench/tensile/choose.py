@@ -173,8 +173,7 @@ def choose_law(curves: Sequence[TensionCurve], largest: float | None = None, sla
 
 
 def _tried(curves: Sequence[TensionCurve], largest: float) -> tuple[list[LawFit], dict[int, str]]:
-    """Fits of the laws in the order of `FORMS`, Ogden's only while none is good enough, and why some cannot be used, by
-    index."""
+    """Fits of the laws in the order of `FORMS`, Ogden's only while none is good enough, and why some cannot be used."""
     fits: list[LawFit] = []
     refused: dict[int, str] = {}
     good = False

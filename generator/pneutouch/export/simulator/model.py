@@ -337,8 +337,7 @@ def urdf_files(sensor: SimulatedSensor) -> dict[str, bytes]:
 
 
 def hull(body: Body) -> Body:
-    """The convex hull of a body: the contact shape that most simulators make of a mesh, written instead of left to
-    them."""
+    """The convex hull of a body: the contact shape that most simulators make of a mesh, written for all of them."""
     mesh = body.manifold().hull().to_mesh64()
     vertices: Array = np.array(mesh.vert_properties, float)[:, :3]
     return Body(f"{body.name}-contact", body.role, body.material, vertices, np.array(mesh.tri_verts, np.intp))

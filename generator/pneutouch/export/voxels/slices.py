@@ -102,8 +102,7 @@ def void_and_cluster(shape: tuple[int, int, int], pitch: tuple[float, float, flo
 
 @dataclass(frozen=True)
 class Thresholds:
-    """Thresholds between 0 and 1, ``values`` of the block along z, y, x; each block in space is rolled by its own
-    shifts."""
+    """Thresholds between 0 and 1, ``values`` of the block along z, y, x; each block is rolled by its own shifts."""
 
     values: Array
     seed: int = 0
@@ -152,8 +151,7 @@ def thresholds(pitch: tuple[float, float, float], seed: int) -> Thresholds:
 
 @dataclass(frozen=True)
 class Cubes:
-    """A coarse grid over a window of voxels, (layers, rows, columns); ``edge`` are voxels of a cube in each
-    direction."""
+    """A coarse grid over a window of voxels, (layers, rows, columns); ``edge`` are voxels of a cube each way."""
 
     shape: tuple[int, int, int]
     edge: tuple[int, int, int]

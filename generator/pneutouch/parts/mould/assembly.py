@@ -214,10 +214,7 @@ LEAST_LOSS_ML = 2.0
 
 @dataclass(frozen=True)
 class SiliconeBatch:
-    """The silicone of one filling of the mould. Volumes in mL at the mould's size, masses in g.
-
-    ``parts_by_mass`` are the mixing parts of the material, empty if unknown.
-    """
+    """Silicone of one filling: mL at the mould's size, g; ``parts_by_mass`` of the material's mix, empty if unknown."""
 
     cavities: int
     cavity_mL: float

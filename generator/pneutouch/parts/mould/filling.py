@@ -86,10 +86,7 @@ class Release:
 
 
 def release_of(membrane: Meridian, size: MouldSize) -> Release:
-    """Release of a membrane (its meridian, as cured) from the core of its mould.
-
-    An upper bound: the whole core is taken to pass the smallest opening, wherever that is.
-    """
+    """Release of a cured membrane from its core: an upper bound, as if all of the core passed the smallest opening."""
     # The opening is bounded by the faces below the dome: its rim and what lies within the flange.
     cured = CavityFaces.of(membrane, 1.0)
     opening = 2 * min(min(piece.start[0], piece.end[0]) for piece in (cured.rim, cured.underside))

@@ -53,8 +53,7 @@ CORNER = 3.0
 
 @dataclass(frozen=True, slots=True)
 class MouldShape:
-    """Shape of a mould as stated in a design; lengths in mm, ``draft`` in rad, ``shrinkage`` as a share of the
-    length."""
+    """Shape of a mould as designed; lengths in mm, ``draft`` in rad, ``shrinkage`` as a share of the length."""
 
     cavities: int
     wall: float

@@ -17,10 +17,7 @@ from pneutouch.printability.subject import Point3
 
 
 def components(count: int, one: Indices, other: Indices) -> Indices:
-    """Number of the component of each of ``count`` nodes, (count,), in the order of their first nodes.
-
-    ``one`` and ``other`` (n,) are the nodes that each of n edges joins.
-    """
+    """Component of each of ``count`` nodes, (count,), by first nodes; edges join nodes ``one`` and ``other`` (n,)."""
     # Each node points to one of its component that is no later; edges hook the pointers together, which then shorten.
     first = np.arange(count)
     while True:
@@ -105,8 +102,7 @@ def distances(space: Flags) -> Array:
 
 
 def _along_last(space: Flags, most: int, kind: Any) -> NDArray[Any]:
-    """Square of the distance from the nearest cube along the last axis that is not in the space; ``most`` where none
-    is."""
+    """Square of the distance from the nearest cube along the last axis outside the space; ``most`` without one."""
     n = space.shape[2]
     place = np.arange(n, dtype=kind)
     before = np.maximum.accumulate(np.where(space, kind(-n), place), axis=2)

@@ -218,10 +218,7 @@ def _touched(job: PrintJob, part: PrintPart, points: Array, normals: Array) -> F
 
 
 def check_envelope(view: PrintView) -> list[Finding]:
-    """Compare the bounds along the build direction and across it, in either orientation on the tray.
-
-    What is cast has no machine to fit in.
-    """
+    """Compare the bounds with the build direction and either way across it; what is cast has no machine to fit in."""
     jobs = (job for job in view.jobs if not job.printer.is_casting)
     return [finding for job in jobs if (finding := _check_bounds(job)) is not None]
 

@@ -209,10 +209,7 @@ def _curves(
 
 
 def _presses(groups: ResinGroups) -> list[curves.Press]:
-    """Runs and predictions; bands of two driving pressures at most: more cover one another.
-
-    Of several ages the prediction of the youngest is drawn.
-    """
+    """Runs and the youngest age's predictions; bands of two driving pressures at most: more cover one another."""
     shaded_kPa = _ends(groups.driving_pressures_kPa)
     presses: list[curves.Press] = []
     done: set[float] = set()

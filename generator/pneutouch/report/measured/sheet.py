@@ -195,8 +195,7 @@ def _extent(measured: CampaignReport, key: str, name: str, unit: str) -> Tile | 
 
 
 def _against(measured: CampaignReport) -> list[Tile]:
-    """Differences of the measured sensitivities from the predicted, and the number of groups whose intervals
-    overlap."""
+    """Differences of measured from predicted sensitivities, and the number of groups whose intervals overlap."""
     pairs = [
         (b, e, b.predicted[SENSITIVITY_KEY])
         for b, e in _with(measured, SENSITIVITY_KEY)

@@ -1,7 +1,4 @@
-"""The measured datasheet's groups of runs, each with its prediction, and its tables.
-
-Formulas and sources are in docs/howto/measuring.md.
-"""
+"""The measured datasheet's groups of runs, their predictions, and tables; formulas: docs/howto/measuring.md."""
 
 from __future__ import annotations
 

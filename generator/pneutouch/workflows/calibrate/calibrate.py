@@ -196,10 +196,7 @@ def _write(
 
 
 def save_calibration(outcome: CalibrationOutcome, name: str | None = None, *, replace: bool = False) -> Path:
-    """Write a calibration into the user's folder under a name (None: of design and sensor).
-
-    Raises InputError as `prepare` and `save` do.
-    """
+    """Save a calibration under a name (None: of design and sensor). Raises InputError as `prepare` and `save` do."""
     calibration = outcome.calibration
     name = name or outcome.record.calibration or default_name(calibration.scene.name, calibration.sensor)
     saved = prepare(calibration, name, user_folder(), outcome.source, replace=replace)

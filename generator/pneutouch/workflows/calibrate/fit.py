@@ -257,10 +257,7 @@ def observations_of(
     scene: ResolvedDesign,
     sensor: str | None = None,
 ) -> tuple[str, Observations, list[str]]:
-    """The sensor's name, its runs of kinds steps and injection, and remarks.
-
-    Raises InputError as `chosen_sensor` does, and where there is no run of it.
-    """
+    """The sensor's name, steps and injections, and remarks. Raises InputError as `chosen_sensor`, and without a run."""
     chosen = chosen_sensor(campaign, sensor)
     steps = tuple(curve for curve in curves if curve.run.sensor == chosen and curve.run.kind == "steps")
     pushed = [fitted for fitted in injections if fitted[0].sensor == chosen]

@@ -148,8 +148,7 @@ class CouponOrder:
 
 
 def order(options: CouponOptions, library: Library | None = None) -> CouponOrder:
-    """Resolve every name. Raises InputError for a name that is unknown, contradicts another, or does not run on the
-    machine."""
+    """Resolve every name. Raises InputError for one unknown, in contradiction, or not run by the machine."""
     library = library or Library.default()
     scene = None if options.design is None else load_scene(options.design, None, library)
     profile = options.profile or (Print().profile if scene is None else scene.design.print.profile)

@@ -55,10 +55,7 @@ class ResolvedSpecimen:
 
 
 def load_specimen(name: str, changes: Changes | None = None, library: Library | None = None) -> ResolvedSpecimen:
-    """Load a specimen by name or path, change fields and resolve its names.
-
-    Raises InputError that names file, key and value.
-    """
+    """Load a specimen by name or path, changed, with names resolved. Raises InputError naming file, key and value."""
     library = library or Library.default()
     files = library.paths("specimens")
     try:

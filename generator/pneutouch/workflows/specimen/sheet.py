@@ -76,10 +76,7 @@ def _rounded(value: float) -> float:
 
 
 def sheet(drawn: SpecimenBodies, findings: list[Finding], input_hash: str, left_out: Mapping[str, str]) -> str:
-    """Markdown for the operator. Print files carry names and colours; the resin is chosen at the machine.
-
-    ``left_out`` are files that were not written, and why.
-    """
+    """Markdown for the operator, who chooses resins at the machine; ``left_out``: files not written, and why."""
     scene, document = drawn.scene, drawn.scene.specimen.document
     speed = scene.specimen.scan.speed_mm_per_s
     listed = [f"- {f.severity}: {f.rule}: {f.body}: {f.message}; {f.fix}." for f in findings] or ["- none"]

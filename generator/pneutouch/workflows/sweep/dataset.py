@@ -78,8 +78,7 @@ def dataset(study: SweepStudy, records: dict[int, Record]) -> xarray.Dataset:
 
 
 def _content_hash(content: xarray.Dataset) -> str:
-    """SHA-256 of names, dimensions, values and attributes, so that a dataset damaged after it was written is never
-    reported."""
+    """SHA-256 of names, dimensions, values and attributes, so that a damaged dataset is never reported."""
     digest = hashlib.sha256()
     for name in sorted(map(str, content.variables)):
         column = content[name]
@@ -224,10 +223,7 @@ _ENDS = "sensitivity_low_kPa_per_N", "sensitivity_high_kPa_per_N"
 
 
 def table_rows(content: xarray.Dataset) -> list[dict[str, Any]]:
-    """A row for every state of the sweep, in the order of the dataset: swept fields, driving pressure, then figures.
-
-    Missing numbers are None.
-    """
+    """A row for each state, in the dataset's order: swept fields, driving pressure, figures; missing ones are None."""
     dims = list(content["status"].dims)
     names = [v.name for v in (*STATE, *POINT)]
     fields = [str(name) for name in content.coords if name not in (*dims, PRESSURE)]
@@ -275,10 +271,7 @@ def check_companions(out: Path, plan: SweepPlan) -> None:
 
 
 def write_companions(out: Path) -> tuple[list[dict[str, Any]], list[Path]]:
-    """Write table and pictures of a finished dataset next to it; returns the rows and the files written.
-
-    Raises InputError for a dataset that is not as the sweep wrote it.
-    """
+    """Write table and pictures next to a dataset; returns rows and files. Raises InputError if it is not as written."""
     from pneutouch.report.swept import pictures
 
     content = stored_dataset(out)

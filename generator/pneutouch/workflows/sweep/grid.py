@@ -185,10 +185,7 @@ _RANGE = {"from", "to", "count"}
 
 
 def plan_of_file(path: Path, changes: Changes | None = None, **options: str | None) -> SweepPlan:
-    """Read a sweep file; ``changes`` and ``options`` (model, closure, clamp) override its content.
-
-    Raises InputError naming file, key and value.
-    """
+    """A sweep file, overridden by ``changes`` and ``options`` (model, closure, clamp). Raises InputError at its key."""
     where, content = str(path), read_given(path, "give the path of a sweep file; a design to vary is given as `design`")
     for key in content:
         if key not in KEYS:
@@ -225,10 +222,7 @@ def plan_of_grid(
     where: str = "over",
     **options: str | None,
 ) -> SweepPlan:
-    """A grid over the values of each ``table.key``: a list, or a mapping of ``from``, ``to`` and ``count``.
-
-    ``where`` stands for the file in messages.
-    """
+    """A grid over each ``table.key``: a list, or ``from``, ``to`` and ``count``; ``where`` is the file in messages."""
     values = {key: _values(where, key, entry) for key, entry in grid.items()}
     words = {key: value for key, value in options.items() if value is not None}
     name = design.name if isinstance(design, DesignSource) else file_name(Path(design).stem)

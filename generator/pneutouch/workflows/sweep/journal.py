@@ -36,10 +36,7 @@ class Journal:
         self.path, self.fingerprint = path, fingerprint
 
     def read(self) -> dict[int, Record]:
-        """Finished points by number. Damaged lines are cut out of the file.
-
-        Raises InputError if the journal is another sweep's.
-        """
+        """Finished points; damaged lines are cut out of the file. Raises InputError for another sweep's journal."""
         if not self.path.exists():
             return {}
         lines = read_bytes(self.path, MOST_BYTES, "journal").split(b"\n")

@@ -52,10 +52,7 @@ def order_of_file(path: Path, overrides: Changes | None = None, **head: Any) -> 
 def order_of_flags(
     designs: Sequence[str], over: Sequence[str] = (), copies: int = 1, overrides: Changes | None = None, **head: Any
 ) -> TrayOrder:
-    """One entry for each design, varied over ``table.key=VALUES`` (see `spec.tray`), with ``copies`` of each value.
-
-    Raises InputError naming the parameter.
-    """
+    """An entry a design, varied over ``table.key=VALUES``, in ``copies``. Raises InputError naming the parameter."""
     if not LEAST_COPIES <= copies <= MOST_COPIES:
         raise InputError(f"must be from {LEAST_COPIES} to {MOST_COPIES}", key="copies", value=copies)
     varied = parse_over(over)

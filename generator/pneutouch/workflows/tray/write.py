@@ -104,10 +104,7 @@ def _part(ax: Axes, part: TrayPart, polygons: list[Any], width: float) -> None:
 
 
 def write_tray(layout: TrayLayout, folder: Path, progress: StepReport = lambda step: None) -> TrayRecord:
-    """Write everything of a tray into ``folder``. The same input gives the same bytes.
-
-    Raises RuleBrokenError, with nothing written, where a part breaks a print rule.
-    """
+    """Write a tray into ``folder``. Raises RuleBrokenError, nothing written, where a part breaks a print rule."""
     check_writable(folder)
     progress("rules")
     checked = findings(layout)
@@ -224,10 +221,7 @@ def _job(layout: TrayLayout, job: TrayJob) -> TrayJobRecord:
 
 
 def subject(part: TrayPart, printer: Printer, mode: Mode) -> PrintSubject:
-    """The bodies of a part in its own frame, marked, in the mode of the tray's job.
-
-    They carry no exact shape, which is in the design's frame and has no marks.
-    """
+    """The marked bodies of a part in the job's mode, without exact shapes, which have no marks and another frame."""
     items = (PrintItem(body, printer, mode, job=part.label if len(part.bodies) > 1 else "") for body in part.bodies)
     return PrintSubject(tuple(items), name=part.name)
 
