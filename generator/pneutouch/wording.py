@@ -36,6 +36,11 @@ def tenths_below(value: float) -> float:
     return math.floor(10.0 * value + _ROUNDING) / 10.0
 
 
+def markdown_escaped(text: str) -> str:
+    """Text escaped so that Markdown sees no table, HTML or escape in it."""
+    return text.replace("\\", "\\\\").replace("|", "\\|").replace("<", "&lt;")
+
+
 def listed(names: Sequence[str], most: int) -> str:
     """The first ``most`` names, and how many more there are: ``a, b and 3 more``."""
     more = f" and {len(names) - most} more" if len(names) > most else ""

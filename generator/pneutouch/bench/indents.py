@@ -80,10 +80,10 @@ class RunProtocol:
         return np.array(times), np.array(travels)
 
 
-def stairs(depth: float, step: float = STEP) -> tuple[float, ...]:
+def stairs(depth: float) -> tuple[float, ...]:
     """Depths at equal steps, mm, ending with ``depth``, even if the last step is shorter."""
-    count = int(np.ceil(depth / step - 1e-6))
-    return tuple(float(min(step * (k + 1), depth)) for k in range(count))
+    count = int(np.ceil(depth / STEP - 1e-6))
+    return tuple(float(min(STEP * (k + 1), depth)) for k in range(count))
 
 
 def protocol(kind: RunKind, height: float) -> RunProtocol:

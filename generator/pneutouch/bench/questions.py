@@ -165,10 +165,7 @@ def outliers(curves: Sequence[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]
     for curve in curves:
         run = curve.run
         groups.setdefault((run.sensor, run.kind, run.driving_pressure_kPa, run.age_days), []).append(curve)
-    odd: list[tuple[MeasuredCurve, str]] = []
-    for group in groups.values():
-        odd += _apart(group)
-    return odd
+    return [odd for group in groups.values() for odd in _apart(group)]
 
 
 def _apart(group: list[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:

@@ -353,7 +353,6 @@ def leak_of(time: Array, pressure: Array) -> Leak:
 def leak_rate(blocks: Blocks) -> tuple[float, float]:
     """Leak rate of a leak run and its standard error, MPa/s. Raises InputError for a run of fewer than ten blocks."""
     try:
-        leak = leak_of(blocks.time, blocks.pressure)
+        return leak_of(blocks.time, blocks.pressure)[:2]
     except InputError as error:
         raise InputError(f"{error}", file=blocks.file) from None
-    return leak.rate, leak.error

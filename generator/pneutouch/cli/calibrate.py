@@ -16,7 +16,7 @@ from pneutouch.cli.declared import (
     with_fields,
     with_options,
 )
-from pneutouch.cli.terminal import echo, notify, report_next, set_words, table_text
+from pneutouch.cli.terminal import bar, echo, notify, report_next, set_words, table_text
 from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.options import CalibrationOptions
 from pneutouch.wording import counted
@@ -46,7 +46,6 @@ def calibrate(
 ) -> None:
     """Fit modulus, wall, dead volume and contact offset to a sensor's runs."""
     with reporting():
-        from pneutouch.cli.terminal import bar
         from pneutouch.results.record import plain
         from pneutouch.workflows.calibrate.calibrate import run_calibration
 

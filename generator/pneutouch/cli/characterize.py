@@ -12,7 +12,7 @@ from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOptio
 from pneutouch.cli.commands import option
 from pneutouch.cli.complete import names
 from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, reading_of, reading_text, reading_words, with_fields
-from pneutouch.cli.terminal import echo, notify, report_next, set_words
+from pneutouch.cli.terminal import bar, echo, notify, report_next, set_words
 from pneutouch.spec.campaign import Campaign, RunKind
 from pneutouch.wording import SIMULATED, listed
 
@@ -70,7 +70,6 @@ def characterize(
 ) -> None:
     """Turn measured runs into figures and compare them with the prediction; exit 3 where files are not used."""
     with reporting():
-        from pneutouch.cli.terminal import bar
         from pneutouch.errors import InputError
         from pneutouch.mechanics.models.choice import USUAL
         from pneutouch.results.record import plain

@@ -20,9 +20,9 @@ from pneutouch.cli.app import (
     reporting,
 )
 from pneutouch.cli.complete import names
-from pneutouch.cli.terminal import echo, report_next, set_words, table_text
+from pneutouch.cli.terminal import bar, echo, report_next, set_words, table_text
 from pneutouch.report import comparison_words
-from pneutouch.results.comparison import ColumnRecord, ComparisonRecord, RowRecord
+from pneutouch.results.comparison import ComparisonRecord, RowRecord
 
 
 @app.command()
@@ -45,7 +45,6 @@ def compare(
 ) -> None:
     """Compare designs, builds and measurements: their differences, and those that exceed their uncertainty."""
     with reporting():
-        from pneutouch.cli.terminal import bar
         from pneutouch.mechanics.models.choice import model_options
         from pneutouch.results.record import plain
         from pneutouch.workflows.compare import compare as run
@@ -65,8 +64,6 @@ def compare(
         if json:
             print_json(plain(replace(result.record, folder=str(folder))))
         else:
-            from pneutouch.cli.compare import comparison_text
-
             echo(comparison_text(result.record))
             echo(f"\n{folder}")
             uncalibrated, _, calibration = next((thing for thing in things if "@" in thing), "").partition("@")
@@ -77,7 +74,8 @@ def compare(
 def comparison_text(comparison: ComparisonRecord) -> str:
     """Differences, every figure with its interval, those that exceed their uncertainty, and the assumptions."""
     labels = comparison_words.labels(comparison)
-    lines = [f"{one.label}: {one.kind}{_from(one)}" for one in comparison.compared]
+    sources = (f", {one.source}" if one.source not in ("", one.label) else "" for one in comparison.compared)
+    lines = [f"{one.label}: {one.kind}{source}" for one, source in zip(comparison.compared, sources, strict=True)]
     lines += comparison_words.marks(comparison)
     inputs = comparison_words.input_rows(comparison)
     if inputs:
@@ -92,10 +90,6 @@ def comparison_text(comparison: ComparisonRecord) -> str:
 
 def _difference_heads(labels: list[str]) -> list[str]:
     return ["difference"] if len(labels) == 2 else [f"{label}, difference" for label in labels[1:]]
-
-
-def _from(one: ColumnRecord) -> str:
-    return f", {one.source}" if one.source not in ("", one.label) else ""
 
 
 def _row(row: RowRecord) -> list[str]:

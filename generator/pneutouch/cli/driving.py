@@ -83,8 +83,7 @@ def schedule_text(record: DrivingRecord) -> str:
         f"{record.design}: model {record.model}, rated pressure {tenths_below(record.rated_pressure_kPa):.1f} kPa, "
         f"computed to {record.highest_kPa:.1f} kPa ({record.limit})"
     ]
-    for figure in dict.fromkeys(task.requirement for task in record.tasks):
-        lines.append(_reach(figure, record.reach[figure]))
+    lines += [_reach(name, record.reach[name]) for name in dict.fromkeys(task.requirement for task in record.tasks)]
     head = [
         "task",
         "required",

@@ -21,7 +21,7 @@ from pneutouch.cli.app import (
     reporting,
 )
 from pneutouch.cli.complete import simulators, years_of
-from pneutouch.cli.terminal import echo, notify, table_text
+from pneutouch.cli.terminal import bar, echo, notify, table_text
 from pneutouch.errors import InputError
 from pneutouch.results.reader import ReaderRecord, SimulatorRecord
 from pneutouch.results.record import plain
@@ -53,7 +53,6 @@ def export_reader(
 ) -> None:
     """Write the sensor's pressure-to-force model: a table, a C header, a Python module, an Arduino sketch."""
     with reporting():
-        from pneutouch.cli.terminal import bar
         from pneutouch.evaluation.evaluate import evaluate
         from pneutouch.mechanics.models.choice import model_options
         from pneutouch.workflows.export_reader import make_reader, write_reader
@@ -86,7 +85,7 @@ def _export_simulator(
     design: str, changed: dict[str, Any], simulator: str, out: Path, options: Mapping[str, Any], *, json: bool
 ) -> None:
     """Write the model for a simulator and list its content."""
-    from pneutouch.cli.terminal import bar
+
     from pneutouch.evaluation.evaluate import evaluate
     from pneutouch.workflows.export_reader import make_simulator, write_simulator
 
@@ -125,8 +124,10 @@ def reader_text(record: ReaderRecord) -> str:
         when = (
             f"up to {days:.4g} days after its {since}" if days else f"at the age of its {since}, --age 1y adds ageing"
         )
-        lines.append(f"  uncertainty        {least:.2g} to {most:.2g} % of the force (standard), {when}")
-        lines.append("                     noise of the gauge not in it")
+        lines += [
+            f"  uncertainty        {least:.2g} to {most:.2g} % of the force (standard), {when}",
+            "                     noise of the gauge not in it",
+        ]
     return "\n".join(lines)
 
 

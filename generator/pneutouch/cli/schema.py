@@ -6,7 +6,7 @@ import typer
 
 from pneutouch.cli.app import JsonOption, app, print_json, reporting
 from pneutouch.cli.complete import document_kinds as known
-from pneutouch.cli.terminal import echo, report_next
+from pneutouch.cli.terminal import echo, report_next, table_text
 
 
 @app.command()
@@ -32,7 +32,6 @@ def schema(
                 {key: {"form": kind.form, "title": kind.title, "where": kind.where} for key, kind in kinds.items()}
             )
             return
-        from pneutouch.cli.terminal import table_text
 
         rows = [[key, kind.form, kind.title, kind.where.replace("`", "")] for key, kind in kinds.items()]
         echo(table_text(["name", "form", "document", "where"], rows))

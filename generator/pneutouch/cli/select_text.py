@@ -15,8 +15,10 @@ from pneutouch.workflows.select.document import (
     Typed,
     change_lines,
     dropped_lines,
+    graded_missed,
     headline,
     missed_text,
+    rated_warning,
     remarks,
     search_notes,
 )
@@ -121,7 +123,6 @@ def processes_table(selection: ProcessSelection) -> tuple[list[str], list[list[s
 
 def processes_lines(selection: ProcessSelection) -> list[str]:
     """Profile and confirmation of each best design, and why a process has none."""
-    from pneutouch.workflows.select.document import headline, missed_text
 
     lines = []
     for process, run in selection.best:
@@ -159,7 +160,6 @@ def graded_table(selection: GradedSelectionRun) -> tuple[list[str], list[list[st
 
 def graded_lines(selection: GradedSelectionRun) -> list[str]:
     """Verdict on a grade against the target: its misses, its cost and the parts that were left out."""
-    from pneutouch.workflows.select.document import graded_missed, rated_warning
 
     sensor = selection.sensor
     size = f"R0 {sensor.dome.inner_radius:g} mm, t0 {sensor.dome.wall_thickness:g} mm, on {selection.base.where}"

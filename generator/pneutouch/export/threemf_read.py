@@ -57,7 +57,7 @@ def checked_package(path: Path) -> bytes:
     Raises InputError for what is missing, no file, no zip, damaged, larger than `MOST_BYTES` in the file or inflated,
     of more than `MOST_PARTS` parts, or holds XML with a document type or entities.
     """
-    content = _content(path)
+    content = read_bytes(path, MOST_BYTES, "3MF file")
     _check_end(content, path)
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
@@ -75,10 +75,6 @@ def checked_package(path: Path) -> bytes:
         for name, part in parts.items():
             archive.writestr(zipfile.ZipInfo(name), part)
     return plain.getvalue()
-
-
-def _content(path: Path) -> bytes:
-    return read_bytes(path, MOST_BYTES, "3MF file")
 
 
 def _check_end(content: bytes, path: Path) -> None:
@@ -111,7 +107,7 @@ def _parts(archive: zipfile.ZipFile, path: Path) -> dict[str, bytes]:
     if len(entries) > MOST_PARTS:
         _too_many(path)
     if sum(entry.file_size for entry in entries) > MOST_BYTES:
-        raise InputError(f"inflates to more than {_mega(MOST_BYTES)}, which no sensor needs", file=path)
+        raise InputError(f"inflates to more than {MOST_BYTES // 2**20} MiB, which no sensor needs", file=path)
     parts: dict[str, bytes] = {}
     seen: set[str] = set()
     for entry in entries:
@@ -132,10 +128,6 @@ def _parts(archive: zipfile.ZipFile, path: Path) -> dict[str, bytes]:
 
 def _too_many(path: Path) -> NoReturn:
     raise InputError(f"more than {MOST_PARTS} parts, which no sensor needs", file=path)
-
-
-def _mega(size: int) -> str:
-    return f"{size // 2**20} MiB"
 
 
 Name = tuple[str, str]

@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Any
 from pneutouch.parts.lettering.glyphs import FONTS
 from pneutouch.report.blocks import Sheet, View, found
 from pneutouch.stopping import temporary_folder
+from pneutouch.wording import markdown_escaped
 
 if TYPE_CHECKING:
+    from jinja2 import Environment
     from markupsafe import Markup
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -103,39 +105,30 @@ def pdf(sheet: Sheet) -> bytes:
         )
 
 
-def _filled(template: str, sheet: Sheet, finalize: Callable[[Any], Any] | None, **more: Any) -> str:
+def _environment(*, autoescape: bool, finalize: Callable[[Any], Any] | None = None) -> Environment:
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    environment = Environment(
+    return Environment(
         loader=FileSystemLoader(TEMPLATES),
-        autoescape=True,
+        autoescape=autoescape,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
         finalize=finalize,
     )
+
+
+def _filled(template: str, sheet: Sheet, finalize: Callable[[Any], Any] | None, **more: Any) -> str:
+    environment = _environment(autoescape=True, finalize=finalize)
     environment.filters["kind"] = lambda block: type(block).__name__
     return environment.get_template(template).render(sheet=sheet, **more)
 
 
 def filled(template: str, **values: Any) -> str:
     """A template with its values: filters write numbers, times and lists, and keep text from being read as Markdown."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    environment = Environment(
-        loader=FileSystemLoader(TEMPLATES),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        autoescape=False,
-    )
-    environment.filters |= {"f": format, "md": _escaped, "listed": _listed, "time": _time, "value": _value}
+    environment = _environment(autoescape=False)
+    environment.filters |= {"f": format, "md": markdown_escaped, "listed": _listed, "time": _time, "value": _value}
     return environment.get_template(template).render(**values).rstrip() + "\n"
-
-
-def _escaped(text: str) -> str:
-    """Text escaped so that Markdown sees no table, HTML or escape in it."""
-    return text.replace("\\", "\\\\").replace("|", "\\|").replace("<", "&lt;")
 
 
 def _value(value: float | None) -> str:

@@ -23,8 +23,7 @@ from pneutouch.export.simulator.model import (
 )
 from pneutouch.formats import versioned
 from pneutouch.mechanics import predict
-from pneutouch.output.files import check_writable, digest, json_bytes, with_manifest, write_folder
-from pneutouch.output.files import write_folder as write_files
+from pneutouch.output.files import digest, json_bytes, with_manifest, write_folder
 from pneutouch.output.recipe import BuildRecipe
 from pneutouch.results.reader import ReaderRecord, ReaderSource, SimulatedState, SimulatorRecord, TableError
 from pneutouch.results.record import plain
@@ -78,7 +77,6 @@ def _source(evaluation: Evaluation, age_days: float) -> str:
 def write_reader(result: ReaderResult, out: Path) -> Path:
     """Write ``out/<design>-reader/``; the same input, the same bytes. Returns that folder."""
     folder = out / result.name
-    check_writable(folder)
     files = {"reader.json": json_bytes(result.document), **result.files}
     write_folder(folder, with_manifest(files, result.name, result.document["source"]))
     return folder
@@ -213,6 +211,5 @@ def _record(evaluation: Evaluation, sensor: SimulatedSensor, kind: str) -> Simul
 def write_simulator(result: SimulatorResult, out: Path) -> Path:
     """Write ``out/<design>-<simulator>/``; the same input, the same bytes. Returns that folder."""
     folder = out / result.name
-    check_writable(folder)
-    write_files(folder, with_manifest(result.files, result.name, result.inputs))
+    write_folder(folder, with_manifest(result.files, result.name, result.inputs))
     return folder

@@ -142,14 +142,14 @@ def bars_of(context: ResolvedSpecimen) -> tuple[BarRow, ...]:
     rows = []
     for number, layer in enumerate(context.specimen.layer):
         if not isinstance(layer, Bars):
-            problem, remedy = (
+            raise InputError(
                 "the scan model covers bars alone",
-                (
-                    "with `data`, measured signals of any specimen can be read against a specimen of bars with the "
-                    "same pitches"
-                ),
+                file=context.where,
+                key=f"layer[{number}].kind",
+                value=layer.kind,
+                remedy="with `data`, measured signals of any specimen can be read against a specimen of bars with the "
+                "same pitches",
             )
-            raise InputError(problem, file=context.where, key=f"layer[{number}].kind", value=layer.kind, remedy=remedy)
         left = places(layer, context.context)
         edges = np.stack([left, left + layer.width_mm], axis=1)
         pitch = layer.pitch(context.specimen.scan.speed_mm_per_s)
@@ -332,11 +332,12 @@ def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeC
         raise InputError(
             f"the {scene.printer.title} runs no resin that the atlas covers", file=scene.where, key="print.profile"
         )
-    resin, ratio, radius = _grid(
+    axes = (
         np.arange(len(resins), dtype=float),
         np.geomspace(recipe.thinnest, recipe.thickest, _RATIOS),
         np.round(np.geomspace(_SMALLEST, _LARGEST, _RADII), 2),
     )
+    resin, ratio, radius = (grid.ravel() for grid in np.meshgrid(*axes, indexing="ij"))
     # Rounded, the thinnest and the thickest wall stay inside the atlas.
     thinnest, thickest = np.ceil(100 * recipe.thinnest * radius), np.floor(100 * recipe.thickest * radius)
     wall = np.clip(np.round(100 * ratio * radius), thinnest, thickest) / 100
@@ -377,8 +378,3 @@ def _rated(domes: SensorBatch, resin: Array, materials: list[Material], scene: R
         rows = resin == number
         spread[rows] = limit_spread(domes.take(rows), material, scene.printer, LIMIT_ERROR).standard
     return rated_pressure(limit, spread, domes.gauge_limit)
-
-
-def _grid(*axes: Array) -> list[Array]:
-    """All combinations, one flat array for each axis; the last axis varies fastest."""
-    return [np.asarray(grid, float).ravel() for grid in np.meshgrid(*axes, indexing="ij")]

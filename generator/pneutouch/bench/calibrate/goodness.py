@@ -181,17 +181,13 @@ def misfit(fit: CalibrationFit, runs: Sequence[RunResiduals]) -> ModelMisfit:
     """The misfit of a fit from the residuals of its runs (`goodness.residuals`)."""
     curves = [run for run in runs if run.force.size]
     injected = [run for run in runs if not run.force.size]
-    shares = (
-        _pooled_error([run.force_error for run in curves]),
-        _pooled_error([run.rise_error for run in curves]),
-        _pooled_error([run.rise_error for run in injected]),
+    errors = (
+        [run.force_error for run in curves],
+        [run.rise_error for run in curves],
+        [run.rise_error for run in injected],
     )
-    return ModelMisfit(shares, fit.chi_squared / fit.freedom if fit.freedom else 0.0)
-
-
-def _pooled_error(errors: list[float]) -> float:
-    known = np.array([error for error in errors if np.isfinite(error)])
-    return float(np.sqrt(np.mean(known**2))) if known.size else 0.0
+    force, rise, pressure = (float(np.nan_to_num(_rms(np.array(each)))) for each in errors)
+    return ModelMisfit((force, rise, pressure), fit.chi_squared / fit.freedom if fit.freedom else 0.0)
 
 
 ASSUMED_SCATTER = 0.018

@@ -126,7 +126,7 @@ def covariance(
     ``others``, (N, 5), are derivatives by the parameters that are not fitted but uncertain, times their standard
     deviations: they move the estimates although they are not estimated (consider covariance: Schmidt, in Advances in
     Control Systems 3, 1966)."""
-    k, runs = solution.at.size, _runs(problem, solution)
+    k, runs = solution.at.size, int(np.unique(problem.model.points.clusters[solution.use]).size)
     free = np.flatnonzero(~solution.bound)
     part, freedom = _rows(problem, solution, free), _freedom(problem, solution)
     data, normal = information(part.jacobian), part.normal
@@ -146,7 +146,9 @@ def covariance(
     share = _spread(np.diag(of_data) / np.diag(whole), free, k)
     alone = _spread(seen.alone[parameters], free, k, -1.0).astype(int)
     between = float(freedom) if freedom >= 1 else np.inf
-    return Covariance(_placed(whole, free, k), known, between, share, considered, problem.chosen.even, runs, alone)
+    matrix = np.full((k, k), np.nan)
+    matrix[np.ix_(free, free)] = whole
+    return Covariance(matrix, known, between, share, considered, problem.chosen.even, runs, alone)
 
 
 def half_widths(estimate: Covariance) -> Array:
@@ -190,10 +192,6 @@ def _half(deviation: float, bound: float) -> float:
     return float(brentq(missing, 0.0, wide + bound))
 
 
-def _runs(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> int:
-    return int(np.unique(problem.model.points.clusters[solution.use]).size)
-
-
 def _freedom(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> int:
     """Number of runs beyond the first at each driving pressure: their differences hold no error that all runs share."""
     points = problem.model.points
@@ -228,12 +226,6 @@ def _at_least(score: Array, data: Array, normal: Array, held: Array, run_factor:
     seen, axes = np.linalg.eigh(root @ score @ root - least)
     back = np.linalg.inv(root)
     return np.asarray(back @ (least + (axes * np.maximum(seen, 0.0)) @ axes.T) @ back)
-
-
-def _placed(part: Array, free: Index, k: int) -> Array:
-    whole = np.full((k, k), np.nan)
-    whole[np.ix_(free, free)] = part
-    return whole
 
 
 def _spread(part: Array, free: Index, k: int, missing: float = np.nan) -> Array:

@@ -48,9 +48,8 @@ def _shift(fit: CalibrationFit, residual: Array) -> Array:
     normal += 1e-12 * np.diag(scale**2)
     shift = np.zeros(fit.solution.at.size)
     # The estimates follow readings that are too high: what is found is minus the correction.
-    right = jacobian.T @ whole[:, 0]
-    shift[free] = np.linalg.solve(normal, right)
-    return np.asarray(shift)
+    shift[free] = np.linalg.solve(normal, jacobian.T @ whole[:, 0])
+    return shift
 
 
 def predict_held_out(
@@ -62,7 +61,8 @@ def predict_held_out(
     few of its points to compare."""
     known_kPa = observations.driving_pressures_kPa
     if driving_pressure_kPa not in known_kPa:
-        problem = f"no run at this driving pressure; measured: {_listed(known_kPa)} kPa"
+        measured = ", ".join(f"{p:g}" for p in known_kPa) or "none"
+        problem = f"no run at this driving pressure; measured: {measured} kPa"
         raise InputError(problem, key="hold_out_kPa", value=driving_pressure_kPa)
     rest = observations.without(driving_pressure_kPa)
     if not rest.curves and not rest.injections:
@@ -84,17 +84,8 @@ def predict_held_out(
     factors = (1.0, 1.0) if gap is None else gap.correction.at(driving_pressure_kPa * KPA)
     parts = values[0][: use.size], values[0][use.size : 2 * use.size]
     force, rise = (factor * part.reshape(shape) for factor, part in zip(factors, parts, strict=True))
-    rows = [
-        _row(
-            travel=points.travel[i],
-            force=points.force[i],
-            rise=points.rise[i],
-            model_force=force[i],
-            model_rise=rise[i],
-            use=use[i],
-        )
-        for i in range(len(use))
-    ]
+    columns = points.travel, points.force, points.rise, force, rise, use
+    rows = [_row(*row) for row in zip(*columns, strict=True)]
     measured_kPa_per_N, predicted_kPa_per_N, *errors = (float(x) for x in np.mean(rows, axis=0)[:4])
     errors += [float(x) for x in np.max(rows, axis=0)[4:]]
     force_rms, pressure_rms, force_greatest, pressure_greatest = errors
@@ -119,10 +110,6 @@ def _row(travel: Array, force: Array, rise: Array, model_force: Array, model_ris
     df, dr = (mf - f)[1:] / np.abs(f).max(), (mr - r)[1:] / np.abs(r).max()
     rms = [float(np.sqrt(np.mean(part**2))) for part in (df, dr)]
     return [measured_kPa_per_N, predicted_kPa_per_N, *rms, float(np.abs(df).max()), float(np.abs(dr).max())]
-
-
-def _listed(pressures_kPa: tuple[float, ...]) -> str:
-    return ", ".join(f"{p:g}" for p in pressures_kPa) or "none"
 
 
 CHANNELS = ("force", "pressure rise", "injection's pressure")

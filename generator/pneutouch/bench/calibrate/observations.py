@@ -196,9 +196,7 @@ def _travel_errors(curves: Sequence[MeasuredCurve]) -> Array:
 
     The spread is pooled over all runs: from the few indentations of one run it would be far off either way.
     """
-    groups = []
-    for curve in curves:
-        groups.append(np.array([indent.onset for indent in curve.indents if indent.fitted])[:EARLY])
+    groups = [np.array([indent.onset for indent in curve.indents if indent.fitted])[:EARLY] for curve in curves]
     free = sum(max(onsets.size - 1, 0) for onsets in groups)
     squares = sum(float(((onsets - onsets.mean()) ** 2).sum()) for onsets in groups if onsets.size > 1)
     spread = np.sqrt(squares / free) if free else 0.0

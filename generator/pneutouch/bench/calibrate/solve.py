@@ -76,10 +76,8 @@ class LeastSquaresProblem:
     def lost(self, use: Flags, known: Flags) -> bool:
         """True if too many points of a run in ``use`` are not ``known``."""
         clusters = self.model.points.clusters
-        before, after = (
-            np.bincount(clusters[use]),
-            np.bincount(clusters[use & known], minlength=clusters[use].max() + 1),
-        )
+        before = np.bincount(clusters[use])
+        after = np.bincount(clusters[use & known], minlength=before.size)
         return bool((after < (1 - _MOST_LOST) * before).any())
 
     def whitened(self, rows: Array, use: Flags) -> Array:

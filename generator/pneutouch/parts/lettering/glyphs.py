@@ -88,7 +88,8 @@ def _glyph(character: str, height: float, least: float) -> Any:
     """One glyph on its baseline, with thin strokes widened."""
     from manifold3d import CrossSection, FillRule
 
-    outlines = [polygon * (height / _capital()) for polygon in _outlines(character)]
+    capital = float(np.ptp(np.concatenate(_outlines("H"))[:, 1]))
+    outlines = [polygon * (height / capital) for polygon in _outlines(character)]
     glyph = CrossSection(outlines, FillRule.NonZero).simplify(_SMOOTH)
     missing = least - narrowest(glyph)
     return glyph.offset(0.5 * missing + _FINEST, _round(), 2.0, _SEGMENTS).simplify(_SMOOTH) if missing > 0 else glyph
@@ -109,11 +110,6 @@ def _outlines(character: str) -> tuple[Array, ...]:
 
     path = TextPath((0, 0), character, size=_EM, prop=FontProperties(fname=str(FONTS / "Inter-SemiBold.otf")))
     return tuple(np.asarray(polygon)[:-1] for polygon in path.to_polygons())
-
-
-def _capital() -> float:
-    """Height of a capital H."""
-    return float(np.ptp(np.concatenate(_outlines("H"))[:, 1]))
 
 
 def _area(line: Array) -> float:

@@ -36,10 +36,10 @@ def check_mould_space(where: str, size: MouldSize) -> None:
     """Raise InputError with the key of the design file ``where`` that leaves too little space for a detail."""
     _check_insert(where, size)
     shape, faces = size.shape, size.faces
-    width = faces.edge.start[0] - faces.rim.end[0] - 2 * _EDGE
+    width, slope = faces.edge.start[0] - faces.rim.end[0] - 2 * _EDGE, math.tan(shape.draft)
     for key, diameter, narrowest in (
         ("sprue_diameter_mm", shape.sprue_diameter, 2 * size.neck),
-        ("vent_diameter_mm", shape.vent_diameter, 2 * (0.5 * shape.vent_diameter - size.foot * _slope(size))),
+        ("vent_diameter_mm", shape.vent_diameter, 2 * (0.5 * shape.vent_diameter - size.foot * slope)),
     ):
         if diameter > width:
             raise InputError(
@@ -82,11 +82,6 @@ def _check_insert(where: str, size: MouldSize) -> None:
             value=round(100 * size.shape.shrinkage, 6),
             remedy="take a silicone that shrinks less, or less mould.draft_deg",
         )
-
-
-def _slope(size: MouldSize) -> float:
-    """Decrease in a channel's radius per height."""
-    return math.tan(size.shape.draft)
 
 
 @dataclass(frozen=True)

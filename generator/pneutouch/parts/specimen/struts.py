@@ -255,7 +255,8 @@ def box(layer: StrutLattice, context: PatternContext, number: int) -> Box:
             raise context.refuse(number, key, getattr(layer, key) or cell, text)
     if layer.strut_radius_mm is not None:
         check_least(context, number, "strut_radius_mm", layer.strut_radius_mm, "pin", 2.0)
-        most = _LARGEST * _greatest(layer.kind, cell)
+        # From the greatest distance on no matrix is left.
+        most = _LARGEST * float(_distances(layer.kind, cell).max())
         if layer.strut_radius_mm > most:
             raise context.refuse(
                 number,
@@ -344,11 +345,6 @@ def _check_fraction(layer: StrutLattice, context: PatternContext, number: int, c
 def _guess(kind: str, cell: float, fraction: float) -> float:
     """Radius in mm within which a share ``fraction`` of evenly spread samples lies."""
     return float(np.quantile(_distances(kind, cell), fraction))
-
-
-def _greatest(kind: str, cell: float) -> float:
-    """Radius in mm from which on no matrix is left."""
-    return float(_distances(kind, cell).max())
 
 
 def _distances(kind: str, cell: float) -> Array:

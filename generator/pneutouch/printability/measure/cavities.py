@@ -146,7 +146,8 @@ def pockets(voxels: PartVoxels, radius: Array, most: float = NARROW) -> list[Poc
         for piece in largest_pieces(closed):
             pockets.append(_pocket(voxels, radius, piece, 0.5 * voxels.pitch))
             taken |= piece
-    enclosed = _capped(radius, most)
+    # The widest opening worth trying, mm: the share of the widest place away from the outside.
+    enclosed = most * float(radius[1:-1, 1:-1, 1:-1].max())
     if enclosed <= voxels.pitch:
         return pockets
     levels = np.geomspace(voxels.pitch, enclosed, _STEPS)
@@ -167,11 +168,6 @@ def pockets(voxels: PartVoxels, radius: Array, most: float = NARROW) -> list[Poc
 def balls(voxels: PartVoxels) -> Array:
     """Radius of the largest ball around each empty cube that meets no full one, mm."""
     return np.maximum(distances(voxels.label == 0) - _BIAS, 0.0) * voxels.pitch
-
-
-def _capped(radius: Array, most: float) -> float:
-    """The widest opening worth trying, mm: the share of the widest place away from the outside."""
-    return most * float(radius[1:-1, 1:-1, 1:-1].max())
 
 
 def _narrowed(radius: Array, piece: Flags, low: float, high: float) -> float:

@@ -13,6 +13,7 @@ from pneutouch.report.style import ACCENT, BOLD, INK, MUTED, figure, halo, svg
 from pneutouch.results.specimen import BlockRecord, PatternLayer, ScanPathRecord, SpecimenRecord
 from pneutouch.spec.specimen import Layer
 from pneutouch.units import grams
+from pneutouch.wording import markdown_escaped
 from pneutouch.workflows.specimen.draw import SpecimenBodies
 
 if TYPE_CHECKING:
@@ -82,7 +83,7 @@ def sheet(drawn: SpecimenBodies, findings: list[Finding], input_hash: str, left_
     listed = [f"- {f.severity}: {f.rule}: {f.body}: {f.message}; {f.fix}." for f in findings] or ["- none"]
     steps = (f"{k}. {line}" for k, line in enumerate(_steps(drawn), start=1))
     parts = (
-        f"# Print sheet: {_escaped(document.title)}",
+        f"# Print sheet: {markdown_escaped(document.title)}",
         f"Texture specimen {scene.name}, revision {document.revision}, input {input_hash}",
         "\n".join(_bodies(drawn)),
         f"Machine: {scene.printer.title}, {scene.mode.label}. All bodies are **one "
@@ -126,7 +127,7 @@ def _layers(drawn: SpecimenBodies) -> list[str]:
         pitches = ", ".join(f"{pitch:.4g}" for pitch in pattern.pitches)
         hertz = ", ".join(f"{frequency:.3g}" for frequency in frequencies(drawn, pattern))
         rows.append(
-            f"| {_escaped(title(layer, number))} | {layer.kind} | {pitches} | {hertz} | {top - high[2]:.4g} | "
+            f"| {markdown_escaped(title(layer, number))} | {layer.kind} | {pitches} | {hertz} | {top - high[2]:.4g} | "
             f"{low[0]:.4g} to {high[0]:.4g} | {pattern.mesh.volume:.1f} | "
             f"{pattern.mesh.volume / pattern.box.volume:.3f} |"
         )
@@ -147,10 +148,6 @@ def _steps(drawn: SpecimenBodies) -> list[str]:
         "Keep a high-pressure jet off the soft surface; rinse, dry, and let it rest lying flat.",
         "Scan along x from the start of the path; specimen.json holds where each pattern begins and ends.",
     ]
-
-
-def _escaped(text: str) -> str:
-    return text.replace("\\", "\\\\").replace("|", "\\|").replace("<", "&lt;")
 
 
 _WIDTH = 180.0

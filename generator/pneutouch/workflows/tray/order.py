@@ -195,7 +195,8 @@ def jobs(materials: Sequence[tuple[Material, ...]], printer: Printer, where: str
     for index, alone in enumerate(materials):
         kinds.setdefault(frozenset(resin for material in alone for resin in material.base_resins), []).append(index)
         if printer.mode_for(*alone) is None:
-            raise InputError(f"the {printer.title} cannot print {_and(alone)} in one job", file=where)
+            labels = " and ".join(dict.fromkeys(material.label for material in alone))
+            raise InputError(f"the {printer.title} cannot print {labels} in one job", file=where)
     examples = [
         list({tuple(m.base_resins): m for i in indices for m in materials[i]}.values()) for indices in kinds.values()
     ]
@@ -255,7 +256,3 @@ def _ordered(groups: list[list[int]], loads: Sequence[frozenset[str]]) -> list[l
         order.append(after)
         left.remove(after)
     return [groups[k] for k in order]
-
-
-def _and(materials: Sequence[Material]) -> str:
-    return " and ".join(dict.fromkeys(material.label for material in materials))

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pneutouch import __version__
-from pneutouch.body import Body
 from pneutouch.export.scene import stl
 from pneutouch.export.threemf import TRAY_RECIPE, TrayItem, threemf_tray
 from pneutouch.output.files import check_writable, short_digest, with_manifest, write_folder
@@ -25,7 +24,7 @@ from pneutouch.results.tray import LabelRow, TrayJobRecord, TrayRecord
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.tables.csv_table import csv_bytes
 from pneutouch.units import grams
-from pneutouch.wording import counted
+from pneutouch.wording import counted, markdown_escaped
 from pneutouch.workflows.tray.lay import StepReport, TrayJob, TrayLayout, TrayPart, fill, layers, outline
 
 if TYPE_CHECKING:
@@ -186,12 +185,9 @@ def _item(part: TrayPart) -> TrayItem:
     if any(mark.kind != "none" for mark in part.marks):
         return TrayItem(part.name, part.name, part.bodies, part.transform)
     letter = part.value.letter
-    bodies = tuple(_named(body, f"{letter}-{solid.name}") for body, solid in zip(part.bodies, part.solids, strict=True))
+    pairs = zip(part.bodies, part.solids, strict=True)
+    bodies = tuple(replace(body, name=f"{letter}-{solid.name}") for body, solid in pairs)
     return TrayItem(part.name, bodies[0].name, bodies, part.transform)
-
-
-def _named(body: Body, name: str) -> Body:
-    return Body(name, body.role, body.material, body.vertices, body.triangles)
 
 
 def _metadata(layout: TrayLayout, job: TrayJob, recipe: str) -> dict[str, str]:
@@ -256,16 +252,21 @@ def _labels_md(layout: TrayLayout, record: TrayRecord, findings: tuple[TrayFindi
     """The label list to print and stick: a head, a table a job, and the findings of the print rules."""
     printer, head = layout.printer, layout.order.tray.tray
     lines = [
-        f"# {_escaped(head.title)}",
+        f"# {markdown_escaped(head.title)}",
         "",
         f"{record.printer}: {counted(record.parts, 'part')}, **{record.resin_changes}**. Support: {printer.support}.",
         "",
-        *(f"Not on this tray: {_escaped(note)}." for note in record.left_out),
+        *(f"Not on this tray: {markdown_escaped(note)}." for note in record.left_out),
     ]
     for number, job in enumerate(layout.jobs, start=1):
         lines += ["", *_job_lines(layout, job, record, number)]
     lines += ["", "## Reading the marks", "", *_marks(layout), ""]
-    lines += ["## Findings of the rules", "", *([f"- {_escaped(one.text)}." for one in findings] or ["- none"]), ""]
+    lines += [
+        "## Findings of the rules",
+        "",
+        *([f"- {markdown_escaped(one.text)}." for one in findings] or ["- none"]),
+        "",
+    ]
     return "\n".join(lines).encode()
 
 
@@ -326,7 +327,7 @@ def _job_lines(layout: TrayLayout, job: TrayJob, record: TrayRecord, number: int
 
 def _value(row: LabelRow) -> str:
     varied = f", {row.varied.partition('.')[2]} = {row.value}" if row.varied else ""
-    return _escaped(f"{row.design}{varied}, copy {row.copy}")
+    return markdown_escaped(f"{row.design}{varied}, copy {row.copy}")
 
 
 def _resin(row: LabelRow) -> str:
@@ -371,7 +372,3 @@ def _marks(layout: TrayLayout) -> list[str]:
             "- Parts without a mark differ by their place on the tray alone: bag and label them as they come off."
         )
     return lines
-
-
-def _escaped(text: str) -> str:
-    return text.replace("\\", "\\\\").replace("|", "\\|").replace("<", "&lt;")
