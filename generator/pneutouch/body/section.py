@@ -14,7 +14,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.body.shapes import Bore, Prism, Shape, Turned, sample
-from pneutouch.body.solid import Body, Solid
+from pneutouch.body.solid import Body, Solid, manifold_of
 from pneutouch.shape.meridian import Arc, Line, Meridian, Segment
 
 _ON_AXIS = 1e-9
@@ -245,10 +245,8 @@ def _without(loops: list[Array], holes: list[Array]) -> list[Array]:
 
 def mesh_outline(body: Body, height: float = 0.0) -> list[Array]:
     """Loops (n, 2) of (x, z) in mm where the plane y = ``height`` cuts the mesh of a body."""
-    from manifold3d import Manifold, Mesh64
-
     upright = body.vertices[:, [0, 2, 1]] * np.array([1.0, 1.0, -1.0])
-    whole = Manifold(Mesh64(np.ascontiguousarray(upright), body.triangles.astype(np.uint64)))
+    whole = manifold_of(upright, body.triangles)
     return [np.asarray(loop) for loop in whole.slice(_ASIDE - height).to_polygons()]
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import starmap
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,19 @@ def is_closed(triangles: Indices, count: int) -> bool:
     edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     key, back = edges[:, 0] * count + edges[:, 1], edges[:, 1] * count + edges[:, 0]
     return len(distinct(key)) == len(key) and bool(np.array_equal(np.sort(key), np.sort(back)))
+
+
+def manifold_of(vertices: Array, triangles: Indices) -> Any:
+    """A mesh as a manifold3d object; empty if it is not closed."""
+    from manifold3d import Manifold, Mesh64
+
+    return Manifold(Mesh64(np.ascontiguousarray(vertices), np.ascontiguousarray(triangles, np.uint64)))
+
+
+def mesh_of(manifold: Any) -> tuple[Array, Indices]:
+    """Vertices (n, 3) and triangles (m, 3) of a manifold3d object."""
+    mesh = manifold.to_mesh64()
+    return np.array(mesh.vert_properties[:, :3], order="C"), mesh.tri_verts.astype(np.int64)
 
 
 def welded(vertices: Array, triangles: Indices) -> tuple[Array, Indices]:
@@ -83,9 +97,7 @@ class Body:
 
     def manifold(self) -> Any:
         """The body as a manifold3d object; empty if it is not closed."""
-        from manifold3d import Manifold, Mesh64
-
-        return Manifold(Mesh64(np.ascontiguousarray(self.vertices), self.triangles.astype(np.uint64)))
+        return manifold_of(self.vertices, self.triangles)
 
     def moved(self, offset: Array) -> Body:
         """The body shifted by ``offset`` (3,), mm."""
@@ -324,15 +336,11 @@ def _combined(
     base: tuple[Array, Indices], adds: list[tuple[Array, Indices]], cuts: list[tuple[Array, Indices]]
 ) -> tuple[Array, Indices]:
     """Mesh of a base with one batch of meshes joined and one batch cut."""
-    from manifold3d import Manifold, Mesh64, OpType
+    from manifold3d import Manifold, OpType
 
-    def manifold(mesh: tuple[Array, Indices]) -> Any:
-        return Manifold(Mesh64(mesh[0], mesh[1].astype(np.uint64)))
-
-    whole = manifold(base)
+    whole = manifold_of(*base)
     if adds:
-        whole = Manifold.batch_boolean([whole, *map(manifold, adds)], OpType.Add)
+        whole = Manifold.batch_boolean([whole, *starmap(manifold_of, adds)], OpType.Add)
     if cuts:
-        whole = Manifold.batch_boolean([whole, *map(manifold, cuts)], OpType.Subtract)
-    mesh = whole.to_mesh64()
-    return np.array(mesh.vert_properties[:, :3], order="C"), mesh.tri_verts.astype(np.int64)
+        whole = Manifold.batch_boolean([whole, *starmap(manifold_of, cuts)], OpType.Subtract)
+    return mesh_of(whole)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pneutouch.arrays import Array
 from pneutouch.body import Body
-from pneutouch.body.solid import corner_normals
+from pneutouch.body.solid import corner_normals, mesh_of
 
 if TYPE_CHECKING:
     import trimesh
@@ -174,7 +174,5 @@ def cut_open(body: Body) -> Body:
     knife = Manifold.cube((high - low + 1).tolist()).translate(
         (middle[0], low[1] - 1 - (high - middle)[1], low[2] - 0.5)
     )
-    rest = (body.manifold() - knife).to_mesh64()
-    return replace(
-        body, vertices=np.array(rest.vert_properties[:, :3], order="C"), triangles=rest.tri_verts.astype(np.int64)
-    )
+    vertices, triangles = mesh_of(body.manifold() - knife)
+    return replace(body, vertices=vertices, triangles=triangles)

@@ -10,6 +10,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.body import Body
+from pneutouch.body.solid import mesh_of
 from pneutouch.parts.glue import GlueSurface
 from pneutouch.printability.measure.cavities import PartVoxels, Pocket, balls, build_frame, fill, pockets, seen, unseen
 from pneutouch.printability.measure.chords import Chords, Side, chords, refined
@@ -101,8 +102,7 @@ class PrintPart:
     @cached_property
     def surface(self) -> SurfaceMesh:
         """Mesh of the manifold, with the face numbers that its rays return."""
-        mesh = self.manifold.to_mesh64()
-        return SurfaceMesh(np.array(mesh.vert_properties[:, :3]), np.array(mesh.tri_verts).astype(np.int64))
+        return SurfaceMesh(*mesh_of(self.manifold))
 
     @cached_property
     def samples(self) -> SurfaceSamples:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -219,6 +219,11 @@ class Meridian:
 
 
 TracedPath = list[tuple[str, Point]]
+
+
+def lines_around(corners: Sequence[Point], tag: str = "") -> tuple[Line, ...]:
+    """The straight lines around a polygon."""
+    return tuple(Line(a, b, tag) for a, b in pairwise([*corners, corners[0]]))
 
 
 def trace(start: Point, path: Iterable[tuple[str, Point]]) -> Meridian:

@@ -13,6 +13,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
+from pneutouch.body.solid import mesh_of
 from pneutouch.export.scene import stl
 from pneutouch.results.reader import DomePress, DomeTable
 from pneutouch.results.record import plain
@@ -338,9 +339,7 @@ def urdf_files(sensor: SimulatedSensor) -> dict[str, bytes]:
 
 def hull(body: Body) -> Body:
     """The convex hull of a body: the contact shape that most simulators make of a mesh, written for all of them."""
-    mesh = body.manifold().hull().to_mesh64()
-    vertices: Array = np.array(mesh.vert_properties, float)[:, :3]
-    return Body(f"{body.name}-contact", body.role, body.material, vertices, np.array(mesh.tri_verts, np.intp))
+    return Body(f"{body.name}-contact", body.role, body.material, *mesh_of(body.manifold().hull()))
 
 
 def urdf(sensor: SimulatedSensor) -> bytes:

@@ -10,7 +10,7 @@ from itertools import accumulate, pairwise
 
 from pneutouch.body import Bore, Feature, Frame, Prism, Solid, Turned
 from pneutouch.parts.coupons.coupon import CALIPER, GAUGE_PINS, ROLE, Coupon, CouponContext, Nominal
-from pneutouch.shape.meridian import Line, Point, Segment, cylinder
+from pneutouch.shape.meridian import Point, cylinder, lines_around
 
 WALLS = (0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.2, 1.6, 2.0)
 PINS = HOLES = (0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0, 2.5, 3.0)
@@ -70,7 +70,7 @@ def draw(context: CouponContext) -> tuple[Solid, ...]:
     adds += [_pin(x, size, pins.middle) for x, size in pins.places()]
     bores = tuple(Bore(x, holes.middle, 0.5 * size, 0.0, PLATE) for x, size in holes.places())
     cuts = tuple(_slot(x, size, slots.middle) for x, size in slots.places())
-    plate = Solid("gauge", ROLE, context.material, Prism(_polygon(corners), 0.0, PLATE), bores, tuple(adds), cuts)
+    plate = Solid("gauge", ROLE, context.material, Prism(lines_around(corners), 0.0, PLATE), bores, tuple(adds), cuts)
     return plate, Solid("block", ROLE, context.material, block())
 
 
@@ -81,7 +81,7 @@ def block() -> Prism:
     for x, z in reversed(rise):
         corners += [(x, z), (x - STEPS[0], z)]
     upright = Frame(axis=(0.0, -1.0, 0.0), across=(1.0, 0.0, 0.0))
-    return Prism(_polygon(corners), -BLOCK, 0.0, upright)
+    return Prism(lines_around(corners), -BLOCK, 0.0, upright)
 
 
 def nominals(context: CouponContext) -> tuple[Nominal, ...]:
@@ -94,13 +94,9 @@ def nominals(context: CouponContext) -> tuple[Nominal, ...]:
     )
 
 
-def _polygon(corners: list[Point]) -> tuple[Segment, ...]:
-    return tuple(Line(a, b, "") for a, b in pairwise([*corners, corners[0]]))
-
-
 def _strip(x: float, thickness: float, middle: float, low: float, high: float) -> Prism:
     left, right, near, far = x - 0.5 * thickness, x + 0.5 * thickness, middle - 0.5 * LENGTH, middle + 0.5 * LENGTH
-    return Prism(_polygon([(left, near), (right, near), (right, far), (left, far)]), low, high)
+    return Prism(lines_around([(left, near), (right, near), (right, far), (left, far)]), low, high)
 
 
 def _wall(x: float, thickness: float, middle: float) -> Feature:

@@ -32,7 +32,7 @@ def lettering(text: str, height: float, least: float) -> Any:
 
     Strokes thinner than ``least`` mm are widened to it, and glyphs are at least ``least`` apart.
     """
-    from manifold3d import CrossSection
+    from manifold3d import CrossSection, OpType
 
     gap, shapes, x = max(least, 0.12 * height), [], 0.0
     for character in text:
@@ -40,7 +40,7 @@ def lettering(text: str, height: float, least: float) -> Any:
         low, _, high, _ = glyph.bounds()
         shapes.append(glyph.translate((x - low, 0.0)))
         x += high - low + gap
-    whole = CrossSection.batch_boolean(shapes, _add())
+    whole = CrossSection.batch_boolean(shapes, OpType.Add)
     low, bottom, high, top = whole.bounds()
     return whole.translate((-0.5 * (low + high), -0.5 * (bottom + top)))
 
@@ -121,9 +121,3 @@ def _round() -> Any:
     from manifold3d import JoinType
 
     return JoinType.Round
-
-
-def _add() -> Any:
-    from manifold3d import OpType
-
-    return OpType.Add

@@ -16,6 +16,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
+from pneutouch.body.solid import mesh_of
 from pneutouch.parts import Assembly
 from pneutouch.parts.lettering.glyphs import is_clear, lettering, narrowest, rounded
 from pneutouch.spec.part import ClampedFlange
@@ -51,12 +52,12 @@ class TallyRing:
         angle = min(last - first for first, last in self.sectors)
         return min(2 * self.inner * math.sin(0.5 * angle), self.outer - self.inner)
 
-    def polygons(self, error: float = 0.01) -> list[Array]:
-        """Outlines (n, 2) in mm, counter-clockwise, arcs within ``error``."""
-        return [self._polygon(first, last, error) for first, last in self.sectors]
+    def polygons(self) -> list[Array]:
+        """Outlines (n, 2) in mm, counter-clockwise, arcs within 0.01 mm."""
+        return [self._polygon(first, last) for first, last in self.sectors]
 
-    def _polygon(self, first: float, last: float, error: float) -> Array:
-        steps = 1 + math.ceil((last - first) / math.sqrt(8 * error / self.outer))
+    def _polygon(self, first: float, last: float) -> Array:
+        steps = 1 + math.ceil((last - first) / math.sqrt(8 * 0.01 / self.outer))
         angle = np.linspace(first, last, steps + 1)
         arc = np.column_stack([np.cos(angle), np.sin(angle)])
         return np.concatenate([self.outer * arc, self.inner * arc[::-1]])
@@ -350,6 +351,5 @@ def _combined(body: Body, tool: Tool, raised: bool) -> Body:
     shape, low, high = tool
     parts = [part.extrude(high - low).translate((0.0, 0.0, low)) for part in shape.decompose()]
     whole = Manifold.batch_boolean([body.manifold(), *parts], OpType.Add if raised else OpType.Subtract)
-    mesh = whole.to_mesh64()
-    vertices = np.array(mesh.vert_properties[:, :3], order="C")
-    return replace(body, vertices=vertices, triangles=mesh.tri_verts.astype(np.int64))
+    vertices, triangles = mesh_of(whole)
+    return replace(body, vertices=vertices, triangles=triangles)

@@ -26,7 +26,7 @@ import numpy as np
 from pneutouch.body import Feature, Prism, Solid, Turned
 from pneutouch.parts.cast_ring import RingSize
 from pneutouch.shape.dome import INNER_WALL, OUTER_WALL
-from pneutouch.shape.meridian import Arc, Line, Meridian, Point, Segment
+from pneutouch.shape.meridian import Arc, Line, Meridian, Point, Segment, lines_around
 from pneutouch.spec.material import Material
 
 TAPER = math.radians(10.0)
@@ -268,8 +268,9 @@ def open_mould(coupon: Solid, material: Material, factor: float) -> Solid:
         y = (min(box[2] for box in boxes), max(box[3] for box in boxes))
     if low != 0.0 or coupon.bores or coupon.adds or coupon.cuts:
         raise TypeError(f"{coupon.name} is no plain body on z = 0: an open mould cannot form it")
-    corners = [(factor * x[0] - WALL, factor * y[0] - WALL), (factor * x[1] + WALL, factor * y[1] + WALL)]
-    block = Prism(_rectangle(*corners), -FLOOR, factor * high)
+    (left, right), (near, far) = ((factor * low - WALL, factor * high + WALL) for low, high in (x, y))
+    corners = [(left, near), (right, near), (right, far), (left, far)]
+    block = Prism(lines_around(corners, "side"), -FLOOR, factor * high)
     return Solid(f"{coupon.name}-mould", coupon.role, material, block, cuts=(Feature(tool, cavity.volume()),))
 
 
@@ -284,8 +285,3 @@ def _scaled(shape: Meridian | Prism, factor: float, past: float) -> Turned | Pri
         return factor * point[0], factor * point[1] + (past if point[1] == top else 0.0)
 
     return Turned(Meridian(tuple(Line(moved(piece.start), moved(piece.end), piece.tag) for piece in shape.pieces)))
-
-
-def _rectangle(low: tuple[float, float], high: tuple[float, float]) -> tuple[Segment, ...]:
-    corners = [low, (high[0], low[1]), high, (low[0], high[1])]
-    return tuple(Line(corners[k], corners[(k + 1) % 4], "side") for k in range(4))

@@ -1,7 +1,6 @@
 """Straight bars across the path: built from their corners, flush where they meet a side of the block, never cut."""
 
 import math
-from itertools import pairwise
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from pneutouch.parts.specimen.family import (
     check_least,
     heights,
 )
-from pneutouch.shape.meridian import Line
+from pneutouch.shape.meridian import lines_around
 from pneutouch.spec.specimen import Bars
 
 _CORNERS = np.array(
@@ -107,7 +106,7 @@ def draw(layer: Bars, context: PatternContext, number: int) -> PatternGeometry:
 def _solid(context: PatternContext, number: int, k: int, left: float, around: Box, right: float) -> Solid:
     low, high = around.low[2], around.high[2]
     corners = [(left, low), (right, low), (right, high), (left, high)]
-    outline = tuple(Line(a, b, "") for a, b in pairwise([*corners, corners[0]]))
+    outline = lines_around(corners)
     # The prism's own y is the block's z, so its axis runs against the block's y.
     upright = Frame(axis=(0.0, -1.0, 0.0), across=(1.0, 0.0, 0.0))
     prism = Prism(outline, -around.high[1], -around.low[1], upright)

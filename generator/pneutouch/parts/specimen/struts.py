@@ -15,12 +15,12 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.body.shapes import circle_count, widen
+from pneutouch.body.solid import manifold_of, mesh_of
 from pneutouch.errors import ComputationError
 from pneutouch.parts.specimen.faces import complement
 from pneutouch.parts.specimen.family import (
@@ -148,7 +148,7 @@ def _octant(lattice: Lattice) -> Mesh:
     ball = lattice.ball()
     hulls = [Manifold.hull_points(np.concatenate([ball + a, ball + b])) for a, b in lattice.struts()]
     whole = Manifold.batch_boolean(hulls, OpType.Add) ^ Manifold.cube((1.0, 1.0, 1.0))
-    return snapped(_read(whole.simplify(_MERGED)), Box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), 1e-9)
+    return snapped(Mesh(*mesh_of(whole.simplify(_MERGED))), Box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), 1e-9)
 
 
 def _sound(lattice: Lattice, piece: Mesh) -> bool:
@@ -212,22 +212,16 @@ def fill(lattice: Lattice, box: Box, piece: Mesh | None = None) -> Mesh:
 
 def _cut(mesh: Mesh, box: Box) -> Mesh:
     """Part of a mesh inside a box whose low sides the mesh is flush with."""
-    from manifold3d import Manifold, Mesh64
+    from manifold3d import Manifold
 
     size = np.array(box.high) - np.array(box.low)
-    shifted = Mesh64(np.ascontiguousarray(mesh.vertices - np.array(box.low)), mesh.triangles.astype(np.uint64))
-    cut = Manifold(shifted) ^ Manifold.cube(size.tolist())
+    cut = manifold_of(mesh.vertices - np.array(box.low), mesh.triangles) ^ Manifold.cube(size.tolist())
     for detail in _CUTS:
-        mesh = _read(cut.simplify(detail))
+        mesh = Mesh(*mesh_of(cut.simplify(detail)))
         placed = snapped(Mesh(mesh.vertices + np.array(box.low), mesh.triangles), box, 1e-6)
         if placed.is_closed() and complement(box, placed).is_closed():
             break
     return placed
-
-
-def _read(manifold: Any) -> Mesh:
-    mesh = manifold.to_mesh64()
-    return Mesh(np.array(mesh.vert_properties[:, :3], order="C"), mesh.tri_verts.astype(np.int64))
 
 
 _SAMPLES = 28

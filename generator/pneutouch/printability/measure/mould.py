@@ -6,12 +6,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.body import Body, Turned
+from pneutouch.body import Body
+from pneutouch.body.solid import manifold_of
 from pneutouch.parts.mould.pieces import channels, silicone
 from pneutouch.parts.mould.size import MouldSize
 
@@ -78,7 +78,7 @@ def cavity_match(size: MouldSize, closed: Sequence[Body], tolerance: float) -> C
     cavity lacks and what it has in excess."""
     from manifold3d import Manifold, OpType
 
-    plugs = [_manifold(tool, tolerance) for tool in channels(size)]
+    plugs = [manifold_of(*tool.mesh(tolerance)) for tool in channels(size)]
     whole = Manifold.batch_boolean([*(body.manifold() for body in closed), *plugs], OpType.Add)
     reach, low, high = size.faces.edge.start[0] + _REACH, size.low - 1e-3, size.faces.high + 1e-3
     window = Manifold.cylinder(high - low, reach, reach, _SIDES).translate((0.0, 0.0, low))
@@ -138,10 +138,3 @@ def _starts(size: MouldSize, body: Body, tolerance: float) -> list[tuple[Array, 
 def _whole(near: Flags, count: int) -> Flags:
     """True for the ``count`` points of each triangle whose points are all ``near``."""
     return np.repeat(near.reshape(-1, count).all(axis=1), count)
-
-
-def _manifold(shape: Turned, tolerance: float) -> Any:
-    from manifold3d import Manifold, Mesh64
-
-    vertices, triangles = shape.mesh(tolerance)
-    return Manifold(Mesh64(np.ascontiguousarray(vertices), triangles.astype(np.uint64)))

@@ -5,7 +5,6 @@ The print rules on a specimen. Bodies that fill one another leave no open space,
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ import numpy as np
 from pneutouch import __version__
 from pneutouch.arrays import Array, Indices
 from pneutouch.body import Body, Bore, Feature, Prism, Solid
+from pneutouch.body.solid import mesh_of
 from pneutouch.catalogue import Library
 from pneutouch.export.scene import glb, stl
 from pneutouch.export.threemf import threemf
@@ -25,7 +25,7 @@ from pneutouch.printability import Finding, check, refuse
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
 from pneutouch.results.folder import BodyMesh
 from pneutouch.results.record import plain
-from pneutouch.shape.meridian import Line
+from pneutouch.shape.meridian import lines_around
 from pneutouch.spec.read import Changes
 from pneutouch.spec.values import plain_name
 from pneutouch.workflows.specimen.draw import ResolvedSpecimen, SpecimenBodies, draw, load_specimen
@@ -131,8 +131,7 @@ def _box(box: Box) -> tuple[Array, Indices]:
     from manifold3d import Manifold
 
     size = np.array(box.high) - np.array(box.low)
-    mesh = Manifold.cube(size.tolist()).translate(box.low).to_mesh64()
-    return np.array(mesh.vert_properties[:, :3], order="C"), mesh.tri_verts.astype(np.int64)
+    return mesh_of(Manifold.cube(size.tolist()).translate(box.low))
 
 
 StepReport = Callable[[str], None]
@@ -215,7 +214,7 @@ def solids(drawn: SpecimenBodies) -> tuple[Solid, ...]:
     if not all(pattern.solids for pattern in drawn.patterns):
         return ()
     (x0, y0, low), (x1, y1, high) = drawn.scene.block.low, drawn.scene.block.high
-    around = _polygon([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
+    around = lines_around([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
     cuts = tuple(Feature(bar.base, bar.volume) for bar in bars if isinstance(bar.base, Prism))
     block = Solid("matrix", "matrix", drawn.scene.matrix, Prism(around, low, high), cuts=cuts)
     return (block, *bars, *_frame_solid(drawn))
@@ -230,11 +229,7 @@ def _frame_solid(drawn: SpecimenBodies) -> tuple[Solid, ...]:
     low = top - frame.thickness_mm
     bores = tuple(Bore(x, y, radius, low, top) for x, y in holes(block, frame.border_mm))
     corners = [(float(x), float(y)) for x, y in outline(block, frame.border_mm)]
-    return (Solid("frame", "frame", material, Prism(_polygon(corners), low, top), bores),)
-
-
-def _polygon(corners: list[tuple[float, float]]) -> tuple[Line, ...]:
-    return tuple(Line(a, b, "") for a, b in pairwise([*corners, corners[0]]))
+    return (Solid("frame", "frame", material, Prism(lines_around(corners), low, top), bores),)
 
 
 def _files(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pneutouch.body.solid import manifold_of
 from pneutouch.parts.specimen import Mesh, PatternGeometry
 from pneutouch.printability import Finding
 from pneutouch.report.style import ACCENT, BOLD, INK, MUTED, figure, halo, svg
@@ -228,11 +229,8 @@ def _cut(ax: Axes, pattern: PatternGeometry, colour: str) -> None:
 
 def section(mesh: Mesh, y: float) -> list[Any]:
     """Loops (n, 2) in (x, z), mm, of a closed mesh cut at ``y``."""
-    from manifold3d import Manifold, Mesh64
-
     # x, z and y as the kernel's x, y and z: the swap mirrors, so the triangles are turned round.
-    points = np.ascontiguousarray(mesh.vertices[:, [0, 2, 1]])
-    whole = Manifold(Mesh64(points, np.ascontiguousarray(mesh.triangles[:, ::-1]).astype(np.uint64)))
+    whole = manifold_of(mesh.vertices[:, [0, 2, 1]], mesh.triangles[:, ::-1])
     return list(whole.slice(y).to_polygons())
 
 
