@@ -109,22 +109,17 @@ def run_calibration(
     # A design that is calibrated already is fitted from its drawing again, or the prior would hold the data twice.
     changes = {**parse_changes(loaded.campaign.assignments), CALIBRATION: None}
     scene = load_scene(design, changes, library)
-    built = sensor_of(assemble(scene))
-    check_fitted(scene, built)
+    check_fitted(scene, built := sensor_of(assemble(scene)))
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
-    expected = answers(design, changes, pairs, "solid" if is_corrected(built) else "atlas", library)
-    curves, refused, questions = sound(loaded, expected)
+    model = "solid" if is_corrected(built) else "atlas"
+    curves, refused, questions = sound(loaded, answers(design, changes, pairs, model, library))
     _check_left(data, loaded, sensor, curves, refused)
     _, observations, notes = observations_of(loaded.campaign, curves, loaded.injections, scene, sensor)
-    used_files = {curve.run.file for curve in observations.curves}
-    notes = [*notes, *(f"{file}: {text}" for file, text in questions if file in used_files)]
+    notes += [f"{file}: {why}" for file, why in questions if any(file == one.run.file for one in observations.curves)]
     source = _source(data, loaded, sensor, observations)
     name = options.save or default_name(scene.name, sensor)
-    # What could not be written is refused before the fit; an unknown parameter by the fit, before it computes.
     check_writable(folder_of(scene.name, sensor, out))
-    path = check_place(name, root)
-    if not options.replace and set(options.fit) <= set(NAMES):
-        check_unlike(path, source.digest, options.fit, options.hold_out_kPa)
+    _check_free(check_place(name, root), options, source)
     calibration = calibrate(
         observations,
         scene,
@@ -160,6 +155,12 @@ def _check_left(
     if reasons and not files & left:
         lines = [f"{named}: {why}" for named, why in same_failures(reasons)]
         raise InputError("\n".join([f"no run of sensor {sensor} can be used", *lines]), file=data)
+
+
+def _check_free(path: Path, options: CalibrationOptions, source: CampaignSource) -> None:
+    """Raise InputError where the file is another calibration; an unknown parameter is refused by the fit."""
+    if not options.replace and set(options.fit) <= set(NAMES):
+        check_unlike(path, source.digest, options.fit, options.hold_out_kPa)
 
 
 def _write(
