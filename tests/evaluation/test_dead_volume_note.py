@@ -41,7 +41,21 @@ def test_a_volume_computed_from_the_parts_has_no_note(evaluated):
 def test_the_text_of_predict_has_the_note(command):
     done = command("predict", "paper-dome", "--model", "atlas")
     assert done.returncode == 0, done.stderr
-    assert f"dead volume 0.000 mL ({NOTE}" in " ".join(done.stdout.split())
+    head, *rest = done.stdout.splitlines()
+    assert head.endswith("dead volume 0.000 mL, the paper's idealisation")
+    (at,) = [k for k, line in enumerate(rest) if line.startswith("with the 1.50 mL")]
+    drawn = [line.split() for line in rest[at + 2 : at + 6]]
+    assert [float(row[0]) for row in drawn] == [0, 5, 12, 22] and all(1.5 < float(row[1]) < 2.2 for row in drawn)
+
+
+def test_the_figures_with_the_gas_as_drawn_are_those_of_the_design_that_states_it(evaluated):
+    idealised = data(predicted(evaluated("paper-dome", model="atlas")))
+    drawn_mL = idealised["dead_volume_as_drawn_mL"]
+    stated = data(predicted(evaluated("paper-dome", f"pneumatics.dead_volume_mL={drawn_mL!r}", model="atlas")))
+    for one, other in zip(idealised["as_drawn"], stated["states"], strict=True):
+        for key in ("sensitivity_kPa_per_N", "stiffness_N_per_mm", "range_end_mm", "cavity_volume_mL"):
+            assert one[key] == pytest.approx(other[key], rel=1e-9)
+    assert "as_drawn" not in stated and "dead_volume_as_drawn_mL" not in stated
 
 
 @pytest.mark.slow

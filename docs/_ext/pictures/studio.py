@@ -11,7 +11,7 @@ import shutil
 import sys
 from pathlib import Path
 
-from PIL import Image, ImageDraw
+from PIL import Image
 from playwright.sync_api import Page
 from tests.browser import WITH_WEBGL, Pages, launched, until
 from tests.studio.served import SOLVED, Studio, served
@@ -32,9 +32,7 @@ MOULD = "tutorials/cast-sensor-mould.svg", "cast-sensor/outputs/my-cast/mould/my
 _AREAS = ("target", "wide", "files")
 """From a target to a design to its files: the screens of the film strip."""
 
-_WIDTH, _HEIGHT, _GAP, _FRAME = 640, 411, 16, "#9aa5b1"
-"""Pixels of one screen of the strip and between two; a screen is cut to 1400 by 900 before."""
-
+_WIDTH, _HEIGHT, _GAP = 640, 411, 16
 _COLOURS = 128
 """Enough for a page of few colours, at a third of the bytes."""
 
@@ -83,12 +81,10 @@ def studio() -> None:
 def strip(screens: list[Image.Image]) -> Image.Image:
     """Screens side by side on white, each scaled to one size from its upper left part."""
     whole = Image.new("RGB", (len(screens) * (_WIDTH + _GAP) - _GAP, _HEIGHT), "white")
-    draw = ImageDraw.Draw(whole)
     for place, one in enumerate(screens):
         part = one.convert("RGB").crop((0, 0, one.width, round(one.width * _HEIGHT / _WIDTH)))
         left = place * (_WIDTH + _GAP)
         whole.paste(part.resize((_WIDTH, _HEIGHT), Image.Resampling.LANCZOS), (left, 0))
-        draw.rectangle((left, 0, left + _WIDTH - 1, _HEIGHT - 1), outline=_FRAME)
     return whole
 
 

@@ -90,7 +90,7 @@ def simulate(
         return run(source_of(design), Path(out), None, options)
 
 
-Columns = Mapping[str, Mapping[str, Any]] | str | Sequence[str] | None
+RecordedColumns = Mapping[str, Mapping[str, Any]] | str | Sequence[str] | None
 """Columns of a recording, as a table or as texts ``channel=NAME:UNIT``."""
 
 
@@ -101,7 +101,7 @@ def characterize(
     target: str | Path | None = None,
     model: str | None = None,
     evidence: str = "doubtful",
-    columns: Columns = None,
+    columns: RecordedColumns = None,
     file_format: Mapping[str, Any] | None = None,
     kind: RunKind | None = None,
 ) -> Result:
@@ -166,7 +166,7 @@ def calibrate(
     save: str | None = None,
     replace: bool = False,
     out: str | Path = "outputs",
-    columns: Columns = None,
+    columns: RecordedColumns = None,
     file_format: Mapping[str, Any] | None = None,
 ) -> FittedSensor:
     """Fit the model to the runs of one sensor of a campaign; write the fit into ``out``, the calibration for designs.
@@ -184,7 +184,7 @@ def calibrate(
         return FittedSensor(run_calibration(campaign, source, options, Path(out), reading=reading))
 
 
-def _reading(columns: Columns, file_format: Mapping[str, Any] | None) -> dict[str, Mapping[str, Any]]:
+def _reading(columns: RecordedColumns, file_format: Mapping[str, Any] | None) -> dict[str, Mapping[str, Any]]:
     from pneutouch.workflows.characterize.load import parse_columns
 
     given = columns or {}
