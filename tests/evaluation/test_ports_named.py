@@ -33,3 +33,10 @@ def test_every_port_that_a_remedy_names_ends_its_finding(changes):
 
 def test_ports_of_the_designs_own_tube_are_named_first():
     assert re.findall(r"connector\.port = (\S+)", on_connector({})["walls"]) == ["push-in-4"]
+
+
+def test_a_port_of_the_user_that_is_not_valid_is_not_proposed_and_stops_nothing(tmp_path, monkeypatch):
+    monkeypatch.setenv("PNEUTOUCH_HOME", str(tmp_path))
+    (tmp_path / "parts/ports").mkdir(parents=True)
+    (tmp_path / "parts/ports/a-bad-one.toml").write_text('family = "barb"\n')
+    assert "a-bad-one" not in on_connector({})["walls"]

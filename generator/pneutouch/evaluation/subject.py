@@ -22,6 +22,7 @@ from pneutouch.printability.rulebook import check_mould, mould_subject
 from pneutouch.printability.rules.feature_sizes import CHECKS
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
 from pneutouch.printability.view import GluedSeat, PrintView, WettedSurface
+from pneutouch.spec.part import Port, Tube
 
 _HINTS = {
     "membrane": {
@@ -153,22 +154,31 @@ def _with_ports(findings: list[Finding], scene: ResolvedDesign) -> list[Finding]
     broken = {one.rule for one in findings if _names_port(one)}
     if not broken:
         return findings
-    library, ending = Library.default(), {rule: list[str]() for rule in broken}
-    ports = {name: library.load("ports", name) for name in library.paths("ports")}
-    used = scene.tube.title
-    tubes = {name: [library.load("tubes", tube) for tube in port.tubes] for name, port in ports.items()}
-    for name in sorted(ports, key=lambda name: all(tube.title != used for tube in tubes[name])):
+    ports, ending = _ports_with_tubes(Library.default()), {rule: list[str]() for rule in broken}
+    other_tube = {name: all(tube.title != scene.tube.title for tube in tubes) for name, (_, tubes) in ports.items()}
+    for name in sorted(ports, key=other_tube.__getitem__):
         if name == scene.design.connector.port or all(len(names) == _NAMED for names in ending.values()):
             continue
+        port, tubes = ports[name]
         connector = scene.design.connector.model_copy(update={"port": name})
         design = scene.design.model_copy(update={"connector": connector})
         with suppress(InputError):
-            subject = subject_of(assemble(replace(scene, design=design, port=ports[name], tube=tubes[name][0])))
+            subject = subject_of(assemble(replace(scene, design=design, port=port, tube=tubes[0])))
             items = tuple(item for item in subject.items if item.body.name == "connector")
             view = PrintView(replace(subject, items=items, joints=()), None)
             for rule, names in ending.items():
                 names += [] if len(names) == _NAMED or CHECKS[rule](view) else [name]
     return [_with_port(one, ending[one.rule]) if _names_port(one) else one for one in findings]
+
+
+def _ports_with_tubes(library: Library) -> dict[str, tuple[Port, list[Tube]]]:
+    """Ports by name with their tubes; what is not valid in a user's folder is left out."""
+    found: dict[str, tuple[Port, list[Tube]]] = {}
+    for name in library.paths("ports"):
+        with suppress(InputError):
+            port = library.load("ports", name)
+            found[name] = port, [library.load("tubes", tube) for tube in port.tubes]
+    return found
 
 
 def _with_port(finding: Finding, names: list[str]) -> Finding:

@@ -17,6 +17,7 @@ from pneutouch.output.new import free_name
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import Table
 from pneutouch.spec.read import validate
+from pneutouch.spec.target import Shelf
 from pneutouch.spec.toml_text import assignments
 from pneutouch.studio.form import PAGE, Question, version_of
 from pneutouch.units import KPA
@@ -176,6 +177,6 @@ class CandidateStates:
         design = validate(DesignFile, assigned(base.design, changes, self._name), PAGE)
         return state_of(design, self._base, self._bases, self._library)
 
-    def command(self, rank: int) -> str:
-        """The command that saves the design of a rank."""
-        return saving_command(self._target, rank, self._name)
+    def command(self, rank: int) -> str | None:
+        """The command that saves the design of a rank; None with a shelf, which a command takes from a file."""
+        return saving_command(self._target, rank, self._name) if self._target.have == Shelf() else None
