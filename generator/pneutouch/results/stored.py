@@ -31,7 +31,7 @@ class ShownBody:
 
 @dataclass(frozen=True, slots=True)
 class ShownRecipe:
-    """A recipe, with the versions and the input hash that are stored with it."""
+    """Recipe of a build, that is all its inputs, as a built file holds it: with format, versions and input hash."""
 
     format: str
     """Format of the recipe."""

@@ -41,7 +41,7 @@ class Hemisphere(DomeShape):
         return self.arc_share(radius, height)
 
     def weights(self, arc: Array) -> Array:
-        """Weights of arc positions: the radius of the ring, since the area of a sphere is uniform over its height."""
+        """Area weights of arc positions (0 at the pole, 1 at the rim): radius of the ring there over the sphere's."""
         return np.asarray(np.sin(_QUARTER * arc))
 
 

@@ -51,9 +51,10 @@ class Covariance:
 
 
 class WeightedRows(NamedTuple):
-    """Values used, (N,), with derivatives (N, j) by free parameters and shared unknowns, the local residuals, and the
-    prior weights (j,) of the unknowns; all in units of ``scale`` (j,), in which data and priors together have unit
-    information."""
+    """Rows of a fit, scaled so that data and priors together have an information of 1 for each of the j unknowns.
+
+    residual: local residuals, (N,). jacobian: derivatives by free parameters and shared unknowns over ``scale``, (N, j).
+    use: True for the values that count, (N,). weight: prior weights over ``scale`` squared, (j,). scale: (j,)."""
 
     residual: Array
     jacobian: Array

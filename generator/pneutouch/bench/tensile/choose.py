@@ -147,12 +147,12 @@ class LawChoice:
 
 
 def choose_law(curves: Sequence[TensionCurve], largest: float | None = None, slack: float | None = None) -> LawChoice:
-    """Fit every law to the curves and take one.
+    """Fit the laws to the curves and take the first good one; without one, that of fewest constants near the best fit.
 
     Args:
         curves: Rising curves.
-        largest: Stretch to fit up to; None: the stretch that a wall of this modulus reaches (`reached_stretch`), or the
-            data's end.
+        largest: Stretch to fit up to; None: what a wall of the curves' modulus reaches (`reached_stretch`), at most the
+            end of the data.
         slack: Strain to take off every curve; None: found for each.
 
     Raises:

@@ -13,7 +13,7 @@ Terms = tuple[tuple[float, float], ...]
 
 
 def energy(s: Strain, terms: Terms) -> Jet:
-    """Strain energy density W in MPa."""
+    """Strain energy density W in MPa; ``terms`` are (mu_i in MPa, alpha_i)."""
     parts = ((2.0 * mu / alpha**2) * (s.power_sum(alpha) - 3.0) for mu, alpha in terms)
     return reduce(Jet.__add__, parts)
 

@@ -78,7 +78,7 @@ class SolidElements(SensorModel):
         return SENSITIVITY_DISCRETISATION if sensor.protocol.body is None else OBJECT_DISCRETISATION
 
     def errors(self, sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
-        """Errors of the mesh."""
+        """Relative errors of the mesh in sensitivity and limit pressure."""
         if sensor.protocol.body is not None:
             return discretised(_OBJECT_SUMMARY, OBJECT_DISCRETISATION)
         return discretised(_SUMMARY)

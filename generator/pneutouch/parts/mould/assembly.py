@@ -86,10 +86,10 @@ def _check_insert(where: str, size: MouldSize) -> None:
 
 @dataclass(frozen=True)
 class MouldAssembly:
-    """The mould of a scene in the design frame, with the first cavity about the z axis; shrinkage is compensated.
+    """Parts of the mould of a cast membrane, mm, its cavities larger by the shrinkage, the first one about the z axis.
 
-    ``solids`` are cap, ring, core and base, with ring and core once; ``counts`` has the number of each to make.
-    ``insert`` is the sensor's ring that the flange is cast around, not a part of the mould; None without one.
+    ``solids`` are cap, ring, core and base, one of each kind; ``counts`` has how many of each to print. ``insert`` is
+    the sensor's own ring, around which the flange is cast; None without one.
     """
 
     scene: ResolvedDesign
