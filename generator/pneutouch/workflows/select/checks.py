@@ -128,7 +128,7 @@ def _resized(scene: ResolvedDesign, radius: float, wall: float) -> Assembly | No
 
 @dataclass(frozen=True)
 class RejectedDesign:
-    """A design that ``check`` rejects. ``rule``: the broken one; None for a design that cannot be drawn or predicted."""
+    """A design that ``check`` rejects. ``rule``: the broken one; None if it cannot be drawn or predicted."""
 
     choice: Candidate
     rule: str | None
