@@ -54,7 +54,8 @@ class WeightedRows(NamedTuple):
     """Rows of a fit, scaled so that data and priors together have an information of 1 for each of the j unknowns.
 
     residual: local residuals, (N,). jacobian: derivatives by free parameters and shared unknowns over ``scale``,
-    (N, j). use: True for the values that count, (N,). weight: prior weights over ``scale`` squared, (j,). scale: (j,)."""
+    (N, j). use: True for the values that count, (N,). weight: prior weights over ``scale`` squared, (j,).
+    """
 
     residual: Array
     jacobian: Array
