@@ -81,7 +81,7 @@ def place_unknown(prediction: SensorPrediction, sensor: Sensor, states: Sequence
     """Reason why the shipped table does not cover a sensor in its states; None if it does."""
     point = prediction.limits.limit_point
     if point is None:
-        return "the pressure of the dome has no maximum"
+        return "the dome has no limit point, over which the table is set"
     why = outside(sensor, state_conditions(sensor, states, point))
     return None if why is None else f"the table of contact anywhere does not cover the sensor: {why}"
 

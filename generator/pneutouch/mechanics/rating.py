@@ -97,8 +97,10 @@ class Rating:
     def summary(self) -> str:
         """Basis of the rated pressure, briefly."""
         limit = self.limit
-        least = "" if limit.low == limit.nominal else f"the lower end (k = {COVERAGE:g}) of "
-        return f"{RATED_SHARE:.0%} of {least}the {limit.name}, {limit.nominal / KPA:.1f} kPa nominal"
+        if limit.low == limit.nominal:
+            return f"{RATED_SHARE:.0%} of the {limit.name}, {limit.nominal / KPA:.1f} kPa"
+        low, nominal = f"{limit.low / KPA:.1f} kPa", f"{limit.nominal / KPA:.1f} nominal"
+        return f"{RATED_SHARE:.0%} of the lower end (k = {COVERAGE:g}) of the {limit.name}, {low} ({nominal})"
 
     @property
     def remedy(self) -> str | None:

@@ -29,9 +29,9 @@ def contact_line(chart: ContactChart | str | None) -> str:
         return f"Not stated: {chart or ''}."
     central = (row for row in chart.rows if row.kind == "ball" and not row.offset)
     balls = [row for row in central if row.errors_percent[-1][0] is not None]
-    shares = " and ".join(f"±{share:.0%}" for share in chart.standard_uncertainties)
+    shares = " and ".join(f"±{100 * share:.0f} %" for share in chart.standard_uncertainties)
     pressures = " and ".join(f"{pressure_kPa:g}" for pressure_kPa in chart.driving_pressures_kPa)
-    unknown = f"unknown place and object: {shares} (standard) at {pressures} kPa"
+    unknown = f"unknown place and object: {shares} (k = 1) at {pressures} kPa"
     if not balls:
         return f"{unknown[:1].upper()}{unknown[1:]}."
     ball = balls[len(balls) // 2]

@@ -94,12 +94,13 @@ def connections(sheet: SheetData) -> list[list[str]]:
     """Things to connect: port, tube, gauge, mount, and the pressures before contact."""
     scene = sheet.scene
     pneumatics, tube = scene.design.pneumatics, scene.tube
+    pressures = ", ".join(f"{p:g}" for p in pneumatics.driving_pressures_kPa)
     return [
         ["Port", scene.port.title],
         ["Tube", f"{pneumatics.tube_length_mm:g} mm, {tube.outer_diameter:g} x {tube.inner_diameter:g} mm"],
-        ["Gauge", sheet.gauge.title if scene.gauge is not None else f"none named; the paper's, {sheet.gauge.title}"],
+        ["Gauge", sheet.gauge.title if scene.gauge is not None else f"none named; assumed: {sheet.gauge.title}"],
         ["Mount", scene.mount.title],
-        ["Driving", f"{', '.join(f'{p:g}' for p in pneumatics.driving_pressures_kPa)} kPa, then closed"],
+        ["Driving", f"{pressures} kPa, at most {sheet.rating.pressure_kPa:.1f}; set it, then close the line"],
     ]
 
 
