@@ -191,7 +191,9 @@ def fit_of_curves(folder: Path) -> Pair:
     from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, other
     from tests.bench.calibrate.test_fit import TRUTH
 
-    from pneutouch.bench.calibrate import NAMES, Observations, fit
+    from pneutouch.bench.calibrate.fit import fit
+    from pneutouch.bench.calibrate.observations import Observations
+    from pneutouch.bench.calibrate.parameters import NAMES
     from pneutouch.mechanics.atlas.press import batch_of
     from pneutouch.mechanics.atlas.respond import respond
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pneutouch.bench.calibrate import Observations
+from pneutouch.bench.calibrate.observations import Observations
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate, sensor_of

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, get_args
 
-from pneutouch.bench.calibrate import NAMES, USUAL
+from pneutouch.bench.calibrate.parameters import NAMES, USUAL
 from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.evaluation.resins import resin_of

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from pneutouch.bench.calibrate import Injection, Observations, parameters
 from pneutouch.bench.calibrate.fitted_atlas import injected
+from pneutouch.bench.calibrate.observations import Injection, Observations
+from pneutouch.bench.calibrate.parameters import parameters
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.mechanics.atlas.press import batch_of
 from pneutouch.mechanics.atlas.respond import respond

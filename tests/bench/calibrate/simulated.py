@@ -8,12 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
-from pneutouch.bench.calibrate import CalibrationFit, CalibrationParameters, Observations, fit
+from pneutouch.bench.calibrate.fit import CalibrationFit, fit
 from pneutouch.bench.calibrate.fitted_atlas import FLOOR, _shape
-from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET_PRIOR
+from pneutouch.bench.calibrate.observations import Observations
+from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET_PRIOR, CalibrationParameters
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.record import MeasuredCurve, blocks_of
-from pneutouch.bench.simulate import PressCurve, SimulatedSpecimens, SimulationTruth, press_curves, simulate_run
+from pneutouch.bench.simulate.curve import PressCurve, press_curves
+from pneutouch.bench.simulate.rig import SimulatedSpecimens
+from pneutouch.bench.simulate.runs import SimulationTruth, simulate_run
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.spec.campaign import CampaignRun, Rig

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from pneutouch.bench.calibrate import USUAL, Observations, fit, parameters
+from pneutouch.bench.calibrate.fit import fit
 from pneutouch.bench.calibrate.fitted_atlas import FLOOR, shared_of
 from pneutouch.bench.calibrate.intervals import _half
-from pneutouch.bench.calibrate.observations import points_of
-from pneutouch.bench.calibrate.parameters import WALL
+from pneutouch.bench.calibrate.observations import Observations, points_of
+from pneutouch.bench.calibrate.parameters import USUAL, WALL, parameters
 from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, other
 from tests.bench.calibrate.simulated import designed, held, trial
 

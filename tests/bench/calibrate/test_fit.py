@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.bench.calibrate import NAMES, Observations, fit
+from pneutouch.bench.calibrate.fit import fit
 from pneutouch.bench.calibrate.fitted_atlas import FLOOR
 from pneutouch.bench.calibrate.goodness import misses, residuals
 from pneutouch.bench.calibrate.notes import gain_shifts
-from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET, USUAL, WALL
+from pneutouch.bench.calibrate.observations import Observations
+from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, NAMES, OFFSET, USUAL, WALL
 from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, exact, injections, other
 
 TRUTH = {"shear_modulus": 0.21, "wall_thickness": 1.56, "dead_volume": 1400.0}

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.bench.calibrate import Observations, fit
-from pneutouch.bench.calibrate.fit import identify
+from pneutouch.bench.calibrate.fit import fit, identify
 from pneutouch.bench.calibrate.fitted_atlas import FittedContact
 from pneutouch.bench.calibrate.goodness import misses
+from pneutouch.bench.calibrate.observations import Observations
 from pneutouch.bench.calibrate.parameters import FRICTION, MODULUS, NAMES, USUAL, parse_names
 from pneutouch.catalogue import load_scene
 from pneutouch.errors import InputError

@@ -7,7 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pneutouch.bench.calibrate import Observations, fit, predict_held_out
+from pneutouch.bench.calibrate.fit import fit
+from pneutouch.bench.calibrate.notes import predict_held_out
+from pneutouch.bench.calibrate.observations import Observations
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS
 from pneutouch.mechanics.models.solid import solid_result
 from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, disturbed, other

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from pneutouch.bench.calibrate import USUAL, Observations, fit
-from pneutouch.bench.calibrate.fit import identify
+from pneutouch.bench.calibrate.fit import fit, identify
 from pneutouch.bench.calibrate.goodness import misses
 from pneutouch.bench.calibrate.notes import fit_notes
+from pneutouch.bench.calibrate.observations import Observations
 from pneutouch.bench.calibrate.other_states import further_tests
-from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET, WALL
+from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET, USUAL, WALL
 from pneutouch.mechanics.membrane import limits
 from pneutouch.mechanics.rating import RATED_SHARE
 from pneutouch.units import KPA

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pneutouch.bench.calibrate import Injection, Observations, fit
+from pneutouch.bench.calibrate.fit import fit
 from pneutouch.bench.calibrate.fitted_atlas import TRAVEL, shared_of
-from pneutouch.bench.calibrate.observations import points_of
+from pneutouch.bench.calibrate.observations import Injection, Observations, points_of
 from pneutouch.bench.calibrate.parameters import parse_names
 from pneutouch.bench.record import MeasuredCurve, MeasuredIndentation
 from pneutouch.errors import InputError

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.bench.calibrate import USUAL, Observations, fit
-from pneutouch.bench.calibrate.fit import identify
+from pneutouch.bench.calibrate.fit import fit, identify
 from pneutouch.bench.calibrate.fitted_atlas import FLOOR
 from pneutouch.bench.calibrate.goodness import ASSUMED_SCATTER, response_gap, scatter_errors
 from pneutouch.bench.calibrate.notes import fit_notes
+from pneutouch.bench.calibrate.observations import Observations
+from pneutouch.bench.calibrate.parameters import USUAL
 from pneutouch.spec.material import Material
 from tests.bench.calibrate.sensors import DESIGNED, chosen, exact, other
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.bench.calibrate import Injection, Observations, fit, parameters
-from pneutouch.bench.calibrate.parameters import MODULUS, WALL
+from pneutouch.bench.calibrate.fit import fit
+from pneutouch.bench.calibrate.observations import Injection, Observations
+from pneutouch.bench.calibrate.parameters import MODULUS, WALL, parameters
 from pneutouch.catalogue import load_scene
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics.atlas.coverage import is_corrected, outside_fit, stand_in

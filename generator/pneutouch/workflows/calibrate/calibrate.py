@@ -5,8 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pneutouch.bench.calibrate import NAMES, Observations
+from pneutouch.bench.calibrate.observations import Observations
 from pneutouch.bench.calibrate.other_states import further_tests
+from pneutouch.bench.calibrate.parameters import NAMES
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.catalogue import KINDS, DesignSource, Library, load_scene, split_calibration, user_folder
 from pneutouch.catalogue.listing import known_design

@@ -7,17 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.calibrate import (
-    NAMES,
-    USUAL,
-    CalibrationFit,
-    Injection,
-    Observations,
-    fit,
-    parameters,
-    predict_held_out,
-)
-from pneutouch.bench.calibrate.fit import CorrelatedParameters, Identifiability, identify
+from pneutouch.bench.calibrate.fit import CalibrationFit, CorrelatedParameters, Identifiability, fit, identify
 from pneutouch.bench.calibrate.goodness import (
     ModelMisfit,
     ResponseGap,
@@ -27,9 +17,20 @@ from pneutouch.bench.calibrate.goodness import (
     residuals,
     response_gap,
 )
-from pneutouch.bench.calibrate.notes import fit_notes
+from pneutouch.bench.calibrate.notes import fit_notes, predict_held_out
+from pneutouch.bench.calibrate.observations import Injection, Observations
 from pneutouch.bench.calibrate.other_states import SuggestedTest
-from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, KEYS, LOGARITHMIC, UNITS, outside_value
+from pneutouch.bench.calibrate.parameters import (
+    DEAD,
+    FRICTION,
+    KEYS,
+    LOGARITHMIC,
+    NAMES,
+    UNITS,
+    USUAL,
+    outside_value,
+    parameters,
+)
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
