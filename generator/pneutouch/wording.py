@@ -47,6 +47,11 @@ def listed(names: Sequence[str], most: int) -> str:
     return f"{', '.join(names[:most])}{more}"
 
 
+def enumerated(words: Sequence[str]) -> str:
+    """Words in a row: ``a, b and c``."""
+    return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
+
+
 def counted(count: int, one: str, many: str = "") -> str:
     """``1 design``, ``2 designs``; ``many`` where the plural is not the singular with an s: ``2 bodies``."""
     return f"{count} {one if count == 1 else many or one + 's'}"

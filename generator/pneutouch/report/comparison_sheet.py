@@ -31,8 +31,10 @@ from pneutouch.report.chart import SIZE, Chart, Panel, PlotLine, drawn_svg
 from pneutouch.report.curves import BandEnds, Press, forces, rises
 from pneutouch.report.pages import set_sheet
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED
+from pneutouch.report.swept import spread_places
 from pneutouch.results.comparison import ComparedCurve, ComparisonRecord, DifferenceRecord, RowRecord
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
+from pneutouch.wording import enumerated
 
 MOST = 6
 """Greatest number of sensors drawn: more cover one another."""
@@ -41,7 +43,7 @@ _SHORT, _CUT = 16, 44
 """Letters of a name that fits into half the width of a legend, and into all of it."""
 
 _TONES = (INK, "#3F8FBF", "#B4631D", MUTED, ACCENT, "#8C8C8C")
-_PANELS, _RUNS, _TOLERANCE, _TALLEST = 4, 30, 5e-3, 1.6
+_RUNS, _TOLERANCE, _TALLEST = 30, 5e-3, 1.6
 
 
 def comparison_sheet(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> dict[str, bytes]:
@@ -52,7 +54,7 @@ def comparison_sheet(comparison: ComparisonRecord, parts: Mapping[str, Assembly]
 def described(comparison: ComparisonRecord, parts: Mapping[str, Assembly]) -> Sheet:
     """The whole sheet, its plots drawn."""
     labels, tool = words.labels(comparison), f"pneutouch {comparison.pneutouch}"
-    title = " and ".join([", ".join(labels[:-1]), labels[-1]])
+    title = enumerated(labels)
     compared = [[one.label, _KINDS[one.kind], one.source or "–"] for one in comparison.compared]
     inputs = SheetTable(words.input_rows(comparison), ("Input", *labels))
     return Sheet(
@@ -157,7 +159,8 @@ def presses(comparison: ComparisonRecord, draw: Callable[[Sequence[Press]], Pane
         return []
     top = _top(comparison, SENSITIVITY_KEY if draw is rises else STIFFNESS_KEY) * high
     plots = []
-    for pressure_kPa in _spread([float(p) for p in comparison.driving_pressures_kPa]):
+    for place in spread_places(len(comparison.driving_pressures_kPa)):
+        pressure_kPa = float(comparison.driving_pressures_kPa[place])
         shown = [one for k in range(len(names)) for one in _presses(comparison, k, pressure_kPa)]
         panel = replace(draw(shown), xlim=(0, 1.04 * right), ylim=(0, top))
         plots.append((f"{pressure_kPa:g} kPa", _drawn(panel, 56, looks, names)))
@@ -185,13 +188,6 @@ def _top(comparison: ComparisonRecord, key: str) -> float:
     shown = [(k, row.driving_pressure_kPa) for row in comparison.figures for k in range(len(row.values[:MOST]))]
     ratios = [matching[1] for k, p in shown if (matching := _ends(comparison, key, k, p)) is not None]
     return min(1.05 * max(ratios, default=1.0), _TALLEST)
-
-
-def _spread(values: Sequence[float]) -> list[float]:
-    """All values if they are few, else some spread evenly over all."""
-    if len(values) <= _PANELS:
-        return list(values)
-    return [values[round(k * (len(values) - 1) / (_PANELS - 1))] for k in range(_PANELS)]
 
 
 def _ends(comparison: ComparisonRecord, key: str, k: int, pressure_kPa: float | None) -> BandEnds | None:

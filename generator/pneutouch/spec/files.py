@@ -98,3 +98,32 @@ def design_inside(folder: Path, design: str, *, file: str | PathLike[str], key: 
     if design.endswith(".toml") or "/" in design or "\\" in design:
         return str(inside(folder, design, file=file, key=key))
     return design
+
+
+def head_of(command: str) -> str:
+    """First words of a text file that ``command`` wrote, and may overwrite while they are there."""
+    return f"# Written by pneutouch {command}"
+
+
+def whole_head(command: str, source: str) -> str:
+    """First lines of such a file: what it follows from, and how to keep it."""
+    return (
+        f"{head_of(command)} from {source}.\n"
+        "# Edit this line away and the command will no longer overwrite the file; delete the file to go back.\n"
+    )
+
+
+def is_of(path: Path, command: str) -> bool:
+    """True if a text file begins as those of ``command``."""
+    head = head_of(command)
+    with path.open(encoding="utf-8", errors="replace") as file:
+        return file.read(len(head)) == head
+
+
+def check_of(path: Path, command: str, remedy: str) -> bool:
+    """True if ``command`` wrote the file, False if there is none. Raises InputError for one of somebody else."""
+    if not (path.exists() or path.is_symlink()):
+        return False
+    if path.is_file() and not path.is_symlink() and is_of(path, command):
+        return True
+    raise InputError(f"was not written by pneutouch {command}, so it is left as it is", file=path, remedy=remedy)

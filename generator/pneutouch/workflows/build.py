@@ -37,6 +37,7 @@ from pneutouch.results.record import plain
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION
 from pneutouch.spec.read import Changes
 from pneutouch.units import ML
+from pneutouch.wording import enumerated
 
 StepReport = Callable[[str], None]
 
@@ -110,17 +111,12 @@ def _metadata(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, str
     return {
         "Title": scene.design.document.title,
         "Application": f"pneutouch {__version__}",
-        "Description": f"Pneumatic touch sensor {scene.name}: assembly of {_and(bodies)}",
+        "Description": f"Pneumatic touch sensor {scene.name}: assembly of {enumerated([body.name for body in bodies])}",
         RECIPE: BuildRecipe.of(evaluation).text(),
         "versions": json_bytes(versions()).decode(),
         "input-hash": input_hash(evaluation),
         "mesh-tolerance-mm": f"{scene.mesh_tolerance:g}",
     }
-
-
-def _and(bodies: tuple[Body, ...]) -> str:
-    *first, last = [body.name for body in bodies]
-    return f"{', '.join(first)} and {last}" if first else last
 
 
 def _meshes(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, BodyMesh]:

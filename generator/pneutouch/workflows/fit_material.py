@@ -23,7 +23,7 @@ from pneutouch.output.files import check_writable, digest, json_bytes, replace_f
 from pneutouch.report.fit_charts import LawCurve, law_chart
 from pneutouch.results.fit import LawRecord, MaterialFit, PulledSpecimen, TriedLaw
 from pneutouch.results.record import plain
-from pneutouch.spec.files import read_bytes
+from pneutouch.spec.files import check_of, read_bytes, whole_head
 from pneutouch.spec.material import HyperelasticLaw, Material, density_problem
 from pneutouch.spec.options import FitOptions
 from pneutouch.spec.read import read_toml
@@ -229,9 +229,7 @@ class FittedMaterial:
     text: str
 
 
-HEAD = "# Written by pneutouch fit-material"
-"""First words of every file that the command may overwrite."""
-
+_COMMAND = "fit-material"
 _COLOUR = "#C8BFB4"
 _POISSON = {
     "value": 0.49,
@@ -241,7 +239,7 @@ _POISSON = {
 
 def material_file(fitted: FittedMaterial, library: Library) -> str:
     """The text of the file, checked as a material. Raises InputError if a file of that name is not of a fit."""
-    _check_ours(fitted.path)
+    check_of(fitted.path, _COMMAND, "give another `name`, or move it away")
     content = _base(fitted, library)
     measured: dict[str, Quantity | HyperelasticLaw] = {"shear_modulus_MPa": _modulus(fitted), "law": _law(fitted)}
     facts, given = fitted.options, "as given to pneutouch fit-material"
@@ -255,27 +253,12 @@ def material_file(fitted: FittedMaterial, library: Library) -> str:
     content |= {key: table.model_dump(exclude_none=True) for key, table in measured.items()}
     KINDS["materials"].validate(content, str(fitted.path))
     names = ", ".join(file_name(path.name) for path in fitted.data)
-    head = (
-        f"{HEAD} from {names}.\n"
-        "# Edit this line away and the command will no longer overwrite the file; delete the file to go back.\n"
-    )
-    return head + toml_text(content)
+    return whole_head(_COMMAND, names) + toml_text(content)
 
 
 def _four(value: float) -> float:
     """A value to four significant digits, more than a test has."""
     return float(f"{value:.4g}")
-
-
-def _check_ours(path: Path) -> None:
-    if not (path.exists() or path.is_symlink()):
-        return
-    if path.is_file() and not path.is_symlink():
-        with path.open(encoding="utf-8", errors="replace") as file:
-            if file.read(len(HEAD)) == HEAD:
-                return
-    problem = "was not written by pneutouch fit-material, so it is left as it is"
-    raise InputError(problem, file=path, remedy="give another `name`, or move it away")
 
 
 def _base(fitted: FittedMaterial, library: Library) -> dict[str, Any]:

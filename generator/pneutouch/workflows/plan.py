@@ -59,12 +59,10 @@ def steps_of(test: RunProtocol, pressure_kPa: float, rig: Rig) -> list[PlannedSt
         if test.reset:
             values = {"wait": (None, ""), "vent": (0.0, "kPa"), "set_pressure": (pressure_kPa, "kPa")}
             steps += [PlannedStep(action, *values[action], share * test.rest) for action, share in _REST]
+        elif k == 0:
+            steps.append(PlannedStep("set_pressure", pressure_kPa, "kPa", test.rest))
         else:
-            steps.append(
-                PlannedStep("set_pressure", pressure_kPa, "kPa", test.rest)
-                if k == 0
-                else PlannedStep("wait", None, "", test.rest)
-            )
+            steps.append(PlannedStep("wait", None, "", test.rest))
         seconds = (depth + CLEARANCE) / test.speed
         steps.append(PlannedStep("move", depth, "mm", seconds))
         if test.hold > 0:

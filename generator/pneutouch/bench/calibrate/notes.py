@@ -16,7 +16,7 @@ from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.results.calibration import HeldOutRecord, MissRecord
 from pneutouch.units import KPA, ML
-from pneutouch.wording import counted, listed
+from pneutouch.wording import counted, enumerated, listed
 
 GAIN = 0.01
 
@@ -153,7 +153,7 @@ def _counted(fit: CalibrationFit) -> list[str]:
     used = np.unique(fit.points.channels[fit.solution.use])
     sizes = ", ".join(f"{(fit.sizes[c]):.1%} of the {CHANNELS[c]}" for c in used)
     parts = [f"the intervals include the model discrepancy ({sizes})"]
-    others = _joined([WORDS[k] for k in fit.parameters.others]) if fit.parameters.others else ""
+    others = enumerated([WORDS[k] for k in fit.parameters.others]) if fit.parameters.others else ""
     if others:
         parts.append(f"and the priors of {others}, not fitted")
     elif not fit.parameters.priors and len(fit.parameters.fitted) < len(USUAL):
@@ -226,7 +226,7 @@ def _basis(fit: CalibrationFit) -> list[str]:
     labels = [curve.run.label for curve in fit.observations.curves]
     labels += [injection.label for injection in fit.observations.injections]
     for run in sorted({int(run) for run in fit.covariance.alone if run >= 0 and fit.covariance.clustered}):
-        words = _joined(
+        words = enumerated(
             [WORDS[k] for k, one in zip(fit.parameters.fitted, fit.covariance.alone, strict=True) if one == run]
         )
         notes.append(f"{words} rest on one run ({labels[run]}), taken to scatter as the others do; repeat it")
@@ -245,7 +245,7 @@ def _open(fit: CalibrationFit, identified: Identifiability) -> list[str]:
 
 
 def _apart(group: CorrelatedParameters) -> str:
-    names = _joined([WORDS[k] for k in group.members])
+    names = enumerated([WORDS[k] for k in group.members])
     product = (
         f"; the data determine modulus × wall^{group.combination:.2f}"
         if group.combination is not None and group.combination > 0
@@ -304,7 +304,3 @@ def _held(one: HeldOutRecord) -> str:
         f"predicted, {one.sensitivity_measured_kPa_per_N:.4g} measured ({one.sensitivity_error:+.1%}); force within "
         f"{one.force_greatest_share:.1%} and pressure within {one.pressure_greatest_share:.1%} of full scale"
     )
-
-
-def _joined(words: Sequence[str]) -> str:
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

@@ -2,7 +2,6 @@
 
 import math
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import replace
 from statistics import median
 
@@ -30,7 +29,7 @@ from pneutouch.report.pages import set_sheet
 from pneutouch.results.measured import Verdict
 from pneutouch.results.record import SENSITIVITY_KEY, STIFFNESS_KEY
 from pneutouch.units import KPA
-from pneutouch.wording import SIMULATED, counted
+from pneutouch.wording import SIMULATED, counted, enumerated
 
 _KINDS = ("steps", "saturation", "loop", "relaxation")
 _WHERE = "Formulas, units and sources: docs/howto/measuring.md, section Definitions."
@@ -96,11 +95,6 @@ def _plots(measured: CampaignReport, groups: list[ResinGroups]) -> list[Plot]:
 
 
 _WORDS = ("passed", "failed", "not decided")
-
-
-def listed(items: Sequence[str]) -> str:
-    """Words in a row: ``a, b and c``."""
-    return f"{', '.join(items[:-1])} and {items[-1]}" if len(items) > 1 else "".join(items)
 
 
 def dates(measured: CampaignReport) -> str:
@@ -251,8 +245,8 @@ def conditions(measured: CampaignReport) -> list[list[str]]:
         ["Pressure sensor", f"to {rig.pressure_range_kPa:g} kPa gauge"],
         ["Sampling", f"{rig.rate_Hz:g} Hz"],
         ["Ambient pressure", air],
-        ["Runs", listed([f"{count} {kind}" for kind, count in sorted(kinds.items())])],
-        ["Ages", listed(list(ages.values())) or "none"],
+        ["Runs", enumerated([f"{count} {kind}" for kind, count in sorted(kinds.items())])],
+        ["Ages", enumerated(list(ages.values())) or "none"],
         ["Driving pressure as read", _as_read(measured)],
         ["Predicted by", measured.model],
     ]

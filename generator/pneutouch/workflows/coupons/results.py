@@ -15,6 +15,7 @@ from pneutouch.errors import InputError
 from pneutouch.output.files import replace_files
 from pneutouch.results.coupons import ChangedQuantity, CouponReport, MeasuredFigure
 from pneutouch.spec.coupon import CouponResults, FeatureGauge, MixedCoupons, read_results
+from pneutouch.spec.files import check_of, head_of, is_of, whole_head
 from pneutouch.spec.grade import MixingCurve, MixingPoint
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
@@ -23,7 +24,8 @@ from pneutouch.spec.toml_text import toml_text
 from pneutouch.spec.values import file_name
 from pneutouch.workflows.coupons.order import resins_of
 
-HEAD = "# Written by pneutouch coupons"
+_COMMAND = "coupons"
+HEAD = head_of(_COMMAND)
 """First words of every profile that the command may overwrite."""
 
 
@@ -40,7 +42,7 @@ def base_file(kind: str, name: str, library: Library) -> Path:
     """The first profile of this name that the command did not write; if there is none, the first that it wrote."""
     candidates = [root / KINDS[kind].folder / f"{name}.toml" for root in library.folders]
     there = [path for path in candidates if path.is_file()]
-    return next((path for path in there if not _is_ours(path)), there[0])
+    return next((path for path in there if not is_of(path, _COMMAND)), there[0])
 
 
 def local_profiles(
@@ -68,10 +70,7 @@ def local_profiles(
 
 def head(source: ReadingSource, what: str) -> str:
     """The first lines of a profile that the command writes."""
-    return (
-        f"{HEAD} from {source.where} ({source.lab}, {source.date.isoformat()}): {what}.\n"
-        "# Edit this line away and the command will no longer overwrite the file; delete the file to go back.\n"
-    )
+    return whole_head(_COMMAND, f"{source.where} ({source.lab}, {source.date.isoformat()}): {what}")
 
 
 def write_profiles(profiles: Sequence[MeasuredProfile]) -> None:
@@ -79,22 +78,10 @@ def write_profiles(profiles: Sequence[MeasuredProfile]) -> None:
     replace_files({profile.path: profile.text.encode() for profile in profiles})
 
 
-def _is_ours(path: Path) -> bool:
-    with path.open(encoding="utf-8", errors="replace") as file:
-        return file.read(len(HEAD)) == HEAD
-
-
 def check_ours(path: Path, keys: str) -> bool:
     """True if the command wrote the file. Raises InputError if it did not; ``keys`` are the entries to write."""
-    if not (path.exists() or path.is_symlink()):
-        return False
-    if path.is_file() and not path.is_symlink() and _is_ours(path):
-        return True
-    raise InputError(
-        "was not written by pneutouch coupons, so it is left as it is",
-        file=path,
-        remedy=f"put {keys} into it by hand, move it away, or give another folder with `out`",
-    )
+    remedy = f"put {keys} into it by hand, move it away, or give another folder with `out`"
+    return check_of(path, _COMMAND, remedy)
 
 
 def _carry(earlier: dict[str, Any], content: dict[str, Any]) -> None:

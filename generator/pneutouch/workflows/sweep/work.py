@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -150,7 +151,7 @@ def _check(plan: SweepPlan, library: Library) -> None:
             if fault:
                 raise InputError(f"point[{index}] = {point}: {fault}", file=plan.where)
         return
-    strides = [_stride(plan.shape, k) for k in range(len(plan.axes))]
+    strides = [math.prod(plan.shape[k + 1 :]) for k in range(len(plan.axes))]
     fits: set[tuple[int, int]] = set()
     for step in range(max(plan.shape)):
         place = [step % length for length in plan.shape]
@@ -166,13 +167,6 @@ def _check(plan: SweepPlan, library: Library) -> None:
                     problem = f"no point of the sweep can have it: {fault.problem if same else fault}"
                     remedy = fault.remedy if same else None
                     raise InputError(problem, file=plan.where, key=axis.key, value=value, remedy=remedy)
-
-
-def _stride(shape: tuple[int, ...], k: int) -> int:
-    stride = 1
-    for length in shape[k + 1 :]:
-        stride *= length
-    return stride
 
 
 def _common_fault(plan: SweepPlan, indices: Iterable[int], library: Library) -> InputError | None:
