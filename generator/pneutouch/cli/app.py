@@ -7,6 +7,7 @@ import shlex
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, redirect_stdout
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -211,7 +212,6 @@ def predict(
         from pneutouch.evaluation.evaluate import evaluate
         from pneutouch.evaluation.result import predicted_in_full
         from pneutouch.mechanics.models.choice import model_options
-        from pneutouch.results.record import plain
 
         evaluation = evaluate(
             design,
@@ -224,7 +224,7 @@ def predict(
         with bar("predicting"):
             prediction = predicted_in_full(evaluation, monte_carlo)
         if json:
-            print_json(plain(prediction))
+            print_json(prediction)
         else:
             from pneutouch.cli.prediction_text import prediction_text
 
@@ -283,10 +283,19 @@ def refuse_flags(context: typer.Context, flags: Mapping[str, str], what: str, fi
 
 
 def print_json(document: Any) -> None:
-    """Print a document as JSON on stdout."""
+    """Print a document, or a record as one, as JSON on stdout."""
     from pneutouch.output.files import json_bytes
+    from pneutouch.results.record import plain
 
-    put(json_bytes(document).decode())
+    put(json_bytes(plain(document)).decode())
+
+
+def print_written(record: Any, folder: Path, text: Callable[[Any], str], *, json: bool) -> None:
+    """Print the record of a folder that was written, as JSON or as ``text``, and the folder."""
+    if json:
+        print_json(replace(record, folder=str(folder)))
+    else:
+        echo(f"{text(record)}\n\n{folder}")
 
 
 _BREAKS = "=@:"

@@ -146,10 +146,8 @@ def check(
                     findings += plan_voxels(evaluation.assembly).findings
         broken = any(finding.severity == "error" for finding in findings)
         if json:
-            from pneutouch.results.record import plain
-
-            by_curve = {"mixing_curves": plain(curves)} if curves else {}
-            listed = [plain(f.stated) for f in findings]
+            by_curve = {"mixing_curves": curves} if curves else {}
+            listed = [f.stated for f in findings]
             print_json({"design": design, "passed": not broken, "findings": listed, **by_curve})
         else:
             from pneutouch.cli.prediction_text import findings_text

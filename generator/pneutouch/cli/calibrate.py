@@ -46,7 +46,6 @@ def calibrate(
 ) -> None:
     """Fit modulus, wall, dead volume and contact offset to a sensor's runs."""
     with reporting():
-        from pneutouch.results.record import plain
         from pneutouch.workflows.calibrate.calibrate import run_calibration
 
         asked = given(CalibrationOptions, fields)
@@ -56,7 +55,7 @@ def calibrate(
         if record.read_as:
             notify(reading_text(record.read_as))
         if json:
-            print_json(plain(record))
+            print_json(record)
         else:
             echo(calibration_text(record))
             uncalibrated, name = outcome.design_given, record.calibration

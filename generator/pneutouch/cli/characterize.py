@@ -1,18 +1,26 @@
 """``pneutouch characterize``: measured data to figures, compared with the predicted ones."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_args
 
 import typer
 
-from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.app import (
+    CalibrationOption,
+    JsonOption,
+    OutOption,
+    SetOption,
+    app,
+    changes,
+    print_written,
+    reporting,
+)
 from pneutouch.cli.commands import option
 from pneutouch.cli.complete import names
 from pneutouch.cli.declared import READING_FIELDS, ColumnsOption, reading_of, reading_text, reading_words, with_fields
-from pneutouch.cli.terminal import bar, echo, notify, report_next, set_words
+from pneutouch.cli.terminal import bar, notify, report_next, set_words
 from pneutouch.spec.campaign import Campaign, RunKind
 from pneutouch.wording import SIMULATED, listed
 
@@ -72,7 +80,6 @@ def characterize(
     with reporting():
         from pneutouch.errors import InputError
         from pneutouch.mechanics.models.choice import USUAL
-        from pneutouch.results.record import plain
         from pneutouch.workflows.characterize.campaign import characterize as run
         from pneutouch.workflows.characterize.campaign import write
         from pneutouch.workflows.characterize.load import same_failures
@@ -83,11 +90,7 @@ def characterize(
             how: Any = {"target": target, "model": model or USUAL, "reading": reading, "kind": kind}
             outcome = run(data, design, given, progress=progress, **how)
         folder = write(outcome, out, evidence)
-        if json:
-            print_json(plain(replace(outcome.figures, folder=str(folder))))
-        else:
-            echo(measured_text(outcome.figures))
-            echo(f"\n{folder}")
+        print_written(outcome.figures, folder, measured_text, json=json)
         if outcome.read_as:
             notify(reading_text(outcome.read_as))
         for files, message in same_failures(outcome.measured.failures):

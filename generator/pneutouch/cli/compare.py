@@ -1,6 +1,5 @@
 """``pneutouch compare``: designs, builds and measurements side by side."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -16,11 +15,11 @@ from pneutouch.cli.app import (
     ToleranceOption,
     app,
     changes,
-    print_json,
+    print_written,
     reporting,
 )
 from pneutouch.cli.complete import names
-from pneutouch.cli.terminal import bar, echo, report_next, set_words, table_text
+from pneutouch.cli.terminal import bar, report_next, set_words, table_text
 from pneutouch.report import comparison_words
 from pneutouch.results.comparison import ComparisonRecord, RowRecord
 
@@ -46,7 +45,6 @@ def compare(
     """Compare designs, builds and measurements: their differences, and those that exceed their uncertainty."""
     with reporting():
         from pneutouch.mechanics.models.choice import model_options
-        from pneutouch.results.record import plain
         from pneutouch.workflows.compare import compare as run
         from pneutouch.workflows.compare import write
 
@@ -61,11 +59,8 @@ def compare(
             )
             progress(len(things), len(things), "drawing curves and sections")
             folder = write(result, out)
-        if json:
-            print_json(plain(replace(result.record, folder=str(folder))))
-        else:
-            echo(comparison_text(result.record))
-            echo(f"\n{folder}")
+        print_written(result.record, folder, comparison_text, json=json)
+        if not json:
             uncalibrated, _, calibration = next((thing for thing in things if "@" in thing), "").partition("@")
             if calibration and not Path(f"{uncalibrated}@{calibration}").exists():
                 report_next("export-reader", uncalibrated, *set_words(set_, calibration))

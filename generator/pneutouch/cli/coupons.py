@@ -13,7 +13,6 @@ from pneutouch.cli.complete import coupon_names, names
 from pneutouch.cli.declared import words
 from pneutouch.cli.terminal import bar, echo, report_next, table_text
 from pneutouch.results.coupons import CouponReport
-from pneutouch.results.record import plain
 
 if TYPE_CHECKING:
     from pneutouch.workflows.coupons.order import CouponOptions
@@ -82,7 +81,7 @@ def coupons(
         with bar("making coupons"):
             made = build_coupons(order, out or Path("outputs"))
         if json:
-            print_json(plain(made))
+            print_json(made)
         else:
             folder = Path(made.folder)
             echo(made.folder)
@@ -101,7 +100,7 @@ def _enter(path: Path, out: Path | None, given: dict[str, Any], json: bool) -> N
 
     report = enter_results(path, out)
     if json:
-        print_json(plain(report))
+        print_json(report)
     else:
         echo(results_text(report))
 

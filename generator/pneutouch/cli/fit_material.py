@@ -12,7 +12,6 @@ from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
 from pneutouch.cli.declared import given, with_options
 from pneutouch.cli.terminal import bar, echo, notify, report_next, table_text
 from pneutouch.results.fit import MaterialFit
-from pneutouch.results.record import plain
 from pneutouch.spec.options import FitOptions
 
 
@@ -42,7 +41,7 @@ def fit_material(
         for note in report.notes:
             notify(f"note: {note}")
         if json:
-            print_json(plain(replace(report, folder=str(folder))))
+            print_json(replace(report, folder=str(folder)))
             return
 
         echo(fit_text(report))

@@ -1,6 +1,5 @@
 """``pneutouch plan``: a test plan for the laboratory."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,11 +13,11 @@ from pneutouch.cli.app import (
     SetOption,
     app,
     changes,
-    print_json,
+    print_written,
     reporting,
 )
 from pneutouch.cli.declared import given, with_options
-from pneutouch.cli.terminal import bar, echo, notify, report_next, table_text
+from pneutouch.cli.terminal import bar, notify, report_next, table_text
 from pneutouch.spec.options import PlanOptions
 from pneutouch.wording import counted
 
@@ -42,7 +41,6 @@ def plan(
 ) -> None:
     """Plan a measurement campaign: every run and step, what it must read, and where the rig cannot follow."""
     with reporting():
-        from pneutouch.results.record import plain
         from pneutouch.workflows.plan import make_plan, rig_of, write_plan
 
         with bar("planning the runs"):
@@ -57,11 +55,8 @@ def plan(
             folder = write_plan(result, out)
         for warning in result.record.warnings:
             notify(f"warning: {warning.rule}: {warning.message}")
-        if json:
-            print_json(plain(replace(result.record, folder=str(folder))))
-        else:
-            echo(plan_text(result.record))
-            echo(f"\n{folder}")
+        print_written(result.record, folder, plan_text, json=json)
+        if not json:
             report_next("simulate", folder)
 
 

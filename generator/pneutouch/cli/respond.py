@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,11 +17,10 @@ from pneutouch.cli.app import (
     ToleranceOption,
     app,
     changes,
-    print_json,
+    print_written,
     reporting,
 )
-from pneutouch.cli.terminal import bar, echo, notify, report_next, set_words, table_text
-from pneutouch.results.record import plain
+from pneutouch.cli.terminal import bar, notify, report_next, set_words, table_text
 from pneutouch.results.response import LoadResponse
 
 if TYPE_CHECKING:
@@ -69,13 +67,9 @@ def respond(
             folder = write_respond(run, record, out)
         for note in record.notes:
             notify(f"note: {note}")
-        if json:
-            print_json(plain(replace(record, folder=str(folder))))
-            return
-
-        echo(respond_text(record))
-        echo(f"\n{folder}")
-        report_next("build", design, *set_words(set_, calibration))
+        print_written(record, folder, respond_text, json=json)
+        if not json:
+            report_next("build", design, *set_words(set_, calibration))
 
 
 def _load(step: str | None, sine: str | None, peak: str | None, duration: float | None) -> Load:

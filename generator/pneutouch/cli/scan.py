@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,13 +15,13 @@ from pneutouch.cli.app import (
     app,
     changes,
     print_json,
+    print_written,
     refuse_flags,
     reporting,
 )
 from pneutouch.cli.complete import names
 from pneutouch.cli.declared import given, with_options
 from pneutouch.cli.terminal import bar, echo, table_text
-from pneutouch.results.record import plain
 from pneutouch.results.scan import FavouringState, ScanRecord, SeparationRecord, SimulatedSignal, SoughtPattern
 from pneutouch.spec.options import ScanOptions, flag_of
 
@@ -75,11 +74,7 @@ def scan(
             run = run_scan(specimen, design, asked, changes(set_, calibration))
             record = scanned(run)
             folder = write_scan(run, record, out)
-        if json:
-            print_json(plain(replace(record, folder=str(folder))))
-        else:
-            echo(scan_text(record))
-            echo(f"\n{folder}")
+        print_written(record, folder, scan_text, json=json)
 
 
 def _separate(
@@ -90,7 +85,7 @@ def _separate(
     with bar("ranking domes"):
         separation = separating(specimen, design, text, options, changed)
     if json:
-        print_json(plain(separation))
+        print_json(separation)
     else:
         echo(separation_text(separation))
     if not separation.domes:

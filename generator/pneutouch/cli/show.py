@@ -9,7 +9,6 @@ import typer
 
 from pneutouch.cli.app import JsonOption, app, print_json, refuse_flags, reporting
 from pneutouch.cli.terminal import echo, table_text
-from pneutouch.results.record import plain
 from pneutouch.results.stored import ShownPackage, ShownRecipe, ShownStack
 
 
@@ -40,7 +39,7 @@ def show(
             package = run(file)
             document, text = package, partial(show_text, package)
         if json:
-            print_json(plain(document))
+            print_json(document)
         else:
             echo(text())
 

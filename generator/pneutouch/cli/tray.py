@@ -11,7 +11,6 @@ from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, pr
 from pneutouch.cli.complete import assignment, names
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.errors import InputError
-from pneutouch.results.record import plain
 from pneutouch.results.tray import TrayRecord
 from pneutouch.wording import counted
 
@@ -64,7 +63,7 @@ def tray(
         for note in record.left_out:
             notify(f"not on this tray: {note}")
         if json:
-            print_json(plain(record))
+            print_json(record)
         else:
             echo(_text(record))
             echo(record.folder)
