@@ -44,7 +44,7 @@ def copied(folder, *names):
 def packed(checkout, kind, folder, umask=0o022, **environment):
     """The archive of a kind that is built from the checkout. SOURCE_DATE_EPOCH is the one of the Makefile unless given."""
     words = [sys.executable, "-m", "hatchling", "build", "-t", kind, "-d", str(folder)]
-    known = {**os.environ, "SOURCE_DATE_EPOCH": "1580601600", **environment}
+    known = {**os.environ, "SOURCE_DATE_EPOCH": "1580601600", "PYTHONDONTWRITEBYTECODE": "1", **environment}
     subprocess.run(words, cwd=checkout, check=True, capture_output=True, umask=umask, env=known)
     (archive,) = folder.iterdir()
     return archive

@@ -6,11 +6,13 @@ Findings of the print rules on a sensor and, where its membrane is cast, on its 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.catalogue import Library, ResolvedDesign
+from pneutouch.catalogue import KINDS, ResolvedDesign
+from pneutouch.catalogue.library import PACKAGE
 from pneutouch.errors import InputError
 from pneutouch.parts import Assembly, assemble
 from pneutouch.parts.cast_ring import RING
@@ -23,6 +25,7 @@ from pneutouch.printability.rules.feature_sizes import CHECKS
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
 from pneutouch.printability.view import GluedSeat, PrintView, WettedSurface
 from pneutouch.spec.part import Port, Tube
+from pneutouch.spec.read import read_toml
 
 _HINTS = {
     "membrane": {
@@ -154,7 +157,7 @@ def _with_ports(findings: list[Finding], scene: ResolvedDesign) -> list[Finding]
     broken = {one.rule for one in findings if _names_port(one)}
     if not broken:
         return findings
-    ports, ending = _ports_with_tubes(Library.default()), {rule: list[str]() for rule in broken}
+    ports, ending = _ports_with_tubes(), {rule: list[str]() for rule in broken}
     other_tube = {name: all(tube.title != scene.tube.title for tube in tubes) for name, (_, tubes) in ports.items()}
     for name in sorted(ports, key=other_tube.__getitem__):
         if name == scene.design.connector.port or all(len(names) == _NAMED for names in ending.values()):
@@ -171,14 +174,15 @@ def _with_ports(findings: list[Finding], scene: ResolvedDesign) -> list[Finding]
     return [_with_port(one, ending[one.rule]) if _names_port(one) else one for one in findings]
 
 
-def _ports_with_tubes(library: Library) -> dict[str, tuple[Port, list[Tube]]]:
-    """Ports by name with their tubes; what is not valid in a user's folder is left out."""
-    found: dict[str, tuple[Port, list[Tube]]] = {}
-    for name in library.paths("ports"):
-        with suppress(InputError):
-            port = library.load("ports", name)
-            found[name] = port, [library.load("tubes", tube) for tube in port.tubes]
-    return found
+def _ports_with_tubes() -> dict[str, tuple[Port, list[Tube]]]:
+    """The shipped ports by name with their tubes: a build has the same bytes whatever a user's folder holds."""
+    ports, tubes = _shipped("ports"), _shipped("tubes")
+    return {name: (port, [tubes[tube] for tube in port.tubes]) for name, port in ports.items()}
+
+
+def _shipped(kind: str) -> dict[str, Any]:
+    paths = sorted((PACKAGE / KINDS[kind].folder).glob("*.toml"))
+    return {path.stem: KINDS[kind].validate(read_toml(path), str(path)) for path in paths}
 
 
 def _with_port(finding: Finding, names: list[str]) -> Finding:
