@@ -227,7 +227,7 @@ def _target() -> Schema:
     keys = {
         key: described_by(f"{help} Every key is there; null: free.", {"type": "object"}) for key, help in helps.items()
     }
-    return record("The target, as a target file has it.", keys)
+    return record("The target, as a target file has it.", keys, optional=Target.left_out)
 
 
 _DOCUMENTS: dict[str, tuple[type | Callable[[], Schema], str, str]] = {
