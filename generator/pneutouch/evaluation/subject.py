@@ -3,7 +3,7 @@
 Findings of the print rules on a sensor and, where its membrane is cast, on its mould.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -176,13 +176,13 @@ def _with_ports(findings: list[Finding], scene: ResolvedDesign) -> list[Finding]
 
 def _ports_with_tubes() -> dict[str, tuple[Port, list[Tube]]]:
     """The shipped ports by name with their tubes: a build has the same bytes whatever a user's folder holds."""
-    ports, tubes = _shipped("ports"), _shipped("tubes")
+    ports, tubes = dict(_shipped("ports")), dict(_shipped("tubes"))
     return {name: (port, [tubes[tube] for tube in port.tubes]) for name, port in ports.items()}
 
 
-def _shipped(kind: str) -> dict[str, Any]:
-    paths = sorted((PACKAGE / KINDS[kind].folder).glob("*.toml"))
-    return {path.stem: KINDS[kind].validate(read_toml(path), str(path)) for path in paths}
+def _shipped(kind: str) -> Iterator[tuple[str, Any]]:
+    for path in sorted((PACKAGE / KINDS[kind].folder).glob("*.toml")):
+        yield path.stem, KINDS[kind].validate(read_toml(path), str(path))
 
 
 def _with_port(finding: Finding, names: list[str]) -> Finding:
